@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rocking_cli.core import Reals
 
 SAME = 1e-9  # of the polygon's size: points that are nearer are one
+MANY = 256  # boxes that are compared with all that begin before they end, at a time
 Points = NDArray[np.complex128]
 Indices = NDArray[np.intp]
 Bools = NDArray[np.bool_]
@@ -154,24 +155,33 @@ def _within(z: Points) -> complex:
     return complex((x[2 * long] + x[2 * long + 1]) / 2, y)
 
 
-def _nearby(low: Points, high: Points) -> Iterator[tuple[Indices, Indices]]:
-    """Pairs of boxes that overlap or touch, given their lower left and upper right corners, many at a time."""
-    order = np.argsort(low.real, kind="stable")
+def nearby(low: Points, high: Points) -> Iterator[tuple[Indices, Indices]]:
+    """Pairs of boxes that overlap or touch, given their lower left and upper right corners, many at a time.
+
+    A sweep along the axis on which fewer boxes overlap; those already begun are compared at once.
+    """
+    ways = []
+    for a, b in ((low.real, high.real), (low.imag, high.imag)):
+        order = np.argsort(a, kind="stable")
+        # Of each box those that begin after it and before it ends.
+        ways.append((order, np.searchsorted(a[order], b[order], side="right")))
+    order, until = min(ways, key=lambda way: int(way[1].sum()))
     low, high = low[order], high[order]
-    for step in range(1, len(order)):
-        first = np.flatnonzero(low.real[step:] <= high.real[:-step])
-        if first.size == 0:
-            return  # boxes that are further apart in this order begin even further to the right
-        second = first + step
-        meet = (low.imag[second] <= high.imag[first]) & (low.imag[first] <= high.imag[second])
+    for first in range(0, len(order), MANY):
+        last = min(first + MANY, len(order))
+        count = np.maximum(until[first:last] - np.arange(first + 1, last + 1), 0)
+        one = np.repeat(np.arange(first, last), count)
+        other = one + 1 + np.arange(len(one)) - np.repeat(np.cumsum(count) - count, count)
+        meet = (low.real[other] <= high.real[one]) & (low.real[one] <= high.real[other])
+        meet &= (low.imag[other] <= high.imag[one]) & (low.imag[one] <= high.imag[other])
         if meet.any():
-            yield order[first[meet]], order[second[meet]]
+            yield order[one[meet]], order[other[meet]]
 
 
 def any_alike(z: Points, tolerance: float) -> bool:
     """Whether two points are within a tolerance of each other."""
     around = tolerance * (1 + 1j)
-    return any((np.abs(z[i] - z[j]) <= tolerance).any() for i, j in _nearby(z, z + around))
+    return any((np.abs(z[i] - z[j]) <= tolerance).any() for i, j in nearby(z, z + around))
 
 
 def any_meet(z: Points) -> bool:
@@ -179,7 +189,7 @@ def any_meet(z: Points) -> bool:
     w = np.roll(z, -1)
     low = np.minimum(z.real, w.real) + 1j * np.minimum(z.imag, w.imag)
     high = np.maximum(z.real, w.real) + 1j * np.maximum(z.imag, w.imag)
-    for i, j in _nearby(low, high):
+    for i, j in nearby(low, high):
         apart = (z[i] != z[j]) & (z[i] != w[j]) & (w[i] != z[j]) & (w[i] != w[j])
         if _meet(z[i][apart], w[i][apart], z[j][apart], w[j][apart]).any():
             return True

@@ -126,7 +126,7 @@ class Assembly(Membered):
 
     blocks: dict[Name, Shape] = Field(
         description="what can move, by names: polygons, each with density and depth, or mass, centroid and inertia",
-        examples=[EXAMPLE_BLOCKS], min_length=1, max_length=500,
+        examples=[EXAMPLE_BLOCKS], min_length=1, max_length=10_000,
     )  # fmt: skip
     ground: dict[Name, Ground] = Field(
         description="what cannot, by names: polygons", examples=[EXAMPLE_GROUND], min_length=1, max_length=100
@@ -511,44 +511,56 @@ class Assembly(Membered):
             opens=self._joint(valid[1]) if valid else "",
             held_by=valid[2] if valid else None,
             thrust=[(self._joint(each.contact), each.point, each.force) for each in thrust.passages],
+            idle=state.idle,
         )
 
-    def _admissible(self, direction: Direction, phi: Reals, going: Going) -> list[analysis.Admissible | None]:
-        """Whether the joints carry the forces of each state; None of one that the solver has no answer for."""
-        bodies, motions = self.weighed(), self.motion(phi, direction)
-        forces = under_way(bodies, motions, self.attached, direction, self.gravity, going)
-        places = {body.name: motion.carry(body.centroid)[0] for body, motion in zip(bodies, motions, strict=True)}
-        turns = {body.name: motion.psi for body, motion in zip(bodies, motions, strict=True)}
+    def _held(self, direction: Direction, phi: float) -> tuple[analysis.Displaced, Reals, float]:
+        """The assembly held displaced, the forces on its blocks, and the acceleration over g that holds it."""
+        here = np.array([phi])
+        there = self.coefficients(here, direction)
+        share = float(there.restoring(self.gravity)[0] / there.B[0])
+        going = Going(np.zeros(1), np.zeros(1), np.full(1, -int(direction) * share * self.gravity + 0j))
+        bodies, motions = self.weighed(), self.motion(here, direction)
+        forces = under_way(bodies, motions, self.attached, direction, self.gravity, going)[0]
+        moved = {
+            body.name: (complex(motion.carry(body.centroid)[0][0]), float(motion.psi[0]))
+            for body, motion in zip(bodies, motions, strict=True)
+        }
         states, weight = self._groups(direction).states, self._collapse(direction).problem.weight
-        found: list[analysis.Admissible | None] = []
-        for k, each in enumerate(forces):
-            moved = {name: (complex(places[name][k]), float(turns[name][k])) for name in places}
-            here = analysis.Displaced(self._blocks, self._contacts, self._guides, states, moved, weight)
-            try:
-                found += here.admissible(each[None])
-            except analysis.NoAnswer:
-                found.append(None)
-        return found
+        return (
+            analysis.Displaced(self._blocks, self._contacts, self._guides, states, moved, weight), forces, share,
+        )  # fmt: skip
 
     @per_direction
     def _valid_to(self, direction: Direction) -> tuple[float, int, float] | None:
         """The rotation at which another joint opens as it is held displaced, which, and by what acceleration over g."""
+        known: Reals | None = None  # forces in the joints at the last rotation that holds
 
         def held(phi: float) -> tuple[analysis.Admissible, float]:
-            here = np.array([phi])
-            there = self.coefficients(here, direction)
-            share = float(there.restoring(self.gravity)[0] / there.B[0])
-            push = np.full(1, -int(direction) * share * self.gravity + 0j)
-            found = self._admissible(direction, here, Going(np.zeros(1), np.zeros(1), push))[0]
-            if found is None:
-                raise StructureError(f"the forces in its joints at {phi:.4g} rad could not be found")
-            return found, share
+            here, forces, share = self._held(direction, phi)
+            try:
+                return here.admissible(forces[None])[0], share
+            except analysis.NoAnswer:
+                raise StructureError(f"the forces in its joints at {phi:.4g} rad could not be found") from None
+
+        def margin(phi: float) -> float:
+            nonlocal known
+            found = held(phi)[0]
+            known = found.forces if found.margin > 0 else None
+            return found.margin
+
+        def holds(phi: float) -> bool:
+            nonlocal known
+            if known is not None:
+                here, forces, _ = self._held(direction, phi)
+                known = here.near(forces, known)
+            return known is not None
 
         try:
             end = self.critical_rotation(direction)
         except NoCriticalRotation:
             end = self.limit(direction) * (1 - 1e-6)  # a tie holds it; at the very end it may lock
-        first = analysis.first_violation(lambda phi: held(phi)[0].margin, end)
+        first = analysis.first_violation(margin, end, holds=holds)
         if first is None:
             return None
         found, share = held(first)

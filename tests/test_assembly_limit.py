@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from pytest import approx
 from scipy.optimize import linprog
+from scipy.sparse import csr_array
 
 from mechanisms._assembly import (
     AssemblyFault,
@@ -366,7 +367,7 @@ def test_a_tie_of_a_stack_is_seen():
 def test_a_force_that_is_small_beside_another_is_looked_for_alone():
     """g1 + 10 g2 = .001: the most of both counted together is all of g1, yet g2 can carry force too."""
     rates = np.array([[1.0, 0, 0], [10.0, 0, 0], [0, 1.0, 0], [0, 0, 1.0]])
-    rays = Rays(rates, np.eye(4), np.ones(4, bool), np.arange(4))
+    rays = Rays(csr_array(rates), csr_array(np.eye(4)), np.ones(4, bool), np.arange(4))
     kept = kept_rays(rays, np.array([-1e-3, 0, 0]), np.array([0, -1.0, 0]), np.zeros(3))
     assert kept.tolist() == [True, True, True, False]
 

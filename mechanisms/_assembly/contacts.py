@@ -6,15 +6,16 @@ of many blocks must not be joined across what is an open gap to each of them. Th
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import combinations
 
 import numpy as np
 
 from mechanisms._assembly.blocks import Block, Contact
 from mechanisms._assembly.faults import ContactFault, listed
-from mechanisms._polygons import Points, distance, overlap, size_of
+from mechanisms._polygons import Points, distance, nearby, overlap, size_of
+from rocking_cli.core import Reals
 
 GAP = 2e-3  # of the smaller block: 2 mm of a voussoir of width and height .5 m each
 PARALLEL = 0.05  # sine of the angle of two edges that may still lie on each other
@@ -62,14 +63,14 @@ def contacts(
     """
     bodies = [*blocks, *ground]
     names = [body.name for body in bodies]
-    twice = sorted({name for name in names if names.count(name) > 1})
+    twice = sorted(name for name, count in Counter(names).items() if count > 1)
     if twice:
         raise ContactFault(f"more than one body is called {listed(twice)}", twice)
     outlines = [body.outline for body in bodies]
     sizes = [size_of(z) if k < len(blocks) else np.inf for k, z in enumerate(outlines)]
     found: list[Contact] = []
-    margin = gap * max(sizes[: len(blocks)], default=0.0) if within is None else within
-    for i, j in _near(outlines, margin):
+    reach = [0.0 if k >= len(blocks) else gap * size if within is None else within for k, size in enumerate(sizes)]
+    for i, j in _near(outlines, np.array(reach)):
         if i >= len(blocks):
             continue  # ground on ground
         tolerance = gap * min(sizes[i], sizes[j]) if within is None else within
@@ -85,13 +86,15 @@ def contacts(
     return _with_friction(found, per_pair or {})
 
 
-def _near(outlines: Sequence[Points], margin: float) -> list[tuple[int, int]]:
-    """Pairs of outlines whose boxes are within a margin, in order."""
-    low = np.array([[z.real.min(), z.imag.min()] for z in outlines]).reshape(-1, 2) - margin
-    high = np.array([[z.real.max(), z.imag.max()] for z in outlines]).reshape(-1, 2)
-    meet = np.asarray((low[:, None] <= high[None]).all(axis=2))
-    meet &= meet.T
-    return [(i, j) for i, j in combinations(range(len(outlines)), 2) if meet[i, j]]
+def _near(outlines: Sequence[Points], reach: Reals) -> list[tuple[int, int]]:
+    """Pairs of outlines whose boxes meet, each larger on all sides by what it may be apart, in order."""
+    around = reach * (1 + 1j)
+    low = np.array([complex(z.real.min(), z.imag.min()) for z in outlines]) - around
+    high = np.array([complex(z.real.max(), z.imag.max()) for z in outlines]) + around
+    pairs: list[tuple[int, int]] = []
+    for one, other in nearby(low, high):
+        pairs += zip(np.minimum(one, other).tolist(), np.maximum(one, other).tolist(), strict=True)
+    return sorted(pairs)
 
 
 def _pieces(one: Points, other: Points, tolerance: float) -> list[Piece]:
@@ -156,7 +159,8 @@ def _all_touch(blocks: Sequence[Block], found: Sequence[Contact]) -> None:
 
 def _with_friction(found: list[Contact], per_pair: Mapping[tuple[str, str], float | None]) -> list[Contact]:
     given = {frozenset(pair): value for pair, value in per_pair.items()}
-    missing = [pair for pair in per_pair if frozenset(pair) not in {frozenset((c.a, c.b)) for c in found}]
+    touch = {frozenset((c.a, c.b)) for c in found}
+    missing = [pair for pair in per_pair if frozenset(pair) not in touch]
     if missing:
         raise ContactFault(f"{listed(missing[0])} have no joint that could be given a friction", missing[0])
     return [replace(c, friction=given.get(frozenset((c.a, c.b)), c.friction)) for c in found]

@@ -8,7 +8,7 @@ another joint would have opened, and the mechanism is no longer the one that mov
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -16,13 +16,17 @@ import numpy as np
 from mechanisms._assembly.blocks import Block, Contact, Guide
 from mechanisms._assembly.faults import NoAnswer
 from mechanisms._assembly.mechanism import Opening
-from mechanisms._assembly.programme import least
+from mechanisms._assembly.programme import TOLERANCE, least
 from mechanisms._assembly.rays import Bearing, Bearings, Frame, scaled
+from mechanisms._assembly.sparse import beside, solved, weighted_squares
 from mechanisms._assembly.unique import velocity_space
 from rocking_cli.core import Reals
 
 BALANCED = 1e-6  # of the weight: forces that joints need not carry may be no more, or they are not in balance
 HELD = 1e-9  # of the weight: a tension that counts as none
+FINE = 1e-8  # of the rotation up to which it is looked for
+TRIES = 6  # to balance forces without tension beside a state that is known
+LESS = 0.3  # of a force that would be tension: what is tried in its place
 STEPS = 32  # in which a first violation is looked for
 
 Placed = Mapping[str, tuple[complex, float]]
@@ -39,10 +43,13 @@ class Admissible:
         have at once, at most 1; below zero it is the tension that is missing.
     contact : int or None
         The joint that decides it: the one that opens first; None if none does.
+    forces : ndarray or None
+        Multipliers of the rays that have this margin; None if statics alone says what they are.
     """
 
     margin: float
     contact: int | None
+    forces: Reals | None = field(default=None, repr=False, compare=False)
 
     @property
     def holds(self) -> bool:
@@ -84,9 +91,11 @@ class Displaced:
         """Where a point of a body is now [m]."""
         if name not in self.moved:
             return point
-        q, psi = self.moved[name]
-        rest = next(block.centroid for block in self.blocks if block.name == name)
-        return complex(q + np.exp(1j * psi) * (point - rest))
+        return complex(self.moved[name][0] + self.turn(name) * (point - self._centroids[name]))
+
+    @cached_property
+    def _centroids(self) -> Mapping[str, complex]:
+        return {block.name: block.centroid for block in self.blocks}
 
     def turn(self, name: str) -> complex:
         """By how much a body has turned, as a factor."""
@@ -111,14 +120,13 @@ class Displaced:
         return Bearings.of(self.frame, found, held)
 
     @cached_property
-    def _split(self) -> tuple[Reals, Reals]:
-        """Forces on the blocks that joints can balance, and those that none can: two bases, by columns."""
-        free = velocity_space(self.bearings.rates)
-        return velocity_space(free.T), free
+    def _free(self) -> Reals:
+        """Velocities that the joints leave, orthogonal, by columns: forces that do work on them none can balance."""
+        return np.linalg.qr(velocity_space(self.bearings.rates, self.frame))[0]
 
     def multiplier(self, dead: Reals, live: Reals) -> float:
         """The multiplier of `live` that holds the mechanism here, by virtual work; the two as of `collapse`."""
-        free = self._split[1]
+        free = self._free
         if free.shape[1] != 1:
             raise NoAnswer(f"the mechanism can move in {free.shape[1]} independent ways where it is, not in one")
         work = [float(scaled(forces, self.frame, self.weight) @ free[:, 0]) for forces in (dead, live)]
@@ -145,49 +153,94 @@ class Displaced:
         """
         n = len(self.blocks)
         cases = np.array([scaled(each, self.frame, self.weight) for each in forces.reshape(-1, n, 3)])
-        able, free = self._split
+        free = self._free
         largest = np.maximum(np.abs(cases).max(axis=1), 1.0)
         off = np.abs(cases @ free).max(axis=1, initial=0.0) / largest
         if (off > BALANCED).any():
             raise NoAnswer(f"forces on the displaced blocks are off their balance by {off.max():.2g} of the weight")
-        cases = cases @ able @ able.T
+        cases = cases - cases @ free @ free.T
         rays = self.bearings.rays()
-        if len(rays.rates) == able.shape[1]:  # statics alone says what they are
-            values = -np.linalg.lstsq(rays.rates.T, cases.T, rcond=None)[0].T[:, rays.one_sided]
+        if rays.count == 3 * n - free.shape[1]:  # statics alone says what they are
+            values = -solved(beside([rays.rates.T, free]), cases.T)[: rays.count].T[:, rays.one_sided]
             if values.shape[1] == 0:
                 return [Admissible(1.0, None)] * len(cases)
             at = values.argmin(axis=1)
             owner = rays.contact[rays.one_sided]
             return [Admissible(min(float(v[k]), 1.0), int(owner[k])) for v, k in zip(values, at, strict=True)]
         # Each one-sided ray is the margin and what it has above it.
-        equal = np.column_stack([able.T @ rays.rates.T, able.T @ rays.rates[rays.one_sided].sum(axis=0)])
-        cost, low = np.append(np.zeros(len(rays.rates)), -1.0), np.append(rays.low, -np.inf)
-        high = np.append(np.full(len(rays.rates), np.inf), 1.0)
+        equal = beside([rays.rates.T, rays.rates.T @ rays.one_sided.astype(np.float64)])
+        cost, low = np.append(np.zeros(rays.count), -1.0), np.append(rays.low, -np.inf)
+        high = np.append(np.full(rays.count, np.inf), 1.0)
         answers = []
         for case in cases:
-            found = least(cost, equal, -able.T @ case, low, high)
+            found = least(cost, equal, -case, low, high)
             if found is None:
                 raise NoAnswer("no forces in the joints balance those on the displaced blocks")
             blame = np.where(rays.one_sided, found.at_lower[:-1], 0.0)
             decides = int(rays.contact[blame.argmax()]) if blame.max(initial=0.0) > HELD else None
-            answers.append(Admissible(-found.value, decides))
+            answers.append(Admissible(-found.value, decides, found.x[:-1] - found.value * rays.one_sided))
         return answers
 
+    def near(self, forces: Reals, state: Reals) -> Reals | None:
+        """Multipliers of the rays that balance forces on the blocks, by changing those of a state beside this one.
 
-def first_violation(margin: Callable[[float], float], end: float) -> float | None:
+        None if that takes tension: then it is not known whether others do. It costs one system of equations where the
+        margin is a programme. Each multiplier changes in proportion to its square, so that small ones hardly do.
+
+        Parameters
+        ----------
+        forces : ndarray, shape (blocks, 3)
+            As of `admissible`.
+        state : ndarray, shape (rays,)
+            Multipliers that are greater than nothing.
+        """
+        rays = self.bearings.rays()
+        case = scaled(forces, self.frame, self.weight)
+        case = case - self._free @ (self._free.T @ case)
+        free = float(np.abs(state).max())
+        for _ in range(TRIES):
+            share = np.where(rays.one_sided, state, free) ** 2
+            balanced = state
+            for _ in range(2):  # once more, for what rounding left
+                off = rays.rates.T @ balanced + case
+                balanced = balanced - share * (rays.rates @ solved(weighted_squares(rays.rates, share), off))
+            off = rays.rates.T @ balanced + case
+            if (balanced[rays.one_sided] >= 0).all() and np.abs(off).max() <= TOLERANCE:
+                return balanced
+            # What would be tension is less than before, and the others make up for it.
+            state = np.where(rays.one_sided, np.maximum(balanced, LESS * state), balanced)
+        return None
+
+
+def first_violation(
+    margin: Callable[[float], float], end: float, *, holds: Callable[[float], bool] | None = None
+) -> float | None:
     """Where a margin first falls below zero, from rest to `end`; None if it does not.
 
-    Looked for in steps and then bisected, to 1e-8 of `end`: an excursion between two steps is not seen.
+    Looked for in steps, at which `holds` may say without the margin that there is no tension, and then to 1e-8 of
+    `end` by the secant of what is missing, or in halves where that is slow: an excursion between two steps is not seen.
     """
-    low = 0.0
+    low, missing = 0.0, 0.0
     for high in np.linspace(0.0, end, STEPS + 1):
-        if margin(float(high)) < -HELD:
+        if not (holds is not None and holds(float(high))) and (missing := -margin(float(high)) - HELD) > 0:
             break
         low = float(high)
     else:
         return None
-    high = float(high)
-    while high - low > 1e-8 * abs(end):
-        middle = (low + high) / 2
-        low, high = (low, middle) if margin(middle) < -HELD else (middle, high)
+    high, close, root = float(high), FINE * abs(end), None
+    width = np.inf
+    while high - low > close:
+        # Every other time in halves, unless the secant has just done better.
+        guess = (low + high) / 2
+        if root is not None and high - low <= width / 2:
+            guess = min(max(root, low + 0.9 * close), high - 0.9 * close)
+        width = high - low
+        less = -margin(guess) - HELD
+        if less > 0:
+            slope = (missing - less) / (high - guess)
+            high, missing = guess, less
+            root = high - missing / slope - 0.4 * close if slope > 0 else None
+        else:
+            low = guess
+            root = root + 0.8 * close if root is not None else None
     return high

@@ -6,7 +6,7 @@ force. Such a joint is named, because no friction at all would do.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,7 @@ from mechanisms._assembly.limit import Collapse
 from mechanisms._assembly.problem import Problem
 from mechanisms._assembly.programme import least
 from mechanisms._assembly.rays import Rays
+from mechanisms._assembly.sparse import beside
 from rocking_cli.core import Reals
 from rocking_cli.core.contacts import MASONRY
 
@@ -46,30 +47,111 @@ class Friction:
 
 
 def friction(found: Collapse) -> Friction:
-    """The friction that a mechanism needs, by bisection of its programme with less and less in every joint."""
+    """The friction that a mechanism needs: the root of its multiplier with less friction in every joint, by Newton.
+
+    The work that a mechanism of too little friction loses as it slides is how its multiplier grows with the friction.
+    Each guess is a programme that carries the multiplier or does not, so that what is returned is a bracket of both
+    kinds whatever the guesses are.
+    """
     problem, multiplier = found.problem, found.multiplier * found.problem.strength
+    given = [each.friction for each in problem.bearings.bearings]
+    search = _Search(problem, multiplier)
+    most = max((MOST if mu is None else min(mu, MOST) for mu in given), default=0.0)
+    shown = np.concatenate([np.column_stack([found.normal, found.shear]).ravel(), found.guide]) / problem.weight
+    limit = search.uses(shown)
+    if most < MOST:
+        search.bound(most, shown)  # the mechanism that was found has no more
+    elif limit < MOST:
+        search.bound(limit, shown)
+    elif not search.carries(MOST):
+        shown, glued = _glued(problem, multiplier)
+        return Friction(None, glued, *problem.by_contact(problem.weight * shown))
+    if not (most < MOST and not search.carries(search.below)) and not search.carries(0.0):
+        while search.high - search.low > FINE * search.high:
+            search.carries(search.guess)
+    return Friction(search.high, (), *problem.by_contact(problem.weight * search.state))
 
-    def carries(mu: float) -> Reals | None:
-        rays = problem.bearings.rays(mu)
-        reached, forces, _ = problem.greatest(rays)
-        return forces @ rays.mix if reached >= multiplier * (1 - SAME) else None
 
-    state = carries(MOST)
-    if state is None:
-        state, glued = _glued(problem, multiplier)
-        return Friction(None, glued, *problem.by_contact(problem.weight * state))
-    low, high = 0.0, MOST
-    frictionless = carries(0.0)
-    if frictionless is not None:
-        return Friction(0.0, (), *problem.by_contact(problem.weight * frictionless))
-    while high - low > FINE * high:
-        middle = (low + high) / 2
-        less = carries(middle)
-        if less is None:
-            low = middle
-        else:
-            state, high = less, middle
-    return Friction(high, (), *problem.by_contact(problem.weight * state))
+def _roots(known: Sequence[tuple[float, float, float]]) -> Iterator[float]:
+    """Where what is lacking would be nothing, a little beyond: by the last two points and their slopes, then by one."""
+    mu, lacks, growth = known[-1]
+    if len(known) > 1 and growth > 0 and known[-2][2] > 0 and known[-2][1] > lacks:
+        # The friction as a cubic of what is lacking, extrapolated to nothing.
+        before, more, slower = known[-2]
+        width, start, end = more - lacks, -1 / growth, -1 / slower
+        chord = (before - mu) / width
+        bend, twist = (chord - start) / width, (start + end - 2 * chord) / width**2
+        yield (mu - start * lacks + bend * lacks**2 - twist * lacks**2 * more) * (1 + FINE / 3)
+    if growth > 0:
+        yield (mu + lacks / growth) * (1 + FINE / 3)
+
+
+class _Search:
+    """A bracket of the friction that a multiplier needs: `high` carries it with `state`, `low` does not."""
+
+    def __init__(self, problem: Problem, multiplier: float) -> None:
+        self.problem, self.multiplier = problem, multiplier
+        self.low, self.high = 0.0, MOST
+        self.state: Reals = np.zeros(0)
+        self._lows: list[tuple[float, float, float]] = []  # friction, what is lacking, and how fast that shrinks
+        self._stood = True
+        self._carried = 0  # guesses in a row that carried the multiplier
+
+    def bound(self, mu: float, state: Reals) -> None:
+        """A state that carries the multiplier with a friction of `mu`."""
+        self.high, self.state = mu, state
+
+    def carries(self, mu: float) -> bool:
+        """Whether the multiplier is carried with no more friction than `mu` in every joint; narrows the bracket."""
+        rays = self.problem.bearings.rays(mu)
+        reached, forces, raw = self.problem.greatest(rays)
+        state = rays.mix.T @ forces
+        if reached >= self.multiplier * (1 - SAME):
+            self._carried += 1
+            self.bound(mu, state)
+            return True
+        self.low, self._carried = mu, 0
+        lacks, stands = self.multiplier - reached, True
+        if not np.isfinite(reached):  # it does not even stand: ask what shear is missing
+            state, beyond, raw = _beyond(self.problem, self.multiplier, mu)
+            lacks = float(np.abs(beyond).sum())
+            stands = False
+        if stands != self._stood:
+            self._lows.clear()  # two measures of what is lacking
+        self._stood = stands
+        self._lows.append((mu, lacks, self._growth(mu, state, raw)))
+        return False
+
+    @property
+    def below(self) -> float:
+        """Just below the greatest friction that is known to do, near enough to end the search."""
+        return self.high * (1 - 0.9 * FINE)
+
+    @property
+    def guess(self) -> float:
+        """Where to look next."""
+        middle = (self.low + self.high) / 2
+        if self._carried == 1:
+            return max(self.below, middle)
+        if self._carried > 1:  # even just below it did: the root was not near
+            return middle
+        return next((min(root, self.below) for root in _roots(self._lows) if root > self.low * (1 + FINE / 2)), middle)
+
+    def uses(self, state: Reals) -> float:
+        """The largest share of the normal force that is shear, of all joints of a state; infinite if glued."""
+        normal, shear, _ = self.problem.by_contact(state)
+        pressed = np.maximum(normal.sum(axis=1), 0.0)
+        slipping = np.abs(shear) > SAME * np.abs(normal).max(initial=0.0)
+        with np.errstate(divide="ignore"):
+            return float((np.abs(shear)[slipping] / pressed[slipping]).max(initial=0.0))
+
+    def _growth(self, mu: float, state: Reals, raw: Reals) -> float:
+        """How the greatest multiplier grows with the friction of the joints that have no less."""
+        bearings = self.problem.bearings
+        normal, _, _ = self.problem.by_contact(state)
+        slides = np.abs(self.problem.by_contact(bearings.rates @ raw)[1])
+        bound = np.array([each.friction is None or each.friction > mu for each in bearings.bearings])
+        return float((normal.sum(axis=1) * slides)[bound].sum())
 
 
 def with_usual(found: Collapse) -> float | None:
@@ -90,24 +172,35 @@ def sheared(found: Friction, contacts: Sequence[Contact]) -> tuple[int, ...]:
 
 def _glued(problem: Problem, multiplier: float) -> tuple[Reals, tuple[int, ...]]:
     """A state with as little shear beyond the greatest friction as there can be, and the joints that have it."""
-    rays = problem.bearings.rays(MOST)
+    state, beyond, _ = _beyond(problem, multiplier, MOST)
+    return state, tuple(int(k) for k in np.flatnonzero(np.abs(beyond) > SAME))
+
+
+def _beyond(problem: Problem, multiplier: float, mu: float) -> tuple[Reals, Reals, Reals]:
+    """A state with as little shear beyond a friction as there can be, that shear by joints, and the velocities.
+
+    The shear may be beyond `mu` in joints whose own friction is more, or not given: so far as that.
+    """
+    rays = problem.bearings.rays(mu)
     free: Rays = problem.bearings.rays()
-    joints = [k for k, each in enumerate(problem.bearings.bearings) if each.friction is None]
-    rows = [problem.bearings.starts[k] + len(problem.bearings.bearings[k].points) for k in joints]
+    bearings = problem.bearings.bearings
+    joints = [k for k, each in enumerate(bearings) if each.friction is None or each.friction > mu]
+    rows = [problem.bearings.starts[k] + len(bearings[k].points) for k in joints]
     extra = problem.bearings.rates[rows].T
-    count, n = len(rows), len(rays.rates)
+    count, n = len(rows), rays.count
     # Less than the multiplier by a hair, lest rounding leave no state at all.
     found = least(
         np.concatenate([np.zeros(n), np.ones(2 * count)]),
-        np.column_stack([rays.rates.T, extra, -extra]),
+        beside([rays.rates.T, extra, -extra]),
         -problem.dead - multiplier * (1 - SAME / 10) * problem.live,
         np.concatenate([rays.low, np.zeros(2 * count)]),
         np.full(n + 2 * count, np.inf),
     )
+    beyond = np.zeros(len(bearings))
     if found is None:  # rounding took even that
-        _, forces, _ = problem.greatest(free)
-        return forces @ free.mix, ()
-    state = found.x[:n] @ rays.mix
-    beyond = found.x[n : n + count] - found.x[n + count :]
-    state[rows] += beyond
-    return state, tuple(k for k, value in zip(joints, beyond, strict=True) if abs(value) > SAME)
+        _, forces, raw = problem.greatest(free)
+        return free.mix.T @ forces, beyond, raw
+    state = rays.mix.T @ found.x[:n]
+    beyond[joints] = found.x[n : n + count] - found.x[n + count :]
+    state[rows] += beyond[joints]
+    return state, beyond, found.prices

@@ -17,6 +17,7 @@ from mechanisms._assembly.blocks import Block, Contact, Guide
 from mechanisms._assembly.faults import DoesNotStand, NothingMoves, listed
 from mechanisms._assembly.problem import NOTHING, STRONGEST, Problem
 from mechanisms._assembly.rays import moving
+from mechanisms._assembly.smallest import smallest
 from mechanisms._assembly.unique import kept_rays, mechanisms_of, velocity_space
 from rocking_cli.core import Direction, Reals
 
@@ -66,9 +67,11 @@ class Collapse:
     guide : ndarray, shape (guides,)
         Force of the ground on each guide, along i times its direction [N].
     unique : bool
-        Whether no other mechanism has this multiplier.
+        Whether no other mechanism has this multiplier, but for idle blocks.
     several : tuple of Shared
         If not unique: mechanisms that have it, of which the others are mixtures.
+    idle : tuple of str
+        Blocks that rest here and may move along at no cost, see `smallest`.
     problem : Problem
         What was solved.
     """
@@ -83,6 +86,7 @@ class Collapse:
     guide: Reals
     unique: bool
     several: tuple[Shared, ...]
+    idle: tuple[str, ...]
     problem: Problem
 
 
@@ -140,20 +144,20 @@ def collapse(
         falls = moving(problem.frame.names, raw, 1e-6)
         raise DoesNotStand(f"it barely stands: the least acceleration sets {listed(falls)} in motion", falls)
     kept = kept_rays(rays, problem.dead, problem.live, raw)
-    space = velocity_space(rays.rates[kept])
-    fields = mechanisms_of(rays, kept, space, raw)
-    names = problem.frame.names
+    space = velocity_space(rays.rates[kept], problem.frame)
+    least = smallest(problem, rays, kept, space)
+    fields, idle = ([least[0]], least[1]) if least else (mechanisms_of(rays, kept, space, raw), ())
     # Those that the multiplier starts first; and by the blocks that move, because the search finds them in any order.
     fields.sort(
         key=lambda field: (
             not _worked_on(problem, field),
-            [names.index(name) for name in moving(names, field, NOTHING)],
+            [problem.frame.index[name] for name in moving(problem.frame.names, field, NOTHING)],
         )
     )
     several = tuple(_shared(problem, field) for field in fields) if len(fields) > 1 else ()
     velocity = _sized(problem, fields[0])
     rates = _rates(problem, velocity)
-    state = problem.weight * (forces @ rays.mix)
+    state = problem.weight * (rays.mix.T @ forces)
     return Collapse(
         multiplier / problem.strength,
         _kinematic(problem, fields[0]) / problem.strength,
@@ -162,6 +166,7 @@ def collapse(
         *problem.by_contact(state),
         len(fields) == 1,
         several,
+        idle,
         problem,
     )
 

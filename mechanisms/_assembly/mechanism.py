@@ -11,7 +11,7 @@ import numpy as np
 from mechanisms._assembly.blocks import Block, Contact, Guide
 from mechanisms._assembly.limit import Collapse
 from mechanisms._assembly.parts import Parts
-from mechanisms._assembly.rays import Frame
+from mechanisms._assembly.rays import Frame, Row
 from mechanisms._assembly.unique import velocity_space
 from rocking_cli.core import Reals
 
@@ -181,8 +181,10 @@ def _freedom(
 ) -> int:
     """Dimension of the velocities that keep hinges and guides."""
     frame = Frame(tuple(str(k) for k in range(len(groups))), (0j,) * len(groups), size)
-    rows = [frame.rate(str(h.one), str(h.other), h.point, way) for h in hinges for way in (1 + 0j, 1j)]
-    rows += [frame.rate(None, str(number[g.body]), g.at, 1j * g.along / abs(g.along)) for g in guides]
-    if not rows:
-        return 3 * len(groups)
-    return int(velocity_space(np.array(rows)).shape[1])
+    rows: list[Row] = []
+    for h in hinges:
+        a, b = (None if k is None else str(k) for k in ((h.one, h.other) if h.other is not None else (h.other, h.one)))
+        assert b is not None  # a hinge is of two groups, or of one and what rests
+        rows += [(a, b, h.point, way) for way in (1 + 0j, 1j)]
+    rows += [(None, str(number[g.body]), g.at, 1j * g.along / abs(g.along)) for g in guides]
+    return int(velocity_space(frame.rates(rows), frame).shape[1])

@@ -11,6 +11,7 @@ from mechanisms._assembly.blocks import Block, Contact, Guide
 from mechanisms._assembly.faults import NothingMoves
 from mechanisms._assembly.programme import least
 from mechanisms._assembly.rays import Bearings, Frame, Rays, at_rest, moving, scaled
+from mechanisms._assembly.sparse import beside, unit_columns
 from rocking_cli.core import Direction, Reals
 
 STRONGEST = 1e4  # multiplier beyond which nothing counts as moving
@@ -61,28 +62,30 @@ class Problem:
 
     def greatest(self, rays: Rays) -> tuple[float, Reals, Reals]:
         """The greatest multiplier of `live`, forces of the rays that carry it, and velocities they do no work on."""
-        cost = np.append(np.zeros(len(rays.rates)), -1.0)
         found = least(
-            cost,
-            np.column_stack([rays.rates.T, self.live]),
+            np.append(np.zeros(rays.count), -1.0),
+            beside([rays.rates.T, self.live]),
             -self.dead,
             np.append(rays.low, 0.0),
-            np.append(np.full(len(rays.rates), np.inf), STRONGEST),
+            np.append(np.full(rays.count, np.inf), STRONGEST),
         )
         if found is None:
-            return -np.inf, np.zeros(len(rays.rates)), np.zeros(len(self.dead))
+            return -np.inf, np.zeros(rays.count), np.zeros(len(self.dead))
         return -found.value, found.x[:-1], -found.prices
 
     def why_not(self, rays: Rays) -> tuple[str, ...]:
         """The blocks that no forces hold at rest; none if it stands."""
         n = len(self.dead)
-        extra = np.eye(n)
+        unbounded = np.full(rays.count, np.inf)
+        if least(np.zeros(rays.count), rays.rates.T.tocsc(), -self.dead, rays.low, unbounded) is not None:
+            return ()
+        extra = unit_columns(np.arange(n), n)
         found = least(
-            np.append(np.zeros(len(rays.rates)), np.ones(2 * n)),
-            np.column_stack([rays.rates.T, extra, -extra]),
+            np.append(np.zeros(rays.count), np.ones(2 * n)),
+            beside([rays.rates.T, extra, -extra]),
             -self.dead,
             np.append(rays.low, np.zeros(2 * n)),
-            np.full(len(rays.rates) + 2 * n, np.inf),
+            np.full(rays.count + 2 * n, np.inf),
         )
         assert found is not None  # the extra forces balance anything
         return moving(self.frame.names, found.prices, 1e-6) if found.value > NOTHING else ()

@@ -6,22 +6,27 @@ blocks: its transpose gives the forces and moments on the blocks. With friction 
 edges of a cone; such a ray, as every normal force, is at least zero, and its velocity too. All other forces are free,
 and their velocities zero.
 
-Unknowns have no units: velocities (vx, vy, omega size) of each block about its centroid, moments over `size`.
+Unknowns have no units: velocities (vx, vy, omega size) of each block about its centroid, moments over `size`. All
+matrices are sparse, because a row has entries of two blocks at most.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mechanisms._assembly.blocks import Block, Contact, Guide
+from mechanisms._assembly.sparse import Sparse, from_entries
 from rocking_cli.core import Reals
 
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.intp]
+Row = tuple[str | None, str, complex, complex]
+Entry = tuple[int, float, int, int]  # force, its share of the shear, the shear, contact
 
 
 @dataclass(frozen=True)
@@ -51,15 +56,32 @@ class Frame:
         size = float(np.ptp(corners.real) + np.ptp(corners.imag))
         return cls(tuple(block.name for block in blocks), tuple(block.centroid for block in blocks), size)
 
-    def rate(self, a: str | None, b: str, point: complex, way: complex) -> Reals:
-        """The velocity along `way` of a point of `b` relative to `a`, as a row over the velocities of all blocks."""
-        row = np.zeros((len(self.names), 3))
-        for name, sign in ((b, 1.0), (a, -1.0)):
-            if name in self.names:  # the ground does not move
-                k = self.names.index(name)
-                arm = (point - self.centroids[k]) / self.size
-                row[k] = sign * np.array([way.real, way.imag, (arm.conjugate() * way).imag])
-        return row.ravel()
+    @cached_property
+    def index(self) -> Mapping[str, int]:
+        """Number of each block in the order of the unknowns."""
+        return {name: k for k, name in enumerate(self.names)}
+
+    def rates(self, rows: Sequence[Row]) -> Sparse:
+        """Build the matrix of relative velocities, shape (rows, 3 blocks).
+
+        Parameters
+        ----------
+        rows : sequence of (str or None, str, complex, complex)
+            Bodies `a` and `b`, a point [m] and a direction: the velocity along it of that point of `b` relative to
+            `a`. What is not a block does not move.
+        """
+        sides = [
+            (k, self.index[name], sign, point, way)
+            for k, (a, b, point, way) in enumerate(rows) for name, sign in ((b, 1.0), (a, -1.0))
+            if name is not None and name in self.index
+        ]  # fmt: skip
+        if not sides:
+            return from_entries([], [], [], (len(rows), 3 * len(self.names)))
+        row, block, signs, points, ways = (np.array(each) for each in zip(*sides, strict=True))
+        arm = (points - np.array(self.centroids)[block]) / self.size
+        values = signs * np.array([ways.real, ways.imag, (arm.conj() * ways).imag])
+        columns = 3 * block + np.arange(3)[:, None]
+        return from_entries(np.tile(row, 3), columns.ravel(), values.ravel(), (len(rows), 3 * len(self.names)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,32 +92,33 @@ class Bearings:
     ----------
     bearings : tuple of Bearing
         The joints.
-    rates : ndarray, shape (forces, 3 blocks)
+    rates : sparse array, shape (forces, 3 blocks)
         The normals of the points of each joint and its shear, joint after joint; then the guides.
     starts : tuple of int
         Of each joint the row of its first normal.
     """
 
     bearings: tuple[Bearing, ...]
-    rates: Reals
+    rates: Sparse
     starts: tuple[int, ...]
 
     @classmethod
     def of(cls, frame: Frame, bearings: Sequence[Bearing], guides: Sequence[Guide]) -> Bearings:
         """Of joints and guides where they are."""
-        rows: list[Reals] = []
+        rows: list[Row] = []
         starts = []
         for each in bearings:
             starts.append(len(rows))
-            rows += [frame.rate(each.a, each.b, point, each.normal) for point in each.points]
-            rows.append(frame.rate(each.a, each.b, each.points[0], -1j * each.normal))
-        rows += [frame.rate(None, guide.body, guide.at, 1j * guide.along / abs(guide.along)) for guide in guides]
-        return cls(tuple(bearings), np.array(rows).reshape(-1, 3 * len(frame.names)), tuple(starts))
+            rows += [(each.a, each.b, point, each.normal) for point in each.points]
+            rows.append((each.a, each.b, each.points[0], -1j * each.normal))
+        rows += [(None, guide.body, guide.at, 1j * guide.along / abs(guide.along)) for guide in guides]
+        return cls(tuple(bearings), frame.rates(rows), tuple(starts))
 
     def rays(self, most: float | None = None, *, usual: float | None = None) -> Rays:
         """The rays of its forces; no joint may have more friction than `most`, and one without has `usual`."""
-        rows: list[tuple[int, float, int | None]] = []  # force, friction, shear
-        free: list[int] = []
+        sided: list[Entry] = []
+        free: list[Entry] = []
+        last = 0
         for each, start in zip(self.bearings, self.starts, strict=True):
             shear = start + len(each.points)
             own = usual if each.friction is None else each.friction
@@ -103,24 +126,24 @@ class Bearings:
             mu = min(limits) if limits else None
             for k in range(start, shear):
                 if mu is None or mu <= 0:
-                    rows.append((k, 0.0, None))
+                    sided.append((k, 0.0, shear, each.contact))
                 else:
-                    rows += [(k, mu, shear), (k, -mu, shear)]
+                    sided += [(k, mu, shear, each.contact), (k, -mu, shear, each.contact)]
             if mu is None:
-                free.append(shear)
-        last = self.starts[-1] + len(self.bearings[-1].points) + 1 if self.bearings else 0
-        free += range(last, len(self.rates))
-        mix = np.zeros((len(rows) + len(free), len(self.rates)))
-        for r, (force, mu, shear_of) in enumerate(rows):
-            mix[r, force] = 1.0
-            if shear_of is not None:
-                mix[r, shear_of] = mu
-        mix[range(len(rows), len(mix)), free] = 1.0
-        owner = np.full(len(self.rates), -1)
-        for each, start in zip(self.bearings, self.starts, strict=True):
-            owner[start : start + len(each.points) + 1] = each.contact
-        one_sided = np.arange(len(mix)) < len(rows)
-        return Rays(mix @ self.rates, mix, one_sided, owner[np.abs(mix).argmax(axis=1)])
+                free.append((shear, 0.0, shear, each.contact))
+            last = shear + 1
+        free += [(k, 0.0, k, -1) for k in range(last, self.rates.shape[0])]
+        entries = np.array([*sided, *free], np.float64).reshape(-1, 4).T
+        share, (force, shear_of, owner) = entries[1], entries[[0, 2, 3]].astype(np.intp)
+        ray = np.arange(len(force))
+        slips = share != 0
+        mix = from_entries(
+            np.append(ray, ray[slips]),
+            np.append(force, shear_of[slips]),
+            np.append(np.ones(len(ray)), share[slips]),
+            (len(ray), self.rates.shape[0]),
+        )
+        return Rays(mix @ self.rates, mix, ray < len(sided), owner)
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,9 +152,9 @@ class Rays:
 
     Parameters
     ----------
-    rates : ndarray, shape (rays, 3 blocks)
+    rates : sparse array, shape (rays, 3 blocks)
         The velocity that each does work on.
-    mix : ndarray, shape (rays, forces)
+    mix : sparse array, shape (rays, forces)
         The forces of each.
     one_sided : ndarray of bool
         Which are at least zero.
@@ -139,10 +162,15 @@ class Rays:
         The contact of each, -1 for guides.
     """
 
-    rates: Reals
-    mix: Reals
+    rates: Sparse
+    mix: Sparse
     one_sided: Bools
     contact: Indices
+
+    @property
+    def count(self) -> int:
+        """Number of rays."""
+        return len(self.one_sided)
 
     @property
     def low(self) -> Reals:

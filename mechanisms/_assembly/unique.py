@@ -11,12 +11,15 @@ import numpy as np
 
 from mechanisms._assembly.faults import NoAnswer
 from mechanisms._assembly.programme import least
-from mechanisms._assembly.rays import Bools, Rays
+from mechanisms._assembly.rays import Bools, Frame, Indices, Rays
+from mechanisms._assembly.rigid import rigid_parts
+from mechanisms._assembly.sparse import Sparse, beside, components
 from rocking_cli.core import Reals
 
 OPENS = 1e-7  # of the fastest rate: a ray that opens
 CARRIES = 1e-9  # of the weight: a ray that carries force
 ENOUGH = 1e-3  # of the weight: more of one force is no use where others are looked for
+LARGER = 1e3  # states may be this much larger, so that small forces count as much as large ones
 RANK = 1e-10  # of the largest singular value
 CLEAN = 1e-12  # of the fastest velocity
 MOST = 8  # mechanisms that are named
@@ -26,55 +29,70 @@ def kept_rays(rays: Rays, dead: Reals, live: Reals, raw: Reals) -> Bools:
     """The rays that keep their contact in every mechanism of the greatest multiplier; the free ones among them.
 
     `raw` is one such mechanism. Forces that do no work on it are those of the states of the greatest multiplier, so
-    the multiplier need not be prescribed to its last digit.
+    the multiplier need not be prescribed to its last digit. States are looked for at any size, at which all forces that
+    are possible reach what counts at once: one programme finds them (Freund, Roundy and Todd, 1985). Only where the
+    size is at its bound, forces that are very small may be left for another.
     """
     rate = rays.rates @ raw
     shut = np.abs(rate) <= OPENS * np.abs(rate).max()
     kept = ~rays.one_sided
     asked = rays.one_sided & shut
-    n = len(rate)
+    by_ray = rays.rates.T.tocsc()
     while asked.any():
-        # Unknown: rays, multiplier, and of each ray asked after how much of it counts, f = counted + surplus.
-        k = np.flatnonzero(asked)
-        pick = np.zeros((len(k), n))
-        pick[range(len(k)), k] = 1.0
-        count, none = len(k), np.zeros((len(k), 1))
+        # Unknown: of each ray asked after what counts of it and the surplus, then the rays known to be kept, the
+        # multiplier, and the size of the state.
+        k, known = np.flatnonzero(asked), np.flatnonzero(kept)
+        count, rest = len(k), len(known)
         found = least(
-            np.concatenate([np.zeros(n + 1), -np.ones(count), np.zeros(count)]),
-            np.block(
-                [
-                    [rays.rates.T, live[:, None], np.zeros((len(dead), 2 * count))],
-                    [pick, none, -np.eye(count), -np.eye(count)],
-                ]
-            ),
-            np.concatenate([-dead, np.zeros(count)]),
-            np.concatenate([rays.low, [-np.inf], np.zeros(2 * count)]),
-            np.concatenate(
-                [
-                    np.where(shut | ~rays.one_sided, np.inf, 0.0),
-                    [np.inf],
-                    np.full(count, ENOUGH),
-                    np.full(count, np.inf),
-                ]
-            ),
+            np.concatenate([np.full(count, -1.0), np.zeros(count + rest + 2)]),
+            beside([by_ray[:, k], by_ray[:, k], by_ray[:, known], live, dead]),
+            np.zeros(len(dead)),
+            np.concatenate([np.zeros(2 * count), rays.low[known], [-np.inf, 1.0]]),
+            np.concatenate([np.full(count, ENOUGH), np.full(count + rest + 1, np.inf), [LARGER]]),
         )
         if found is None:
             raise NoAnswer("no forces belong to the mechanism that was found: the joints are too short, or too many")
-        more = asked & (found.x[:n] > CARRIES)
-        if not more.any():
+        size = found.x[-1]
+        more = found.x[:count] + found.x[count : 2 * count] > CARRIES * size
+        kept[k[more]] = True
+        asked[k[more]] = False
+        if not more.any() or size < LARGER / 2:
             break
-        kept |= more
-        asked &= ~more
     return kept
 
 
-def velocity_space(rates: Reals) -> Reals:
-    """Columns that span the velocities without any of some rates."""
-    if len(rates) == 0:
-        return np.eye(rates.shape[1])
-    if len(rates) > rates.shape[1]:
-        rates = np.asarray(np.linalg.qr(rates, mode="r"))  # the same squares of lengths in fewer rows
-    _, values, ways = np.linalg.svd(rates)
+def velocity_space(rates: Sparse, frame: Frame) -> Reals:
+    """Columns that span the velocities of the blocks without any of some rates, shape (3 blocks, dimensions)."""
+    parts = rigid_parts(rates, frame)
+    left = (rates[parts.between] @ parts.basis).tocsr()
+    # Parts that no rate ties to each other are independent.
+    entries = left.tocoo()
+    part = entries.col // 3
+    of_row = np.zeros(left.shape[0], np.intp)
+    of_row[entries.row] = part
+    label = components(of_row[entries.row], part, parts.count)
+    rows, columns = _members(label[of_row]), _members(np.repeat(label, 3))
+    found = []
+    for k, these in columns.items():
+        chosen = rows.get(k, np.zeros(0, np.intp))
+        found.append(parts.basis[:, these] @ null_space(left[chosen][:, these].toarray()))
+    return np.column_stack([np.zeros((rates.shape[1], 0)), *found])
+
+
+def _members(label: Indices) -> dict[int, Indices]:
+    """The places of each label, in order."""
+    order = np.argsort(label, kind="stable")
+    names, starts = np.unique(label[order], return_index=True)
+    return dict(zip(names.tolist(), np.split(order, starts[1:]), strict=True)) if len(names) else {}
+
+
+def null_space(rows: Reals) -> Reals:
+    """Orthogonal columns that span what is orthogonal to some rows."""
+    if len(rows) == 0:
+        return np.eye(rows.shape[1])
+    if len(rows) > rows.shape[1]:
+        rows = np.asarray(np.linalg.qr(rows, mode="r"))  # the same squares of lengths in fewer rows
+    _, values, ways = np.linalg.svd(rows)
     rank = int(np.count_nonzero(values > RANK * values[0]))
     return np.asarray(ways[rank:].T)
 
@@ -93,10 +111,10 @@ def _extremes(opening: Reals, space: Reals) -> list[Reals]:
 
     One velocity of one block at a time decides which ray is looked for.
     """
-    neutral = velocity_space(opening)
+    neutral = null_space(opening)
     both_ways = [_clean(space @ z) for z in neutral.T]
     if neutral.shape[1]:
-        across = velocity_space(neutral.T)
+        across = null_space(neutral.T)
         opening, space = opening @ across, space @ across
     n, d = opening.shape
     equal = np.column_stack([opening, -np.eye(n)])
@@ -104,7 +122,12 @@ def _extremes(opening: Reals, space: Reals) -> list[Reals]:
     low, high = np.append(np.full(d, -1e6), np.zeros(n)), np.append(np.full(d, 1e6), np.full(n, np.inf))
     found: list[Reals] = []
     wanted = np.vstack([space, -space])
+    tried = np.zeros((0, d))
     for row in wanted[np.abs(wanted).max(axis=1) > CLEAN]:
+        unit = row / np.linalg.norm(row)
+        if (tried @ unit > 1 - CLEAN).any():
+            continue  # blocks that move in proportion ask the same
+        tried = np.vstack([tried, unit])
         best = least(np.append(row, np.zeros(n)), np.vstack([equal, total]), np.append(np.zeros(n), 1.0), low, high)
         if best is None:
             continue

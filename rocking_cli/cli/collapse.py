@@ -24,7 +24,7 @@ def command(file: str | None, plot: Path | None, as_json: bool) -> None:
       rocking new assembly > portal.yaml
       rocking collapse portal.yaml --plot portal.png
     """
-    from rocking_cli.cli import structures
+    from rocking_cli.cli import structures, waiting
     from rocking_cli.io.files import check_writable, keep_apart
     from rocking_cli.studies.collapse import collapses
     from rocking_cli.views.collapse import view
@@ -32,8 +32,9 @@ def command(file: str | None, plot: Path | None, as_json: bool) -> None:
     keep_apart([("--plot", plot)], [file])
     if plot is not None:
         check_writable(plot)
-    mechanism = structures.load([file] if file else [])[0]
-    found = collapses(mechanism)
+    with waiting.blocks(file):
+        mechanism = structures.load([file] if file else [])[0]
+        found = collapses(mechanism)
     if plot is not None:
         from rocking_cli.cli.pictures import write_picture
         from rocking_cli.plotting.structure import draw_structure

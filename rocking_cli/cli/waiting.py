@@ -1,13 +1,37 @@
-"""Messages during the computation of time histories."""
+"""Messages during work that takes long: time histories, and the limit analysis of many blocks."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 from rocking_cli.cli import terminal
 
+MANY = 500  # blocks that take more than a few seconds
+
 _SAID: set[str] = set()
+
+
+@contextmanager
+def blocks(file: str | None) -> Iterator[None]:
+    """Show that blocks are analysed, and say before it starts what many of them will take."""
+    count = _count_of_blocks(file)
+    if count >= MANY:
+        minutes = (count / 1000) ** 2  # measured: half a minute to a minute for 1000
+        took = f"{minutes:.0f} minutes" if minutes > 1.5 else "a minute"
+        size = f"{100 + 0.15 * count:.0f} MB"
+        terminal.note(f"{count} polygons: up to about {took} and {size}; Ctrl-C stops it")
+    with terminal.working(f"analysing {count} polygons" if count else "finding the weakest mechanism"):
+        yield
+
+
+def _count_of_blocks(file: str | None) -> int:
+    """Return the number of polygons that a file names, whatever else is in it; 0 if it cannot be read yet."""
+    try:
+        return Path(file).read_bytes().count(b"polygon:") if file and file != "-" else 0
+    except OSError:
+        return 0  # reported when it is loaded
 
 
 def compile_first(*, exact: bool = False) -> None:

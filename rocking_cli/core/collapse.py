@@ -46,6 +46,8 @@ class CollapseMechanism:
         G/B there, the acceleration over g that holds it.
     thrust : sequence of (str, complex, complex)
         Joint, point [m] and force [N] of one state of the forces as it starts.
+    idle : sequence of str
+        Blocks at rest that may move along at no cost: other mechanisms of this multiplier are this one with them.
     """
 
     lambda_: float
@@ -63,3 +65,4 @@ class CollapseMechanism:
     opens: str
     held_by: float | None
     thrust: Sequence[tuple[str, complex, complex]]
+    idle: Sequence[str] = ()

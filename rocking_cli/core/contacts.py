@@ -75,6 +75,11 @@ class Contact:
         """What messages call it."""
         return self.name or " and ".join(name or "the ground" for name in self.pieces)
 
+    @property
+    def forces(self) -> int:
+        """How many forces it can exert: one at each point and one along its face, or what it holds."""
+        return len(self.points) + 1 if self.held is None else {"slide": 1, "level": 1, "fixed": 3}[self.held]
+
 
 def of_joints(joints: Sequence[Joint], friction: float | None) -> list[Contact]:
     """Return the hinges and guides of a direction as contacts.

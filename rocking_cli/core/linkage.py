@@ -28,6 +28,7 @@ ROUNDS = 12  # of Newton
 SETTLED = 1e-10  # of a step of Newton: the one after it would be rounding
 FLAT = np.pi / 2  # rad: the leading body lies down
 KEPT = 8  # motions that are remembered
+AT_ONCE = 4_000_000  # entries of the matrices that are solved at once: 64 MB of complex numbers
 
 
 class NoMotion(ValueError):
@@ -302,8 +303,8 @@ class LinkageMotion:
     def _found(self, phi: Reals) -> Sequence[RigidMotion]:
         if phi.any():
             inside = np.clip(phi, 0.0, self.limit)
-            x = self._newton(self._between(inside), inside)
-            dx, ddx = self._derivatives(x)
+            parts = np.array_split(inside, -(-inside.size * self._loops.size // AT_ONCE) or 1)
+            x, dx, ddx = (np.concatenate(each) for each in zip(*map(self._followed, parts), strict=True))
         else:  # how far it goes does not matter
             x, dx, ddx = (np.repeat(each[None], len(phi), axis=0) for each in self._first[1:])
         q, dq, ddq = (self._size * each for each in self._loops.places(x, dx, ddx))
@@ -311,6 +312,11 @@ class LinkageMotion:
             RigidMotion(self._size * centre, q[:, k], dq[:, k], ddq[:, k], x[:, k], dx[:, k], ddx[:, k])
             for k, centre in enumerate(self._centres)
         ]
+
+    def _followed(self, phi: Reals) -> tuple[Reals, Reals, Reals]:
+        """Positions and their derivatives over rotations inside the limit."""
+        x = self._newton(self._between(phi), phi)
+        return (x, *self._derivatives(x))
 
     def _between(self, phi: Reals) -> Reals:
         """Positions that are nearly right: the polynomial with values and derivatives of the nodes on either side."""

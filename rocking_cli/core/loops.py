@@ -199,6 +199,11 @@ class Loops:
         """How many."""
         return self.count + 2 * self.trees
 
+    @property
+    def size(self) -> int:
+        """Entries of the matrix at one rotation."""
+        return len(self.names) * self.unknowns
+
     def _parts(self, x: Reals) -> tuple[Reals, Points]:
         """psi and u, shape (n, links) and (n, trees)."""
         free = x[:, self.count :]

@@ -200,7 +200,8 @@ def _instead_of_joints(mechanism: Mechanism, direction: Direction) -> Sequence[C
 
 def _at_contacts(pieces: Pieces, contacts: Sequence[Contact], demand: Reals) -> Reactions | None:
     """The forces at the contacts from three equations for each piece; None where they do not balance what is needed."""
-    jacobian, rows = pieces.rates(contacts)
+    rates, rows = pieces.rates(contacts)
+    jacobian = rates.dense()
     balance, needed = (jacobian / pieces.scale).swapaxes(1, 2), demand / pieces.scale
     values = np.einsum("nrq,nq->nr", np.linalg.pinv(balance), needed)
     off = np.abs(np.einsum("nqr,nr->nq", balance, values) - needed)

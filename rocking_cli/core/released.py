@@ -13,10 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking_cli.core.contacts import Contact
+from rocking_cli.core.contacts import Contact, Piece
 from rocking_cli.core.hung.attached import PointMass, Spot
 from rocking_cli.core.kinematics import Direction, Points, Reals, RigidMotion, rotation
 from rocking_cli.core.mechanism import Mechanism
+from rocking_cli.core.rates import Rates, Share
 
 SINGULAR = 1e-9  # least pivot, about, of rates over the size of the whole: with less, forces are not determined
 MASSLESS = 1e-12  # of the largest mass: what a piece without any is taken to have
@@ -85,9 +86,10 @@ def released(mechanism: Mechanism, direction: Direction, phi: Reals) -> Released
     contacts = mechanism.contacts(direction)
     if not contacts:  # it names no joints
         return None
+    _check_count(contacts, mechanism.pieces(direction))
     pieces = Pieces(mechanism, direction, np.asarray(phi, np.float64))
-    jacobian, rows = pieces.rates(contacts)
-    force, compliance = _solved(jacobian, pieces, pieces.demands())
+    rates, rows = pieces.rates(contacts)
+    force, compliance = _solved(rates.dense(), pieces, pieces.demands())
     return Released(contacts, rows, force, compliance)
 
 
@@ -117,12 +119,20 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reals | None:
     contacts = mechanism.contacts(ended.opposite)
     if not contacts:  # it names no joints
         return None
+    _check_count(contacts, mechanism.pieces(ended.opposite))
     rest = np.zeros(1)
     old, new = (Pieces(mechanism, direction, rest) for direction in (ended, ended.opposite))
-    jacobian, _ = new.rates(contacts)
+    rates, _ = new.rates(contacts)
     # The velocities are -t_s before and eta t_-s after, t the derivatives by phi.
     jump = np.stack([old.momentum(old.dq), new.momentum(new.dq)], axis=-1)
-    return np.asarray(_solved(jacobian, new, jump)[0][0])
+    return np.asarray(_solved(rates.dense(), new, jump)[0][0])
+
+
+def _check_count(contacts: Sequence[Contact], pieces: Sequence[Piece]) -> None:
+    """Raise `Undetermined` unless the joints have as many forces as leave one way to move."""
+    forces, equations = sum(contact.forces for contact in contacts), 3 * len(pieces)
+    if forces != equations - 1:
+        raise Undetermined(forces >= equations)
 
 
 def _solved(jacobian: Reals, pieces: Pieces, demand: Reals) -> tuple[Reals, Reals]:
@@ -131,9 +141,6 @@ def _solved(jacobian: Reals, pieces: Pieces, demand: Reals) -> tuple[Reals, Real
     The inverse of the rates, with the momentum of the rocking motion as one row more, holds in column i how all pieces
     move if row i alone is released: xi. Then the force of that row is xi.b, b the demand, and (A^-1)_ii = xi.M xi.
     """
-    rows, unknown = jacobian.shape[1:]
-    if rows != unknown - 1:  # one way to move is left
-        raise Undetermined(rows >= unknown)
     # Each coordinate in a length of the whole, or the rotations of small pieces would count for nothing.
     rocking = pieces.momentum(pieces.dq) / pieces.scale
     rocking /= np.linalg.norm(rocking, axis=1, keepdims=True)
@@ -214,9 +221,14 @@ class Pieces:
 
     def _velocity(self, name: str, at: Points, way: Points) -> Reals:
         found = np.zeros((self.phi.size, 3 * len(self._parts)))
-        k, arm = self._column[name], at - self._centres[name][0]
-        found[:, k], found[:, k + 1], found[:, k + 2] = way.real, way.imag, (arm.conjugate() * way).imag
+        k = self._column[name]
+        found[:, k : k + 3] = self._factors(name, at, way)
         return found
+
+    def _factors(self, name: str, at: Points, way: Points) -> Reals:
+        """Velocity of a point of a piece along a unit vector over its own coordinates, shape (n, 3)."""
+        arm = at - self._centres[name][0]
+        return np.stack([way.real, way.imag, (arm.conjugate() * way).imag], axis=1)
 
     def _mass(self) -> Reals:
         """The mass matrix of each piece, with the loads on it, shape (n, pieces, 3, 3)."""
@@ -284,9 +296,9 @@ class Pieces:
 
         return Path(*(self._motions[self._piece(spot)] if self._moves(spot) else self._still).carry(spot.at))
 
-    def rates(self, contacts: Sequence[Contact]) -> tuple[Reals, list[tuple[tuple[int, ...], int | None]]]:
-        """The velocities at contacts over those of the pieces, shape (n, rows, 3 pieces), and the rows of each."""
-        found: list[Reals] = []
+    def rates(self, contacts: Sequence[Contact]) -> tuple[Rates, list[tuple[tuple[int, ...], int | None]]]:
+        """The velocities at contacts over those of the pieces, and the rows of each contact."""
+        found: list[list[Share]] = []
         rows: list[tuple[tuple[int, ...], int | None]] = []
         for contact in contacts:
             normal = self.normal(contact)
@@ -300,21 +312,35 @@ class Pieces:
             middle = np.mean(points, axis=0)
             found.append(self._between(contact, middle, -1j * normal))
             rows.append((tuple(range(first, first + len(points))), len(found) - 1))
-        return np.stack(found, axis=1) if found else np.zeros((self.phi.size, 0, 3 * len(self._parts))), rows
+        return Rates.of(found, len(self._parts), self.phi.size), rows
+
+    def number(self, name: str | None) -> int:
+        """The place of a piece among all, from 0; -1 of the ground."""
+        return -1 if name is None else self._column[name] // 3
+
+    def centres(self) -> Points:
+        """Where the centroids of all pieces are, shape (n, pieces)."""
+        return np.stack([self._centres[name][0] for name in self._column], axis=1)
+
+    def turned(self) -> Points:
+        """How all pieces have turned, e^(i psi), shape (n, pieces)."""
+        return np.stack([np.exp(1j * self._motions[name].psi) for name in self._column], axis=1)
 
     def normal(self, contact: Contact) -> Points:
         """The normal of its face as it has turned, shape (n,)."""
         turned = self._motions[contact.face].psi if contact.face is not None else np.zeros(self.phi.size)
         return np.asarray(contact.normal * np.exp(1j * turned))
 
-    def _of_held(self, contact: Contact, normal: Points) -> list[Reals]:
+    def _of_held(self, contact: Contact, normal: Points) -> list[list[Share]]:
         (at,) = (self._carried(contact.pieces[1], point) for point in contact.points[:1])
         if contact.held == "slide":
             return [self._between(contact, at, normal)]
-        turns = np.zeros((self.phi.size, 3 * len(self._parts)))
-        for name, sign in zip(contact.pieces[::-1], (1.0, -1.0), strict=True):
-            if name is not None and (sign > 0 or contact.held == "fixed"):
-                turns[:, self._column[name] + 2] = sign
+        turn = np.tile([0.0, 0.0, 1.0], (self.phi.size, 1))
+        turns = [
+            Share(self.number(name), sign * turn)
+            for name, sign in zip(contact.pieces[::-1], (1.0, -1.0), strict=True)
+            if name is not None and (sign > 0 or contact.held == "fixed")
+        ]
         if contact.held == "level":
             return [turns]
         return [self._between(contact, at, normal), self._between(contact, at, -1j * normal), turns]
@@ -323,10 +349,10 @@ class Pieces:
         where = self._carried(contact.pieces[1] if contact.pieces[1] is not None else contact.pieces[0], at)
         return where - contact.roll * normal
 
-    def _between(self, contact: Contact, at: Points, way: Points) -> Reals:
+    def _between(self, contact: Contact, at: Points, way: Points) -> list[Share]:
         """The velocity of the second piece over the first at a point, along a way."""
-        found = np.zeros((self.phi.size, 3 * len(self._parts)))
-        for name, sign in zip(contact.pieces[::-1], (1.0, -1.0), strict=True):
-            if name is not None:
-                found += sign * self._velocity(name, at, way)
-        return found
+        return [
+            Share(self.number(name), sign * self._factors(name, at, way))
+            for name, sign in zip(contact.pieces[::-1], (1.0, -1.0), strict=True)
+            if name is not None
+        ]

@@ -9,17 +9,25 @@ opening of 1.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.contacts import Contact
+from rocking_cli.core.rates import GROUND, Rates
 from rocking_cli.core.released import ONE, PUSH, RATE, Pieces, Released
+from rocking_cli.dynamics.stuck import stuck
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array as Sparse
 
 Reals = NDArray[np.float64]
+Points = NDArray[np.complex128]
+Bools = NDArray[np.bool_]
 NODES = 5  # rotations up to phi_cr at which edges are sought
 WAYS = 8  # directions in which the set is first looked at; between corners it is then refined
 MOST_CORNERS = 24  # of a set
@@ -28,6 +36,8 @@ TIGHT = 1e-6  # of the largest velocity at a joint: one that does not move
 ALONE = 1e-7  # of the largest singular value: a mode is the only one of its pattern
 MOST_THROWN = 6  # modes of one impact
 CLOSED = 1e-5  # of the largest velocity at a joint: by so much one may seem to close
+ROUNDING = 1e-14  # of the largest factor: one that is none
+PARALLEL = 1e-12  # product of two lines that do not meet
 SAME = 1e-6  # of the set: corners that are one
 
 
@@ -74,14 +84,20 @@ def modes(mechanism: Mechanism, direction: Direction, phi: Reals, critical: floa
     push = mechanism.uplift(direction) * mechanism.gravity
     fast = 2 * mechanism.potential_energy(np.array([critical]), direction)[0]
     fast /= float(mechanism.kinetic_inertia(np.zeros(1), direction)[0])
-    patterns: dict[Pattern, None] = {}
+    known: dict[Pattern, _Followed | None] = {}
+
+    def follow(velocity: Reals, k: int) -> None:
+        pattern = there.pattern(velocity, k)
+        if pattern not in known:
+            known[pattern] = there.followed(pattern)
+
     for k in places:
-        for velocity in _edges(there, int(k), push, fast):
-            patterns.setdefault(there.pattern(velocity, int(k)))
+        for velocity in _edges(there, int(k), np.array([push, fast]), known):
+            follow(velocity, int(k))
     jump = there.jump(mechanism)
     for velocity in _thrown(there, jump) if jump is not None else ():
-        patterns.setdefault(there.pattern(velocity, 0))
-    found = [each for each in (there.followed(pattern) for pattern in patterns) if each is not None]
+        follow(velocity, 0)
+    found = [each for each in known.values() if each is not None]
     labels = [Contact((None, None), (0j,), name=there.label(each.velocity[0])) for each in found]
     names: dict[str, int] = {}
     for k, label in enumerate(labels):  # several modes may open one joint most
@@ -107,74 +123,112 @@ class _Placed:
     """The rates at the contacts of a direction, and what they must bear, over rotations."""
 
     def __init__(self, mechanism: Mechanism, direction: Direction, contacts: Sequence[Contact], phi: Reals) -> None:
-        self._direction, self._contacts = direction, contacts
+        self._direction, self.contacts = direction, contacts
         self.pieces = Pieces(mechanism, direction, phi)
         self.rates, self.rows = self.pieces.rates(contacts)
         self.demand = self.pieces.demands()
-        self.one_sided = np.zeros(self.rates.shape[1], bool)
-        for normal, _ in self.rows:
+        self._rocking = self.pieces.momentum(self.pieces.dq)
+        self._centres, self._turned = self.pieces.centres(), self.pieces.turned()
+        count = len(self.rates.pieces)
+        self.one_sided = np.zeros(count, bool)
+        self.shear = np.full(count, -1)  # of each row: that of its contact, if it may slide
+        self.friction = np.zeros(count)  # and the coefficient
+        for contact, (normal, shear) in zip(contacts, self.rows, strict=True):
             self.one_sided[list(normal)] = True
+            if shear is not None and contact.friction is not None:
+                self.shear[[*normal, shear]] = shear
+                self.friction[[*normal, shear]] = contact.friction
 
-    def friction(self, k: int) -> float | None:
-        """Coefficient of friction of a contact; None if it never slides."""
-        return self._contacts[k].friction
+    @cached_property
+    def cones(self) -> Sparse:
+        """What friction asks of the forces, at most 0: a row for each sense of slip, and two columns beyond them."""
+        from scipy.sparse import coo_array
+
+        entries: list[tuple[int, int, float]] = []
+        count = 0
+        for contact, (normal, shear) in zip(self.contacts, self.rows, strict=True):
+            if contact.friction is None or shear is None:
+                continue
+            for sense in (1.0, -1.0):
+                entries += [*((count, row, -contact.friction) for row in normal), (count, shear, sense)]
+                count += 1
+        rows, columns, values = (np.array(each) for each in zip(*entries, strict=True)) if entries else ((), (), ())
+        found = coo_array((values, (rows, columns)), shape=(count, len(self.one_sided) + 2)).tocsr()
+        found.eliminate_zeros()
+        return found
+
+    def sparse(self, k: int) -> Sparse:
+        """The rates at one rotation, shape (rows, coordinates), in axes that turn with the pieces.
+
+        There most faces are as they were at rest, with a single factor, which a linear programme takes faster.
+        """
+        from scipy.sparse import csr_array
+
+        row, side = np.nonzero(self.rates.pieces != GROUND)
+        piece, factors = self.rates.pieces[row, side], self.rates.factors[k, row, side]
+        values = _turn(factors, self._turned[k, piece].conj())
+        values[np.abs(values) <= ROUNDING * np.abs(values).max(initial=0.0)] = 0.0
+        columns = 3 * piece[:, None] + np.arange(3)
+        places = np.repeat(row, 3), columns.ravel()
+        found = csr_array((values.ravel(), places), shape=(len(self.one_sided), 3 * self.rates.count))
+        found.eliminate_zeros()
+        return found
+
+    def turned(self, vectors: Reals, k: int, sense: int) -> Reals:
+        """Vectors of all coordinates, shape (coordinates, ...), in the axes of `sparse`, and back with -1."""
+        each = np.moveaxis(vectors.reshape(self.rates.count, 3, -1), 1, 2)
+        turns = self._turned[k] if sense < 0 else self._turned[k].conj()
+        return np.moveaxis(_turn(each, turns[:, None]), 2, 1).reshape(vectors.shape)
 
     def label(self, velocity: Reals) -> str:
         """What to call the contact that a mode opens most, at the first rotation."""
-        speed = np.abs(self.rates[0] @ velocity)
+        speed = np.abs(self.rates.rotation(0).at(velocity[None])[0])
         most = [max((speed[row] for row in (*normal, *([] if shear is None else [shear]))), default=0.0)
                 for normal, shear in self.rows]  # fmt: skip
-        return self._contacts[int(np.argmax(most))].label
+        return self.contacts[int(np.argmax(np.array(most) >= (1 - TIGHT) * max(most)))].label  # the first of several
 
     def jump(self, mechanism: Mechanism) -> Reals | None:
         """The jump of momentum at an impact over the rate before, a constant and a factor of the restitution."""
         if not mechanism.rocks_both_ways:
             return None
         old = Pieces(mechanism, self._direction.opposite, np.zeros(1))
-        return np.stack([old.momentum(old.dq)[0], self.pieces.momentum(self.pieces.dq)[0]], axis=-1)
+        return np.stack([old.momentum(old.dq)[0], self._rocking[0]], axis=-1)
 
     def pattern(self, velocity: Reals, k: int) -> Pattern:
         """Which rows a mode leaves alone at a rotation."""
-        speed = self.rates[k] @ velocity
+        speed = self.rates.rotation(k).at(velocity[None])[0]
         still = TIGHT * float(np.abs(speed).max())
-        slips, shut = [], []
-        for contact, (normal, shear) in zip(self._contacts, self.rows, strict=True):
-            slip = 0.0 if shear is None or contact.friction is None else float(speed[shear])
-            sense = 0 if abs(slip) <= still else int(np.sign(slip))
-            dilates = abs(slip) * (contact.friction or 0.0) if sense else 0.0
-            slips.append(sense)
-            shut.append(tuple(bool(speed[row] - dilates <= still) for row in normal))
-        return Pattern(tuple(slips), tuple(shut))
+        slip = np.where((self.shear >= 0) & (np.abs(speed[self.shear]) > still), speed[self.shear], 0.0)
+        sense = np.sign(slip).astype(int)
+        shut = speed - np.abs(slip) * self.friction <= still
+        return Pattern(
+            tuple(0 if shear is None else int(sense[shear]) for _, shear in self.rows),
+            tuple(tuple(bool(shut[row]) for row in normal) for normal, _ in self.rows),
+        )
 
-    def held(self, pattern: Pattern, *, dilates: bool) -> Reals:
-        """The rows that a mode leaves alone, shape (n, rows, coordinates)."""
-        found: list[Reals] = []
-        taken = np.zeros(self.rates.shape[1], bool)
+    def held(self, pattern: Pattern, *, dilates: bool) -> Rates:
+        """The rows that a mode leaves alone."""
+        kept = np.ones(len(self.one_sided), bool)
+        factors = self.rates.factors
         for contact, (normal, shear), slip, shut in zip(
-            self._contacts, self.rows, pattern.slips, pattern.shut, strict=True
+            self.contacts, self.rows, pattern.slips, pattern.shut, strict=True
         ):
-            for row, closed in zip(normal, shut, strict=True):
-                taken[row] = True
-                if not closed:
-                    continue
-                mine = self.rates[:, row]
-                if slip and dilates and shear is not None:
-                    mine = mine - slip * (contact.friction or 0.0) * self.rates[:, shear]
-                found.append(mine)
-            if shear is not None:
-                taken[shear] = True
-                if not slip:
-                    found.append(self.rates[:, shear])
-        found += [self.rates[:, row] for row in np.flatnonzero(~taken)]  # guides
-        return np.stack(found, axis=1)
+            kept[list(normal)] = shut
+            if not slip or shear is None:
+                continue
+            kept[shear] = False
+            if dilates and contact.friction:
+                factors = factors.copy() if factors is self.rates.factors else factors
+                factors[:, list(normal)] -= slip * contact.friction * self.rates.factors[:, [shear]]
+        return Rates(self.rates.count, self.rates.pieces, factors).rows(kept)
 
     def followed(self, pattern: Pattern) -> _Followed | None:
         """A mode over all rotations; None if its rows leave more than one way to move at rest."""
-        alone = self._alone(self.held(pattern, dilates=True))
+        alone = self._alone(pattern, dilates=True)
         if alone is None:
             return None
         velocity, exists = alone
-        speed = np.einsum("nrc,nc->nr", self.rates, velocity)
+        speed = self.rates.at(velocity)
         opens = speed[:, self.one_sided]
         sign = np.where(opens.max(axis=1, initial=0) >= -opens.min(axis=1, initial=0), 1.0, -1.0)
         factor = sign / np.abs(speed).max(axis=1)
@@ -183,10 +237,9 @@ class _Placed:
         force[~(exists & self._closes_nothing(speed))] = self._bears
         plain = velocity
         if any(pattern.slips):  # what slides does not dilate as it goes
-            without = self._alone(self.held(pattern, dilates=False))
+            without = self._alone(pattern, dilates=False)
             if without is not None:
-                size = np.abs(np.einsum("nrc,nc->nr", self.rates, without[0])).max(axis=1)
-                plain = without[0] / size[:, None]
+                plain = without[0] / np.abs(self.rates.at(without[0])).max(axis=1)[:, None]
         moving = self.pieces.momentum(plain)
         return _Followed(velocity, force, 1 / np.einsum("nc,nc->n", plain, moving))
 
@@ -197,31 +250,30 @@ class _Placed:
         whole[ONE] = np.abs(self.demand[0, :, ONE]).sum()
         return whole
 
-    def _closes_nothing(self, speed: Reals) -> NDArray[np.bool_]:
+    def _closes_nothing(self, speed: Reals) -> Bools:
         """Whether no joint would have to close, or to slide without dilating, shape (n,)."""
-        good = np.ones(len(speed), bool)
-        for contact, (normal, shear) in zip(self._contacts, self.rows, strict=True):
-            slip = np.abs(speed[:, shear]) if shear is not None else 0.0
-            for row in normal:
-                good &= speed[:, row] >= (contact.friction or 0.0) * slip - CLOSED
-        return good
+        least = np.where(self.shear >= 0, self.friction * np.abs(speed[:, self.shear]), 0.0) - CLOSED
+        return np.asarray((speed >= least)[:, self.one_sided].all(axis=1))
 
-    def _alone(self, held: Reals) -> tuple[Reals, NDArray[np.bool_]] | None:
-        """The velocities that leave rows alone, without those of rocking itself, shape (n, coordinates).
+    def _alone(self, pattern: Pattern, *, dilates: bool) -> tuple[Reals, Bools] | None:
+        """The velocities that leave the rows of a pattern alone, without those of rocking itself.
 
-        And at which rotations there are any; elsewhere they are those of a rotation before.
+        Of shape (n, coordinates); and at which rotations there are any: elsewhere they are those of a rotation before.
         """
-        scale = self.pieces.scale
-        rocking = self.pieces.momentum(self.pieces.dq) / scale
-        rocking /= np.linalg.norm(rocking, axis=1, keepdims=True)
-        matrix = np.concatenate([held / scale, rocking[:, None, :]], axis=1)
-        unknown = matrix.shape[2]
-        _, s, vt = np.linalg.svd(matrix, full_matrices=matrix.shape[1] < unknown)
-        padded = np.zeros((len(s), unknown))
-        padded[:, : s.shape[1]] = s
-        if padded[0, -2] < ALONE * padded[0, 0]:
+        held = self.held(pattern, dilates=dilates)
+        one = stuck(held, self._centres)
+        if not one.count:
             return None
-        found = vt[:, -1] / scale
+        scale = self.pieces.scale[: 3 * one.count]
+        rocking = one.gathered(self._rocking) / scale
+        rocking /= np.linalg.norm(rocking, axis=1, keepdims=True)
+        matrix = np.concatenate([one.contracted(held).dense() / scale, rocking[:, None, :]], axis=1)
+        at_rest = _values(np.linalg.svd(matrix[0], compute_uv=False), matrix)
+        if at_rest[-2] < ALONE * at_rest[0]:  # as of most patterns of many pieces
+            return None
+        _, s, vt = np.linalg.svd(matrix, full_matrices=matrix.shape[1] < matrix.shape[2])
+        padded = _values(s, matrix)
+        found = one.spread(vt[:, -1] / scale)
         flips = np.sign(np.einsum("nc,nc->n", found[1:], found[:-1]))
         found[1:] *= np.cumprod(np.where(flips == 0, 1.0, flips))[:, None]
         # Where its rows leave more, or nothing, it is what it was before.
@@ -230,14 +282,31 @@ class _Placed:
         return found[last], good
 
 
-def _edges(there: _Placed, k: int, push: float, fast: float) -> Iterator[Reals]:
-    """The modes of the edges of the set of (u_g'', phi.^2) at a rotation."""
-    unit = np.array([push, fast])
+def _turn(vectors: Reals, by: Points) -> Reals:
+    """Vectors of x, y and rotation, shape (..., 3), whose first two have turned by unit numbers."""
+    across = (vectors[..., 0] + 1j * vectors[..., 1]) * by
+    return np.stack([across.real, across.imag, vectors[..., 2]], axis=-1)
+
+
+def _values(singular: Reals, matrix: Reals) -> Reals:
+    """Singular values of a matrix, as many as it has columns."""
+    missing = matrix.shape[-1] - singular.shape[-1]
+    return np.concatenate([singular, np.zeros((*singular.shape[:-1], missing))], axis=-1)
+
+
+def _edges(there: _Placed, k: int, unit: Reals, known: Mapping[Pattern, _Followed | None]) -> Iterator[Reals]:
+    """The modes of the edges of the set of (u_g'', phi.^2) at a rotation.
+
+    What modes that are `known` by then say of the set is not asked again; each that is found may join them.
+    """
     corners: list[tuple[float, Reals]] = []  # the direction that found each, and its place
     ways = [2 * np.pi * i / WAYS for i in range(WAYS)]
     while ways:
         way = ways.pop()
-        solved = _corner(there, k, np.array([np.cos(way), np.sin(way)]) / unit, unit)
+        along = np.array([np.cos(way), np.sin(way)])
+        if corners and _farthest(along, _lines(known, k, unit)) <= max(at @ along for _, at in corners) + SAME:
+            continue  # no mode lets it go beyond that corner
+        solved = _corner(there, k, along / unit, unit)
         if solved is None:
             continue
         place, velocity = solved
@@ -255,70 +324,89 @@ def _edges(there: _Placed, k: int, push: float, fast: float) -> Iterator[Reals]:
                 ways.append(float(np.arctan2(-side[0], side[1])))
 
 
+def _lines(known: Mapping[Pattern, _Followed | None], k: int, unit: Reals) -> Reals:
+    """What bounds the set at a rotation, rows of a + b x + c y >= 0 over `unit`: all modes, and how far is looked."""
+    rows = [each.force[k, [ONE, PUSH, RATE]] * [1.0, *unit] for each in known.values() if each is not None]
+    lines = np.array([[FAR, 1.0, 0.0], [FAR, -1.0, 0.0], [0.0, 0.0, 1.0], [FAR, 0.0, -1.0], *rows])
+    steep = np.abs(lines[:, 1:]).max(axis=1)
+    return np.asarray((lines / np.where(steep > 0, steep, 1.0)[:, None])[steep > 0])
+
+
+def _farthest(along: Reals, lines: Reals) -> float:
+    """How far one can go in a direction within some lines; infinity if they do not say."""
+    one, other = np.triu_indices(len(lines), 1)
+    crossings = np.cross(lines[one], lines[other])  # as a + b x + c y is a product with (1, x, y)
+    meet = np.abs(crossings[:, 0]) > PARALLEL
+    points = crossings[meet] / crossings[meet, :1]
+    inside = (points @ lines.T >= -SAME * (1 + np.abs(lines[:, 0]))).all(axis=1)
+    return float((points[inside, 1:] @ along).max(initial=-np.inf)) if inside.any() else np.inf
+
+
 def _corner(there: _Placed, k: int, way: Reals, unit: Reals) -> tuple[Reals, Reals | None] | None:
     """The farthest (u_g'', phi.^2) that can be borne in a direction, over `unit`; and the mode that lets go there."""
     from scipy.optimize import linprog  # slow to import, and only redundant joints need it
+    from scipy.sparse import coo_array, hstack
 
-    rates, demand, scale = there.rates[k], there.demand[k], there.pieces.scale
-    count = len(rates)
-    equal = np.column_stack([rates.T, -demand[:, PUSH] * unit[0], -demand[:, RATE] * unit[1]]) / scale[:, None]
+    rates, demand, scale = there.sparse(k), there.turned(there.demand[k], k, 1), there.pieces.scale
+    count = rates.shape[0]
     size = float(np.abs(demand[:, ONE]).max())
+    rates.data = rates.data / scale[rates.indices] * size
+    pushed = -demand[:, [PUSH, RATE]] * unit / scale[:, None]
+    equal = hstack([rates.T, coo_array(pushed)], format="csc")
     low = np.where(there.one_sided, 0.0, -np.inf)
     bounds = [*((each, None) for each in low), (-FAR, FAR), (0.0, FAR)]
-    cones = []
-    for j, (normal, shear) in enumerate(there.rows):
-        friction = there.friction(j)
-        if friction is None or shear is None:
-            continue
-        for sense in (1.0, -1.0):
-            row = np.zeros(count + 2)
-            row[list(normal)], row[shear] = -friction, sense
-            cones.append(row)
     cost = np.append(np.zeros(count), -way * unit)
-    equal[:, :count] *= size
+    cones = there.cones
     solved = linprog(
         cost, A_eq=equal, b_eq=demand[:, ONE] / scale, bounds=bounds, method="highs-ds",
-        A_ub=np.array(cones) if cones else None, b_ub=np.zeros(len(cones)) if cones else None,
+        A_ub=cones if cones.shape[0] else None, b_ub=np.zeros(cones.shape[0]) if cones.shape[0] else None,
     )  # fmt: skip
     if solved.status != 0:
         return None
     place = np.asarray(solved.x[count:])
     velocity = -np.asarray(solved.eqlin.marginals) / scale
     work = float(velocity @ demand[:, [ONE, PUSH, RATE]] @ np.array([1.0, place[0] * unit[0], place[1] * unit[1]]))
-    moves = np.abs(rates @ velocity).max() > 0
+    moves = np.abs(rates @ (velocity * scale)).max() > 0
     at_edge = abs(work) <= SAME * float(np.abs(velocity) @ np.abs(demand[:, ONE]) or 1.0)
-    return place, velocity if moves and at_edge else None
+    return place, there.turned(velocity, k, -1) if moves and at_edge else None
 
 
 def _thrown(there: _Placed, jump: Reals) -> Iterator[Reals]:
     """The modes on which the impulses of an impact do work against what holds them, the one with most work first."""
     from scipy.optimize import linprog  # slow to import, and only redundant joints need it
+    from scipy.sparse import csr_array, vstack
 
-    rates, scale = there.rates[0], there.pieces.scale
+    rates, scale = there.sparse(0), there.pieces.scale
     total = jump.sum(axis=1)  # with all of the rate kept: the most that is thrown
-    above: list[Reals] = []
-    free = np.ones(len(rates), bool)
-    for j, (normal, shear) in enumerate(there.rows):
-        friction = there.friction(j)
-        for row in normal:
-            free[row] = False
-            if shear is None or not friction:
-                above.append(-rates[row])
-            else:
-                above += [sense * friction * rates[shear] - rates[row] for sense in (1.0, -1.0)]
-        if shear is not None and friction is not None:
-            free[shear] = False
     normals = np.flatnonzero(there.one_sided)
-    above.append(rates[normals].sum(axis=0))
-    most = np.append(np.zeros(len(above) - 1), 1.0)
-    held = [*(rates[row] for row in np.flatnonzero(free)), there.pieces.momentum(there.pieces.dq)[0]]
+    dilates = normals[(there.shear[normals] >= 0) & (there.friction[normals] > 0)]
+    plain = normals[~np.isin(normals, dilates)]
+    slips = there.shear >= 0
+    free = np.flatnonzero(~there.one_sided & ~slips)
+    factors = there.friction[dilates]
+
+    def scaled(rows: Sparse) -> Sparse:
+        found = csr_array(rows)
+        found.eliminate_zeros()
+        found.data = found.data / scale[found.indices]
+        return found
+
+    def row(values: Reals) -> Sparse:
+        return csr_array(values[None])
+
+    shears = rates[there.shear[dilates]].multiply(factors[:, None])
+    above = vstack([-rates[plain], *(sense * shears - rates[dilates] for sense in (1.0, -1.0)),
+                    row(np.asarray(rates[normals].sum(axis=0)))])  # fmt: skip
+    most = np.append(np.zeros(above.shape[0] - 1), 1.0)
+    held = vstack([rates[free], row(there.pieces.momentum(there.pieces.dq)[0])])
     for _ in range(MOST_THROWN):
         solved = linprog(
-            total / scale, A_ub=np.array(above) / scale, b_ub=most, A_eq=np.array(held) / scale,
-            b_eq=np.zeros(len(held)), bounds=(None, None), method="highs-ds",
+            total / scale, A_ub=scaled(above), b_ub=most, A_eq=scaled(held),
+            b_eq=np.zeros(held.shape[0]), bounds=(None, None), method="highs-ds",
         )  # fmt: skip
         if solved.status != 0 or solved.fun > -TIGHT * float(np.abs(total / scale).max()):
             return
         velocity = np.asarray(solved.x) / scale
         yield velocity
-        held.append(rates[normals[int(np.argmax(rates[normals] @ velocity))]])  # the next keeps that end shut
+        again = normals[int(np.argmax(rates[normals] @ velocity))]
+        held = vstack([held, rates[[again]]])  # the next keeps that end shut

@@ -37,6 +37,11 @@ def _hinges(direction: Direction, found: CollapseMechanism) -> Table:
 def _sentences(mechanism: Mechanism, direction: Direction, found: CollapseMechanism) -> list[str]:
     moves = "; ".join("+".join(group) for group in found.groups)
     said = [f"Moving parts, each as one body: {moves}." + (f" At rest: {', '.join(found.rest)}." if found.rest else "")]
+    if found.idle:
+        said.append(
+            "Other mechanisms start at the same acceleration. They are the same motion, in which "
+            f"{', '.join(found.idle)} may move along at no cost: the one with the fewest moving blocks is shown."
+        )
     if found.lead:
         said.append(f"phi is the rotation of {found.lead}.")
     if found.lifted:
@@ -110,6 +115,7 @@ def data(found: CollapseMechanism) -> dict[str, Any]:
         ],
         "groups": [list(group) for group in found.groups],
         "rest": list(found.rest),
+        "idle": list(found.idle),
         "lifted": list(found.lifted),
         "slides": list(found.slides),
         "glued": list(found.glued),

@@ -1,0 +1,128 @@
+"""The smallest of several mechanisms that are the same motion, with idle blocks that may move along.
+
+Mechanisms of one multiplier are the same motion if all of them move the same blocks in the same way up to a common
+factor, if those alone are one of the mechanisms, and if every other block that moves in any of them is idle: either no
+force does work on it at all, or it can only turn with one of the moving groups, about the same point, at no cost.
+Then no hinge of the smallest mechanism is another in the larger ones. Two towers side by side, or a stack that may turn
+about its own foot or that of its plinth, are not the same motion, although each costs as little.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mechanisms._assembly.problem import NOTHING, Problem
+from mechanisms._assembly.programme import least
+from mechanisms._assembly.rays import Bools, Indices, Rays
+from mechanisms._assembly.sparse import from_blocks
+from rocking_cli.core import Reals
+
+SAME = 1e-6  # of a velocity: two that are one
+MOST = 30  # dimensions of the velocities: more are several mechanisms
+
+
+def smallest(problem: Problem, rays: Rays, kept: Bools, space: Reals) -> tuple[Reals, tuple[str, ...]] | None:
+    """The mechanism that moves the fewest blocks, and those idle; None if the mechanisms are not the same motion.
+
+    Parameters
+    ----------
+    problem : Problem
+        The assembly.
+    rays : Rays
+        What its joints can exert.
+    kept : ndarray of bool
+        The rays that no mechanism opens.
+    space : ndarray, shape (3 blocks, dimensions)
+        Velocities that open none of these.
+
+    Returns
+    -------
+    (ndarray, tuple of str) or None
+        The velocities of all blocks, and the names of the idle blocks, which rest in them.
+    """
+    if not 2 <= space.shape[1] <= MOST:
+        return None
+    space = np.linalg.qr(space)[0]
+    by_block = space.reshape(-1, 3, space.shape[1])
+    ways, sizes, shares = np.linalg.svd(by_block, full_matrices=False)
+    able = sizes[:, 0] > NOTHING
+    works = able & _does_work(problem, by_block)
+    if not works.any() or (sizes[works, 1] > SAME * sizes[works, 0]).any():
+        return None  # a block that can move in two ways
+    share = shares[:, 0]  # how much of its one way a block moves, by coordinates of the space
+    opening = rays.rates[~kept] @ space
+    for k in _candidates(share, np.flatnonzero(works)):
+        alike = works & (np.abs(share @ share[k]) > 1 - SAME**2)
+        others = _candidates(share, np.flatnonzero(works & ~alike))
+        if any(_reaches(opening, share[k], sign * share[j]) for j in others for sign in (1, -1)):
+            continue  # others move without these
+        field = _least_motion(opening, space, by_block, able, share[k])
+        if field is None:
+            continue
+        moves = np.abs(field.reshape(-1, 3)).max(axis=1) > SAME * np.abs(field).max()
+        if (moves & works & ~alike).any() or not all(
+            _turns_with(problem, field, moves & works, j, ways[j, :, 0])
+            for j in np.flatnonzero(works & ~alike).tolist()
+        ):
+            return None
+        names = problem.frame.names
+        return np.where(np.repeat(moves, 3), field, 0.0), tuple(names[j] for j in np.flatnonzero(able & ~moves))
+    return None
+
+
+def _does_work(problem: Problem, by_block: Reals) -> Bools:
+    """On which blocks the forces do work in some velocity."""
+    work = [np.abs(np.einsum("bi,bid->bd", each.reshape(-1, 3), by_block)).max(axis=1)
+            for each in (problem.dead, problem.live)]  # fmt: skip
+    return np.asarray(np.maximum(*work) > NOTHING * np.abs(by_block).max(axis=(1, 2)))
+
+
+def _candidates(share: Reals, blocks: Indices) -> list[int]:
+    """One block of each kind that moves in proportion, those of the most blocks first."""
+    found: dict[int, int] = {}
+    for j in blocks.tolist():
+        same = next((k for k in found if abs(share[k] @ share[j]) > 1 - SAME**2), j)
+        found[same] = found.get(same, 0) + 1
+    return sorted(found, key=lambda k: (-found[k], k))
+
+
+def _reaches(opening: Reals, still: Reals, moves: Reals) -> bool:
+    """Whether a velocity in which no ray closes and one kind of blocks rests can move another."""
+    n, d = opening.shape
+    equal = from_blocks([[opening, -np.eye(n)], [still[None, :], None]])
+    found = least(
+        np.append(-moves, np.zeros(n)), equal, np.zeros(n + 1),
+        np.append(np.full(d, -1.0), np.zeros(n)), np.append(np.ones(d), np.full(n, np.inf)),
+    )  # fmt: skip
+    return found is not None and -found.value > SAME
+
+
+def _least_motion(opening: Reals, space: Reals, by_block: Reals, able: Bools, share: Reals) -> Reals | None:
+    """The velocities of least sum in which one kind of blocks moves; None if they cannot."""
+    rows = space[np.repeat(able, 3)]
+    (n, d), m = opening.shape, len(rows)
+    for sign in (1.0, -1.0):
+        equal = from_blocks(
+            [[opening, -np.eye(n), None, None], [rows, None, -np.eye(m), np.eye(m)], [share[None, :], None, None, None]]
+        )
+        found = least(
+            np.concatenate([np.zeros(d + n), np.ones(2 * m)]), equal, np.append(np.zeros(n + m), sign),
+            np.concatenate([np.full(d, -np.inf), np.zeros(n + 2 * m)]), np.full(d + n + 2 * m, np.inf),
+        )  # fmt: skip
+        if found is not None:
+            return np.asarray(space @ found.x[:d])
+    return None
+
+
+def _turns_with(problem: Problem, field: Reals, moves: Bools, block: int, way: Reals) -> bool:
+    """Whether a block's one way is to move as if it belonged to a block that moves."""
+    place = np.array(problem.frame.centroids) / problem.frame.size
+    for k in np.flatnonzero(moves):
+        vx, vy, turn = field[3 * k : 3 * k + 3]
+        if abs(turn) <= SAME * np.abs(field).max():
+            continue  # what slides has no point about which to turn: it is another joint that slides
+        arm = place[block] - place[k]
+        along = np.array([vx - turn * arm.imag, vy + turn * arm.real, turn])
+        if np.linalg.norm(along - way * (along @ way)) <= SAME * np.linalg.norm(along):
+            return True
+    return False

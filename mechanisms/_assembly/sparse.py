@@ -1,0 +1,66 @@
+"""Sparse matrices: made from their entries, and joined; scipy is loaded with the first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rocking_cli.core import Reals
+
+LITTLE = 1e-12  # of the largest entry
+Indices = NDArray[np.intp]
+Sparse = Any  # scipy.sparse.csr_array, which has no types
+
+
+def from_entries(rows: ArrayLike, columns: ArrayLike, values: ArrayLike, shape: tuple[int, int]) -> Sparse:
+    """Build a matrix from the rows, columns and values of its entries; those of one place are added."""
+    from scipy.sparse import csr_array
+
+    places = np.asarray(rows, np.intp), np.asarray(columns, np.intp)
+    return csr_array((np.asarray(values, np.float64), places), shape=shape)
+
+
+def beside(parts: Sequence[Sparse]) -> Sparse:
+    """Join matrices side by side; vectors are columns."""
+    from scipy.sparse import csc_array, hstack
+
+    return hstack([csc_array(part[:, None] if part.ndim == 1 else part) for part in parts], format="csc")
+
+
+def unit_columns(rows: ArrayLike, size: int) -> Sparse:
+    """Build the columns of the unit matrix that belong to some rows, shape (size, rows)."""
+    rows = np.asarray(rows, np.intp)
+    return from_entries(rows, np.arange(len(rows)), np.ones(len(rows)), (size, len(rows)))
+
+
+def solved(matrix: Sparse, right: Reals) -> Reals:
+    """Solve a square system for the columns of `right`."""
+    from scipy.sparse.linalg import splu
+
+    return np.asarray(splu(matrix.tocsc()).solve(np.ascontiguousarray(right)))
+
+
+def weighted_squares(matrix: Sparse, weights: Reals) -> Sparse:
+    """Build the transpose times weights times a matrix, plus so little of the unit matrix that it can be solved."""
+    from scipy.sparse import diags_array, eye_array
+
+    squares = matrix.T @ diags_array(weights) @ matrix
+    return squares + LITTLE * np.abs(squares.diagonal()).max() * eye_array(matrix.shape[1])
+
+
+def components(one: ArrayLike, other: ArrayLike, count: int) -> Indices:
+    """Label each of some nodes by the component of the graph that it is in, given its edges."""
+    from scipy.sparse.csgraph import connected_components
+
+    graph = from_entries(one, other, np.ones(len(np.asarray(one))), (count, count))
+    return np.asarray(connected_components(graph, directed=False)[1], np.intp)
+
+
+def from_blocks(blocks: Sequence[Sequence[Any]]) -> Sparse:
+    """Build a matrix from rows of matrices, dense ones among them; None is nothing."""
+    from scipy.sparse import block_array, csr_array
+
+    return block_array([[None if each is None else csr_array(each) for each in row] for row in blocks], format="csc")

@@ -1,0 +1,183 @@
+"""Histories of walls of many blocks: the velocities at their joints, and modes of pieces that stay stuck together."""
+
+from __future__ import annotations
+
+import tracemalloc
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from rocking_cli import Registry, load_structure
+from rocking_cli.core import Direction, both_statics
+from rocking_cli.core import linkage as of_linkages
+from rocking_cli.core.released import Pieces
+from rocking_cli.dynamics import modes as of_modes
+from rocking_cli.dynamics.joints import joints_of
+from rocking_cli.dynamics.modes import _edges, _Placed, modes
+from rocking_cli.dynamics.tables import tabulate
+from tests.conftest import EXAMPLES
+
+CHECKED = (
+    "assembly.yaml", "arch.yaml", "frame.yaml", "symmetric_frame.yaml", "spanning_wall.yaml", "masonry/portal.yaml",
+    "masonry/buttressed_arch.yaml", "masonry/wall_of_three.yaml", "linkages/two_storeys.yaml", "walls/facade.yaml",
+)  # fmt: skip
+FORWARD = Direction.POSITIVE
+
+
+def wall(bricks, courses, **given):
+    """A wall in running bond whose bricks are .5 x .25 m."""
+    blocks = {}
+    for course in range(courses):
+        edges = [0.5 * k for k in range(bricks + 1)]
+        if course % 2:
+            edges = [0.0, *(x + 0.25 for x in edges[:-1]), edges[-1]]
+        low, high = 0.25 * course, 0.25 * (course + 1)
+        for k, (left, right) in enumerate(pairwise(edges)):
+            blocks[f"c{course} {k}"] = {"polygon": [[left, low], [right, low], [right, high], [left, high]]}
+    floor = [[-1.0, -0.3], [bricks / 2 + 1, -0.3], [bricks / 2 + 1, 0.0], [-1.0, 0.0]]
+    given = {"density": 1800.0, "depth": 0.25, "restitution": 0.7, **given}
+    return Registry()["assembly"](blocks=blocks, ground={"floor": {"polygon": floor}}, **given)
+
+
+@pytest.mark.parametrize("name", CHECKED)
+@pytest.mark.parametrize("direction", list(Direction))
+def test_velocities_at_joints_are_those_of_their_points(name, direction):
+    """Each row, at the rates of the mechanism, is how its point goes over a small rotation; and all its forms agree."""
+    made = load_structure(EXAMPLES / name)
+    contacts = made.contacts(direction)
+    if direction not in made.directions or contacts is None:
+        pytest.skip("its joints are not known")
+    phi = 0.3 * made.limit(direction) + np.array([0.0, 1e-5, -1e-5])
+    there = Pieces(made, direction, phi)
+    rates, rows = there.rates(contacts)
+    motions = dict(zip([each.name for each in made.bodies()], made.motion(phi, direction), strict=True))
+    of = {each.body.name: each.of for each in made.pieces(direction)}
+    dense = rates.dense()
+    assert dense.shape[1] == sum(contact.forces for contact in contacts)
+    assert rates.at(there.dq) == pytest.approx(np.einsum("nrq,nq->nr", dense, there.dq), abs=1e-12)
+
+    def at(name, point):
+        motion = None if name is None or of[name] is None else motions[of[name]]
+        return np.full(3, point) if motion is None else motion.carry(point)[0]
+
+    speeds = rates.at(there.dq)[0]
+    size = np.abs(there.dq).max()
+    for contact, (normals, shear) in zip(contacts, rows, strict=True):
+        if contact.held is not None or contact.roll:
+            continue
+        first, second = contact.pieces
+        apart = [at(second, point) - at(first, point) for point in contact.points]
+        rate = [(each[1] - each[2]) / 2e-5 for each in apart]
+        normal = there.normal(contact)[0]
+        for row, each in zip(normals, rate, strict=True):
+            assert speeds[row] == pytest.approx((each * np.conj(normal)).real, abs=1e-6 * size)
+        along = (np.mean(rate) * np.conj(-1j * normal)).real
+        assert speeds[shear] == pytest.approx(along, abs=1e-6 * size)
+
+
+@pytest.mark.parametrize("friction", [None, 1.2])
+def test_a_mode_of_stuck_pieces_is_that_of_all_pieces(friction):
+    """The singular vectors of all held rows over all coordinates say the same as those of the few parts."""
+    made = wall(2, 5, friction=friction)
+    critical = made.critical_rotation(FORWARD)
+    there = _Placed(made, FORWARD, made.contacts(FORWARD), np.linspace(0.0, 0.6 * critical, 4))
+    push, fast = made.uplift(FORWARD) * made.gravity, 1.0
+    patterns = dict.fromkeys(there.pattern(velocity, 0) for velocity in _edges(there, 0, np.array([push, fast]), {}))
+    rocking = there.pieces.momentum(there.pieces.dq)
+    scale = there.pieces.scale
+    seen = 0
+    for pattern in patterns:
+        held = there.held(pattern, dilates=True).dense() / scale
+        matrix = np.concatenate([held, (rocking / scale)[:, None]], axis=1)
+        _, s, v = np.linalg.svd(matrix)
+        exists = s[0, -2] > 1e-6 * s[0, 0]
+        found = there._alone(pattern, dilates=True)
+        assert (found is not None) == exists
+        if found is None:
+            continue
+        assert found[1][0]
+        for k in np.flatnonzero(found[1]):
+            one, other = v[k, -1], found[0][k] * scale
+            other /= np.linalg.norm(other)
+            assert abs(one @ other) == pytest.approx(1.0, abs=1e-9)
+            seen += 1
+    assert seen > 8
+
+
+@pytest.mark.parametrize("friction", [None, 1.2])
+def test_what_known_modes_say_is_not_asked_again(friction, monkeypatch):
+    """Fewer programmes find the same modes as all directions of all rotations do."""
+    made = wall(2, 5, friction=friction)
+    critical = made.critical_rotation(FORWARD)
+    phi = np.linspace(0.0, critical, 5)
+    asked = []
+    plain = of_modes._corner
+    monkeypatch.setattr(of_modes, "_corner", lambda *args: asked.append(args[1]) or plain(*args))
+    found = modes(made, FORWARD, phi, critical).released
+    few = len(asked)
+    there = _Placed(made, FORWARD, made.contacts(FORWARD), phi)
+    fast = 2 * made.potential_energy(phi[-1:], FORWARD)[0] / made.kinetic_inertia(phi[:1], FORWARD)[0]
+    unit = np.array([made.uplift(FORWARD) * made.gravity, fast])
+    patterns = {there.pattern(velocity, k): None for k in range(5) for velocity in _edges(there, k, unit, {})}
+    each = [mode.force for mode in map(there.followed, patterns) if mode is not None]
+    forces = np.moveaxis(found.force, 1, 0)
+    size = np.abs(forces).max()
+    for mode in each:
+        assert np.abs(forces - mode).max(axis=(1, 2)).min() < 1e-9 * size
+    assert len(each) >= 3
+    assert few < 0.6 * (len(asked) - few)
+
+
+@pytest.mark.parametrize("friction", [None, 1.2])
+def test_a_mode_far_from_rest_closes_nothing_and_does_no_work_at_its_corner(friction):
+    made = wall(2, 5, friction=friction)
+    critical = made.critical_rotation(FORWARD)
+    there = _Placed(made, FORWARD, made.contacts(FORWARD), np.linspace(0.0, critical, 5))
+    unit = np.array([made.uplift(FORWARD) * made.gravity, 0.1])
+    seen = 0
+    for way in np.linspace(0.0, 2 * np.pi, 12):
+        found = of_modes._corner(there, 3, np.array([np.cos(way), np.sin(way)]) / unit, unit)
+        if found is None or found[1] is None:
+            continue
+        (push, rate), velocity = found[0] * unit, found[1]
+        speed = there.rates.dense()[3] @ velocity
+        opens = speed - there.friction * np.abs(speed[there.shear])
+        assert opens[there.one_sided].min() > -1e-6 * np.abs(speed).max()
+        work = velocity @ there.demand[3, :, :3] @ [1.0, push, rate]
+        assert abs(work) < 1e-6 * np.abs(velocity) @ np.abs(there.demand[3, :, 0])
+        seen += 1
+    assert seen >= 4
+
+
+def test_joints_of_a_wall_take_little_memory():
+    """Rows are of two blocks each: no matrix of all blocks and joints is held for every rotation."""
+    made = wall(3, 8)
+    statics = both_statics(made)
+    tables = tabulate(made, statics)
+    tracemalloc.start()
+    try:
+        found = joints_of(made, statics, tables, 1.0)
+        most = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert found is not None and found.redundant and found.labels
+    assert most < 12e6
+
+
+def test_a_long_motion_is_solved_in_parts(monkeypatch):
+    """Where the matrices of all rotations would be large; the parts say what the whole says."""
+    whole = load_structure(EXAMPLES / "linkages/two_storeys.yaml")
+    phi = np.linspace(0.0, 0.9 * whole.limit(FORWARD), 50)
+    expected = whole.motion(phi, FORWARD)
+    monkeypatch.setattr(of_linkages, "AT_ONCE", 20)
+    solved = []
+    plain = of_linkages.LinkageMotion._followed
+    monkeypatch.setattr(
+        of_linkages.LinkageMotion, "_followed", lambda self, at: solved.append(at.size) or plain(self, at)
+    )
+    found = load_structure(EXAMPLES / "linkages/two_storeys.yaml").motion(phi, FORWARD)
+    assert len(solved) > 2 and sum(solved) == 50
+    for one, other in zip(expected, found, strict=True):
+        assert one.q == pytest.approx(other.q, abs=1e-12)
+        assert one.ddpsi == pytest.approx(other.ddpsi, abs=1e-9)
