@@ -22,6 +22,7 @@ from rocking_cli.core import (
     Contact,
     Direction,
     Extra,
+    Forces,
     Guide,
     Joint,
     Line,
@@ -39,6 +40,7 @@ from rocking_cli.core.contacts import MASONRY
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.fields import Described, Name
 from rocking_cli.errors import MechanismError, StructureError
+from rocking_cli.text import in_short
 
 ABOVE = 1e-6  # of how far they are apart: hinges that are above one another
 SLIDING = 1e-6  # of it: a multiplier so near to the friction is that of sliding
@@ -182,16 +184,20 @@ class Assembly(Membered):
 
     def _known(self, block: str, where: tuple[str, ...]) -> None:
         if block not in self.blocks:
-            raise geometry_error(where, f"there is no block {block!r}; the blocks are {', '.join(self.blocks)}")
+            raise geometry_error(where, f"there is no block {block!r}; the blocks are {in_short(list(self.blocks))}")
 
     def _hold_together(self) -> None:
-        super()._hold_together()
+        try:
+            super()._hold_together()
+        except StructureError:  # of the motion that the last checks need; `collapse` shows a mechanism without one too
+            if not any(self._no_model(direction) for direction in self.directions):
+                raise
         for direction in self.directions:
             self._check_collapses(direction)
         for direction in self.directions:
             found = self._collapse(direction)
             if not found.unique:
-                ways = "; ".join(dict.fromkeys(" and ".join(each.moves) for each in found.several))
+                ways = in_short(list(dict.fromkeys(in_short(each.moves, " and ") for each in found.several)), "; ")
                 what = "Change a size or a density by a little, or tie what should not part"
                 if self.friction is not None and isclose(found.multiplier, self.friction, rel_tol=SLIDING):
                     what = "This equals the friction given: the blocks slide, and no rocking model exists for sliding"
@@ -234,7 +240,7 @@ class Assembly(Membered):
             for group, velocity in zip(found.groups, found.velocity, strict=True) for name in group
             if -int(direction) * velocity[2] > LEADS * most
         ]  # fmt: skip
-        why = f"{told} {does} in the {direction.label} direction: it cannot lead; {', '.join(able)} could"
+        why = f"{told} {does} in the {direction.label} direction: it cannot lead; {in_short(able)} could"
         raise self._refused(("lead", direction.label), why)
 
     @staticmethod
@@ -292,7 +298,8 @@ class Assembly(Membered):
                 else "does not name a joint: write the names of two bodies, as `a and b`"
             )
             raise geometry_error(
-                ("friction_of", words), f"{why}; the blocks are {', '.join(self.blocks)}, on {', '.join(self.ground)}"
+                ("friction_of", words),
+                f"{why}; the blocks are {in_short(list(self.blocks))}, on {in_short(list(self.ground))}",
             )
         return found[0]
 
@@ -320,8 +327,7 @@ class Assembly(Membered):
             raise StructureError(f"in the {direction.label} direction {error}") from None
 
     def _joint(self, k: int) -> str:
-        contact = self._contacts[k]
-        return f"{contact.a} and {contact.b}"
+        return _name(self._contacts[k])
 
     def _lead(self, direction: Direction) -> str:
         """The block whose rotation phi is: as told, or one of the leading group, on the ground if one is."""
@@ -340,7 +346,7 @@ class Assembly(Membered):
             raise StructureError(f"it cannot rock in the {direction.label} direction")
         found = self._groups(direction)
         if found.slides:
-            where = ", ".join(self._joint(k) for k in found.slides)
+            where = in_short([self._joint(k) for k in found.slides])
             raise StructureError(
                 f"in the {direction.label} direction the mechanism slides between {where} at "
                 f"{self._collapse(direction).multiplier:.4g} g: no rocking model exists for sliding. `rocking "
@@ -362,14 +368,14 @@ class Assembly(Membered):
             if found.lifted:
                 joints = [self._joint(k) for k in found.lifted]
                 why = (
-                    f"{' and '.join(joints)} open at both ends but still carry shear, because joints without "
+                    f"{in_short(joints, ' and ')} open at both ends but still carry shear, because joints without "
                     f"friction never slide: give `friction`, or `friction_of: {{{joints[0]}: 0}}`"
                 )
             elif joints := [self._joint(k) for k in analysis.sheared(self._needed(direction), self._contacts)]:
                 mu = f"{MASONRY:g}"
                 why = (
                     f"the mechanism at {self._collapse(direction).multiplier:.4g} g cannot move on. More shear than a "
-                    f"friction of {mu} allows is carried between {', and between '.join(joints)}, because joints "
+                    f"friction of {mu} allows is carried between {in_short(joints, ', and between ')}, because joints "
                     f"without friction never slide: give `friction`, such as {mu}"
                 )
             raise StructureError(f"in the {direction.label} direction {why}") from None
@@ -445,8 +451,7 @@ class Assembly(Membered):
                 for name in (contact.a, contact.b, contact.face_at(ends[0]) if len(ends) == 1 else contact.a)
             )
             points = tuple(contact.ends[end] for end in ends)
-            name = f"{contact.a} and {contact.b}"
-            found.append(Contact((a, b), points, contact.normal, face, contact.friction, name=name))
+            found.append(Contact((a, b), points, contact.normal, face, contact.friction, name=_name(contact)))
         for guide in self._guides:
             along = guide.along / abs(guide.along)
             found.append(Contact((None, guide.body), (guide.at,), 1j * along, held="slide", name=guide.name))
@@ -486,8 +491,7 @@ class Assembly(Membered):
         """The weakest mechanism of a direction. Raises `StructureError` where there is none."""
         found = self._groups(direction)
         state = self._collapse(direction)
-        friction = self._needed(direction)
-        thrust = analysis.thrust(self._contacts, list(self.blocks), friction.normal, friction.shear)
+        friction, thrust = self._needed(direction), self._thrust(direction)
         parts = {name: "+".join(group) for group in found.groups for name in group}
         no_model = "" if found.slides else self._no_model(direction)
         moves = not found.slides and not no_model
@@ -496,7 +500,12 @@ class Assembly(Membered):
             lambda_=self.uplift(direction) if moves else state.multiplier,
             lead=self._lead(direction) if moves else "",
             hinges=[
-                CollapseHinge(letter, (parts.get(contact.a, contact.a), parts.get(contact.b, contact.b)), at)
+                CollapseHinge(
+                    letter,
+                    (parts.get(contact.a, contact.a), parts.get(contact.b, contact.b)),
+                    at,
+                    _name(contact),
+                )
                 for letter, contact, at in self._hinges(direction)
             ],
             groups=found.groups,
@@ -511,6 +520,7 @@ class Assembly(Membered):
             opens=self._joint(valid[1]) if valid else "",
             held_by=valid[2] if valid else None,
             thrust=[(self._joint(each.contact), each.point, each.force) for each in thrust.passages],
+            velocities=[(complex(vx, vy), float(turn)) for vx, vy, turn in found.velocity],
             idle=state.idle,
         )
 
@@ -575,7 +585,7 @@ class Assembly(Membered):
         if needed is not None:
             friction = Extra("friction_needed", needed, "", "friction in every joint without which lambda is less")
         else:
-            which = ", ".join(glued) or "joints"
+            which = in_short(glued) or "joints"
             most = f"no friction up to {analysis.MOST:g} does"
             why = f"{most}: {which} would carry shear without pressing, and lambda be less"
             friction = Extra("friction_needed", nan, "", why)
@@ -597,20 +607,33 @@ class Assembly(Membered):
         for each in self.ground.values():
             z = list(analysis.Block("", each.corners).outline)[::-1]  # clockwise: the ground is on the right
             ground.append([*z, z[0]])
-        able = [direction for direction in self.directions if not self._groups(direction).slides]
         return Sketch(
-            hinges={direction: self.joints(direction) for direction in able},
+            hinges={direction: self.joints(direction) for direction in self.directions},
             lines=[line for direction in self.directions if (line := self._thrust_line(direction)) is not None],
+            forces=[forces for direction in self.directions if (forces := self._joint_forces(direction)) is not None],
             ground=ground,
         )
 
-    def _thrust_line(self, direction: Direction) -> Line | None:
+    @per_direction
+    def _thrust(self, direction: Direction) -> analysis.Thrust:
         friction = self._needed(direction)
-        found = analysis.thrust(self._contacts, list(self.blocks), friction.normal, friction.shear)
+        return analysis.thrust(self._contacts, list(self.blocks), friction.normal, friction.shear)
+
+    def _thrust_line(self, direction: Direction) -> Line | None:
+        found = self._thrust(direction)
         if not found.chain:
             return None
         name = f"a line of thrust at uplift, {self._collapse(direction).multiplier:.3g} g"
         return Line(name, [each.point for each in found.passages], direction)
+
+    def _joint_forces(self, direction: Direction) -> Forces | None:
+        """The forces of one state at uplift where no line joins them."""
+        found = self._thrust(direction)
+        if found.chain:
+            return None
+        name = f"forces in the joints at uplift, {self._collapse(direction).multiplier:.3g} g, in one of many states"
+        points, forces = zip(*((each.point, each.force) for each in found.passages), strict=True)
+        return Forces(name, points, forces, direction)
 
 
 def from_the_left(points: Sequence[complex]) -> list[int]:
@@ -620,6 +643,11 @@ def from_the_left(points: Sequence[complex]) -> list[int]:
     columns = np.cumsum(np.diff(x[order], prepend=x[order][:1]) > ABOVE * np.ptp(x)) if x.size else x
     pairs = sorted(zip(columns.tolist(), order.tolist(), strict=True), key=lambda pair: (pair[0], points[pair[1]].imag))
     return [k for _, k in pairs]
+
+
+def _name(contact: analysis.Contact) -> str:
+    """A joint by the two that it is of."""
+    return f"{contact.a} and {contact.b}"
 
 
 def _letter(k: int) -> str:

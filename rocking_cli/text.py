@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 # Control characters, marks that turn the direction of writing, line ends of other kinds, and what is no character at
 # all. Tabs and line feeds are let through: they do no harm.
 _UNSEEN = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ufffe\uffff\ud800-\udfff]"
 )
+LISTED = 8  # names of a row, before the rest is counted
 LONGEST = 60  # characters of a value that is quoted
 BEFORE, AFTER = 50, 70  # characters of a line that is quoted, on either side of what is wrong with it
 
@@ -51,6 +53,18 @@ def is_one_line(text: str) -> bool:
 def cut(text: str, most: int = LONGEST) -> str:
     """Cut a text to this length at most, with dots at the end if it was longer."""
     return text if len(text) <= most else f"{text[: most - 3]}..."
+
+
+def in_short(names: Sequence[str], between: str = ", ", most: int = LISTED) -> str:
+    """Return names in a row, of many the first ones and how many more there are.
+
+    Examples
+    --------
+    >>> in_short(["a", "b"]), in_short(["a", "b", "c", "d"], most=2)
+    ('a, b', 'a, b and 2 more')
+    """
+    more = f" and {len(names) - most:,} more" if len(names) > most else ""
+    return between.join(names[:most]) + more
 
 
 def quoted_line(line: str, column: int | None) -> list[str]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 HALF, HIGH = 0.25, 0.25  # length of half a block, and height of a course [m]
 PIERS, PIER, BAY = 5, 2, 4  # piers, and half blocks in a pier and in the opening after it
@@ -65,7 +66,7 @@ def special(course: int) -> list[Piece]:
 def bond(course: int, first: int, end: int) -> Iterator[Piece]:
     """Blocks between two places, their upright joints above the middles of the blocks below."""
     edges = [first, *(k for k in range(first + 1, end) if (k - course) % 2 == 0), end]
-    yield from (Piece(*each) for each in zip(edges, edges[1:], strict=False))
+    yield from (Piece(*each) for each in pairwise(edges))
 
 
 def pieces(course: int) -> Iterator[Piece]:

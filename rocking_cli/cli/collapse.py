@@ -41,5 +41,5 @@ def command(file: str | None, plot: Path | None, as_json: bool) -> None:
         from rocking_cli.studies.picture import picture
         from rocking_cli.views.view import heading
 
-        write_picture(plot, draw_structure(picture(mechanism), heading(mechanism), None))
+        write_picture(plot, draw_structure(picture(mechanism, found), heading(mechanism), None))
     terminal.show(view(mechanism, found), as_json=as_json)

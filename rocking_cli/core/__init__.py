@@ -38,6 +38,7 @@ from rocking_cli.core.loops import Guide as Guide
 from rocking_cli.core.loops import Pin as Pin
 from rocking_cli.core.mechanism import Mechanism as Mechanism
 from rocking_cli.core.sketch import Angle as Angle
+from rocking_cli.core.sketch import Forces as Forces
 from rocking_cli.core.sketch import Hinge as Hinge
 from rocking_cli.core.sketch import Length as Length
 from rocking_cli.core.sketch import Line as Line

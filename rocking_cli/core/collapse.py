@@ -8,11 +8,15 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class CollapseHinge:
-    """A point about which two groups of blocks turn: what they are called, and where it is at rest [m]."""
+    """A point about which two groups of blocks turn: what they are called, where it is at rest [m], and its joint.
+
+    The joint is named by the two blocks that touch there.
+    """
 
     letter: str
     between: tuple[str, str]
     at: complex
+    joint: str
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,8 @@ class CollapseMechanism:
         G/B there, the acceleration over g that holds it.
     thrust : sequence of (str, complex, complex)
         Joint, point [m] and force [N] of one state of the forces as it starts.
+    velocities : sequence of (complex, float)
+        Of each group as it starts: of the point (0, 0) [m/s], and its rotation, anticlockwise [rad/s], at any speed.
     idle : sequence of str
         Blocks at rest that may move along at no cost: other mechanisms of this multiplier are this one with them.
     """
@@ -65,4 +71,5 @@ class CollapseMechanism:
     opens: str
     held_by: float | None
     thrust: Sequence[tuple[str, complex, complex]]
+    velocities: Sequence[tuple[complex, float]]
     idle: Sequence[str] = ()

@@ -80,11 +80,12 @@ class Mechanism(Given, ABC):
             if self.crushing is not None:
                 checks.check_crushed(self._inwards, self._at_rest(), self.gravity)
             checks.check_one_sided(self, self.rebound_from_impacts)
-            checks.check_restitution(self, self.eta, self.greatest_restitution)
             self._mass_factor  # noqa: B018 - a density without a volume is refused here
             checks.check_strength(self)
             if self.is_laden:
                 checks.check_weighs(self)
+            checks.check_restitution(self, self.eta, self.greatest_restitution)
+            if self.is_laden:
                 self.hung.check_stretched(self.followed, self.limit, self.directions)
                 bare = {
                     s: coefficients(np.zeros(1), s, self.bodies(), self.motion(np.zeros(1), s)) for s in self.directions

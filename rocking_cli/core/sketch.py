@@ -103,6 +103,16 @@ class Line:
 
 
 @dataclass(frozen=True)
+class Forces:
+    """Forces in the joints at rest, with what they are: through which points [m], and how large [N]."""
+
+    name: str
+    points: Sequence[complex]
+    forces: Sequence[complex]
+    direction: Direction | None = None
+
+
+@dataclass(frozen=True)
 class Sketch:
     """What a mechanism says for its picture.
 
@@ -116,7 +126,7 @@ class Sketch:
         Where a body stands for several that move alike: how far each is from the body itself [m], 0 for itself.
     hinges : mapping of Direction to sequence of Hinge
         The hinges of each direction. Without any, they are found from the motion, without letters.
-    lengths, angles, lines : sequence
+    lengths, angles, lines, forces : sequence
         What to show at rest.
     ground : sequence of sequence of complex
         Lines of the ground, which is on the right of someone who walks along them. Without any: level under the pivots.
@@ -133,12 +143,13 @@ class Sketch:
     lengths: Sequence[Length] = ()
     angles: Sequence[Angle] = ()
     lines: Sequence[Line] = ()
+    forces: Sequence[Forces] = ()
     ground: Sequence[Sequence[complex]] = ()
     notes: Sequence[str] = ()
     at_will: Sequence[str] = ()
 
     def __post_init__(self) -> None:
-        kinds = {"lengths": Length, "angles": Angle, "lines": Line, "notes": str}
+        kinds = {"lengths": Length, "angles": Angle, "lines": Line, "forces": Forces, "notes": str}
         for name, kind in kinds.items():
             given = getattr(self, name)
             if isinstance(given, str) or not all(isinstance(each, kind) for each in given):

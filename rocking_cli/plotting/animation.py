@@ -30,7 +30,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.plotting import hung, style
 from rocking_cli.plotting.moving import as_script, asset, ground_chart, moving, ratio_chart
 from rocking_cli.plotting.panels import Panel
-from rocking_cli.plotting.structure import colour, draw_ground, draw_scale
+from rocking_cli.plotting.structure import colour, draw_ground, draw_scale, weight
 from rocking_cli.plotting.thinning import visible
 from rocking_cli.studies.film import Film
 from rocking_cli.text import printable
@@ -184,12 +184,12 @@ class _Stage:
 
     def _draw_structure(self, rotation: float) -> list[tuple[str, complex]]:
         """Draw parts and hinges; the letters of these, and where they are [pixels]."""
-        picture = self._film.picture
+        picture = self._film.picture.grouped
         outlines, pins = picture.placed(rotation)
         direction = picture.side(rotation)
         shown = hung.symbols(picture, rotation, self._panel_scale)
         self._draw_ties(shown, behind=True)
-        pen = self._pen(style.INK, style.MEDIUM)
+        pen = self._pen(style.INK, weight(picture, self._panel_scale))
         for k, polygons in enumerate(outlines):
             fill = to_rgb(colour(picture, k, direction))
             for each in polygons:

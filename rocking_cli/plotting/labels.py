@@ -73,6 +73,13 @@ class Labels:
         """Write words at the best of some places."""
         points, costs = np.concatenate([[], *self._points]), np.concatenate([[], *self._costs])
         size = style.size_of(text, float(look["fontsize"]), str(look.get("fontweight", "normal")))
+        places = list(places)
+        middles = np.array([place.middle for place in places])
+        reach = abs(size) / 2 + 2 * CLEAR
+        near = np.ones(points.size, bool)
+        for along, of in ((points.real, middles.real), (points.imag, middles.imag)):
+            near &= (of.min() - reach < along) & (along < of.max() + reach)
+        points, costs = points[near], costs[near]
 
         def against(place: Place) -> float:
             turn = np.exp(1j * np.radians(place.turned))

@@ -61,11 +61,12 @@ def moving(
     moment : float
         What is shown first [s].
     """
+    picture = film.picture.grouped
     return {
-        "picture": film.picture.as_dict(),
+        "picture": picture.as_dict(),
         "colours": {
-            direction.label: [colour(film.picture, k, direction) for k in range(len(film.picture.parts))]
-            for direction in film.picture.directions
+            direction.label: [colour(picture, k, direction) for k in range(len(picture.parts))]
+            for direction in picture.directions
         },
         "film": film.as_dict(max(FINEST, film.end / MOST)),
         "charts": list(charts),

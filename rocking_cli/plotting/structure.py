@@ -12,14 +12,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon
+from matplotlib.patches import Patch, PathPatch, Polygon
+from matplotlib.path import Path
 from numpy.typing import NDArray
 
-from rocking_cli.core import Angle, Direction, Length, Line, three_digits
+from rocking_cli.core import Angle, Direction, Forces, Length, Line, three_digits
 from rocking_cli.plotting import dimensions, hung, style
 from rocking_cli.plotting.labels import EDGE, MARK, Labels, mathematics
 from rocking_cli.plotting.panels import GAP, Panel, lay_out
-from rocking_cli.studies.picture import Picture, Pin, box_around
+from rocking_cli.studies.picture import MANY, Part, Picture, Pin, box_around
 
 Points = NDArray[np.complex128]
 HEAD, FOOT = 0.42, 0.34  # inches above a panel for its heading, and below it for the scale
@@ -30,7 +31,12 @@ EARTH = 0.08  # inches: depth of the hatches of the ground
 LONGEST_BAR = 0.8  # inches: of the scale
 WORDS = 40  # characters of a line under a panel
 NOTES = 125  # characters of a line of notes
+POINT = 72  # to an inch
+STROKE, SHORT = 0.3, 0.8  # inches, and of the smaller side of blocks: how long the stroke of a force is
+LEAST, HEAVIEST = 0.003, 2.4  # of the largest force: what is not drawn; and weight of the stroke of that [pt]
+INKED = 0.04  # of the smaller side of blocks that are drawn by the dozen: the weight of their lines
 NO_CRITICAL = "no critical rotation: displaced to a visible angle"
+STARTS = "displaced as the mechanism starts, exaggerated"
 SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
 
 
@@ -53,6 +59,7 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
     -------
     matplotlib.figure.Figure
     """
+    picture = picture.grouped
     ratios = picture.usual if ratio is None else dict.fromkeys(picture.directions, ratio)
     turned = {side: side * times * picture.reference[side] for side, times in ratios.items()}
     low, high = _box_at_rest(picture)
@@ -62,8 +69,9 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
     sides = {direction: _displaced_panel(picture, turn) for direction, turn in turned.items()}
     words = {direction: _words(picture, direction) for direction in turned}
     foot = FOOT + ROW * max(text.count("\n") + bool(text) for text in words.values())
-    named = [f"orange: {each.name}{_of(each)}" for each in _lines(picture)]
-    free = [] if None not in picture.phi_cr.values() else [NO_CRITICAL]
+    orange: list[Line | Forces] = [*picture.sketch.lines, *picture.sketch.forces]
+    named = [f"orange: {each.name}{_of(each)}" for each in orange if _is_at_rest(picture, each)]
+    free = [] if None not in picture.phi_cr.values() else [NO_CRITICAL if picture.start is None else STARTS]
     notes = fill("; ".join([*named, *picture.sketch.notes, *free]), NOTES)
     in_order = [sides.get(Direction.NEGATIVE), rest, sides.get(Direction.POSITIVE)]
     height = lay_out([each for each in in_order if each is not None], rest, HEAD, foot)
@@ -82,8 +90,9 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
     axes.set_title("at rest", fontsize=style.LABEL, color=style.INK)
     draw_ground(axes, picture, rest)
     labels = _labels(axes, picture, rest, 0.0)
-    _draw_parts(axes, picture, 0.0)
+    _draw_parts(axes, picture, 0.0, weight(picture, rest.scale))
     _draw_lines(axes, picture, labels)
+    _draw_forces(axes, picture, rest.scale)
     hung.draw_hung(axes, picture, 0.0, rest, labels)
     pins = _draw_pins(axes, picture, 0.0, _at_rest(picture), rest, labels)
     left, right, below_it, above_it = (each / rest.scale for each in hung.beside(picture))
@@ -96,17 +105,10 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
     draw_scale(axes, rest)
     for direction, panel in sides.items():
         axes = panel.axes(figure)
-        phi = abs(turned[direction])
-        times = "" if ratios[direction] == 1 else f"{ratios[direction]:g} "
-        of = "" if picture.phi_cr[direction] is None else rf"{times}$\phi_{{cr}}$ = "
-        axes.set_title(
-            f"{direction.label} ({SENSE[direction]})\n"
-            rf"$\phi$ = {of}{phi:.3g} rad = {three_digits(degrees(phi))}°",
-            fontsize=style.LABEL, color=style.INK,
-        )  # fmt: skip
+        axes.set_title(_head(picture, direction, ratios[direction]), fontsize=style.LABEL, color=style.INK)
         draw_ground(axes, picture, panel)
-        _draw_outline_at_rest(axes, picture)
-        _draw_parts(axes, picture, turned[direction])
+        _draw_outline_at_rest(axes, picture, min(style.THIN, weight(picture, panel.scale)))
+        _draw_parts(axes, picture, turned[direction], weight(picture, panel.scale))
         labels = _labels(axes, picture, panel, turned[direction])
         hung.draw_hung(axes, picture, turned[direction], panel, labels)
         own = [pin for pin in picture.pins if pin.direction is direction]
@@ -129,7 +131,7 @@ def draw_at_rest(axes: Axes, picture: Picture, title: str) -> None:
     axes.set_aspect("equal")
     for line in (*picture.ground, *picture.walls):
         axes.plot(line.real, line.imag, color=style.EARTH, linewidth=style.BOLD, zorder=1)
-    _draw_parts(axes, picture, 0.0)
+    _draw_parts(axes, picture, 0.0, style.MEDIUM)
     across, up = (high - low).real, (high - low).imag
     axes.set_xlim(low.real - 0.1 * across, high.real + 0.1 * across)
     axes.set_ylim(low.imag - 0.05 * up, high.imag + 0.05 * up)
@@ -162,7 +164,17 @@ def _displaced_panel(picture: Picture, rotation: float) -> Panel:
     return Panel(low, high, (left, right, below, above))
 
 
-def _is_at_rest(picture: Picture, each: Length | Angle | Line | Pin) -> bool:
+def _head(picture: Picture, direction: Direction, ratio: float) -> str:
+    """What a displaced panel shows."""
+    if picture.start is not None:
+        return f"{direction.label}\nas it starts"
+    phi = ratio * picture.reference[direction]
+    times = "" if ratio == 1 else f"{ratio:g} "
+    of = "" if picture.phi_cr[direction] is None else rf"{times}$\phi_{{cr}}$ = "
+    return f"{direction.label} ({SENSE[direction]})\n" rf"$\phi$ = {of}{phi:.3g} rad = {three_digits(degrees(phi))}°"
+
+
+def _is_at_rest(picture: Picture, each: Length | Angle | Line | Forces | Pin) -> bool:
     """Whether it is shown at rest: what belongs to both directions, or to the first."""
     return each.direction in (None, picture.directions[0])
 
@@ -185,47 +197,59 @@ def _words(picture: Picture, direction: Direction) -> str:
     return "\n".join(lines)
 
 
-def _of(line: Line) -> str:
-    return f" ({line.direction.label} direction)" if line.direction is not None else ""
+def _of(thing: Line | Forces) -> str:
+    return f" ({thing.direction.label} direction)" if thing.direction is not None else ""
 
 
 def _at_rest(picture: Picture) -> list[Pin]:
     """Hinges to mark at rest: of a linkage those of the positive direction, else all."""
     first = [pin for pin in picture.pins if _is_at_rest(picture, pin)]
-    return first if picture.sketch.hinges and len(first) > 1 else list(picture.pins)
+    if picture.sketch.hinges and len(first) > 1:
+        return first
+    return list({(pin.letter, pin.point): pin for pin in reversed(picture.pins)}.values())[::-1]
 
 
 def colour(picture: Picture, k: int, direction: Direction) -> str:
     """The colour of a part while it rocks in a direction: that of its link."""
-    link = picture.links[direction][k]
-    return style.RESTING if link is None else style.BODIES[link % len(style.BODIES)]
+    shade = picture.shades[direction][k]
+    return style.RESTING if shade is None else style.BODIES[shade]
 
 
-def _draw_parts(axes: Axes, picture: Picture, rotation: float) -> None:
+def weight(picture: Picture, scale: float) -> float:
+    """The weight of the lines around parts [pt] at a scale [inches per m]: of many blocks a share of their size."""
+    if sum(len(part.outlines) for part in picture.parts) <= MANY:
+        return style.MEDIUM
+    return min(style.MEDIUM, max(style.HAIR, INKED * _smaller_side(picture) * scale * POINT))
+
+
+def _draw_parts(axes: Axes, picture: Picture, rotation: float, line: float) -> None:
     outlines, _ = picture.placed(rotation)
-    centroids = picture.at(np.array([rotation]))[0][:, 0]
+    centroids = picture.marks(rotation)
     direction = picture.side(rotation)
     for k, (part, polygons) in enumerate(zip(picture.parts, outlines, strict=True)):
         dashes = (0, (3, 2)) if part.assumed else "-"
-        for each in polygons:
-            axes.add_patch(
-                Polygon(
-                    _xy(each), closed=True, facecolor=colour(picture, k, direction), edgecolor=style.INK,
-                    linewidth=style.MEDIUM, linestyle=dashes, joinstyle="round",
-                )
-            )  # fmt: skip
+        look = {"facecolor": colour(picture, k, direction), "edgecolor": style.INK, "linestyle": dashes}
+        for patch in _patches(part, polygons, **look, linewidth=line, joinstyle="round"):
+            axes.add_patch(patch)
     axes.plot(
         centroids.real, centroids.imag, linestyle="none", marker="o", markersize=5, fillstyle="top", zorder=4,
         color=style.INK, markerfacecoloralt="white", markeredgewidth=style.THIN,
     )  # fmt: skip
 
 
-def _draw_outline_at_rest(axes: Axes, picture: Picture) -> None:
+def _draw_outline_at_rest(axes: Axes, picture: Picture, line: float) -> None:
     for part in picture.parts:
-        for each in part.outlines:
-            axes.add_patch(
-                Polygon(_xy(each), closed=True, fill=False, edgecolor=style.FAINT, linewidth=style.THIN, linestyle="--")
-            )
+        look = {"fill": False, "edgecolor": style.FAINT, "linestyle": "--", "linewidth": line}
+        for patch in _patches(part, part.outlines, **look):
+            axes.add_patch(patch)
+
+
+def _patches(part: Part, polygons: Sequence[Points], **look: Any) -> list[Patch]:
+    """The outlines of a part, the first at the back; those of many blocks, which do not overlap, as one path."""
+    if not part.mass:
+        return [Polygon(_xy(each), closed=True, **look) for each in polygons]
+    paths = [Path(_xy(np.append(each, each[:1])), closed=True) for each in polygons]
+    return [PathPatch(Path.make_compound_path(*paths), **look)]
 
 
 def _labels(axes: Axes, picture: Picture, panel: Panel, rotation: float) -> Labels:
@@ -235,7 +259,7 @@ def _labels(axes: Axes, picture: Picture, panel: Panel, rotation: float) -> Labe
     for part, polygons in zip(picture.parts, outlines, strict=True):
         for each in [*polygons, *part.outlines]:
             labels.keep_off([*each, each[0]], EDGE)
-    for centroid in picture.at(np.array([rotation]))[0][:, 0]:
+    for centroid in picture.marks(rotation):
         labels.keep_off([centroid], MARK)
     for line in (*picture.ground, *picture.walls):
         labels.keep_off(line, EDGE)
@@ -289,15 +313,32 @@ def _draw_letters(picture: Picture, rotation: float, pins: Sequence[Pin], labels
 
 
 def _draw_lines(axes: Axes, picture: Picture, labels: Labels) -> None:
-    for each in _lines(picture):
+    for each in picture.sketch.lines:
+        if not _is_at_rest(picture, each):
+            continue
         z = np.asarray(each.points)
         axes.plot(z.real, z.imag, zorder=3, **style.THRUST)
         labels.keep_off(z)
 
 
-def _lines(picture: Picture) -> list[Line]:
-    """The lines that are drawn at rest."""
-    return [each for each in picture.sketch.lines if _is_at_rest(picture, each)]
+def _draw_forces(axes: Axes, picture: Picture, scale: float) -> None:
+    """Draw forces in joints as strokes along them, the heavier the larger they are."""
+    for each in picture.sketch.forces:
+        if _is_at_rest(picture, each):
+            force = np.asarray(each.forces)
+            share = np.abs(force) / np.abs(force).max()
+            seen = share > LEAST
+            half = force[seen] / np.abs(force[seen]) * min(STROKE, SHORT * _smaller_side(picture) * scale) / scale / 2
+            middle = np.asarray(each.points)[seen]
+            strokes = [_xy(np.array(ends)) for ends in zip(middle - half, middle + half, strict=True)]
+            look = {"colors": style.THRUST["color"], "linewidths": HEAVIEST * np.sqrt(share[seen]), "zorder": 3}
+            axes.add_collection(LineCollection(strokes, **look), autolim=False)
+
+
+def _smaller_side(picture: Picture) -> float:
+    """The smaller side of its outlines, the median of all [m]."""
+    outlines = [each for part in picture.parts for each in part.outlines]
+    return float(np.median([min(np.ptp(each.real), np.ptp(each.imag)) for each in outlines]))
 
 
 def draw_ground(axes: Axes, picture: Picture, panel: Panel) -> None:

@@ -14,7 +14,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, Outline, RigidMotion, Sketch, disc
+from rocking_cli.core import (
+    Angle,
+    Body,
+    CollapseMechanism,
+    Direction,
+    Hinge,
+    Length,
+    Mechanism,
+    Outline,
+    RigidMotion,
+    Sketch,
+    disc,
+)
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.size import extent
 from rocking_cli.errors import RockingError, StructureError
@@ -28,6 +40,9 @@ FURTHEST = 0.999  # of the kinematic limit, at which a linkage has no derivative
 SAME = 1e-6  # of the size: points that are nearer are one
 TINIEST = 1e-150  # m: scales of what is smaller are beyond the range of numbers
 STILL = 1e-9  # rate of turning below which a body does not turn
+STARTED = 0.05  # of the size: how far the fastest part of a mechanism is shown as it starts
+MANY = 40  # parts: of more, those that move as one are drawn as one
+SHADES = 3  # that tell links from their neighbours
 SEEN = 0.1  # of the kinematic limit: how far is shown what has no critical rotation
 
 ASSUMED = (
@@ -53,6 +68,8 @@ class Part:
         Whether the outline is only that of a disc of the same mass and inertia.
     shift : complex
         How far it is from the body it is a copy of [m].
+    mass : float
+        Of the blocks that are drawn as one: see `Picture.grouped` [kg].
     """
 
     name: str
@@ -61,6 +78,7 @@ class Part:
     outlines: tuple[Points, ...]
     assumed: bool
     shift: complex = 0j
+    mass: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -72,6 +90,39 @@ class Pin:
     part: int
     direction: Direction
     slide: complex = 0j
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """How mechanisms start that have no rocking model: the bodies move straight on, over a phi from 0 to 1.
+
+    Parameters
+    ----------
+    centroids : mapping of str to complex
+        Those of all bodies, in their order [m].
+    found : mapping of Direction to CollapseMechanism
+        The mechanisms.
+    """
+
+    centroids: Mapping[str, complex]
+    found: Mapping[Direction, CollapseMechanism]
+
+    def motion(self, phi: Reals, direction: Direction) -> list[RigidMotion]:
+        """The motion of each body, of which the fastest go as far as can be seen."""
+        mechanism = self.found[direction]
+        rates = {
+            name: rate for group, rate in zip(mechanism.groups, mechanism.velocities, strict=True) for name in group
+        }
+        at = np.array(list(self.centroids.values()))
+        low, high = box_around([at])
+        velocity = np.array([rates.get(name, (0j, 0.0)) for name in self.centroids])
+        speed = np.abs(velocity[:, 0] + 1j * velocity[:, 1] * at).max()
+        velocity *= STARTED * abs(high - low) / speed
+        zero, still = np.zeros_like(phi), np.zeros(phi.shape, np.complex128)
+        return [
+            RigidMotion(0j, v * phi + still, v + still, still, turn.real * phi, turn.real + zero, zero)
+            for v, turn in velocity
+        ]
 
 
 @dataclass(frozen=True)
@@ -97,6 +148,8 @@ class Picture:
         Masses and forces on it.
     ties : tuple of Strand
         What ties it.
+    start : Start or None
+        How it starts, if it has no model: then that is its motion.
     """
 
     mechanism: Mechanism
@@ -108,6 +161,11 @@ class Picture:
     sketch: Sketch
     loads: tuple[Carried, ...] = ()
     ties: tuple[Strand, ...] = ()
+    start: Start | None = None
+
+    def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
+        """The motion of each body."""
+        return self.mechanism.motion(phi, direction) if self.start is None else self.start.motion(phi, direction)
 
     @property
     def directions(self) -> Sequence[Direction]:
@@ -122,6 +180,8 @@ class Picture:
     @property
     def usual(self) -> Mapping[Direction, float]:
         """How far it is shown displaced, over the reference, if nobody asks: a stocky body lies before phi_cr."""
+        if self.start is not None:
+            return dict.fromkeys(self.directions, 1.0)
         there = min((self.limit[side] / phi for side, phi in self.phi_cr.items() if phi is not None), default=1.0)
         return {side: SEEN if phi is None else min(1.0, there) for side, phi in self.phi_cr.items()}
 
@@ -151,11 +211,22 @@ class Picture:
         for direction in Direction:
             here = rotation >= 0 if direction > 0 else rotation < 0
             phi = np.minimum(np.abs(rotation[here]), self.limit.get(direction, 0.0))
-            motions = self.mechanism.motion(phi, direction)
+            motions = self.motion(phi, direction)
             for k, part in enumerate(self.parts):
                 centroids[k, here] = motions[part.body].carry(part.centroid - part.shift)[0] + part.shift
                 psi[k, here] = motions[part.body].psi
         return centroids, psi
+
+    def marks(self, rotation: float) -> Points:
+        """Where centroids are marked at one signed rotation [m]: of each part, or of each link of many blocks."""
+        centroids = self.at(np.array([rotation]))[0][:, 0]
+        mass = np.array([part.mass for part in self.parts])
+        if not mass.any():
+            return centroids
+        links = self.links[self.side(rotation)]
+        link = np.array([-1 if links[part.name] is None else links[part.name] for part in self.parts])
+        own = [(link == k) & (mass > 0) for k in np.unique(link[link >= 0])]
+        return np.array([np.average(centroids[here], weights=mass[here]) for here in own if here.any()])
 
     def placed(self, rotation: float) -> tuple[list[list[Points]], Points]:
         """The outlines of every part and the pins, shape (pins,), at one signed rotation [m]; see `at`."""
@@ -212,36 +283,91 @@ class Picture:
         rows = []
         for tie in self.ties:
             row = np.zeros(rotation.shape, bool)
-            for side, limit in self.limit.items():
+            for side, limit in self.limit.items() if self.start is None else ():
                 here = rotation * side >= 0
                 row[here] = tie.slack(self.mechanism, np.minimum(np.abs(rotation[here]), limit), side)
             rows.append(row)
         return rows
 
     @cached_property
-    def links(self) -> Mapping[Direction, tuple[int | None, ...]]:
-        """The link of a direction that each part belongs to, counted along its hinges; None of what stays at rest."""
+    def links(self) -> Mapping[Direction, Mapping[str, int | None]]:
+        """The link of a direction that each body belongs to, counted along its hinges; None of what stays at rest."""
         return {direction: self._links(direction) for direction in self.directions}
 
-    def _links(self, direction: Direction) -> tuple[int | None, ...]:
-        motions = self.mechanism.motion(np.array([0.5 * self.reference[direction]]), direction)
+    def _links(self, direction: Direction) -> Mapping[str, int | None]:
+        motions = self.motion(np.array([0.5 * self.reference[direction]]), direction)
         size = abs(self.extent[1] - self.extent[0])
         # A link is what turns as fast, and would move one and the same point as fast.
         speeds = [np.array([size * motion.dpsi[0], motion.carry(0j)[1][0]]) for motion in motions]
         along = [name for hinge in self.sketch.hinges.get(direction, ()) for name in hinge.bodies]
-        bodies = {part.name: part.body for part in self.parts}
+        of_body = dict(zip((body.name for body in self.mechanism.bodies()), speeds, strict=True))
         found: list[Points] = []
-        of_body: dict[int, int | None] = {}
-        for body in [*(bodies[name] for name in along if name in bodies), *range(len(speeds))]:
-            here = speeds[body]
+        links: dict[str, int | None] = {}
+        for name in [*(name for name in along if name in of_body), *of_body]:
+            here = of_body[name]
             if np.abs(here).max() <= SAME * size:
-                of_body[body] = None
+                links[name] = None
                 continue
             alike = [k for k, each in enumerate(found) if np.abs(here - each).max() <= SAME * size]
             if not alike:
                 found.append(here)
-            of_body[body] = alike[0] if alike else len(found) - 1
-        return tuple(of_body[part.body] for part in self.parts)
+            links[name] = alike[0] if alike else len(found) - 1
+        return links
+
+    @cached_property
+    def shades(self) -> Mapping[Direction, tuple[int | None, ...]]:
+        """A shade of each part, another one than of what it hinges with if there are enough; None of what rests."""
+        return {direction: self._shades(direction) for direction in self.directions}
+
+    def _shades(self, direction: Direction) -> tuple[int | None, ...]:
+        links = self.links[direction]
+        beside: dict[int, set[int]] = {}
+        for hinge in self.sketch.hinges.get(direction, ()):
+            here = {link for name in hinge.bodies if (link := links.get(name)) is not None}
+            for link in here:
+                beside.setdefault(link, set()).update(here - {link})
+        shades: dict[int | None, int | None] = {None: None}
+        for link in sorted({link for link in links.values() if link is not None}):
+            taken = {shades.get(other) for other in beside.get(link, ())}
+            able = [shade % SHADES for shade in range(link, link + SHADES)]
+            shades[link] = next((shade for shade in able if shade not in taken), able[0])
+        return tuple(shades[links[part.name]] for part in self.parts)
+
+    @cached_property
+    def grouped(self) -> Picture:
+        """The same with parts that move as one as one part, if there are many: with one centroid, and its outlines."""
+        if len(self.parts) <= MANY:
+            return self
+        masses = {body.name: body.mass for body in self.mechanism.weighed()}
+        groups: dict[Any, list[int]] = {}
+        for k, part in enumerate(self.parts):
+            alike = *(links[part.name] for links in self.links.values()), part.assumed, part.shift
+            groups.setdefault(alike, []).append(k)
+        group_of = {k: n for n, group in enumerate(groups.values()) for k in group}
+        parts = []
+        for group in groups.values():
+            own = [self.parts[k] for k in group]
+            mass = np.array([masses[part.name] for part in own])
+            at = np.average([part.centroid for part in own], weights=mass if mass.any() else None)
+            outlines = tuple(each for part in own for each in part.outlines)
+            parts.append(replace(own[0], centroid=complex(at), outlines=outlines, mass=float(mass.sum())))
+
+        def moved(end: End) -> End:
+            return end if end.part is None else end._replace(part=group_of[end.part])
+
+        return replace(
+            self,
+            parts=tuple(parts),
+            pins=tuple(replace(pin, part=group_of[pin.part]) for pin in self.pins),
+            loads=tuple(replace(load, part=group_of[load.part]) for load in self.loads),
+            ties=tuple(
+                replace(
+                    tie,
+                    pieces=tuple(each._replace(start=moved(each.start), end=moved(each.end)) for each in tie.pieces),
+                )
+                for tie in self.ties
+            ),
+        )
 
     def chains(self, pins: Sequence[Pin]) -> list[list[int]]:
         """Pins of one direction that are joined by links, by their places: in their order first, then what is left."""
@@ -263,7 +389,7 @@ class Picture:
         hinges = self.sketch.hinges.get(pin.direction, ())
         here = [hinge.bodies for hinge in hinges if (hinge.letter, hinge.point) == (pin.letter, pin.point)]
         names = {name for bodies in here for name in bodies}
-        links = {part.name: link for part, link in zip(self.parts, self.links[pin.direction], strict=True)}
+        links = self.links[pin.direction]
         return {link for name in names if (link := links.get(name)) is not None}
 
     @property
@@ -335,6 +461,15 @@ class Picture:
                 {"name": each.name, "direction": _label(each.direction), "points": _pairs(each.points)}
                 for each in self.sketch.lines
             ],
+            "forces": [
+                {
+                    "name": each.name,
+                    "direction": _label(each.direction),
+                    "points": _pairs(each.points),
+                    "forces": _pairs(each.forces),
+                }
+                for each in self.sketch.forces
+            ],
             "ground": [_pairs(each) for each in self.ground],
             "walls": [_pairs(each) for each in self.walls],
             "loads": [
@@ -371,7 +506,7 @@ class Picture:
         return {"part": end.part, "point": point, "lead": lead}
 
 
-def picture(mechanism: Mechanism) -> Picture:
+def picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism] | None = None) -> Picture:
     """What a picture of a structure shows.
 
     Parameters
@@ -379,6 +514,8 @@ def picture(mechanism: Mechanism) -> Picture:
     mechanism : Mechanism
         Any plugin. What its `sketch` leaves out is found: outlines from mass and inertia, pivots and hinges from the
         motion, the ground from the pivots.
+    found : mapping of Direction to CollapseMechanism, optional
+        The mechanisms that it was found to have. If one of them has no rocking model, it is shown how they start.
 
     Raises
     ------
@@ -386,7 +523,7 @@ def picture(mechanism: Mechanism) -> Picture:
         If the plugin fails.
     """
     try:
-        return _picture(mechanism)
+        return _picture(mechanism, found or {})
     except RockingError:
         raise
     except Exception as error:  # what it gives is of no use
@@ -400,12 +537,18 @@ def box_around(outlines: Sequence[Points]) -> tuple[complex, complex]:
     return complex(z.real.min(), z.imag.min()), complex(z.real.max(), z.imag.max())
 
 
-def _picture(mechanism: Mechanism) -> Picture:
+def _picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> Picture:
     bodies, sketch = mechanism.bodies(), mechanism.sketch()
-    phi_cr = {direction: _critical(mechanism, direction) for direction in mechanism.directions}
-    limit = {direction: FURTHEST * mechanism.limit(direction) for direction in mechanism.directions}
+    phi_cr: dict[Direction, float | None] = dict.fromkeys(mechanism.directions)
+    limit = dict.fromkeys(mechanism.directions, FURTHEST)
+    start = None
+    if all(each.lead for each in found.values()):
+        phi_cr = {direction: _critical(mechanism, direction) for direction in mechanism.directions}
+        limit = {direction: FURTHEST * mechanism.limit(direction) for direction in mechanism.directions}
+    else:
+        start = Start({body.name: body.centroid for body in bodies}, found)
     seen = {direction: limit[direction] if phi is None else phi for direction, phi in phi_cr.items()}
-    if not (min(seen.values()) > 0 and extent(mechanism) > TINIEST):
+    if start is None and not (min(seen.values()) > 0 and extent(mechanism) > TINIEST):
         raise StructureError("it is too small to be drawn: check the sizes and their units")
     parts = tuple(
         Part(
@@ -422,7 +565,9 @@ def _picture(mechanism: Mechanism) -> Picture:
     pins = []
     for direction in mechanism.directions:
         phi = np.linspace(0.0, seen[direction], 5)
-        hinges = sketch.hinges.get(direction) or _found(bodies, mechanism.motion(phi, direction))
+        hinges = sketch.hinges.get(direction, ())
+        if not (hinges or start):
+            hinges = _found(bodies, mechanism.motion(phi, direction))
         pins += [pin for hinge in hinges for pin in _pins(hinge, direction, parts)]
     ground = tuple(np.asarray(each, np.complex128) for each in sketch.ground) or _level_ground(parts, pins)
     if any(part.assumed for part in parts):
@@ -432,7 +577,7 @@ def _picture(mechanism: Mechanism) -> Picture:
     copies = {body.name: [(k, part.shift) for k, part in enumerate(parts) if part.name == body.name] for body in bodies}
     loads = tuple(carried(mechanism, copies))
     ties = tuple(strands(mechanism, copies, [part.centroid for part in parts]))
-    return Picture(mechanism, parts, tuple(pins), phi_cr, limit, ground, sketch, loads, ties)
+    return Picture(mechanism, parts, tuple(pins), phi_cr, limit, ground, sketch, loads, ties, start)
 
 
 def _critical(mechanism: Mechanism, direction: Direction) -> float | None:

@@ -2,53 +2,70 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
 from rocking_cli.core.contacts import MASONRY
+from rocking_cli.text import in_short
 from rocking_cli.views.view import Table, View, heading, number
+
+FEW = 6  # blocks of a part, all of which are named
+SOME = 3  # of one that has more
+ROWS = 24  # joints, the forces in all of which are shown
 
 
 def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> View:
     """Lambda, hinges, groups, thrust and friction of each direction."""
     parts: list[Table | str] = [heading(mechanism)]
     for direction, each in found.items():
-        parts += [_hinges(direction, each), *_sentences(mechanism, direction, each)]
-        if each.thrust:
-            parts.append(_thrust(direction, each))
+        parts += [_hinges(direction, each), *_sentences(mechanism, each)]
+        parts += _thrust(direction, each)
     parts += [f"Caution: {own}"] if (own := mechanism.own_caution()) else []
     parts.append(
-        "The forces shown are one equilibrium state with the least friction; where parts remain at rest, other "
-        "states exist. lambda is both the greatest acceleration that can be carried without tension (static theorem) "
-        "and the acceleration at which this mechanism starts (kinematic theorem)."
+        "The forces shown are one equilibrium state with the least friction; where parts remain at rest, or bear on "
+        "more joints than hold them, other states exist. lambda is both the greatest acceleration that can be carried "
+        "without tension (static theorem) and the acceleration at which this mechanism starts (kinematic theorem)."
     )
     return View(lambda: {"directions": {d.label: data(each) for d, each in found.items()}}, parts)
 
 
-def _hinges(direction: Direction, found: CollapseMechanism) -> Table:
-    rows = [
-        [each.letter, " and ".join(each.between), number(each.at.real), number(each.at.imag)] for each in found.hinges
-    ]
+def _hinges(direction: Direction, found: CollapseMechanism) -> Table | str:
     title = f"{direction.label.capitalize()} direction: lambda = {number(found.lambda_)} g"
+    if not found.hinges:
+        return f"{title}, without hinges."
+    large = any(len(group) > FEW for group in found.groups)
+    rows = [
+        [each.letter, each.joint if large else " and ".join(each.between), number(each.at.real), number(each.at.imag)]
+        for each in found.hinges
+    ]
     return Table(title, ["hinge", "between", "x [m]", "y [m]"], rows, numbers=(2, 3))
 
 
-def _sentences(mechanism: Mechanism, direction: Direction, found: CollapseMechanism) -> list[str]:
-    moves = "; ".join("+".join(group) for group in found.groups)
-    said = [f"Moving parts, each as one body: {moves}." + (f" At rest: {', '.join(found.rest)}." if found.rest else "")]
+def _part(found: CollapseMechanism, group: Sequence[str]) -> str:
+    """A part by the names of its blocks; one of many by some of them and its hinges."""
+    if len(group) <= FEW:
+        return "+".join(group)
+    letters = [each.letter for each in found.hinges if "+".join(group) in each.between]
+    on = f", on {'hinge' if len(letters) == 1 else 'hinges'} {', '.join(letters)}" if letters else ""
+    return f"{len(group)} blocks ({in_short(group, most=SOME)}{on})"
+
+
+def _sentences(mechanism: Mechanism, found: CollapseMechanism) -> list[str]:
+    moves = "; ".join(_part(found, group) for group in found.groups)
+    said = [f"Moving parts, each as one body: {moves}." + (f" At rest: {in_short(found.rest)}." if found.rest else "")]
     if found.idle:
         said.append(
             "Other mechanisms start at the same acceleration. They are the same motion, in which "
-            f"{', '.join(found.idle)} may move along at no cost: the one with the fewest moving blocks is shown."
+            f"{in_short(found.idle)} may move along at no cost: the one with the fewest moving blocks is shown."
         )
     if found.lead:
         said.append(f"phi is the rotation of {found.lead}.")
     if found.lifted:
-        said.append(f"Joints that open over their whole length, or slip off: {', '.join(found.lifted)}.")
+        said.append(f"Joints that open over their whole length, or slip off: {in_short(found.lifted)}.")
     if found.slides:
         said.append(
-            f"The mechanism slides between {', '.join(found.slides)}. lambda is the acceleration at which sliding "
+            f"The mechanism slides between {in_short(found.slides)}. lambda is the acceleration at which sliding "
             "starts; no rocking model is available for it. The flow rule is associated, which overestimates lambda "
             "where sliding joints also open."
         )
@@ -62,7 +79,7 @@ def _sentences(mechanism: Mechanism, direction: Direction, found: CollapseMechan
         )
     elif found.glued:
         said.append(
-            f"No coefficient of friction is sufficient: {', '.join(found.glued)} would have to carry shear without "
+            f"No coefficient of friction is sufficient: {in_short(found.glued)} would have to carry shear without "
             "compression. Give `friction`: 0 for a joint that carries no shear."
         )
     if found.with_usual is not None:
@@ -83,13 +100,22 @@ def _sentences(mechanism: Mechanism, direction: Direction, found: CollapseMechan
     return said
 
 
-def _thrust(direction: Direction, found: CollapseMechanism) -> Table:
+def _thrust(direction: Direction, found: CollapseMechanism) -> list[Table | str]:
+    """The forces in the joints: of very many those in which the mechanism hinges or slides."""
+    shown, rest = found.thrust, ""
+    if len(shown) > ROWS:
+        moving = {*(each.joint for each in found.hinges), *found.slides}
+        shown = [each for each in shown if each[0] in moving][:ROWS]
+        rest = f"{len(found.thrust)} joints bear; the JSON output has the forces in all of them."
+    if not shown:
+        return [rest] if rest else []
     rows = [
         [where, number(at.real), number(at.imag), number(force.real / 1e3, 4), number(force.imag / 1e3, 4)]
-        for where, at, force in found.thrust
+        for where, at, force in shown
     ]
     heads = ["joint", "x [m]", "y [m]", "Fx [kN]", "Fy [kN]"]
-    return Table(f"Joint forces at the onset of the mechanism, {direction.label}", heads, rows, numbers=(1, 2, 3, 4))
+    title = f"Joint forces at the onset of the mechanism, {direction.label}"
+    return [Table(title, heads, rows, numbers=(1, 2, 3, 4)), *([rest] if rest else [])]
 
 
 def table(found: Mapping[Direction, CollapseMechanism]) -> dict[str, list[Any]]:
@@ -110,7 +136,12 @@ def data(found: CollapseMechanism) -> dict[str, Any]:
     return {
         "lambda": found.lambda_,
         "hinges": [
-            {"name": each.letter, "between": list(each.between), "at": [each.at.real, each.at.imag]}
+            {
+                "name": each.letter,
+                "between": list(each.between),
+                "joint": each.joint,
+                "at": [each.at.real, each.at.imag],
+            }
             for each in found.hinges
         ],
         "groups": [list(group) for group in found.groups],
