@@ -455,7 +455,7 @@ class TestFigure:
         middles = (cuts[1:] + cuts[:-1]) / 2
         along = middles if direction > 0 else pi - middles
         expected = [k - 1 if 0 < k < 4 else None for k in np.searchsorted(arch.hinge_angles, along)]
-        assert list(shown.links[direction]) == expected
+        assert list(shown.links[direction].values()) == expected
         assert None in expected and {0, 1, 2} < set(expected)
         colours = {colour(shown, k, direction) for k in range(len(expected))}
         assert colours == {*style.BODIES, style.RESTING}

@@ -27,7 +27,7 @@ name: wall with openings
 density: 1800            # [kg/m3]
 depth: 0.3               # out of plane [m]
 friction: 0.6
-restitution: 0.85        # per impact, measured
+restitution: 0.85        # per impact, assumed
 blocks:"""
 
 

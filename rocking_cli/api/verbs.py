@@ -239,7 +239,7 @@ def collapse(structure: StructureLike) -> MappingAnswer[Direction, CollapseMecha
     mechanism = _structure(structure).mechanism
     found = collapses(mechanism)
 
-    columns, figure = partial(table, found), partial(_structure_figure, mechanism)
+    columns, figure = partial(table, found), partial(_structure_figure, mechanism, found)
     return MappingAnswer("weakest mechanism", found, view(mechanism, found), columns, figure)
 
 
@@ -415,11 +415,11 @@ def respond(
     return MappingAnswer("response", found, runs_view(title, {1: found}, ready.mechanism, contacts), columns, figure)
 
 
-def _structure_figure(mechanism: Mechanism) -> Figure:
+def _structure_figure(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism] | None = None) -> Figure:
     from rocking_cli.plotting.structure import draw_structure
     from rocking_cli.studies.picture import picture
 
-    return draw_structure(picture(mechanism), heading(mechanism))
+    return draw_structure(picture(mechanism, found), heading(mechanism))
 
 
 def _history_columns(found: Mapping[ModelName, History], shaking: GroundMotion | None, mechanism: Mechanism) -> Columns:

@@ -16,7 +16,7 @@ class CollapseHinge:
     letter: str
     between: tuple[str, str]
     at: complex
-    joint: str
+    joint: str = ""
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,7 @@ class CollapseMechanism:
         Joint, point [m] and force [N] of one state of the forces as it starts.
     velocities : sequence of (complex, float)
         Of each group as it starts: of the point (0, 0) [m/s], and its rotation, anticlockwise [rad/s], at any speed.
+        Without them a mechanism that has no rocking model is not drawn.
     idle : sequence of str
         Blocks at rest that may move along at no cost: other mechanisms of this multiplier are this one with them.
     """
@@ -71,5 +72,5 @@ class CollapseMechanism:
     opens: str
     held_by: float | None
     thrust: Sequence[tuple[str, complex, complex]]
-    velocities: Sequence[tuple[complex, float]]
+    velocities: Sequence[tuple[complex, float]] = ()
     idle: Sequence[str] = ()

@@ -542,7 +542,7 @@ def _picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism])
     phi_cr: dict[Direction, float | None] = dict.fromkeys(mechanism.directions)
     limit = dict.fromkeys(mechanism.directions, FURTHEST)
     start = None
-    if all(each.lead for each in found.values()):
+    if all(each.lead or not each.velocities for each in found.values()):
         phi_cr = {direction: _critical(mechanism, direction) for direction in mechanism.directions}
         limit = {direction: FURTHEST * mechanism.limit(direction) for direction in mechanism.directions}
     else:

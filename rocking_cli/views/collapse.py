@@ -36,7 +36,7 @@ def _hinges(direction: Direction, found: CollapseMechanism) -> Table | str:
         return f"{title}, without hinges."
     large = any(len(group) > FEW for group in found.groups)
     rows = [
-        [each.letter, each.joint if large else " and ".join(each.between), number(each.at.real), number(each.at.imag)]
+        [each.letter, each.joint if large and each.joint else " and ".join(each.between), number(each.at.real), number(each.at.imag)]
         for each in found.hinges
     ]
     return Table(title, ["hinge", "between", "x [m]", "y [m]"], rows, numbers=(2, 3))
