@@ -361,4 +361,9 @@ def test_the_json_of_collapse_is_what_the_page_says():
     said = set(re.findall(r'"(\w+)"', section)) - {"directions", "positive", "negative", "name", "between", "at"}
     found = data(rocking_cli.load_structure(PROJECT / "examples" / "assembly.yaml").collapse(core.Direction.POSITIVE))
     assert said - {"joint", "force"} == set(found)
-    assert set(found["thrust"][0]) == {"joint", "at", "force"} and set(found["hinges"][0]) == {"name", "between", "joint", "at"}
+    assert set(found["thrust"][0]) == {"joint", "at", "force"} and set(found["hinges"][0]) == {
+        "name",
+        "between",
+        "joint",
+        "at",
+    }
