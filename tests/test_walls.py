@@ -95,8 +95,10 @@ def test_what_is_said_of_many_blocks_is_short_and_in_json_whole(wall, found):
     assert max(map(len, text.splitlines())) < 1000
     joints = {each["joint"] for each in plain["thrust"]}
     assert f"{len(plain['thrust'])} joints bear" in text and len(joints) > 24
-    for hinge in plain["hinges"]:
-        assert hinge["joint"] in text
+    hinges = {each["joint"] for each in plain["hinges"]}
+    tables = [part for part in view(wall, found).parts if not isinstance(part, str)]
+    rows = next(table.rows for table in tables if table.title.endswith("mechanism, positive"))
+    assert {row[0] for row in rows} == hinges & joints
 
 
 def test_names_in_short():
@@ -125,6 +127,20 @@ class TestPicture:
         assert len(marks) == 6  # not of what rests
         piers = sorted(marks, key=lambda z: z.imag)[:5]
         assert sorted(piers, key=lambda z: z.real) == pytest.approx([complex(left + 0.25, 2.0) for left, _ in PIERS])
+
+    def test_the_centroid_of_a_link_is_that_of_all_its_blocks(self):
+        """A tower in steps: all of it turns to the left, and its upper half alone to the right."""
+        widths = [1.4] * 20 + [0.8] * 22
+        corners = [[[0.0, k], [width, k], [width, k + 1.0], [0.0, k + 1.0]] for k, width in enumerate(widths)]
+        blocks = {f"b{k}": {"polygon": each} for k, each in enumerate(corners)}
+        tower = Assembly(blocks=blocks, ground=SLIDES["ground"], density=2000.0, depth=1.0)
+        grouped = picture(tower).grouped
+        assert len(grouped.parts) == 2
+        low, high = 20 * 1.4, 22 * 0.8
+        middle = (low * (0.7 + 10.0j) + high * (0.4 + 31.0j)) / (low + high)
+        turned = grouped.marks(-1e-6)
+        assert turned == pytest.approx([middle], abs=1e-4)
+        assert grouped.marks(0.0) == pytest.approx([0.4 + 31.0j])
 
     def test_parts_with_a_hinge_in_common_differ_in_shade(self, shown):
         for direction in Direction:
@@ -198,8 +214,19 @@ class TestWhatHasNoModel:
             assert size == pytest.approx(abs(across))
             for each_moved in moved:
                 assert each_moved == pytest.approx(np.full(4, 0.999 * STARTED * size * way), abs=1e-9)
+        assert shown.usual == dict.fromkeys(Direction, 1.0)
         titles = [axes.get_title() for axes in draw_structure(shown, "two blocks").axes]
         assert titles.count("positive\nas it starts") == 1
+
+    def test_ties_are_drawn_as_they_are_at_rest(self):
+        """Whether one is slack depends on a motion that there is none of."""
+        to = {"body": "high", "at": [0.8, 2.0]}
+        tie = {"name": "bar", "from": {"ground": [2.0, 2.0]}, "to": to, "stiffness": 1e5, "only": "tension"}
+        structure = Assembly(**SLIDES, ties=[tie])
+        found = collapses(structure)
+        assert not any(each.lead for each in found.values())
+        shown = picture(structure, found)
+        assert len(shown.ties) == 1 and shown.hung(1.0, 0.1)[2] == [False]
 
     def test_loads_and_a_restitution_do_not_hide_it(self, tmp_path):
         """Both need the motion: it is refused where it is asked for, but not the mechanism."""
