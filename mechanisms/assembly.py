@@ -604,6 +604,7 @@ class Assembly(Membered):
             ground=ground,
         )
 
+    @per_direction
     def _thrust_line(self, direction: Direction) -> Line | None:
         friction = self._needed(direction)
         found = analysis.thrust(self._contacts, list(self.blocks), friction.normal, friction.shear)
