@@ -12,11 +12,13 @@ from scipy.optimize import linprog
 from rocking_cli import Registry, load_structure
 from rocking_cli.core import Direction, both_statics
 from rocking_cli.core import linkage as of_linkages
+from rocking_cli.core import released as of_released
+from rocking_cli.core.loops import Loops
 from rocking_cli.core.rates import Rates, Share
-from rocking_cli.core.released import ONE, PUSH, RATE, Pieces
+from rocking_cli.core.released import ONE, PUSH, RATE, Pieces, Undetermined, _check_count, released
 from rocking_cli.dynamics import modes as of_modes
 from rocking_cli.dynamics.joints import joints_of
-from rocking_cli.dynamics.modes import _edges, _Placed, modes
+from rocking_cli.dynamics.modes import _edges, _Placed, _thrown, modes
 from rocking_cli.dynamics.stuck import stuck
 from rocking_cli.dynamics.tables import tabulate
 from rocking_cli.views.contact import contact_words
@@ -79,6 +81,17 @@ def test_velocities_at_joints_are_those_of_their_points(name, direction):
             assert speeds[row] == pytest.approx((each * np.conj(normal)).real, abs=1e-6 * size)
         along = (np.mean(rate) * np.conj(-1j * normal)).real
         assert speeds[shear] == pytest.approx(along, abs=1e-6 * size)
+
+
+def test_joints_are_counted_before_any_matrix_is_made():
+    """One force too many or too few: only with too many may others be found instead."""
+    made = load_structure(EXAMPLES / "masonry/portal.yaml")
+    contacts, pieces = made.contacts(FORWARD), made.pieces(FORWARD)
+    _check_count(contacts, pieces)
+    for given, redundant in (([*contacts, contacts[0]], True), (contacts[1:], False)):
+        with pytest.raises(Undetermined) as error:
+            _check_count(given, pieces)
+        assert error.value.redundant is redundant
 
 
 @pytest.mark.parametrize("friction", [None, 1.2])
@@ -223,6 +236,28 @@ def test_a_mode_that_does_not_exist_at_rest_has_no_part_in_impacts(begins, monke
     assert not found.released.force[:begins, :, [PUSH, RATE]].any()
 
 
+def test_an_impact_throws_several_joints_open_one_after_the_other():
+    made = load_structure(EXAMPLES / "assembly.yaml")
+    there = _Placed(made, FORWARD, made.contacts(FORWARD), np.zeros(1))
+    jump = there.jump(made)
+    thrown = list(_thrown(there, jump))
+    work = np.array([velocity @ jump.sum(axis=1) for velocity in thrown])
+    assert len({there.pattern(velocity, 0) for velocity in thrown}) == len(thrown) >= 2
+    assert (work < 0).all() and (np.diff(work) > 0).all()
+
+
+def test_a_mode_is_called_by_the_first_of_the_joints_that_it_opens_most():
+    made = wall(2, 5)
+    there = _Placed(made, FORWARD, made.contacts(FORWARD), np.array([0.0, 0.01]))
+    unit = np.array([made.uplift(FORWARD) * made.gravity, 0.1])
+    for velocity in _edges(there, 0, unit, {}):
+        mode = there.followed(there.pattern(velocity, 0))
+        if mode is not None:
+            speed = np.abs(there.rates.dense()[0] @ mode.velocity[0])
+            fastest = [max(speed[[*normals, shear]]) > 0.999 * speed.max() for normals, shear in there.rows]
+            assert there.label(mode) == there.contacts[fastest.index(True)].label
+
+
 def joined(*rows, count, centres, rotations=1):
     """The parts of pieces between which rows of (piece, piece, point, direction) hold; -1 is the ground."""
     centres = np.array(centres, complex)
@@ -242,7 +277,7 @@ def joined(*rows, count, centres, rotations=1):
 def test_pieces_are_stuck_where_rows_leave_them_no_motion():
     """A block on the ground, one on it by a hinge, one that only slides on that, and two that a third makes one."""
     ground = [(-1, 0, x, way) for x, way in ((0j, 1j), (1 + 0j, 1j), (0j, 1 + 0j))]
-    hinge = [(0, 1, 1 + 1j, 1j), (0, 1, 1 + 1j, 1 + 0j)]
+    hinge = [(0, 1, 1 + 1j, 1j), (1, 0, 1 + 1j, 1 + 0j), (0, 1, 1 + 1j, 0.6 + 0.8j)]
     slides = [(1, 2, 2j, 1j), (1, 2, 1 + 2j, 1j)]
     of_two = [(1, 3, 3 + 3j, 1j), (1, 3, 4 + 3j, 1j), (1, 3, 3 + 3j, 1 + 0j), (3, 4, 6j, 1j), (1, 4, 7j, 1 + 0j)]
     centres = [0.5 + 0.5j, 0.5 + 1.5j, 0.5 + 2.5j, 3.5 + 3.5j, 0.5 + 8j]
@@ -256,7 +291,7 @@ def test_pieces_are_stuck_where_rows_leave_them_no_motion():
     moved = one.spread(parts)
     speeds = rates.at(moved)[0]
     between = np.abs(speeds) > 1e-12
-    assert between.sum() == 4  # the hinge and what slides
+    assert between.sum() == 5  # the hinge and what slides
     assert one.contracted(rates).at(parts)[0] == pytest.approx(speeds[between])
     momentum = rng.normal(size=(1, 15))
     assert one.gathered(momentum)[0] @ parts[0] == pytest.approx(momentum[0] @ moved[0])
@@ -291,19 +326,37 @@ def test_joints_of_a_wall_take_little_memory():
     assert most < 12e6
 
 
-def test_a_long_motion_is_solved_in_parts(monkeypatch):
+@pytest.mark.parametrize("at_once", [10, 2000])  # less than a matrix, and some of them
+def test_joints_that_statics_determines_are_solved_in_parts(at_once, monkeypatch):
+    made = load_structure(EXAMPLES / "masonry/portal.yaml")
+    phi = np.linspace(0.0, 0.1, 7)
+    whole = released(made, FORWARD, phi)
+    monkeypatch.setattr(of_released, "AT_ONCE", at_once)
+    parts = released(made, FORWARD, phi)
+    assert parts.force == pytest.approx(whole.force, rel=1e-12, abs=1e-6)
+    assert parts.compliance == pytest.approx(whole.compliance, rel=1e-12)
+
+
+@pytest.mark.parametrize(("at_once", "largest"), [(60, 60), (1, 6)])  # of ten rotations, and of one
+def test_a_long_motion_is_solved_in_parts(at_once, largest, monkeypatch):
     """Where the matrices of all rotations would be large; the parts say what the whole says."""
     whole = load_structure(EXAMPLES / "linkages/two_storeys.yaml")
     phi = np.linspace(0.0, 0.9 * whole.limit(FORWARD), 50)
     expected = whole.motion(phi, FORWARD)
-    monkeypatch.setattr(of_linkages, "AT_ONCE", 20)
+    monkeypatch.setattr(of_linkages, "AT_ONCE", at_once)
     solved = []
     plain = of_linkages.LinkageMotion._followed
     monkeypatch.setattr(
         of_linkages.LinkageMotion, "_followed", lambda self, at: solved.append(at.size) or plain(self, at)
     )
-    found = load_structure(EXAMPLES / "linkages/two_storeys.yaml").motion(phi, FORWARD)
+    other = load_structure(EXAMPLES / "linkages/two_storeys.yaml")
+    other.limit(FORWARD)
+    sizes = []
+    matrix = Loops.matrix
+    monkeypatch.setattr(Loops, "matrix", lambda self, x: sizes.append((found := matrix(self, x)).size) or found)
+    found = other.motion(phi, FORWARD)
     assert len(solved) > 2 and sum(solved) == 50
+    assert max(sizes) == largest
     for one, other in zip(expected, found, strict=True):
         assert one.q == pytest.approx(other.q, abs=1e-12)
         assert one.ddpsi == pytest.approx(other.ddpsi, abs=1e-9)

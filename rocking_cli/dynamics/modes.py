@@ -184,7 +184,7 @@ class _Placed:
     def label(self, mode: _Followed) -> str:
         """What to call the contact that a mode opens most, where it begins to exist."""
         first = int(np.argmax(mode.exists))
-        speed = np.abs(self.rates.rotation(first).at(mode.velocity[first][None])[0])
+        speed = np.abs(self.rates.rotations([first]).at(mode.velocity[first][None])[0])
         most = [max((speed[row] for row in (*normal, *([] if shear is None else [shear]))), default=0.0)
                 for normal, shear in self.rows]  # fmt: skip
         return self.contacts[int(np.argmax(np.array(most) >= (1 - TIGHT) * max(most)))].label  # the first of several
@@ -198,7 +198,7 @@ class _Placed:
 
     def pattern(self, velocity: Reals, k: int) -> Pattern:
         """Which rows a mode leaves alone at a rotation."""
-        speed = self.rates.rotation(k).at(velocity[None])[0]
+        speed = self.rates.rotations([k]).at(velocity[None])[0]
         still = TIGHT * float(np.abs(speed).max())
         slip = np.where((self.shear >= 0) & (np.abs(speed[self.shear]) > still), speed[self.shear], 0.0)
         sense = np.sign(slip).astype(int)
