@@ -311,6 +311,12 @@ def test_forces_that_statics_does_not_determine_are_said_to_be_sums():
     assert "positions of its joints are not known" not in said
 
 
+def test_pieces_are_not_stuck_that_move_at_some_rotation():
+    rows = [[Share(0, np.array(each))] for each in ([[0, 1.0, -1]] * 2, [[0, 1.0, 1], [0, 1, -1]], [[1.0, 0, 1]] * 2)]
+    assert stuck(Rates.of(rows, 1, 2), np.zeros((2, 1), complex)).count == 1
+    assert stuck(Rates.of(rows, 1, 2).rotations([0]), np.zeros((1, 1), complex)).count == 0
+
+
 def test_joints_of_a_wall_take_little_memory():
     """Rows are of two blocks each: no matrix of all blocks and joints is held for every rotation."""
     made = wall(3, 8)
