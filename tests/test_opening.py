@@ -123,7 +123,7 @@ def test_forces_balance_every_piece_and_uplift_opens_nothing(file):
     made = load_structure(file)
     for direction in made.directions:
         rotations = np.linspace(0.0, 0.5 * made.limit(direction), 5)
-        if file.stem == "portico":  # three columns: a joint too many
+        if file.stem in ("portico", "wall_with_openings"):  # three columns, many bricks: joints too many
             with pytest.raises(Undetermined):
                 released(made, direction, rotations)
             continue

@@ -303,8 +303,9 @@ class LinkageMotion:
     def _found(self, phi: Reals) -> Sequence[RigidMotion]:
         if phi.any():
             inside = np.clip(phi, 0.0, self.limit)
-            parts = np.array_split(inside, -(-inside.size * self._loops.size // AT_ONCE) or 1)
-            x, dx, ddx = (np.concatenate(each) for each in zip(*map(self._followed, parts), strict=True))
+            count = min(inside.size, -(-inside.size * self._loops.size // AT_ONCE)) or 1
+            each = map(self._followed, np.array_split(inside, count))
+            x, dx, ddx = (np.concatenate(parts) for parts in zip(*each, strict=True))
         else:  # how far it goes does not matter
             x, dx, ddx = (np.repeat(each[None], len(phi), axis=0) for each in self._first[1:])
         q, dq, ddq = (self._size * each for each in self._loops.places(x, dx, ddx))

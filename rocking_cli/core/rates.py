@@ -65,9 +65,9 @@ class Rates:
         moved = np.concatenate([moved, np.zeros_like(moved[:, :1])], axis=1)  # the ground
         return np.asarray((self.factors * moved[:, self.pieces]).sum(axis=(2, 3)))
 
-    def rotation(self, k: int) -> Rates:
-        """The rows at one rotation."""
-        return Rates(self.count, self.pieces, self.factors[k : k + 1])
+    def rotations(self, chosen: Integers | Sequence[int]) -> Rates:
+        """The rows at some of the rotations."""
+        return Rates(self.count, self.pieces, self.factors[chosen])
 
     def rows(self, chosen: Integers | NDArray[np.bool_]) -> Rates:
         """Some of the rows."""

@@ -17,9 +17,10 @@ from rocking_cli.core.contacts import Contact, Piece
 from rocking_cli.core.hung.attached import PointMass, Spot
 from rocking_cli.core.kinematics import Direction, Points, Reals, RigidMotion, rotation
 from rocking_cli.core.mechanism import Mechanism
-from rocking_cli.core.rates import Rates, Share
+from rocking_cli.core.rates import Integers, Rates, Share
 
 SINGULAR = 1e-9  # least pivot, about, of rates over the size of the whole: with less, forces are not determined
+AT_ONCE = 1_000_000  # entries of the matrices that are inverted at once: 8 MB of each
 MASSLESS = 1e-12  # of the largest mass: what a piece without any is taken to have
 ONE, PUSH, RATE, WEIGHT = range(4)  # what forces are affine in: 1, u_g'', phi.^2 and v_g''
 
@@ -89,7 +90,7 @@ def released(mechanism: Mechanism, direction: Direction, phi: Reals) -> Released
     _check_count(contacts, mechanism.pieces(direction))
     pieces = Pieces(mechanism, direction, np.asarray(phi, np.float64))
     rates, rows = pieces.rates(contacts)
-    force, compliance = _solved(rates.dense(), pieces, pieces.demands())
+    force, compliance = _solved(rates, pieces, pieces.demands())
     return Released(contacts, rows, force, compliance)
 
 
@@ -125,7 +126,7 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reals | None:
     rates, _ = new.rates(contacts)
     # The velocities are -t_s before and eta t_-s after, t the derivatives by phi.
     jump = np.stack([old.momentum(old.dq), new.momentum(new.dq)], axis=-1)
-    return np.asarray(_solved(rates.dense(), new, jump)[0][0])
+    return np.asarray(_solved(rates, new, jump)[0][0])
 
 
 def _check_count(contacts: Sequence[Contact], pieces: Sequence[Piece]) -> None:
@@ -135,25 +136,31 @@ def _check_count(contacts: Sequence[Contact], pieces: Sequence[Piece]) -> None:
         raise Undetermined(forces >= equations)
 
 
-def _solved(jacobian: Reals, pieces: Pieces, demand: Reals) -> tuple[Reals, Reals]:
+def _solved(rates: Rates, pieces: Pieces, demand: Reals) -> tuple[Reals, Reals]:
     """Forces that balance demands, shape (n, rows, k), and compliances, shape (n, rows).
 
     The inverse of the rates, with the momentum of the rocking motion as one row more, holds in column i how all pieces
     move if row i alone is released: xi. Then the force of that row is xi.b, b the demand, and (A^-1)_ii = xi.M xi.
     """
     # Each coordinate in a length of the whole, or the rotations of small pieces would count for nothing.
-    rocking = pieces.momentum(pieces.dq) / pieces.scale
+    scale = pieces.scale
+    rocking = pieces.momentum(pieces.dq) / scale
     rocking /= np.linalg.norm(rocking, axis=1, keepdims=True)
-    square = np.concatenate([jacobian / pieces.scale, rocking[:, None, :]], axis=1)
-    try:
-        inverse = np.linalg.inv(square)
-    except np.linalg.LinAlgError:
-        raise Undetermined(redundant=False) from None
-    if np.abs(inverse).max() > 1 / SINGULAR:
-        raise Undetermined(redundant=False)
-    released = inverse[:, :, :-1] / pieces.scale[:, None]
-    moving = pieces.momenta(released)
-    return released.swapaxes(1, 2) @ demand, 1 / np.einsum("nir,nir->nr", released, moving)
+    force, compliance = [], []
+    parts = min(len(rocking), -(-rocking.size * rocking.shape[1] // AT_ONCE))
+    for part in np.array_split(np.arange(len(rocking)), parts):
+        square = np.concatenate([rates.rotations(part).dense() / scale, rocking[part, None, :]], axis=1)
+        try:
+            inverse = np.linalg.inv(square)
+        except np.linalg.LinAlgError:
+            raise Undetermined(redundant=False) from None
+        if np.abs(inverse).max() > 1 / SINGULAR:
+            raise Undetermined(redundant=False)
+        released = inverse[:, :, :-1] / scale[:, None]
+        moving = pieces.momenta(released, part)
+        force.append(released.swapaxes(1, 2) @ demand[part])
+        compliance.append(1 / np.einsum("nir,nir->nr", released, moving))
+    return np.concatenate(force), np.concatenate(compliance)
 
 
 class Pieces:
@@ -244,10 +251,10 @@ class Pieces:
         light = np.diagonal(matrix, axis1=2, axis2=3) < least
         return np.asarray(matrix + least * np.eye(3) * light[..., None, :])
 
-    def momenta(self, rates: Reals) -> Reals:
-        """Momenta of all pieces at each of several rates, both of shape (n, 3 pieces, k)."""
+    def momenta(self, rates: Reals, at: slice | Integers = slice(None)) -> Reals:
+        """Momenta of all pieces at each of several rates, both of shape (n, 3 pieces, k), at all or some rotations."""
         each = rates.reshape(len(rates), len(self._parts), 3, -1)
-        return np.asarray((self.mass @ each).reshape(rates.shape))
+        return np.asarray((self.mass[at] @ each).reshape(rates.shape))
 
     def momentum(self, rates: Reals) -> Reals:
         """Momentum of all pieces, shape (n, 3 pieces)."""

@@ -10,7 +10,6 @@ opening of 1.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -98,7 +97,7 @@ def modes(mechanism: Mechanism, direction: Direction, phi: Reals, critical: floa
     for velocity in _thrown(there, jump) if jump is not None else ():
         follow(velocity, 0)
     found = [each for each in known.values() if each is not None]
-    labels = [Contact((None, None), (0j,), name=there.label(each.velocity[0])) for each in found]
+    labels = [Contact((None, None), (0j,), name=there.label(each)) for each in found]
     names: dict[str, int] = {}
     for k, label in enumerate(labels):  # several modes may open one joint most
         names[label.name] = names.get(label.name, 0) + 1
@@ -106,17 +105,23 @@ def modes(mechanism: Mechanism, direction: Direction, phi: Reals, critical: floa
         labels[k] = Contact((None, None), (0j,), name=f"{label.name}{again}")
     force = np.stack([each.force for each in found], axis=1) if found else np.zeros((phi.size, 0, 4))
     compliance = np.stack([each.compliance for each in found], axis=1) if found else np.zeros((phi.size, 0))
-    struck = None if jump is None else np.array([each.velocity[0] @ jump for each in found]).reshape(-1, 2)
+    struck = None
+    if jump is not None:  # a mode that does not exist at rest has no impulse that could be missing
+        struck = np.array([each.velocity[0] @ jump * each.exists[0] for each in found]).reshape(-1, 2)
     rows: list[tuple[tuple[int, ...], int | None]] = [((k,), k) for k in range(len(found))]
     return Modes(Released(labels, rows, force, compliance), struck)
 
 
 class _Followed(NamedTuple):
-    """A mode over rotations: velocities (n, coordinates), force (n, 4) and compliance (n,) for an opening of 1."""
+    """A mode over rotations: velocities (n, coordinates), force (n, 4) and compliance (n,) for an opening of 1.
+
+    It exists (n,) where it closes nothing; elsewhere its velocities mean nothing.
+    """
 
     velocity: Reals
     force: Reals
     compliance: Reals
+    exists: Bools
 
 
 class _Placed:
@@ -139,23 +144,19 @@ class _Placed:
                 self.shear[[*normal, shear]] = shear
                 self.friction[[*normal, shear]] = contact.friction
 
-    @cached_property
-    def cones(self) -> Sparse:
-        """What friction asks of the forces, at most 0: a row for each sense of slip, and two columns beyond them."""
-        from scipy.sparse import coo_array
+    def rays(self, k: int) -> tuple[Sparse, int]:
+        """The forces at joints at one rotation, as `sparse`, and how many of them only press: these come first.
 
-        entries: list[tuple[int, int, float]] = []
-        count = 0
-        for contact, (normal, shear) in zip(self.contacts, self.rows, strict=True):
-            if contact.friction is None or shear is None:
-                continue
-            for sense in (1.0, -1.0):
-                entries += [*((count, row, -contact.friction) for row in normal), (count, shear, sense)]
-                count += 1
-        rows, columns, values = (np.array(each) for each in zip(*entries, strict=True)) if entries else ((), (), ())
-        found = coo_array((values, (rows, columns)), shape=(count, len(self.one_sided) + 2)).tocsr()
-        found.eliminate_zeros()
-        return found
+        With friction a normal force leans to either side, so that the same rows say how a joint may move.
+        """
+        from scipy.sparse import vstack
+
+        rates = self.sparse(k)
+        leans = self.one_sided & (self.friction > 0)
+        shears = rates[self.shear[leans]].multiply(self.friction[leans][:, None])
+        presses = [rates[self.one_sided & ~leans], rates[leans] + shears, rates[leans] - shears]
+        found = vstack([*presses, rates[~self.one_sided & (self.shear < 0)]], format="csr")
+        return found, sum(each.shape[0] for each in presses)
 
     def sparse(self, k: int) -> Sparse:
         """The rates at one rotation, shape (rows, coordinates), in axes that turn with the pieces.
@@ -180,9 +181,10 @@ class _Placed:
         turns = self._turned[k] if sense < 0 else self._turned[k].conj()
         return np.moveaxis(_turn(each, turns[:, None]), 2, 1).reshape(vectors.shape)
 
-    def label(self, velocity: Reals) -> str:
-        """What to call the contact that a mode opens most, at the first rotation."""
-        speed = np.abs(self.rates.rotation(0).at(velocity[None])[0])
+    def label(self, mode: _Followed) -> str:
+        """What to call the contact that a mode opens most, where it begins to exist."""
+        first = int(np.argmax(mode.exists))
+        speed = np.abs(self.rates.rotations([first]).at(mode.velocity[first][None])[0])
         most = [max((speed[row] for row in (*normal, *([] if shear is None else [shear]))), default=0.0)
                 for normal, shear in self.rows]  # fmt: skip
         return self.contacts[int(np.argmax(np.array(most) >= (1 - TIGHT) * max(most)))].label  # the first of several
@@ -196,7 +198,7 @@ class _Placed:
 
     def pattern(self, velocity: Reals, k: int) -> Pattern:
         """Which rows a mode leaves alone at a rotation."""
-        speed = self.rates.rotation(k).at(velocity[None])[0]
+        speed = self.rates.rotations([k]).at(velocity[None])[0]
         still = TIGHT * float(np.abs(speed).max())
         slip = np.where((self.shear >= 0) & (np.abs(speed[self.shear]) > still), speed[self.shear], 0.0)
         sense = np.sign(slip).astype(int)
@@ -223,25 +225,28 @@ class _Placed:
         return Rates(self.rates.count, self.rates.pieces, factors).rows(kept)
 
     def followed(self, pattern: Pattern) -> _Followed | None:
-        """A mode over all rotations; None if its rows leave more than one way to move at rest."""
+        """A mode over all rotations; None if its rows leave more than one way to move at rest, or it exists nowhere."""
         alone = self._alone(pattern, dilates=True)
         if alone is None:
             return None
-        velocity, exists = alone
+        velocity, moves = alone
         speed = self.rates.at(velocity)
         opens = speed[:, self.one_sided]
         sign = np.where(opens.max(axis=1, initial=0) >= -opens.min(axis=1, initial=0), 1.0, -1.0)
         factor = sign / np.abs(speed).max(axis=1)
         velocity, speed = velocity * factor[:, None], speed * factor[:, None]
+        exists = moves & self._closes_nothing(speed)
+        if not exists.any():
+            return None
         force = np.einsum("nc,ncf->nf", velocity, self.demand)
-        force[~(exists & self._closes_nothing(speed))] = self._bears
+        force[~exists] = self._bears
         plain = velocity
         if any(pattern.slips):  # what slides does not dilate as it goes
             without = self._alone(pattern, dilates=False)
             if without is not None:
                 plain = without[0] / np.abs(self.rates.at(without[0])).max(axis=1)[:, None]
         moving = self.pieces.momentum(plain)
-        return _Followed(velocity, force, 1 / np.einsum("nc,nc->n", plain, moving))
+        return _Followed(velocity, force, 1 / np.einsum("nc,nc->n", plain, moving), exists)
 
     @property
     def _bears(self) -> Reals:
@@ -347,28 +352,24 @@ def _corner(there: _Placed, k: int, way: Reals, unit: Reals) -> tuple[Reals, Rea
     from scipy.optimize import linprog  # slow to import, and only redundant joints need it
     from scipy.sparse import coo_array, hstack
 
-    rates, demand, scale = there.sparse(k), there.turned(there.demand[k], k, 1), there.pieces.scale
-    count = rates.shape[0]
-    size = float(np.abs(demand[:, ONE]).max())
-    rates.data = rates.data / scale[rates.indices] * size
+    (rays, press), demand, scale = there.rays(k), there.turned(there.demand[k], k, 1), there.pieces.scale
+    count = rays.shape[0]
+    rays.data = rays.data / scale[rays.indices] * float(np.abs(demand[:, ONE]).max())
     pushed = -demand[:, [PUSH, RATE]] * unit / scale[:, None]
-    equal = hstack([rates.T, coo_array(pushed)], format="csc")
-    low = np.where(there.one_sided, 0.0, -np.inf)
-    bounds = [*((each, None) for each in low), (-FAR, FAR), (0.0, FAR)]
-    cost = np.append(np.zeros(count), -way * unit)
-    cones = there.cones
+    low = np.where(np.arange(count) < press, 0.0, -np.inf)
     solved = linprog(
-        cost, A_eq=equal, b_eq=demand[:, ONE] / scale, bounds=bounds, method="highs-ds",
-        A_ub=cones if cones.shape[0] else None, b_ub=np.zeros(cones.shape[0]) if cones.shape[0] else None,
+        np.append(np.zeros(count), -way * unit), A_eq=hstack([rays.T, coo_array(pushed)], format="csc"),
+        b_eq=demand[:, ONE] / scale, bounds=[*((each, None) for each in low), (-FAR, FAR), (0.0, FAR)],
+        method="highs-ds",
     )  # fmt: skip
     if solved.status != 0:
         return None
     place = np.asarray(solved.x[count:])
     velocity = -np.asarray(solved.eqlin.marginals) / scale
-    work = float(velocity @ demand[:, [ONE, PUSH, RATE]] @ np.array([1.0, place[0] * unit[0], place[1] * unit[1]]))
-    moves = np.abs(rates @ (velocity * scale)).max() > 0
-    at_edge = abs(work) <= SAME * float(np.abs(velocity) @ np.abs(demand[:, ONE]) or 1.0)
-    return place, there.turned(velocity, k, -1) if moves and at_edge else None
+    own, *others = velocity @ demand[:, [ONE, PUSH, RATE]] * np.array([1.0, *unit])
+    bounds_it = np.abs(others).max() > TIGHT  # of a direction of length 1; else it is rounding: how far is looked does
+    at_edge = abs(own + others @ place) <= SAME * float(np.abs(velocity) @ np.abs(demand[:, ONE]) or 1.0)
+    return place, there.turned(velocity, k, -1) if bounds_it and at_edge else None
 
 
 def _thrown(there: _Placed, jump: Reals) -> Iterator[Reals]:
@@ -376,37 +377,28 @@ def _thrown(there: _Placed, jump: Reals) -> Iterator[Reals]:
     from scipy.optimize import linprog  # slow to import, and only redundant joints need it
     from scipy.sparse import csr_array, vstack
 
-    rates, scale = there.sparse(0), there.pieces.scale
+    (rays, press), rates, scale = there.rays(0), there.sparse(0), there.pieces.scale
     total = jump.sum(axis=1)  # with all of the rate kept: the most that is thrown
-    normals = np.flatnonzero(there.one_sided)
-    dilates = normals[(there.shear[normals] >= 0) & (there.friction[normals] > 0)]
-    plain = normals[~np.isin(normals, dilates)]
-    slips = there.shear >= 0
-    free = np.flatnonzero(~there.one_sided & ~slips)
-    factors = there.friction[dilates]
+    normals = rates[there.one_sided]
 
     def scaled(rows: Sparse) -> Sparse:
         found = csr_array(rows)
-        found.eliminate_zeros()
         found.data = found.data / scale[found.indices]
         return found
 
     def row(values: Reals) -> Sparse:
         return csr_array(values[None])
 
-    shears = rates[there.shear[dilates]].multiply(factors[:, None])
-    above = vstack([-rates[plain], *(sense * shears - rates[dilates] for sense in (1.0, -1.0)),
-                    row(np.asarray(rates[normals].sum(axis=0)))])  # fmt: skip
-    most = np.append(np.zeros(above.shape[0] - 1), 1.0)
-    held = vstack([rates[free], row(there.pieces.momentum(there.pieces.dq)[0])])
+    above = scaled(vstack([-rays[:press], row(np.asarray(normals.sum(axis=0)))]))
+    most = np.append(np.zeros(press), 1.0)
+    held = vstack([rays[press:], row(there.pieces.momentum(there.pieces.dq)[0])])
     for _ in range(MOST_THROWN):
         solved = linprog(
-            total / scale, A_ub=scaled(above), b_ub=most, A_eq=scaled(held),
+            total / scale, A_ub=above, b_ub=most, A_eq=scaled(held),
             b_eq=np.zeros(held.shape[0]), bounds=(None, None), method="highs-ds",
         )  # fmt: skip
         if solved.status != 0 or solved.fun > -TIGHT * float(np.abs(total / scale).max()):
             return
         velocity = np.asarray(solved.x) / scale
         yield velocity
-        again = normals[int(np.argmax(rates[normals] @ velocity))]
-        held = vstack([held, rates[[again]]])  # the next keeps that end shut
+        held = vstack([held, normals[[int(np.argmax(normals @ velocity))]]])  # the next keeps that end shut

@@ -91,8 +91,13 @@ def stuck(held: Rates, centres: Points) -> Stuck:
     while True:
         low, high = np.sort(label[ends], axis=1).T
         apart = np.flatnonzero(low != high)
-        pairs, number = np.unique(np.array([low[apart], high[apart]]), axis=1, return_inverse=True)
-        joined = pairs[:, _leave_nothing(number.ravel(), pairs.shape[1], wrench[:, apart], place[:, apart])]
+        pairs, first, number = np.unique(
+            np.array([low[apart], high[apart]]), axis=1, return_index=True, return_inverse=True
+        )
+        # Their wrenches about one point for each pair, near its joints.
+        number = number.ravel()
+        about = _about(wrench[:, apart], place[:, apart] - place[:, apart[first[number]]])
+        joined = pairs[:, _leave_nothing(number, about)]
         if not joined.size:
             break
         graph = coo_array((np.ones(joined.shape[1]), (joined[0], joined[1])), shape=(count + 1, count + 1))
@@ -105,14 +110,12 @@ def stuck(held: Rates, centres: Points) -> Stuck:
     return Stuck(len(leader), part, centres - reference[:, part])
 
 
-def _leave_nothing(number: Integers, count: int, wrench: Reals, place: Points) -> NDArray[np.bool_]:
-    """Which pairs of parts their wrenches, about places, hold in both directions and against turning."""
-    n = len(wrench)
-    first = np.zeros(count, np.intp)
-    first[number[::-1]] = np.arange(len(number))[::-1]
-    local = _about(wrench, place - place[:, first[number]])  # about one point for each pair, near its joints
-    gram = np.zeros((count, n, 3, 3))
-    np.add.at(gram, number, np.moveaxis(local[..., :, None] * local[..., None, :], 1, 0))
+def _leave_nothing(number: Integers, wrench: Reals) -> NDArray[np.bool_]:
+    """Which pairs of parts, by number, their wrenches hold in both directions and against turning."""
+    order = np.argsort(number, kind="stable")
+    starts = np.flatnonzero(np.diff(number[order], prepend=-1))
+    each = np.moveaxis(wrench[:, order], 1, 0)
+    gram = np.add.reduceat(each[..., :, None] * each[..., None, :], starts, axis=0)
     xx, yy, xy = gram[..., 0, 0], gram[..., 1, 1], gram[..., 0, 1]
     across = xx * yy - xy**2
     two = across > ACROSS * (xx + yy) ** 2

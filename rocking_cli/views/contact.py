@@ -93,7 +93,12 @@ def contact_words(found: Contact, mechanism: Mechanism) -> str:
                 f"The contacts use at most {number(100 * found.crushing.used, 3)} % of their strength, at {at}."
             )
     sums = _sums(found, mechanism)
-    if sums == "whole":
+    if sums == "whole" and all(mechanism.contacts(direction) for direction in mechanism.directions):
+        said.append(
+            "Statics alone does not determine the force at each joint, as there are more joints than needed: the "
+            "forces are sums over the whole structure, on level ground, and a single joint may require more friction."
+        )
+    elif sums == "whole":
         said.append(
             "The positions of its joints are not known: the forces are sums over the whole structure, on level ground."
         )
