@@ -35,10 +35,10 @@ def _hinges(direction: Direction, found: CollapseMechanism) -> Table | str:
     if not found.hinges:
         return f"{title}, without hinges."
     large = any(len(group) > FEW for group in found.groups)
-    rows = [
-        [each.letter, each.joint if large and each.joint else " and ".join(each.between), number(each.at.real), number(each.at.imag)]
-        for each in found.hinges
-    ]
+    rows = []
+    for each in found.hinges:
+        between = each.joint if large and each.joint else " and ".join(each.between)
+        rows.append([each.letter, between, number(each.at.real), number(each.at.imag)])
     return Table(title, ["hinge", "between", "x [m]", "y [m]"], rows, numbers=(2, 3))
 
 
