@@ -139,12 +139,11 @@ def _merged(pieces: list[Piece], tolerance: float) -> list[Piece]:
 
 def _faces(joint: Contact, one: Points, other: Points, tolerance: float) -> tuple[str, str]:
     """At each end the body whose face goes on beyond it; empty where both or neither do."""
-    found = []
-    for end, way in ((joint.start, -1), (joint.end, 1)):
-        beyond = np.array([end + way * 3 * tolerance * (joint.end - joint.start) / joint.length])
-        on = [bool(distance(beyond, z)[0] <= tolerance) for z in (one, other)]
-        found.append((joint.a if on[0] else joint.b) if on[0] != on[1] else "")
-    return found[0], found[1]
+    along = 3 * tolerance * (joint.end - joint.start) / joint.length
+    beyond = np.array([joint.start - along, joint.end + along])
+    on = [distance(beyond, z) <= tolerance for z in (one, other)]
+    first, last = (("" if a == b else joint.a if a else joint.b) for a, b in zip(*on, strict=True))
+    return first, last
 
 
 def _all_touch(blocks: Sequence[Block], found: Sequence[Contact]) -> None:

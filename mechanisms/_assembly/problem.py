@@ -10,7 +10,7 @@ import numpy as np
 from mechanisms._assembly.blocks import Block, Contact, Guide
 from mechanisms._assembly.faults import NothingMoves
 from mechanisms._assembly.programme import least
-from mechanisms._assembly.rays import Bearings, Frame, Rays, at_rest, moving, scaled
+from mechanisms._assembly.rays import Bearings, Frame, Rays, moving, scaled
 from mechanisms._assembly.sparse import beside, unit_columns
 from rocking_cli.core import Direction, Reals
 
@@ -57,7 +57,7 @@ class Problem:
         strength = float(np.abs(pull).sum())
         if strength == 0:
             raise NothingMoves("nothing acts on the blocks but what is always there", frame.names)
-        bearings = Bearings.of(frame, at_rest(contacts), guides)
+        bearings = Bearings.of(frame, contacts, guides)
         return cls(frame, bearings, scaled(dead, frame, weight), pull / strength, weight, strength)
 
     def greatest(self, rays: Rays) -> tuple[float, Reals, Reals]:
@@ -92,6 +92,6 @@ class Problem:
 
     def by_contact(self, values: Reals) -> tuple[Reals, Reals, Reals]:
         """What belongs to the two ends of every joint, to its shear, and to the guides."""
-        n = len(self.bearings.bearings)
+        n = len(self.bearings.contact)
         joints = values[: 3 * n].reshape(n, 3)
         return joints[:, :2], joints[:, 2], values[3 * n :]
