@@ -30,6 +30,13 @@ def area_of(z: Points) -> float:
     return float((z.conj() * np.roll(z, -1)).imag.sum() / 2)
 
 
+def thickness_of(z: Points) -> float:
+    """The least extent of a polygon across one of its sides [m]."""
+    side = np.roll(z, -1) - z
+    across = (z[None, :] * (1j * side / np.abs(side))[:, None].conj()).real
+    return float(np.ptp(across, axis=1).min())
+
+
 def fault_of(z: Points) -> str | None:
     """Why its corners are no simple polygon, a sentence without a full stop; None if they are one."""
     size = size_of(z)

@@ -45,6 +45,8 @@ SLIDING = 1e-6  # of it: a multiplier so near to the friction is that of sliding
 SLIPS = 0.01  # of the limit: where it is seen which way a face that slips goes
 GLUE = 0.01  # of lambda: by more than that the shear of joints without friction raises it, and it is said
 OFF = 1e-7  # of its length: a joint that opens there by less stays shut
+LIGHT = 1e-9  # of the weight of the whole: blocks that weigh less may move and nobody sees it
+NAMED = 3  # of these
 LEADS = 1e-8  # of the fastest turn: less is none
 
 Coefficient = Annotated[float, Field(ge=0, le=10)]
@@ -455,17 +457,31 @@ class Assembly(Membered):
     # What is said of it
 
     def own_caution(self) -> str:
-        """By how much joints that never slide raise lambda, if by more than 1 %."""
+        """By how much joints that never slide raise lambda, if by more than 1 %; and what is too light to be seen."""
         raised = []
         for direction in self.directions:
             lambda_, usual = self._collapse(direction).multiplier, self._with_usual(direction)
             if usual is not None and usual < (1 - GLUE) * lambda_:
                 raised.append(f"{usual:.4g} g instead of {lambda_:.4g} g in the {direction.label} direction")
-        if not raised:
+        said = [self._of_grains()]
+        if raised:
+            said.append(
+                "Joints without `friction` never slide and may carry shear without a normal force, which raises "
+                f"lambda. With a friction of {MASONRY:g} it would be {' and '.join(raised)}: give `friction`."
+            )
+        return " ".join(filter(None, said))
+
+    def _of_grains(self) -> str:
+        """Which blocks are too light for the analysis, as a sentence."""
+        masses = [block.mass for block in self._blocks]
+        grains = [block.name for block in self._blocks if block.mass <= LIGHT * sum(masses)]
+        if not grains:
             return ""
+        verb = "weighs" if len(grains) == 1 else "weigh"
+        names = ", ".join([*grains[:NAMED], *(["..."] if grains[NAMED:] else [])])
         return (
-            "Joints without `friction` never slide and may carry shear without a normal force, which raises lambda. "
-            f"With a friction of {MASONRY:g} it would be {' and '.join(raised)}: give `friction`."
+            f"{names} {verb} no more than {LIGHT:g} of the whole: the analysis does not see whether that moves "
+            "earlier. Leave it out, or analyse it alone."
         )
 
     @per_direction

@@ -31,6 +31,7 @@ STEPS = 32  # in which a first violation is looked for
 
 ENDS = {Opening.CLOSED: (0, 1), Opening.START: (0,), Opening.END: (1,), Opening.LIFTED: ()}
 
+
 def remaining(
     blocks: Sequence[Block], contacts: Sequence[Contact], guides: Sequence[Guide], states: Sequence[Opening]
 ) -> Bearings:

@@ -194,9 +194,7 @@ def _glued(found: Collapse, multiplier: float) -> tuple[Reals, tuple[int, ...]]:
     return state, tuple(int(k) for k in np.flatnonzero(np.abs(beyond) > SAME))
 
 
-def _beyond(
-    problem: Problem, multiplier: float, mu: float, most: Reals | None = None
-) -> tuple[Reals, Reals, Reals]:
+def _beyond(problem: Problem, multiplier: float, mu: float, most: Reals | None = None) -> tuple[Reals, Reals, Reals]:
     """A state with as little shear beyond a friction as there can be, that shear by joints, and the velocities.
 
     The shear may be beyond `mu` in joints whose own friction is more, or not given: so far as that. With `most`, upper

@@ -75,10 +75,15 @@ class Problem:
 
     def why_not(self, rays: Rays) -> tuple[str, ...]:
         """The blocks that no forces hold at rest; none if it stands."""
-        n = len(self.dead)
         unbounded = np.full(rays.count, np.inf)
         if least(np.zeros(rays.count), rays.rates.T.tocsc(), -self.dead, rays.low, unbounded) is not None:
             return ()
+        missing, names = self.unheld(rays)
+        return names if missing > NOTHING else ()
+
+    def unheld(self, rays: Rays) -> tuple[float, tuple[str, ...]]:
+        """The least forces beside those of the joints that hold everything at rest, and the blocks that need them."""
+        n = len(self.dead)
         extra = unit_columns(np.arange(n), n)
         found = least(
             np.append(np.zeros(rays.count), np.ones(2 * n)),
@@ -88,7 +93,7 @@ class Problem:
             np.full(rays.count + 2 * n, np.inf),
         )
         assert found is not None  # the extra forces balance anything
-        return moving(self.frame.names, found.prices, 1e-6) if found.value > NOTHING else ()
+        return found.value, moving(self.frame.names, found.prices, 1e-6)
 
     def by_contact(self, values: Reals) -> tuple[Reals, Reals, Reals]:
         """What belongs to the two ends of every joint, to its shear, and to the guides."""
