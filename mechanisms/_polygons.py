@@ -30,6 +30,13 @@ def area_of(z: Points) -> float:
     return float((z.conj() * np.roll(z, -1)).imag.sum() / 2)
 
 
+def thickness_of(z: Points) -> float:
+    """The least extent of a polygon across one of its sides [m]."""
+    side = np.roll(z, -1) - z
+    across = (z[None, :] * (1j * side / np.abs(side))[:, None].conj()).real
+    return float(np.ptp(across, axis=1).min())
+
+
 def fault_of(z: Points) -> str | None:
     """Why its corners are no simple polygon, a sentence without a full stop; None if they are one."""
     size = size_of(z)
@@ -62,7 +69,7 @@ def inside(points: Points, z: Points) -> Bools:
 
 def overlap(one: Points, other: Points, tolerance: float) -> bool:
     """Whether two polygons have more in common than sides and corners, to a tolerance [m]."""
-    if not _boxes_meet(one, other, -tolerance):
+    if not _boxes_meet(one, other, -tolerance) or _beside(one, other, tolerance):
         return False
     for first, second in ((one, other), (other, one)):
         middles = np.append(_middles(first, second), _within(first))
@@ -125,6 +132,18 @@ def _boxes_meet(one: Points, other: Points, margin: float) -> bool:
         for a, b in ((one, other), (other, one))
         for part in ("real", "imag")
     )
+
+
+def _beside(one: Points, other: Points, tolerance: float) -> bool:
+    """Whether a side of either, made longer, has the one on this side of it and the other on that, to a tolerance."""
+    for first, second in ((one, other), (other, one)):
+        side = np.roll(first, -1) - first
+        across = (1j * side / np.where(side == 0, 1.0, np.abs(side)))[:, None].conj()
+        ours, theirs = (across * first).real, (across * second).real
+        apart = np.maximum(theirs.min(axis=1) - ours.max(axis=1), ours.min(axis=1) - theirs.max(axis=1))
+        if (apart >= -tolerance).any():
+            return True
+    return False
 
 
 def _middles(z: Points, other: Points) -> Points:

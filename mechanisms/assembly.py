@@ -47,6 +47,8 @@ SLIDING = 1e-6  # of it: a multiplier so near to the friction is that of sliding
 SLIPS = 0.01  # of the limit: where it is seen which way a face that slips goes
 GLUE = 0.01  # of lambda: by more than that the shear of joints without friction raises it, and it is said
 OFF = 1e-7  # of its length: a joint that opens there by less stays shut
+LIGHT = 1e-9  # of the weight of the whole: blocks that weigh less may move and nobody sees it
+NAMED = 3  # of these
 LEADS = 1e-8  # of the fastest turn: less is none
 
 Coefficient = Annotated[float, Field(ge=0, le=10)]
@@ -460,17 +462,31 @@ class Assembly(Membered):
     # What is said of it
 
     def own_caution(self) -> str:
-        """By how much joints that never slide raise lambda, if by more than 1 %."""
+        """By how much joints that never slide raise lambda, if by more than 1 %; and what is too light to be seen."""
         raised = []
         for direction in self.directions:
             lambda_, usual = self._collapse(direction).multiplier, self._with_usual(direction)
             if usual is not None and usual < (1 - GLUE) * lambda_:
                 raised.append(f"{usual:.4g} g instead of {lambda_:.4g} g in the {direction.label} direction")
-        if not raised:
+        said = [self._of_grains()]
+        if raised:
+            said.append(
+                "Joints without `friction` never slide and may carry shear without a normal force, which raises "
+                f"lambda. With a friction of {MASONRY:g} it would be {' and '.join(raised)}: give `friction`."
+            )
+        return " ".join(filter(None, said))
+
+    def _of_grains(self) -> str:
+        """Which blocks are too light for the analysis, as a sentence."""
+        masses = [block.mass for block in self._blocks]
+        grains = [block.name for block in self._blocks if block.mass <= LIGHT * sum(masses)]
+        if not grains:
             return ""
+        verb = "weighs" if len(grains) == 1 else "weigh"
+        names = ", ".join([*grains[:NAMED], *(["..."] if grains[NAMED:] else [])])
         return (
-            "Joints without `friction` never slide and may carry shear without a normal force, which raises lambda. "
-            f"With a friction of {MASONRY:g} it would be {' and '.join(raised)}: give `friction`."
+            f"{names} {verb} no more than {LIGHT:g} of the whole: the analysis does not see whether that moves "
+            "earlier. Leave it out, or analyse it alone."
         )
 
     @per_direction
@@ -524,57 +540,69 @@ class Assembly(Membered):
             idle=state.idle,
         )
 
-    def _held(self, direction: Direction, phi: float) -> tuple[analysis.Displaced, Reals, float]:
-        """The assembly held displaced, the forces on its blocks, and the acceleration over g that holds it."""
-        here = np.array([phi])
-        there = self.coefficients(here, direction)
-        share = float(there.restoring(self.gravity)[0] / there.B[0])
-        going = Going(np.zeros(1), np.zeros(1), np.full(1, -int(direction) * share * self.gravity + 0j))
-        bodies, motions = self.weighed(), self.motion(here, direction)
-        forces = under_way(bodies, motions, self.attached, direction, self.gravity, going)[0]
-        moved = {
-            body.name: (complex(motion.carry(body.centroid)[0][0]), float(motion.psi[0]))
-            for body, motion in zip(bodies, motions, strict=True)
-        }
-        states, weight = self._groups(direction).states, self._collapse(direction).problem.weight
-        return (
-            analysis.Displaced(self._blocks, self._contacts, self._guides, states, moved, weight), forces, share,
-        )  # fmt: skip
+    def _held(self, direction: Direction, phi: Reals) -> list[tuple[analysis.Displaced, Reals, float]]:
+        """At each rotation the displaced assembly, the forces on its blocks, and the acceleration over g that holds it.
+
+        All rotations at once, because each body takes as long for many as for one.
+        """
+        there = self.coefficients(phi, direction)
+        shares: Reals = there.restoring(self.gravity) / there.B
+        still = np.zeros(len(phi))
+        going = Going(still, still, np.asarray(-int(direction) * shares * self.gravity, np.complex128))
+        bodies, motions = self.weighed(), self.motion(phi, direction)
+        forces = under_way(bodies, motions, self.attached, direction, self.gravity, going)
+        centres = np.array([motion.carry(body.centroid)[0] for body, motion in zip(bodies, motions, strict=True)])
+        turns = np.exp(1j * np.array([motion.psi for motion in motions]))
+        weight, joints = self._collapse(direction).problem.weight, self._remaining(direction)
+        return [
+            (analysis.Displaced(joints.moved(centres[:, k], turns[:, k]), weight), forces[k], share)
+            for k, share in enumerate(shares.tolist())
+        ]
+
+    @per_direction
+    def _remaining(self, direction: Direction) -> analysis.Bearings:
+        """What is left of its joints once they open."""
+        return analysis.remaining(self._blocks, self._contacts, self._guides, self._groups(direction).states)
 
     @per_direction
     def _valid_to(self, direction: Direction) -> tuple[float, int, float] | None:
         """The rotation at which another joint opens as it is held displaced, which, and by what acceleration over g."""
+        try:
+            end = self.critical_rotation(direction)
+        except NoCriticalRotation:
+            end = self.limit(direction) * (1 - 1e-6)  # a tie holds it; at the very end it may lock
+        steps = np.linspace(0.0, end, analysis.STEPS + 1)
+        places = dict(zip(steps.tolist(), self._held(direction, steps), strict=True))
         known: Reals | None = None  # forces in the joints at the last rotation that holds
 
-        def held(phi: float) -> tuple[analysis.Admissible, float]:
-            here, forces, share = self._held(direction, phi)
+        def at(phi: float) -> tuple[analysis.Displaced, Reals, float]:
+            return places[phi] if phi in places else self._held(direction, np.array([phi]))[0]
+
+        def held(phi: float) -> analysis.Admissible:
+            here, forces, _ = at(phi)
             try:
-                return here.admissible(forces[None])[0], share
+                return here.admissible(forces[None])[0]
             except analysis.NoAnswer:
                 raise StructureError(f"the forces in its joints at {phi:.4g} rad could not be found") from None
 
         def margin(phi: float) -> float:
             nonlocal known
-            found = held(phi)[0]
+            found = held(phi)
             known = found.forces if found.margin > 0 else None
             return found.margin
 
         def holds(phi: float) -> bool:
             nonlocal known
             if known is not None:
-                here, forces, _ = self._held(direction, phi)
+                here, forces, _ = at(phi)
                 known = here.near(forces, known)
             return known is not None
 
-        try:
-            end = self.critical_rotation(direction)
-        except NoCriticalRotation:
-            end = self.limit(direction) * (1 - 1e-6)  # a tie holds it; at the very end it may lock
-        first = analysis.first_violation(margin, end, holds=holds)
+        first = analysis.first_violation(margin, steps, holds=holds)
         if first is None:
             return None
-        found, share = held(first)
-        return first, found.contact if found.contact is not None else 0, share
+        found = held(first)
+        return first, found.contact if found.contact is not None else 0, at(first)[2]
 
     @per_direction
     def _needed(self, direction: Direction) -> analysis.Friction:

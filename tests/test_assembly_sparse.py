@@ -152,7 +152,9 @@ def test_a_first_violation_takes_few_margins(root, power):
         return 1e-3 if phi < root and power == 1 else (root**power - phi**power)
 
     expected = root if power == 1 else (root**power + 1e-9) ** (1 / power)  # a tension of 1e-9 counts as none
-    assert first_violation(margin, 1.0, holds=lambda phi: 0 < phi < root - 0.04) == approx(expected, abs=1.1e-8)
+    steps = np.linspace(0, 1, 33)
+    found = first_violation(margin, steps, holds=lambda phi: 0 < phi < root - 0.04)
+    assert found == approx(expected, abs=1.1e-8)
     assert len(calls) < 24
 
 

@@ -403,7 +403,7 @@ class TestStandardStreams:
         both = ("respond", "-", "--record", "-")
         said = piped(*both, given=Path(BLOCK).read_text(encoding="utf-8"), code=2).stderr
         assert "can be read once only, and something else has been read from it" in said
-        assert "larger than 1 MB" in piped("equiv", "-", given="#" * 1_000_001, code=2).stderr
+        assert "larger than 10 MB" in piped("equiv", "-", given="#" * 10_000_001, code=2).stderr
 
     def test_a_record_is_read_by_defaults_from_there_too(self, monkeypatch):
         monkeypatch.setenv("ROCKING_UNITS", "m/s2")

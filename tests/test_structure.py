@@ -292,7 +292,7 @@ ALIASES = "a: &a [1,1,1,1,1,1,1,1,1,1]\n" + "".join(
 def test_aliases_that_stand_for_billions_are_refused_where_they_do():
     (problem,) = problems(BLOCK + ALIASES)
     assert problem.field in "fghi" and problem.line == 4 + "abcdefghi".index(problem.field)
-    assert "more than 200000 values" in problem.message and "aliases" in problem.hint
+    assert "more than 500000 values" in problem.message and "aliases" in problem.hint
 
 
 def test_an_alias_that_repeats_a_value_is_read():

@@ -9,9 +9,11 @@ from mechanisms._assembly.blocks import Block as Block
 from mechanisms._assembly.blocks import Contact as Contact
 from mechanisms._assembly.blocks import Guide as Guide
 from mechanisms._assembly.contacts import contacts as contacts
+from mechanisms._assembly.displaced import STEPS as STEPS
 from mechanisms._assembly.displaced import Admissible as Admissible
 from mechanisms._assembly.displaced import Displaced as Displaced
 from mechanisms._assembly.displaced import first_violation as first_violation
+from mechanisms._assembly.displaced import remaining as remaining
 from mechanisms._assembly.faults import AssemblyFault as AssemblyFault
 from mechanisms._assembly.faults import ContactFault as ContactFault
 from mechanisms._assembly.faults import DoesNotStand as DoesNotStand
@@ -30,6 +32,7 @@ from mechanisms._assembly.mechanism import Hinge as Hinge
 from mechanisms._assembly.mechanism import Linkage as Linkage
 from mechanisms._assembly.mechanism import Opening as Opening
 from mechanisms._assembly.mechanism import linkage as linkage
+from mechanisms._assembly.rays import Bearings as Bearings
 from mechanisms._assembly.thrust import Passage as Passage
 from mechanisms._assembly.thrust import Thrust as Thrust
 from mechanisms._assembly.thrust import thrust as thrust

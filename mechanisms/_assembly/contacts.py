@@ -7,20 +7,21 @@ of many blocks must not be joined across what is an open gap to each of them. Th
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from mechanisms._assembly.blocks import Block, Contact
 from mechanisms._assembly.faults import ContactFault, listed
-from mechanisms._polygons import Points, distance, nearby, overlap, size_of
+from mechanisms._polygons import Points, distance, inside, nearby, overlap, size_of, thickness_of
 from rocking_cli.core import Reals
 
 GAP = 2e-3  # of the smaller block: 2 mm of a voussoir of width and height .5 m each
 PARALLEL = 0.05  # sine of the angle of two edges that may still lie on each other
 LEVEL = 1e-6  # upward part of a normal that is none
 
+Gap = Callable[[str, str], float]
 Piece = tuple[complex, complex]  # from its start to its end the second body is on the left
 
 
@@ -59,7 +60,8 @@ def contacts(
     Raises
     ------
     ContactFault
-        If names are used twice, blocks overlap or touch nothing, or `per_pair` names two that do not touch.
+        If names are used twice, blocks overlap, touch nothing or are thinner than the gap, or `per_pair` names two that
+        do not touch.
     """
     bodies = [*blocks, *ground]
     names = [body.name for body in bodies]
@@ -69,8 +71,12 @@ def contacts(
     outlines = [body.outline for body in bodies]
     sizes = [size_of(z) if k < len(blocks) else np.inf for k, z in enumerate(outlines)]
     found: list[Contact] = []
-    reach = [0.0 if k >= len(blocks) else gap * size if within is None else within for k, size in enumerate(sizes)]
-    for i, j in _near(outlines, np.array(reach)):
+    reach = np.array(
+        [0.0 if k >= len(blocks) else gap * size if within is None else within for k, size in enumerate(sizes)]
+    )
+    thick = {block.name: thickness_of(z) for block, z in zip(blocks, outlines, strict=False)}
+    _none_thinner(blocks, thick, reach)
+    for i, j in _near(outlines, reach):
         if i >= len(blocks):
             continue  # ground on ground
         tolerance = gap * min(sizes[i], sizes[j]) if within is None else within
@@ -83,7 +89,41 @@ def contacts(
             bears = j >= len(blocks) or normal.imag < -LEVEL  # the ground, or the lower of the two
             found.append(joint.turned() if bears else joint)
     _all_touch(blocks, found)
+    size = dict(zip(names, sizes, strict=True))
+    _none_bridged(
+        found,
+        dict(zip(names, outlines, strict=True)),
+        thick,
+        lambda one, other: gap * min(size[one], size[other]) if within is None else within,
+    )
     return _with_friction(found, per_pair or {})
+
+
+def _none_thinner(blocks: Sequence[Block], thick: Mapping[str, float], reach: Reals) -> None:
+    """Refuse a block no thicker than what its faces may be apart from others."""
+    for block, tolerance in zip(blocks, reach.tolist(), strict=False):
+        if thick[block.name] <= tolerance:
+            raise _thin(block.name, thick[block.name], tolerance)
+
+
+def _none_bridged(found: Sequence[Contact], bodies: Mapping[str, Points], thick: Mapping[str, float], gap: Gap) -> None:
+    """Refuse a block across which its neighbours are joined."""
+    touch: dict[str, set[str]] = {name: set() for name in bodies}
+    for joint in found:
+        touch[joint.a].add(joint.b)
+        touch[joint.b].add(joint.a)
+    for joint in found:
+        tolerance = gap(joint.a, joint.b)
+        for name in sorted(touch[joint.a] & touch[joint.b]):
+            if thick.get(name, np.inf) <= tolerance:
+                along = np.asarray(np.linspace(joint.start, joint.end, 11)[1:-1], np.complex128)
+                if inside(along, bodies[name]).any():
+                    raise _thin(name, thick[name], tolerance)
+
+
+def _thin(name: str, thick: float, tolerance: float) -> ContactFault:
+    why = f"{name!r} is {thick:.2g} m thick, no more than the gap across which faces touch, {tolerance:.2g} m"
+    return ContactFault(f"{why}: give a smaller `gap`, or leave it out", (name,))
 
 
 def _near(outlines: Sequence[Points], reach: Reals) -> list[tuple[int, int]]:
@@ -139,12 +179,11 @@ def _merged(pieces: list[Piece], tolerance: float) -> list[Piece]:
 
 def _faces(joint: Contact, one: Points, other: Points, tolerance: float) -> tuple[str, str]:
     """At each end the body whose face goes on beyond it; empty where both or neither do."""
-    found = []
-    for end, way in ((joint.start, -1), (joint.end, 1)):
-        beyond = np.array([end + way * 3 * tolerance * (joint.end - joint.start) / joint.length])
-        on = [bool(distance(beyond, z)[0] <= tolerance) for z in (one, other)]
-        found.append((joint.a if on[0] else joint.b) if on[0] != on[1] else "")
-    return found[0], found[1]
+    along = 3 * tolerance * (joint.end - joint.start) / joint.length
+    beyond = np.array([joint.start - along, joint.end + along])
+    on = [distance(beyond, z) <= tolerance for z in (one, other)]
+    first, last = (("" if a == b else joint.a if a else joint.b) for a, b in zip(*on, strict=True))
+    return first, last
 
 
 def _all_touch(blocks: Sequence[Block], found: Sequence[Contact]) -> None:

@@ -7,7 +7,7 @@ another joint would have opened, and the mechanism is no longer the one that mov
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -17,8 +17,8 @@ from mechanisms._assembly.blocks import Block, Contact, Guide
 from mechanisms._assembly.faults import NoAnswer
 from mechanisms._assembly.mechanism import Opening
 from mechanisms._assembly.programme import TOLERANCE, least
-from mechanisms._assembly.rays import Bearing, Bearings, Frame, scaled
-from mechanisms._assembly.sparse import beside, solved, weighted_squares
+from mechanisms._assembly.rays import Bearings, Frame, scaled
+from mechanisms._assembly.sparse import beside, solved, solver, weighted_squares
 from mechanisms._assembly.unique import velocity_space
 from rocking_cli.core import Reals
 
@@ -29,7 +29,17 @@ TRIES = 6  # to balance forces without tension beside a state that is known
 LESS = 0.3  # of a force that would be tension: what is tried in its place
 STEPS = 32  # in which a first violation is looked for
 
-Placed = Mapping[str, tuple[complex, float]]
+ENDS = {Opening.CLOSED: (0, 1), Opening.START: (0,), Opening.END: (1,), Opening.LIFTED: ()}
+
+
+def remaining(
+    blocks: Sequence[Block], contacts: Sequence[Contact], guides: Sequence[Guide], states: Sequence[Opening]
+) -> Bearings:
+    """The joints that a mechanism leaves, where they are at rest: what `states` say of each; none may slide."""
+    for contact, state in zip(contacts, states, strict=True):
+        if state is Opening.SLIDES:
+            raise ValueError(f"the joint of {contact.a!r} and {contact.b!r} slides")
+    return Bearings.of(Frame.of(blocks), contacts, guides, [ENDS[state] for state in states])
 
 
 @dataclass(frozen=True)
@@ -63,61 +73,19 @@ class Displaced:
 
     Parameters
     ----------
-    blocks, contacts, guides
-        The assembly at rest.
-    states : sequence of Opening
-        What each joint does in the mechanism; none may slide.
-    moved : mapping of str to (complex, float)
-        Where the centroid of each block is now [m], and by how much it has turned [rad, anticlockwise]; a block that
-        is not named rests.
+    bearings : Bearings
+        What is left of its joints, where they are; see `remaining`.
     weight : float
         The force that margins are shares of [N].
     """
 
-    blocks: Sequence[Block]
-    contacts: Sequence[Contact]
-    guides: Sequence[Guide]
-    states: Sequence[Opening]
-    moved: Placed
+    bearings: Bearings
     weight: float
 
-    @cached_property
+    @property
     def frame(self) -> Frame:
         """The blocks where they are."""
-        rest = Frame.of(self.blocks)
-        return Frame(rest.names, tuple(self.moved.get(b.name, (b.centroid, 0.0))[0] for b in self.blocks), rest.size)
-
-    def carry(self, name: str, point: complex) -> complex:
-        """Where a point of a body is now [m]."""
-        if name not in self.moved:
-            return point
-        return complex(self.moved[name][0] + self.turn(name) * (point - self._centroids[name]))
-
-    @cached_property
-    def _centroids(self) -> Mapping[str, complex]:
-        return {block.name: block.centroid for block in self.blocks}
-
-    def turn(self, name: str) -> complex:
-        """By how much a body has turned, as a factor."""
-        return complex(np.exp(1j * self.moved[name][1])) if name in self.moved else 1 + 0j
-
-    @cached_property
-    def bearings(self) -> Bearings:
-        """The joints that are left, where they are."""
-        found = []
-        for k, (contact, state) in enumerate(zip(self.contacts, self.states, strict=True)):
-            if state is Opening.SLIDES:
-                raise ValueError(f"the joint of {contact.a!r} and {contact.b!r} slides")
-            if state is Opening.LIFTED:
-                continue
-            at = {Opening.START: [0], Opening.END: [1]}.get(state, [0, 1])
-            # Of a hinge the face that the corner bears on; both bodies of a closed joint have turned alike.
-            face = contact.face_at(at[0]) if len(at) == 1 else contact.a
-            points = tuple(self.carry(contact.a, contact.ends[end]) for end in at)
-            normal = contact.normal * self.turn(face)
-            found.append(Bearing(k, contact.a, contact.b, points, normal, contact.friction))
-        held = [Guide(g.name, g.body, self.carry(g.body, g.at), g.along) for g in self.guides]
-        return Bearings.of(self.frame, found, held)
+        return self.bearings.frame
 
     @cached_property
     def _free(self) -> Reals:
@@ -151,7 +119,7 @@ class Displaced:
         NoAnswer
             If the forces do work on the mechanism: they are not in balance.
         """
-        n = len(self.blocks)
+        n = len(self.frame.names)
         cases = np.array([scaled(each, self.frame, self.weight) for each in forces.reshape(-1, n, 3)])
         free = self._free
         largest = np.maximum(np.abs(cases).max(axis=1), 1.0)
@@ -200,10 +168,10 @@ class Displaced:
         free = float(np.abs(state).max())
         for _ in range(TRIES):
             share = np.where(rays.one_sided, state, free) ** 2
+            solve = solver(weighted_squares(rays.rates, share))
             balanced = state
             for _ in range(2):  # once more, for what rounding left
-                off = rays.rates.T @ balanced + case
-                balanced = balanced - share * (rays.rates @ solved(weighted_squares(rays.rates, share), off))
+                balanced = balanced - share * (rays.rates @ solve(rays.rates.T @ balanced + case))
             off = rays.rates.T @ balanced + case
             if (balanced[rays.one_sided] >= 0).all() and np.abs(off).max() <= TOLERANCE:
                 return balanced
@@ -213,21 +181,22 @@ class Displaced:
 
 
 def first_violation(
-    margin: Callable[[float], float], end: float, *, holds: Callable[[float], bool] | None = None
+    margin: Callable[[float], float], steps: Reals, *, holds: Callable[[float], bool] | None = None
 ) -> float | None:
-    """Where a margin first falls below zero, from rest to `end`; None if it does not.
+    """Where a margin first falls below zero, from rest to the last of some increasing steps; None if it does not.
 
-    Looked for in steps, at which `holds` may say without the margin that there is no tension, and then to 1e-8 of
-    `end` by the secant of what is missing, or in halves where that is slow: an excursion between two steps is not seen.
+    Looked for at these, where `holds` may say without the margin that there is no tension, and then to 1e-8 of the
+    last by the secant of what is missing, or in halves where that is slow: an excursion between two steps is not seen.
     """
     low, missing = 0.0, 0.0
-    for high in np.linspace(0.0, end, STEPS + 1):
-        if not (holds is not None and holds(float(high))) and (missing := -margin(float(high)) - HELD) > 0:
+    high: float
+    for high in steps.tolist():
+        if not (holds is not None and holds(high)) and (missing := -margin(high) - HELD) > 0:
             break
-        low = float(high)
+        low = high
     else:
         return None
-    high, close, root = float(high), FINE * abs(end), None
+    close, root = FINE * float(steps[-1]), None
     width = np.inf
     while high - low > close:
         # Every other time in halves, unless the secant has just done better.

@@ -13,6 +13,7 @@ import numpy as np
 
 from mechanisms._assembly.blocks import Contact
 from mechanisms._assembly.limit import Collapse
+from mechanisms._assembly.mechanism import STILL
 from mechanisms._assembly.problem import Problem
 from mechanisms._assembly.programme import least
 from mechanisms._assembly.rays import Rays
@@ -54,9 +55,8 @@ def friction(found: Collapse) -> Friction:
     kinds whatever the guesses are.
     """
     problem, multiplier = found.problem, found.multiplier * found.problem.strength
-    given = [each.friction for each in problem.bearings.bearings]
     search = _Search(problem, multiplier)
-    most = max((MOST if mu is None else min(mu, MOST) for mu in given), default=0.0)
+    most = float(np.nan_to_num(problem.bearings.friction, nan=MOST).clip(max=MOST).max(initial=0.0))
     shown = np.concatenate([np.column_stack([found.normal, found.shear]).ravel(), found.guide]) / problem.weight
     limit = search.uses(shown)
     if most < MOST:
@@ -64,9 +64,9 @@ def friction(found: Collapse) -> Friction:
     elif limit < MOST:
         search.bound(limit, shown)
     elif not search.carries(MOST):
-        shown, glued = _glued(problem, multiplier)
+        shown, glued = _glued(found, multiplier)
         return Friction(None, glued, *problem.by_contact(problem.weight * shown))
-    if not (most < MOST and not search.carries(search.below)) and not search.carries(0.0):
+    if not (most < MOST and not _may_carry(found, search)) and not search.carries(0.0):
         while search.high - search.low > FINE * search.high:
             search.carries(search.guess)
     return Friction(search.high, (), *problem.by_contact(problem.weight * search.state))
@@ -150,14 +150,13 @@ class _Search:
         bearings = self.problem.bearings
         normal, _, _ = self.problem.by_contact(state)
         slides = np.abs(self.problem.by_contact(bearings.rates @ raw)[1])
-        bound = np.array([each.friction is None or each.friction > mu for each in bearings.bearings])
-        return float((normal.sum(axis=1) * slides)[bound].sum())
+        return float((normal.sum(axis=1) * slides)[~(bearings.friction <= mu)].sum())
 
 
 def with_usual(found: Collapse) -> float | None:
     """The multiplier with the usual friction in joints without any; None if there are none, 0 if it does not stand."""
     problem = found.problem
-    if all(each.friction is not None for each in problem.bearings.bearings):
+    if not np.isnan(problem.bearings.friction).any():
         return None
     reached, _, _ = problem.greatest(problem.bearings.rays(usual=MASONRY))
     return max(reached, 0.0) / problem.strength
@@ -170,37 +169,58 @@ def sheared(found: Friction, contacts: Sequence[Contact]) -> tuple[int, ...]:
     return tuple(k for k, each in enumerate(contacts) if each.friction is None and beyond[k])
 
 
-def _glued(problem: Problem, multiplier: float) -> tuple[Reals, tuple[int, ...]]:
+def _may_carry(found: Collapse, search: _Search) -> bool:
+    """Whether just less friction than joints slide with carries their multiplier.
+
+    They open faster than they slide along a cone of less friction, and so bear nothing. Mostly there is no balance
+    without them, which is seen at once; if there is one, the programme decides.
+    """
+    problem, rays = found.problem, found.problem.bearings.rays(search.below)
+    low, high = np.append(rays.low, -np.inf), np.append(_most(found, rays), np.inf)
+    balance = least(np.zeros(rays.count + 1), beside([rays.rates.T, problem.live]), -problem.dead, low, high)
+    return balance is not None and search.carries(search.below)
+
+
+def _most(found: Collapse, rays: Rays) -> Reals:
+    """Upper bounds of the rays in a state of the greatest multiplier: what does work on the mechanism bears nothing."""
+    field = (found.velocity * np.array([1.0, 1.0, found.problem.frame.size])).ravel()
+    return np.where(rays.one_sided & (rays.rates @ field > STILL * np.abs(field).max()), 0.0, np.inf)
+
+
+def _glued(found: Collapse, multiplier: float) -> tuple[Reals, tuple[int, ...]]:
     """A state with as little shear beyond the greatest friction as there can be, and the joints that have it."""
-    state, beyond, _ = _beyond(problem, multiplier, MOST)
+    most = _most(found, found.problem.bearings.rays(MOST))
+    state, beyond, _ = _beyond(found.problem, multiplier, MOST, most)
     return state, tuple(int(k) for k in np.flatnonzero(np.abs(beyond) > SAME))
 
 
-def _beyond(problem: Problem, multiplier: float, mu: float) -> tuple[Reals, Reals, Reals]:
+def _beyond(problem: Problem, multiplier: float, mu: float, most: Reals | None = None) -> tuple[Reals, Reals, Reals]:
     """A state with as little shear beyond a friction as there can be, that shear by joints, and the velocities.
 
-    The shear may be beyond `mu` in joints whose own friction is more, or not given: so far as that.
+    The shear may be beyond `mu` in joints whose own friction is more, or not given: so far as that. With `most`, upper
+    bounds of the rays, there are points inside all bounds, of which the solver needs some.
     """
     rays = problem.bearings.rays(mu)
     free: Rays = problem.bearings.rays()
-    bearings = problem.bearings.bearings
-    joints = [k for k, each in enumerate(bearings) if each.friction is None or each.friction > mu]
-    rows = [problem.bearings.starts[k] + len(bearings[k].points) for k in joints]
+    joints = np.flatnonzero(~(problem.bearings.friction <= mu))  # not a number among them, which is no less
+    rows = problem.bearings.shears[joints]
     extra = problem.bearings.rates[rows].T
     count, n = len(rows), rays.count
-    # Less than the multiplier by a hair, lest rounding leave no state at all.
+    # The multiplier may be less by a hair, lest rounding leave no state at all.
+    least_, greatest = (SAME / 10, SAME / 10) if most is None else (SAME, -SAME)
     found = least(
-        np.concatenate([np.zeros(n), np.ones(2 * count)]),
-        beside([rays.rates.T, extra, -extra]),
-        -problem.dead - multiplier * (1 - SAME / 10) * problem.live,
-        np.concatenate([rays.low, np.zeros(2 * count)]),
-        np.full(n + 2 * count, np.inf),
-    )
-    beyond = np.zeros(len(bearings))
+        np.concatenate([np.zeros(n + 1), np.ones(2 * count)]),
+        beside([rays.rates.T, problem.live, extra, -extra]),
+        -problem.dead,
+        np.concatenate([rays.low, [multiplier * (1 - least_)], np.zeros(2 * count)]),
+        np.concatenate([np.full(n, np.inf) if most is None else most, [multiplier * (1 - greatest)],
+                        np.full(2 * count, np.inf)]),
+    )  # fmt: skip
+    beyond = np.zeros(len(problem.bearings.contact))
     if found is None:  # rounding took even that
         _, forces, raw = problem.greatest(free)
         return free.mix.T @ forces, beyond, raw
     state = rays.mix.T @ found.x[:n]
-    beyond[joints] = found.x[n : n + count] - found.x[n + count :]
+    beyond[joints] = found.x[n + 1 : n + 1 + count] - found.x[n + 1 + count :]
     state[rows] += beyond[joints]
     return state, beyond, found.prices

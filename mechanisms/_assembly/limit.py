@@ -141,7 +141,7 @@ def collapse(
     if multiplier >= STRONGEST * (1 - NOTHING):
         raise NothingMoves("no acceleration sets it in motion", problem.frame.names)
     if multiplier <= NOTHING:
-        falls = moving(problem.frame.names, raw, 1e-6)
+        falls = moving(problem.frame.names, raw, 1e-6) or problem.unheld(rays)[1]  # none if not even that is carried
         raise DoesNotStand(f"it barely stands: the least acceleration sets {listed(falls)} in motion", falls)
     kept = kept_rays(rays, problem.dead, problem.live, raw)
     space = velocity_space(rays.rates[kept], problem.frame)

@@ -11,7 +11,7 @@ import numpy as np
 from mechanisms._assembly.blocks import Block, Contact, Guide
 from mechanisms._assembly.limit import Collapse
 from mechanisms._assembly.parts import Parts
-from mechanisms._assembly.rays import Frame, Row
+from mechanisms._assembly.rays import Frame, Rows
 from mechanisms._assembly.unique import velocity_space
 from rocking_cli.core import Reals
 
@@ -181,10 +181,11 @@ def _freedom(
 ) -> int:
     """Dimension of the velocities that keep hinges and guides."""
     frame = Frame(tuple(str(k) for k in range(len(groups))), (0j,) * len(groups), size)
-    rows: list[Row] = []
-    for h in hinges:
-        a, b = (None if k is None else str(k) for k in ((h.one, h.other) if h.other is not None else (h.other, h.one)))
-        assert b is not None  # a hinge is of two groups, or of one and what rests
-        rows += [(a, b, h.point, way) for way in (1 + 0j, 1j)]
-    rows += [(None, str(number[g.body]), g.at, 1j * g.along / abs(g.along)) for g in guides]
-    return int(velocity_space(frame.rates(rows), frame).shape[1])
+    still = -1
+    rows = [
+        (still if h.one is None else h.one, still if h.other is None else h.other, h.point, way)
+        for h in hinges for way in (1 + 0j, 1j)
+    ]  # fmt: skip
+    rows += [(still, number[g.body], g.at, 1j * g.along / abs(g.along)) for g in guides]
+    one, other, points, ways = (np.array(each) for each in zip(*rows, strict=True)) if rows else (np.zeros(0, int),) * 4
+    return int(velocity_space(frame.rates(Rows(one, other, points, ways)), frame).shape[1])

@@ -10,7 +10,7 @@ import numpy as np
 from mechanisms._assembly.blocks import Block, Contact, Guide
 from mechanisms._assembly.faults import NothingMoves
 from mechanisms._assembly.programme import least
-from mechanisms._assembly.rays import Bearings, Frame, Rays, at_rest, moving, scaled
+from mechanisms._assembly.rays import Bearings, Frame, Rays, moving, scaled
 from mechanisms._assembly.sparse import beside, unit_columns
 from rocking_cli.core import Direction, Reals
 
@@ -57,7 +57,7 @@ class Problem:
         strength = float(np.abs(pull).sum())
         if strength == 0:
             raise NothingMoves("nothing acts on the blocks but what is always there", frame.names)
-        bearings = Bearings.of(frame, at_rest(contacts), guides)
+        bearings = Bearings.of(frame, contacts, guides)
         return cls(frame, bearings, scaled(dead, frame, weight), pull / strength, weight, strength)
 
     def greatest(self, rays: Rays) -> tuple[float, Reals, Reals]:
@@ -75,10 +75,15 @@ class Problem:
 
     def why_not(self, rays: Rays) -> tuple[str, ...]:
         """The blocks that no forces hold at rest; none if it stands."""
-        n = len(self.dead)
         unbounded = np.full(rays.count, np.inf)
         if least(np.zeros(rays.count), rays.rates.T.tocsc(), -self.dead, rays.low, unbounded) is not None:
             return ()
+        missing, names = self.unheld(rays)
+        return names if missing > NOTHING else ()
+
+    def unheld(self, rays: Rays) -> tuple[float, tuple[str, ...]]:
+        """The least forces beside those of the joints that hold everything at rest, and the blocks that need them."""
+        n = len(self.dead)
         extra = unit_columns(np.arange(n), n)
         found = least(
             np.append(np.zeros(rays.count), np.ones(2 * n)),
@@ -88,10 +93,10 @@ class Problem:
             np.full(rays.count + 2 * n, np.inf),
         )
         assert found is not None  # the extra forces balance anything
-        return moving(self.frame.names, found.prices, 1e-6) if found.value > NOTHING else ()
+        return found.value, moving(self.frame.names, found.prices, 1e-6)
 
     def by_contact(self, values: Reals) -> tuple[Reals, Reals, Reals]:
         """What belongs to the two ends of every joint, to its shear, and to the guides."""
-        n = len(self.bearings.bearings)
+        n = len(self.bearings.contact)
         joints = values[: 3 * n].reshape(n, 3)
         return joints[:, :2], joints[:, 2], values[3 * n :]

@@ -13,7 +13,7 @@ matrices are sparse, because a row has entries of two blocks at most.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -21,24 +21,31 @@ from numpy.typing import NDArray
 
 from mechanisms._assembly.blocks import Block, Contact, Guide
 from mechanisms._assembly.sparse import Sparse, from_entries
+from mechanisms._polygons import Points
 from rocking_cli.core import Reals
 
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.intp]
-Row = tuple[str | None, str, complex, complex]
-Entry = tuple[int, float, int, int]  # force, its share of the shear, the shear, contact
 
 
-@dataclass(frozen=True)
-class Bearing:
-    """Where and how a joint bears: at rest at its two ends, displaced perhaps at one alone."""
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Relative velocities, one a row: that of a point of one body relative to another, along a direction.
 
-    contact: int
-    a: str
-    b: str
-    points: tuple[complex, ...]
-    normal: complex
-    friction: float | None
+    Parameters
+    ----------
+    one, other : ndarray of int
+        The two bodies by their numbers, -1 for what does not move; it is the other that moves relative to the one.
+    points : ndarray of complex
+        The points [m].
+    ways : ndarray of complex
+        The directions.
+    """
+
+    one: Indices
+    other: Indices
+    points: Points
+    ways: Points
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,27 +68,17 @@ class Frame:
         """Number of each block in the order of the unknowns."""
         return {name: k for k, name in enumerate(self.names)}
 
-    def rates(self, rows: Sequence[Row]) -> Sparse:
-        """Build the matrix of relative velocities, shape (rows, 3 blocks).
-
-        Parameters
-        ----------
-        rows : sequence of (str or None, str, complex, complex)
-            Bodies `a` and `b`, a point [m] and a direction: the velocity along it of that point of `b` relative to
-            `a`. What is not a block does not move.
-        """
-        sides = [
-            (k, self.index[name], sign, point, way)
-            for k, (a, b, point, way) in enumerate(rows) for name, sign in ((b, 1.0), (a, -1.0))
-            if name is not None and name in self.index
-        ]  # fmt: skip
-        if not sides:
-            return from_entries([], [], [], (len(rows), 3 * len(self.names)))
-        row, block, signs, points, ways = (np.array(each) for each in zip(*sides, strict=True))
-        arm = (points - np.array(self.centroids)[block]) / self.size
-        values = signs * np.array([ways.real, ways.imag, (arm.conj() * ways).imag])
+    def rates(self, rows: Rows) -> Sparse:
+        """Build the matrix of relative velocities, shape (rows, 3 blocks)."""
+        block, ways = np.concatenate([rows.other, rows.one]), np.tile(rows.ways, 2)
+        moves = block >= 0
+        row = np.tile(np.arange(len(rows.one)), 2)[moves]
+        sign = np.repeat([1.0, -1.0], len(rows.one))[moves]
+        block, ways, points = block[moves], ways[moves], np.tile(rows.points, 2)[moves]
+        arm = (points - np.array(self.centroids, np.complex128)[block]) / self.size
+        values = sign * np.array([ways.real, ways.imag, (arm.conj() * ways).imag])
         columns = 3 * block + np.arange(3)[:, None]
-        return from_entries(np.tile(row, 3), columns.ravel(), values.ravel(), (len(rows), 3 * len(self.names)))
+        return from_entries(np.tile(row, 3), columns.ravel(), values.ravel(), (len(rows.one), 3 * len(self.names)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,60 +87,107 @@ class Bearings:
 
     Parameters
     ----------
-    bearings : tuple of Bearing
-        The joints.
-    rates : sparse array, shape (forces, 3 blocks)
+    frame : Frame
+        The blocks.
+    rows : Rows
         The normals of the points of each joint and its shear, joint after joint; then the guides.
-    starts : tuple of int
-        Of each joint the row of its first normal.
+    carried, turned : ndarray of int
+        Of each row the body that its point is carried by, and the one that its direction turns with.
+    contact : ndarray of int
+        Of each joint that bears the contact that it is.
+    count : ndarray of int
+        At how many points each bears.
+    friction : ndarray
+        Their coefficients of friction; not a number if they never slide.
     """
 
-    bearings: tuple[Bearing, ...]
-    rates: Sparse
-    starts: tuple[int, ...]
+    frame: Frame
+    rows: Rows
+    carried: Indices
+    turned: Indices
+    contact: Indices
+    count: Indices
+    friction: Reals
 
     @classmethod
-    def of(cls, frame: Frame, bearings: Sequence[Bearing], guides: Sequence[Guide]) -> Bearings:
-        """Of joints and guides where they are."""
-        rows: list[Row] = []
-        starts = []
-        for each in bearings:
-            starts.append(len(rows))
-            rows += [(each.a, each.b, point, each.normal) for point in each.points]
-            rows.append((each.a, each.b, each.points[0], -1j * each.normal))
-        rows += [(None, guide.body, guide.at, 1j * guide.along / abs(guide.along)) for guide in guides]
-        return cls(tuple(bearings), frame.rates(rows), tuple(starts))
+    def of(
+        cls,
+        frame: Frame,
+        contacts: Sequence[Contact],
+        guides: Sequence[Guide],
+        ends: Sequence[tuple[int, ...]] | None = None,
+    ) -> Bearings:
+        """Of joints that bear at some of their ends, or not at all, and of guides; without `ends`, at both."""
+        rows: list[tuple[int, int, complex, complex, int, int]] = []
+        bear = [(k, (0, 1) if ends is None else ends[k]) for k in range(len(contacts)) if ends is None or ends[k]]
+        number = frame.index
+        for k, at in bear:
+            each = contacts[k]
+            a, b = number.get(each.a, -1), number.get(each.b, -1)
+            # Of a hinge the face that the corner bears on; both bodies of a closed joint turn alike.
+            face = number.get(each.face_at(at[0]) if len(at) == 1 else each.a, -1)
+            rows += [(a, b, each.ends[end], each.normal, a, face) for end in at]
+            rows.append((a, b, each.ends[at[0]], -1j * each.normal, a, face))
+        for guide in guides:
+            body = number[guide.body]
+            rows.append((-1, body, guide.at, 1j * guide.along / abs(guide.along), body, -1))
+        one, other, points, ways, carried, turned = zip(*rows, strict=True) if rows else ((),) * 6
+        return cls(
+            frame,
+            Rows(_indices(one), _indices(other), np.array(points, np.complex128), np.array(ways, np.complex128)),
+            _indices(carried),
+            _indices(turned),
+            _indices([k for k, _ in bear]),
+            _indices([len(at) for _, at in bear]),
+            np.array([contacts[k].friction for k, _ in bear], np.float64),
+        )
+
+    def moved(self, centroids: Points, turns: Points) -> Bearings:
+        """The same where the blocks have moved: their centroids [m], and how far each has turned as a factor."""
+        # What does not move is the last of each, which -1 finds.
+        before, after = (np.append(np.asarray(z, np.complex128), 0) for z in (self.frame.centroids, centroids))
+        turn, by = np.append(turns, 1), self.carried
+        points = after[by] + turn[by] * (self.rows.points - before[by])
+        rows = replace(self.rows, points=points, ways=self.rows.ways * turn[self.turned])
+        return replace(self, frame=replace(self.frame, centroids=tuple(centroids.tolist())), rows=rows)
+
+    @cached_property
+    def rates(self) -> Sparse:
+        """Velocities that the forces do work on, shape (forces, 3 blocks)."""
+        return self.frame.rates(self.rows)
+
+    @cached_property
+    def shears(self) -> Indices:
+        """Of each joint the row of its shear, after those of its normals."""
+        return np.asarray(np.cumsum(self.count + 1) - 1, np.intp)
 
     def rays(self, most: float | None = None, *, usual: float | None = None) -> Rays:
         """The rays of its forces; no joint may have more friction than `most`, and one without has `usual`."""
-        sided: list[Entry] = []
-        free: list[Entry] = []
-        last = 0
-        for each, start in zip(self.bearings, self.starts, strict=True):
-            shear = start + len(each.points)
-            own = usual if each.friction is None else each.friction
-            limits = [mu for mu in (own, most) if mu is not None]
-            mu = min(limits) if limits else None
-            for k in range(start, shear):
-                if mu is None or mu <= 0:
-                    sided.append((k, 0.0, shear, each.contact))
-                else:
-                    sided += [(k, mu, shear, each.contact), (k, -mu, shear, each.contact)]
-            if mu is None:
-                free.append((shear, 0.0, shear, each.contact))
-            last = shear + 1
-        free += [(k, 0.0, k, -1) for k in range(last, self.rates.shape[0])]
-        entries = np.array([*sided, *free], np.float64).reshape(-1, 4).T
-        share, (force, shear_of, owner) = entries[1], entries[[0, 2, 3]].astype(np.intp)
-        ray = np.arange(len(force))
-        slips = share != 0
+        mu = self.friction if usual is None else np.where(np.isnan(self.friction), usual, self.friction)
+        mu = mu if most is None else np.fmin(mu, most)
+        # Two edges of a cone at each point with friction, else its normal alone.
+        joint = np.repeat(np.arange(len(mu)), self.count)
+        normal = np.arange(len(joint)) + joint
+        edges = np.where(mu[joint] > 0, 2, 1)
+        of = np.repeat(np.arange(len(joint)), edges)
+        second = np.diff(of, prepend=-1) == 0
+        share = np.where(edges[of] == 2, np.where(second, -1.0, 1.0) * mu[joint[of]], 0.0)
+        glued = np.flatnonzero(np.isnan(mu))
+        guides = np.arange(len(joint) + len(mu), self.rates.shape[0])
+        force = np.concatenate([normal[of], self.shears[glued], guides])
+        ray, slips = np.arange(len(force)), np.flatnonzero(share)
         mix = from_entries(
-            np.append(ray, ray[slips]),
-            np.append(force, shear_of[slips]),
+            np.append(ray, slips),
+            np.append(force, self.shears[joint[of[slips]]]),
             np.append(np.ones(len(ray)), share[slips]),
             (len(ray), self.rates.shape[0]),
         )
-        return Rays(mix @ self.rates, mix, ray < len(sided), owner)
+        owner = np.concatenate([self.contact[joint[of]], self.contact[glued], np.full(len(guides), -1)])
+        return Rays(mix @ self.rates, mix, ray < len(of), owner)
+
+
+def _indices(numbers: Sequence[int]) -> Indices:
+    return np.array(numbers, np.intp)
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,11 +220,6 @@ class Rays:
     def low(self) -> Reals:
         """Lower bound of each ray multiplier."""
         return np.where(self.one_sided, 0.0, -np.inf)
-
-
-def at_rest(contacts: Sequence[Contact]) -> list[Bearing]:
-    """Joints that bear at both ends."""
-    return [Bearing(k, c.a, c.b, c.ends, c.normal, c.friction) for k, c in enumerate(contacts)]
 
 
 def scaled(forces: Reals, frame: Frame, weight: float) -> Reals:

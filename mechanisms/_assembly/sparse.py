@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -41,6 +41,15 @@ def solved(matrix: Sparse, right: Reals) -> Reals:
     from scipy.sparse.linalg import splu
 
     return np.asarray(splu(matrix.tocsc()).solve(np.ascontiguousarray(right)))
+
+
+def solver(squares: Sparse) -> Callable[[Reals], Reals]:
+    """Factorise a symmetric matrix without negative squares, and return what solves it for a column."""
+    from scipy.sparse.linalg import splu
+
+    # In the order of its pattern, and without exchanging rows: such a matrix needs none, and fills in less.
+    factors = splu(squares.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    return lambda right: np.asarray(factors.solve(right), np.float64)
 
 
 def weighted_squares(matrix: Sparse, weights: Reals) -> Sparse:

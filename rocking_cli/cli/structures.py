@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import terminal
+from rocking_cli.cli import terminal, waiting
 from rocking_cli.cli.options import OPENING
 from rocking_cli.core import Mechanism
 from rocking_cli.core.size import doubts as odd
@@ -113,6 +113,7 @@ def stem(file: str | None) -> str:
 def _read(file: str) -> Mechanism:
     """Return the structure of a file, or of standard input for `-`."""
     if file != STANDARD_INPUT:
+        waiting.say_what_blocks_take(file)
         mechanism = load_structure(file)
         terminal.detail(f"structure: {mechanism.name} ({mechanism.mechanism}), of {Path(file).resolve()}")
         return mechanism

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
 from rocking_cli.cli import terminal
+from rocking_cli.errors import InputError
 
 MANY = 500  # blocks that take more than a few seconds
 
@@ -15,22 +15,32 @@ _SAID: set[str] = set()
 
 @contextmanager
 def blocks(file: str | None) -> Iterator[None]:
-    """Show that blocks are analysed, and say before it starts what many of them will take."""
+    """Show that blocks are analysed."""
     count = _count_of_blocks(file)
-    if count >= MANY:
-        minutes = (count / 1000) ** 2  # measured: half a minute to a minute for 1000
-        took = f"{minutes:.0f} minutes" if minutes > 1.5 else "a minute"
-        size = f"{100 + 0.15 * count:.0f} MB"
-        terminal.note(f"{count} polygons: up to about {took} and {size}; Ctrl-C stops it")
     with terminal.working(f"analysing {count} polygons" if count else "finding the weakest mechanism"):
         yield
 
 
+def say_what_blocks_take(file: str | None) -> None:
+    """Say before it starts what the analysis of many blocks will take."""
+    count = _count_of_blocks(file)
+    if count < MANY or str(file) in _SAID:
+        return
+    _SAID.add(str(file))  # what is not valid may be read once more
+    minutes = (count / 1000) ** 2  # measured: half a minute to a minute for 1000
+    took = f"{minutes / 60:.0f} hours" if minutes > 90 else f"{minutes:.0f} minutes" if minutes > 1.5 else "a minute"
+    size = f"{100 + 0.15 * count:.0f} MB"
+    terminal.note(f"{count} polygons: up to about {took} and {size}; Ctrl-C stops it")
+
+
 def _count_of_blocks(file: str | None) -> int:
     """Return the number of polygons that a file names, whatever else is in it; 0 if it cannot be read yet."""
+    from rocking_cli.io.files import read_bytes
+    from rocking_cli.io.yaml_file import LARGEST
+
     try:
-        return Path(file).read_bytes().count(b"polygon:") if file and file != "-" else 0
-    except OSError:
+        return read_bytes(file, "structure file", LARGEST).count(b"polygon:") if file and file != "-" else 0
+    except InputError:
         return 0  # reported when it is loaded
 
 

@@ -186,7 +186,9 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
     if kind in ("too_short", "too_long"):
         least, most = ctx.get("min_length"), ctx.get("max_length")
         wanted, count = ("at least", least) if least is not None else ("at most", most)
-        return f"must have {wanted} {count} entr{'y' if count == 1 else 'ies'}, has {ctx['actual_length']}", None
+        has = ctx["actual_length"]
+        has = len(given) if has is None and isinstance(given, dict) else has  # of too long a mapping it is not counted
+        return f"must have {wanted} {count} entr{'y' if count == 1 else 'ies'}, has {has}", None
     if kind == "list_type":
         return f"must be a list, {got}", None
     if kind in ("model_type", "model_attributes_type", "dict_type"):

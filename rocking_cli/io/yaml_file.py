@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import yaml
+from yaml.composer import Composer
 from yaml.reader import ReaderError
 
 from rocking_cli.errors import InputError, Problem
@@ -15,9 +17,10 @@ from rocking_cli.io.files import read_bytes
 from rocking_cli.patterns import regex
 from rocking_cli.text import cut, printable
 
-LARGEST = 1_000_000  # bytes; a structure takes a few hundred, a study a few thousand
+LARGEST = 10_000_000  # bytes; most structures take a few hundred, a wall of ten thousand blocks two million
+LONG = 100_000  # characters; what is as long takes seconds to read without the parser in C
 DEEPEST = 20  # nesting
-MOST = 200_000  # values, with those that aliases repeat: a few lines of them stand for billions
+MOST = 500_000  # values, with those that aliases repeat: a few lines of them stand for billions
 
 
 _LINE_END = regex("\r\n|[\r\n\x85\u2028\u2029]")  # as YAML counts lines
@@ -27,6 +30,27 @@ class _Loader(yaml.SafeLoader):
     """PyYAML with the plain scalars of YAML 1.2: `1e3` is a number, `on` a word and `012` is twelve."""
 
     yaml_implicit_resolvers: dict[str, Any] = {}  # noqa: RUF012 - so it is declared in PyYAML
+
+
+def _fast() -> type[_Loader]:
+    """The same with the parser in C, which gives the events; composed in C, deep nesting would end the process."""
+
+    class Fast(Composer, yaml.CSafeLoader):
+        yaml_implicit_resolvers = _Loader.yaml_implicit_resolvers
+
+        def __init__(self, text: str) -> None:
+            yaml.CSafeLoader.__init__(self, text)
+            Composer.__init__(self)
+
+    return Fast  # type: ignore[return-value]
+
+
+def _composed(text: str) -> yaml.Node | None:
+    """The nodes of a text."""
+    if len(text) >= LONG and yaml.__with_libyaml__:
+        with suppress(ReaderError):  # for a bad character it has no place
+            return yaml.compose(text, Loader=_fast())
+    return yaml.compose(text, Loader=_Loader)
 
 
 for _tag, _first, _pattern in (
@@ -195,7 +219,7 @@ def parse(text: str, file: str, what: str, hint: str) -> Document:
     """
     document = Document(what, file, _LINE_END.split(text))
     try:
-        node = yaml.compose(text, Loader=_Loader)
+        node = _composed(text)
     except yaml.MarkedYAMLError as error:
         said = " ".join(part for part in (error.context, error.problem) if part)
         began, noticed = error.context_mark, error.problem_mark
