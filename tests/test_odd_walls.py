@@ -186,7 +186,7 @@ def test_what_many_blocks_take_is_said_once_before_they_are_read(tmp_path, capsy
     for _ in range(2):
         waiting.say_what_blocks_take(str(file))
     said = capsys.readouterr().err
-    assert said.count("10000 polygons: up to about 2 hours") == 1 and "Ctrl-C" in said
+    assert said.count("10000 polygons: 100 minutes and 2000 MB at least") == 1 and "Ctrl-C" in said
     waiting.say_what_blocks_take("/dev/zero")  # without end
     waiting.say_what_blocks_take(str(tmp_path / "none"))
     assert capsys.readouterr().err == ""

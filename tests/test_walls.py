@@ -156,7 +156,7 @@ class TestPicture:
         style.save(figure, drawn, format="svg")
         assert len(drawn.getvalue()) < 400_000
         record = read_record(EXAMPLES / "accel.csv")
-        history = respond(wall, record, models=("nonlinear",))["nonlinear"]
+        history = respond(wall, record, models=("linear2",))["linear2"]
         assert len(animation_page(Film(shown, history, record), "wall")) < 300_000
 
     def test_lines_are_lighter_the_smaller_the_blocks(self, shown):

@@ -9,6 +9,7 @@ from rocking_cli.cli import terminal
 from rocking_cli.errors import InputError
 
 MANY = 500  # blocks that take more than a few seconds
+MEASURED = 1000  # blocks, at most, whose analysis was timed
 
 _SAID: set[str] = set()
 
@@ -27,10 +28,15 @@ def say_what_blocks_take(file: str | None) -> None:
     if count < MANY or str(file) in _SAID:
         return
     _SAID.add(str(file))  # what is not valid may be read once more
-    minutes = (count / 1000) ** 2  # measured: half a minute to a minute for 1000
-    took = f"{minutes / 60:.0f} hours" if minutes > 90 else f"{minutes:.0f} minutes" if minutes > 1.5 else "a minute"
-    size = f"{100 + 0.15 * count:.0f} MB"
-    terminal.note(f"{count} polygons: up to about {took} and {size}; Ctrl-C stops it")
+    if count <= MEASURED:
+        terminal.note(f"{count} polygons: up to about a minute and 250 MB; Ctrl-C stops it")
+        return
+    minutes = round((count / 1000) ** 2)  # at a minute for 1000
+    least = "a minute" if minutes < 2 else f"{minutes} minutes" if minutes < 120 else f"{minutes / 60:.0f} hours"
+    terminal.note(
+        f"{count} polygons: {least} and {0.2 * count:.0f} MB at least, and perhaps many times as much, as no more than "
+        f"{MEASURED} have been measured; Ctrl-C stops it"
+    )
 
 
 def _count_of_blocks(file: str | None) -> int:
@@ -39,7 +45,7 @@ def _count_of_blocks(file: str | None) -> int:
     from rocking_cli.io.yaml_file import LARGEST
 
     try:
-        return read_bytes(file, "structure file", LARGEST).count(b"polygon:") if file and file != "-" else 0
+        return read_bytes(file, "structure file", LARGEST).count(b"polygon") if file and file != "-" else 0
     except InputError:
         return 0  # reported when it is loaded
 
