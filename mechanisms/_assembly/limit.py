@@ -137,7 +137,7 @@ def collapse(
     falls = problem.why_not(rays)
     if falls:
         raise DoesNotStand(f"it does not stand by itself: nothing holds {listed(falls)}", falls)
-    multiplier, forces, raw = problem.greatest(rays)
+    multiplier, forces, raw = problem.greatest(rays, exact=True)
     if multiplier >= STRONGEST * (1 - NOTHING):
         raise NothingMoves("no acceleration sets it in motion", problem.frame.names)
     if multiplier <= NOTHING:

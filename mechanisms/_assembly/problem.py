@@ -60,7 +60,7 @@ class Problem:
         bearings = Bearings.of(frame, contacts, guides)
         return cls(frame, bearings, scaled(dead, frame, weight), pull / strength, weight, strength)
 
-    def greatest(self, rays: Rays) -> tuple[float, Reals, Reals]:
+    def greatest(self, rays: Rays, *, exact: bool = False) -> tuple[float, Reals, Reals]:
         """The greatest multiplier of `live`, forces of the rays that carry it, and velocities they do no work on."""
         found = least(
             np.append(np.zeros(rays.count), -1.0),
@@ -68,6 +68,7 @@ class Problem:
             -self.dead,
             np.append(rays.low, 0.0),
             np.append(np.full(rays.count, np.inf), STRONGEST),
+            exact=exact,
         )
         if found is None:
             return -np.inf, np.zeros(rays.count), np.zeros(len(self.dead))
