@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import yaml
 from pytest import approx
+from scipy.sparse import diags_array, eye_array, random_array, vstack
 
 from mechanisms._assembly import ContactFault, collapse, contacts, linkage, remaining
 from mechanisms._assembly import programme as programmes
@@ -200,3 +201,38 @@ def test_too_many_entries_are_counted():
 
     with pytest.raises(InputError, match="at most 100 entries, has 101"):
         parse_structure(text, "wall.yaml", "wall")
+
+
+def planned(seed, rows=80, columns=200):
+    """A programme whose one optimum is known: at a vertex, with prices that say so; far from evenly scaled."""
+    rng = np.random.default_rng(seed)
+    equal = random_array((rows, columns), density=0.1, random_state=rng, format="csc") + eye_array(rows, columns)
+    equal = equal.tocsc() @ diags_array(10.0 ** rng.uniform(-2, 2, columns))
+    low, high = np.full(columns, -1.0), np.full(columns, np.inf)
+    low[:10], high[100:130] = -np.inf, 2.0
+    x, slope = low.copy(), rng.uniform(0.1, 1.0, columns)
+    x[:rows], slope[:rows] = rng.uniform(0.0, 1.0, rows), 0.0  # those of the vertex
+    x[100:130], slope[100:130] = 2.0, -slope[100:130]  # at their upper bounds
+    prices = rng.normal(size=rows)
+    return (slope + equal.T @ prices, equal.tocsc(), equal @ x, low, high), x, prices, np.maximum(slope, 0.0)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_programme_is_refined_until_its_errors_are_rounding(seed, monkeypatch):
+    monkeypatch.setattr(programmes, "SOON", 100)
+    programme, x, prices, slope = planned(seed)
+    found = programmes._Programme(*programme).refined()
+    assert found.x == pytest.approx(x, rel=1e-8, abs=1e-8)
+    assert found.prices == pytest.approx(prices, rel=1e-8, abs=1e-8)
+    assert found.at_lower == pytest.approx(slope, rel=1e-8, abs=1e-8)
+    assert found.value == pytest.approx(float(programme[0] @ x), rel=1e-12)
+
+
+def test_a_refined_programme_without_an_answer_has_none(monkeypatch):
+    monkeypatch.setattr(programmes, "SOON", 100)
+    (cost, equal, right, low, high), *_ = planned(0)
+    row = np.asarray(equal[[0]].toarray()).ravel()
+    twice = vstack([equal, equal[[0]]], format="csc")
+    assert programmes._Programme(cost, twice, np.append(right, right[0]), low, high).refined() is not None
+    apart = np.append(right, right[0] + 1e-8 * np.abs(row).max())  # within the solver's tolerance, which is not ours
+    assert programmes._Programme(cost, twice, apart, low, high).refined() is None
