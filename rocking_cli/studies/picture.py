@@ -312,7 +312,7 @@ class Picture:
             if not alike:
                 found.append(here)
             links[name] = alike[0] if alike else len(found) - 1
-        return links
+        return {name: links[name] for name in of_body}
 
     @cached_property
     def shades(self) -> Mapping[Direction, tuple[int | None, ...]]:
