@@ -13,7 +13,7 @@ from mypy import api as mypy
 from pydantic import ValidationError
 
 import rocking_cli as rk
-from rocking_cli.api.answer import Answer
+from rocking_cli.ask.answer import Answer
 from rocking_cli.core.registry import Registry
 from rocking_cli.views.view import View
 from tests.conftest import EXAMPLES, PROJECT

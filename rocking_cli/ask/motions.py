@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from rocking_cli.api.answer import Answer
-from rocking_cli.api.verbs import Motion, StructureLike, _models, _motion, _structure
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.given import Motion, StructureLike, models_of, motion_of, structure_of
 from rocking_cli.dynamics.history import RTOL
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.floor import Floor
@@ -49,7 +49,7 @@ def correct(motion: Motion, *steps: Step | str | Mapping[str, Any]) -> GroundMot
     ('lowpass 5',)
     """
     asked = [step for each in steps for step in ([each] if isinstance(each, Step) else parse_steps([each]))]
-    return process(_motion(motion), asked)
+    return process(motion_of(motion), asked)
 
 
 def on_floor(motion: Motion, floor: Floor | str | Mapping[str, Any]) -> GroundMotion:
@@ -73,7 +73,7 @@ def on_floor(motion: Motion, floor: Floor | str | Mapping[str, Any]) -> GroundMo
     InputError
         If the floor is not valid.
     """
-    return (floor if isinstance(floor, Floor) else Floor.parse(floor)).of(_motion(motion))
+    return (floor if isinstance(floor, Floor) else Floor.parse(floor)).of(motion_of(motion))
 
 
 def respond_around(
@@ -118,10 +118,10 @@ def respond_around(
     from rocking_cli.studies.azimuths import all_around
     from rocking_cli.views.azimuths import columns, view
 
-    ready = _structure(structure)
-    chosen = _models(models) if models is not None else ready.default_models
+    ready = structure_of(structure)
+    chosen = models_of(models) if models is not None else ready.default_models
     tilt = Release.of(release).ratio(ready) if release is not None else None
-    found = all_around(ready, chosen, (_motion(one), _motion(other)), scale, release=tilt, rtol=rtol)
+    found = all_around(ready, chosen, (motion_of(one), motion_of(other)), scale, release=tilt, rtol=rtol)
 
     def table() -> Columns:
         return columns(found)

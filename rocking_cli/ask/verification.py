@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rocking_cli.api.answer import Answer
-from rocking_cli.api.verbs import Motion, StructureLike, _motion, _structure
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.given import Motion, StructureLike, motion_of, structure_of
 from rocking_cli.errors import InputError
 from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import parse
@@ -78,14 +78,14 @@ def verify(
     wrong = [sign for sign in polarities if sign not in (1, -1)]
     if wrong or not polarities:
         raise InputError(f"polarities must be of 1 and -1, got {', '.join(map(str, wrong)) or 'none'}")
-    ready, known = _structure(structure), _site(site)
+    ready, known = structure_of(structure), _site(site)
     point = None
     if control is not None:
         x, y, *body = control
         point = control_at(ready.mechanism, x, y, body[0] if body else None)
     found = verify(ready, known, point)
     if motions:
-        asked = Histories([_motion(each) for each in motions], polarities, state, on_floor)
+        asked = Histories([motion_of(each) for each in motions], polarities, state, on_floor)
         found = with_histories(found, ready, known, asked)
 
     def draw() -> Figure:

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rocking_cli.api.answer import Answer
-from rocking_cli.api.verbs import Motion, StructureLike, _each, _motion, _structure
-from rocking_cli.api.verification import _site
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.given import Motion, StructureLike, each_of, motion_of, structure_of
+from rocking_cli.ask.verification import _site
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -72,7 +72,7 @@ def survey(
     from rocking_cli.studies.survey import survey as study
     from rocking_cli.views.survey import columns, title, view
 
-    shaken = [_motion(each).scaled(scale) for each in _each(motions)]
+    shaken = [motion_of(each).scaled(scale) for each in each_of(motions)]
     where = _site(site) if site is not None else None
     found = study(_entries(structures), shaken, polarities, site=where, threads=threads)
 
@@ -92,7 +92,7 @@ def _entries(given: Any) -> Sequence[Entry]:
         return StructureTable.read(Path(given))
     if isinstance(given, Mapping) or hasattr(given, "columns"):
         return of_mapping(given)
-    return [Made(_structure(each).mechanism) for each in given]
+    return [Made(structure_of(each).mechanism) for each in given]
 
 
 def design(
@@ -157,9 +157,9 @@ def design(
     from rocking_cli.studies.neighbours import Around
     from rocking_cli.views.design import columns, view
 
-    ready = _structure(structure)
+    ready = structure_of(structure)
     span = Span.parse(vary) if isinstance(vary, str) else Span(vary[0], repr(float(vary[1])), repr(float(vary[2])))
-    shaken = [_motion(each).scaled(scale) for each in _each(motions)]
+    shaken = [motion_of(each).scaled(scale) for each in each_of(motions)]
     where = _site(site) if site is not None else None
     shaking = Shaking(shaken, polarities, Around(neighbours), where) if shaken or where is not None else None
     found = study(ready, span.field, span.in_unit(ready.unit_of(span.field)), Aim.parse(until), shaking, points=points)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rocking_cli.api.answer import Answer
-from rocking_cli.api.verbs import Motion, _each, _motion
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.given import Motion, each_of, motion_of
 from rocking_cli.excitation.base import GroundMotion
 
 if TYPE_CHECKING:
@@ -99,10 +99,10 @@ def _candidates(given: Any) -> tuple[list[GroundMotion], list[str | None]]:
 
     motions: list[GroundMotion] = []
     files: list[str | None] = []
-    for each in _each(given):
+    for each in each_of(given):
         pattern = isinstance(each, str) and any(sign in each for sign in "*?[") and not Path(each).exists()
         for one in files_of(each) if pattern else [each]:
-            motion = _motion(one)
+            motion = motion_of(one)
             if any(motion.name == other.name for other in motions):
                 motion = replace(motion, name=f"{motion.name} ({len(motions) + 1})")
             motions.append(motion)

@@ -1,0 +1,51 @@
+"""`rk.collapse`."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from rocking_cli.ask.answer import MappingAnswer
+from rocking_cli.ask.given import StructureLike, structure_figure, structure_of
+from rocking_cli.core import CollapseMechanism, Direction
+
+
+def collapse(structure: StructureLike) -> MappingAnswer[Direction, CollapseMechanism]:
+    """Find the weakest mechanism of an assembly of rigid blocks in each direction, by limit analysis.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        Assembly, or its YAML file.
+
+    Returns
+    -------
+    MappingAnswer of Direction to CollapseMechanism
+        lambda, hinges, groups of blocks that move as one, a line of thrust, friction required, and rotation up to which
+        the mechanism is valid.
+
+    Raises
+    ------
+    InputError
+        If the structure is not an assembly, or its file cannot be used.
+    MechanismError
+        If the assembly has no mechanism.
+
+    Examples
+    --------
+    A block of 1 m x 4 m on the ground:
+
+    >>> import rocking_cli as rk
+    >>> block = {"polygon": [[0.0, 0.0], [1.0, 0.0], [1.0, 4.0], [0.0, 4.0]]}
+    >>> ground = {"polygon": [[-1.0, -1.0], [2.0, -1.0], [2.0, 0.0], [-1.0, 0.0]]}
+    >>> answer = rk.collapse(rk.Assembly(blocks={"block": block}, ground={"ground": ground}))
+    >>> round(answer[rk.Direction.POSITIVE].lambda_, 12)
+    0.25
+    """
+    from rocking_cli.studies.collapse import collapses
+    from rocking_cli.views.collapse import table, view
+
+    mechanism = structure_of(structure).mechanism
+    found = collapses(mechanism)
+
+    columns, figure = partial(table, found), partial(structure_figure, mechanism, found)
+    return MappingAnswer("weakest mechanism", found, view(mechanism, found), columns, figure)

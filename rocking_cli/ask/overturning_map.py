@@ -1,0 +1,103 @@
+"""`rk.overturning_map`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.given import StructureLike, structure_of
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.excitation.base import STANDARD_GRAVITY
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.studies.overturning import OverturningMap
+
+
+def overturning_map(
+    structure: StructureLike | None = None,
+    *,
+    shape: str = "sine",
+    model: ModelName = "linear2",
+    eta: float | None = None,
+    period: tuple[float, float] | None = None,
+    ag: tuple[float, float] | None = None,
+    omega: tuple[float, float] | None = None,
+    a: tuple[float, float] | None = None,
+    polarities: Sequence[int] = (1,),
+    points: int = 128,
+) -> Answer[OverturningMap]:
+    """Map the effect of pulses of all periods and amplitudes on a structure, or on the dimensionless linear block.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path, optional
+        Structure; without it, the linear block, with the axes omega = omega_g/p and a = a_g/(g lambda).
+    shape : str
+        Shape of the pulses.
+    model : {"linear2", "linear1", "nonlinear"}
+        Model of the structure.
+    eta : float, optional
+        Coefficient of restitution; by default that of the structure, or 0.9.
+    period, ag : (float, float), optional
+        Smallest and largest period [s] and amplitude [standard gravity], for a structure.
+    omega, a : (float, float), optional
+        Smallest and largest dimensionless frequency and amplitude, for the linear block.
+    polarities : sequence of int
+        Polarities, of 1 and -1; with both, the worse governs.
+    points : int
+        Number of points along each side.
+
+    Returns
+    -------
+    Answer of OverturningMap
+        Outcome under every pulse; `regions` has the class of each, unknown outcomes among them.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+    SolverError
+        If a motion cannot be simulated to its end.
+
+    Notes
+    -----
+    Dimensionless amplitude and frequency: DeJong and Dimitrakopoulos (2014), Eq. 40.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> found = rk.overturning_map(points=24)
+    >>> found.outcome.overturned.shape
+    (24, 24)
+    """
+    from rocking_cli.studies import overturning as study
+    from rocking_cli.studies.under_pulses import linear_block, parse_shape, pulsed_model
+    from rocking_cli.views import overturning as views
+
+    form = parse_shape(shape)
+    mechanism = None
+    if structure is None:
+        subject = linear_block(0.9 if eta is None else eta)
+        columns, rows = np.linspace(*(omega or study.OMEGAS), points), np.linspace(*(a or study.AMPLITUDES), points)
+    else:
+        ready = structure_of(structure)
+        mechanism, subject = ready.mechanism, pulsed_model(ready, model, form, polarities, eta)
+        columns = subject.period(np.linspace(*(period or study.usual_periods([subject])), points))
+        rows = np.linspace(*(ag or study.usual_amplitudes([subject])), points) * STANDARD_GRAVITY / subject.unit
+    found = study.overturning_map(subject, form, columns, rows, polarities=polarities)
+    bare = mechanism is None
+
+    def figure() -> Figure:
+        from rocking_cli.plotting.overturning import draw_map
+
+        return draw_map(found, views.map_title(found), dimensionless=bare)
+
+    view = views.map_view(found, mechanism, dimensionless=bare)
+    return Answer("overturning map", found, view, lambda: views.map_table(found, mechanism), figure)
