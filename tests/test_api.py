@@ -226,7 +226,9 @@ def test_a_type_checker_accepts_the_page(maker, tmp_path):
     assert not wrong and code in (0, 1), out + err
 
 
-MODULES = ("", ".api.verbs", ".dynamics.batch", ".dynamics.exact", ".names", ".units")
+FILES = sorted((PROJECT / "rocking_cli" / "ask").glob("*.py"))
+VERBS = [f".ask.{path.stem}" for path in FILES if ">>>" in path.read_text(encoding="utf-8")]
+MODULES = ("", *VERBS, ".dynamics.batch", ".dynamics.exact", ".names", ".units")
 
 
 @pytest.mark.parametrize("name", MODULES)

@@ -24,22 +24,16 @@ def command(file: str | None, plot: Path | None, as_json: bool) -> None:
       rocking new assembly > portal.yaml
       rocking collapse portal.yaml --plot portal.png
     """
+    from rocking_cli.ask.collapse import collapse
     from rocking_cli.cli import structures, waiting
+    from rocking_cli.cli.pictures import write_picture
     from rocking_cli.io.files import check_writable, keep_apart
-    from rocking_cli.studies.collapse import collapses
-    from rocking_cli.views.collapse import view
 
     keep_apart([("--plot", plot)], [file])
     if plot is not None:
         check_writable(plot)
     with waiting.blocks(file):
-        mechanism = structures.load([file] if file else [])[0]
-        found = collapses(mechanism)
+        answer = collapse(structures.load([file] if file else [])[0])
     if plot is not None:
-        from rocking_cli.cli.pictures import write_picture
-        from rocking_cli.plotting.structure import draw_structure
-        from rocking_cli.studies.picture import picture
-        from rocking_cli.views.view import heading
-
-        write_picture(plot, draw_structure(picture(mechanism, found), heading(mechanism), None))
-    terminal.show(view(mechanism, found), as_json=as_json)
+        write_picture(plot, answer.figure())
+    terminal.show(answer.view, as_json=as_json)
