@@ -12,7 +12,7 @@ from mechanisms._members import Member
 from rocking_cli.core import Body, Direction, LinkageMotion, Mechanism, Reals, RigidMotion, geometry_error, rotation
 
 
-class Membered(Mechanism):
+class LinkedBodies(Mechanism):
     """A mechanism of bodies that are given one by one."""
 
     @property

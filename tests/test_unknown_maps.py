@@ -239,7 +239,7 @@ class TestSpectrum:
     def test_data_words_and_picture(self):
         motions = [RECORD, RECORD.scaled(0.5), parse_pulse("sine:1g:0.5s").sampled()]
         found = spectra([shape_of(PORTAL, "nonlinear")], np.geomspace(1, 10, 6), motions)
-        results = spectrum_views.Results(found, [Scaled(each, 1.0) for each in motions], (0.16, 0.5, 0.84), "1")
+        results = spectrum_views.ShownSpectra(found, [Scaled(each, 1.0) for each in motions], (0.16, 0.5, 0.84), "1")
         view = spectrum_views.view(results)
         (data,) = view.data()["spectra"]
         place = data["given"]

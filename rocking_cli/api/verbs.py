@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from rocking_cli.io.tables import Columns
     from rocking_cli.processing.oscillator import ResponseSpectrum
-    from rocking_cli.studies.contact import Contact
+    from rocking_cli.studies.contact import ContactDemand
     from rocking_cli.studies.equivalent import EquivalentResponses
     from rocking_cli.studies.fragility.assess import Fragility
     from rocking_cli.studies.linearisation import Linearisation
@@ -436,7 +436,7 @@ def _history_figure(
     shaking: GroundMotion | None,
     ready: Structure,
     title: str,
-    contacts: Mapping[int, Contact],
+    contacts: Mapping[int, ContactDemand],
 ) -> Figure:
     from rocking_cli.plotting.history import draw_history
     from rocking_cli.studies.movements import Watched
@@ -602,7 +602,9 @@ def spectrum(
     periods = np.geomspace(*(sizes or study.usual_sizes(shapes)), count)
     found = study.spectra(shapes, periods, shaking, polarities=polarities)
     polarity = "both" if len(polarities) > 1 else str(polarities[0])
-    results = views.Results(found, [Scaled(each, 1.0) for each in shaking], tuple(sorted({*fractiles, 0.5})), polarity)
+    results = views.ShownSpectra(
+        found, [Scaled(each, 1.0) for each in shaking], tuple(sorted({*fractiles, 0.5})), polarity
+    )
 
     def figure() -> Figure:
         from rocking_cli.plotting.spectrum import draw_spectra
@@ -793,13 +795,13 @@ def margin(
     each of many scale factors.
     """
     from rocking_cli.studies import margin as study
-    from rocking_cli.studies.neighbours import Around
+    from rocking_cli.studies.neighbours import Neighbourhood
     from rocking_cli.views import margin as views
 
-    ready, around = _structure(structure), Around()
+    ready, around = _structure(structure), Neighbourhood()
     shaking = [_motion(each) for each in _each(motions)]
     found = {each.name: study.margin(ready.model("nonlinear"), each, polarities, around=around) for each in shaking}
-    rows = [views.Row(each.name, 1.0, each.of_ground.pga_g, found[each.name]) for each in shaking]
+    rows = [views.MarginRow(each.name, 1.0, each.of_ground.pga_g, found[each.name]) for each in shaking]
     polarity = "both" if len(polarities) > 1 else str(polarities[0])
 
     def columns() -> Columns:

@@ -17,7 +17,7 @@ from rocking_cli.errors import INCOMPLETE, InputError
 if TYPE_CHECKING:
     from rocking_cli.structure import Structure
     from rocking_cli.studies.design import Aim, Design, Span
-    from rocking_cli.studies.metrics import Shaking
+    from rocking_cli.studies.metrics import Excitation
 
 
 def _span() -> Callable[[str], Any]:
@@ -127,10 +127,10 @@ def command(
             ctx.exit(InputError.exit_code)
         shaking = _shaking(chosen, asked, near)
     elif site is not None:
-        from rocking_cli.studies.metrics import Shaking as Conditions
+        from rocking_cli.studies.metrics import Excitation
         from rocking_cli.studies.verification.check import read_site
 
-        shaking = Conditions([], site=read_site(Path(site)))
+        shaking = Excitation([], site=read_site(Path(site)))
     found = _design(structure, vary.field, span, until, shaking, points)
     output.write(lambda: [columns(found)], lambda: _draw(found))
     terminal.show(view(found, shaking), as_json=output.as_json)
@@ -153,16 +153,16 @@ def _warn_of_sizes(structure: Structure, field: str, span: tuple[float, float]) 
             terminal.warning(f"at {at}: {doubt}")
 
 
-def _shaking(chosen: Any, asked: GroundMotions, near: Near) -> Shaking:
+def _shaking(chosen: Any, asked: GroundMotions, near: Near) -> Excitation:
     from rocking_cli.cli.waiting import compile_first
-    from rocking_cli.studies.metrics import Shaking
+    from rocking_cli.studies.metrics import Excitation
 
     compile_first()
-    return Shaking([each.motion.scaled(each.factor) for each in chosen], asked.signs, near.around)
+    return Excitation([each.motion.scaled(each.factor) for each in chosen], asked.signs, near.around)
 
 
 def _design(
-    structure: Structure, field: str, span: tuple[float, float], until: Aim, shaking: Shaking | None, points: int
+    structure: Structure, field: str, span: tuple[float, float], until: Aim, shaking: Excitation | None, points: int
 ) -> Design:
     from rocking_cli.studies.design import design
 

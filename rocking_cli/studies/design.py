@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
-from rocking_cli.studies.metrics import Metric, Shaking, metric, taken_otherwise
+from rocking_cli.studies.metrics import Excitation, Metric, metric, taken_otherwise
 from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import cut
 from rocking_cli.units import UnitError, read, split
@@ -213,7 +213,7 @@ def design(
     field: str,
     span: tuple[float, float],
     aim: Aim,
-    shaking: Shaking | None = None,
+    shaking: Excitation | None = None,
     *,
     points: int = POINTS,
     progress: Callable[[int], None] | None = None,
@@ -230,7 +230,7 @@ def design(
         From where to where, in the unit of the field.
     aim : Aim
         The requirement.
-    shaking : Shaking, optional
+    shaking : Excitation, optional
         For a metric that needs ground motions.
     points : int
         How many values are tried first, at equal steps.
@@ -294,7 +294,7 @@ def design(
     )  # fmt: skip
 
 
-def _check_site(metric: Metric, shaking: Shaking | None) -> None:
+def _check_site(metric: Metric, shaking: Excitation | None) -> None:
     """Raise `InputError` if a metric of a site cannot be had: there is no site, or it is for another code."""
     if shaking is None or shaking.site is None:
         hint = "give the file of a site: `rocking new site` prints one"
@@ -306,7 +306,7 @@ def _check_site(metric: Metric, shaking: Shaking | None) -> None:
 
 
 def _taken_otherwise(
-    structure: Structure, field: str, span: tuple[float, float], aim: Aim, shaking: Shaking | None
+    structure: Structure, field: str, span: tuple[float, float], aim: Aim, shaking: Excitation | None
 ) -> Sequence[str]:
     """What a code takes otherwise than the structure gives it at the ends of the range, each sentence once."""
     if not aim.metric.sited or shaking is None or shaking.site is None:
@@ -321,7 +321,7 @@ def _taken_otherwise(
 
 
 def _at(
-    structure: Structure, field: str, value: float, aim: Aim, shaking: Shaking | None
+    structure: Structure, field: str, value: float, aim: Aim, shaking: Excitation | None
 ) -> tuple[float, Neighbours | None, str | None]:
     """Return the metric at a value, and the neighbours behind it; or NaN, and why it does not exist."""
     try:

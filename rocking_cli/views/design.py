@@ -12,7 +12,7 @@ from rocking_cli.dynamics.holding import NOT_CHECKED
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import percent
 from rocking_cli.studies.design import Design
-from rocking_cli.studies.metrics import Shaking
+from rocking_cli.studies.metrics import Excitation
 from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import one_line
 from rocking_cli.views.view import ABSENT, Table, View
@@ -20,7 +20,7 @@ from rocking_cli.views.view import ABSENT, Table, View
 ROWS = 11  # of the scan in the table, at most
 
 
-def view(found: Design, shaking: Shaking | None = None) -> View:
+def view(found: Design, shaking: Excitation | None = None) -> View:
     """The answer in a sentence, the scan, and what to know of both."""
     said = [answer(found), *doubts(found, shaking)]
     return View(lambda: data(found), [f"{found.structure}: {found.field} for {found.aim}", scan(found), *said])
@@ -106,7 +106,7 @@ def answer(found: Design) -> str:
     return f"{said}." if len(ranges) == 1 else f"{said}: from {_with_unit(found, found.value)} {way} without a gap."
 
 
-def doubts(found: Design, shaking: Shaking | None) -> list[str]:
+def doubts(found: Design, shaking: Excitation | None) -> list[str]:
     """What to know of the answer."""
     said = list(found.taken_otherwise)
     count = len(found.values)

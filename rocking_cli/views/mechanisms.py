@@ -30,7 +30,7 @@ BOUNDS = (
 )
 
 
-class Installed(NamedTuple):
+class InstalledMechanism(NamedTuple):
     """A mechanism, its title, which is None if it cannot be loaded, and the package it comes from."""
 
     name: str
@@ -38,7 +38,7 @@ class Installed(NamedTuple):
     package: str
 
 
-def installed(found: Sequence[Installed]) -> View:
+def installed(found: Sequence[InstalledMechanism]) -> View:
     """The mechanisms that are installed."""
     cells = [[each.name, each.title or "(cannot be loaded)", each.package] for each in found]
     return View(
