@@ -8,9 +8,9 @@ from typing import Annotated, Literal, NamedTuple, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from mechanisms._members import Shape
+from mechanisms._linkage_sides import Connection, LinkageSide
 from mechanisms._polygons import Points, area_of, distance, inside
-from mechanisms._sides import Connection, LinkageSide
+from mechanisms._shapes import Shape
 from rocking_cli.core import Direction, Reals, Vertex, geometry_error, quantity
 from rocking_cli.core.fields import Described, Name
 

@@ -12,10 +12,10 @@ from pydantic import ConfigDict, Field, model_validator
 
 from mechanisms import _assembly as analysis
 from mechanisms._assembly.loads import Going, at_rest, under_way
-from mechanisms._membered import LinkedBodies
-from mechanisms._members import Member, Shape
+from mechanisms._linked_bodies import LinkedBodies
 from mechanisms._per_direction import per_direction
 from mechanisms._polygons import fault_of
+from mechanisms._shapes import Member, Shape
 from rocking_cli.core import (
     CollapseHinge,
     CollapseMechanism,

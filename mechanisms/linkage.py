@@ -12,10 +12,10 @@ from pydantic import ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from mechanisms._cracks import EDGE, Crack, Cracked, active, cracked, weakest
-from mechanisms._held_checks import beside, closing, face_at, turns_the_wrong_way
-from mechanisms._membered import LinkedBodies
-from mechanisms._members import Member, Shape
-from mechanisms._sides import GROUND, LinkageSide, PlacedSide, mirrored
+from mechanisms._linkage_checks import beside, closing, face_at, turns_the_wrong_way
+from mechanisms._linkage_sides import GROUND, LinkageSide, PlacedSide, mirrored
+from mechanisms._linked_bodies import LinkedBodies
+from mechanisms._shapes import Member, Shape
 from rocking_cli.core import (
     Contact,
     Direction,

@@ -11,7 +11,7 @@ from typing import ClassVar, Self
 import numpy as np
 from pydantic import model_validator
 
-from mechanisms._parts import EXACT, BodyPart, Fillet, Plate, fillet, foot_is_cut, plates, united
+from mechanisms._plates import EXACT, BodyPart, Fillet, Plate, fillet, foot_is_cut, plates, united
 from mechanisms._polygons import SAME, Bools, Points, fault_of, size_of
 from mechanisms._single_body import SingleBody
 from rocking_cli.core import (

@@ -20,7 +20,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.structure import Structure
-from rocking_cli.studies.equivalent import equivalent
+from rocking_cli.studies.equivalent_pulses import equivalent
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
 from rocking_cli.studies.sizes import Sizes
 from rocking_cli.studies.spectrum import shape_of

@@ -19,7 +19,7 @@ from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.plotting import style
 from rocking_cli.plotting.animation import animation_page
-from rocking_cli.plotting.equivalent import draw_equivalent
+from rocking_cli.plotting.equivalent_pulses import draw_equivalent
 from rocking_cli.plotting.history import draw_history
 from rocking_cli.plotting.moving import ratio_chart
 from rocking_cli.plotting.overturning import draw_comparison, draw_map
@@ -27,7 +27,7 @@ from rocking_cli.plotting.spectrum import draw_spectra
 from rocking_cli.structure import Structure
 from rocking_cli.structure_file import load_structure
 from rocking_cli.studies import under_pulses
-from rocking_cli.studies.equivalent import equivalent, judge
+from rocking_cli.studies.equivalent_pulses import equivalent, judge
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.overturning import FALLS, Comparison, Region, compare, overturning_map
 from rocking_cli.studies.picture import picture

@@ -9,8 +9,8 @@ from enum import Enum
 import numpy as np
 
 from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, AssemblyGuide
+from mechanisms._assembly.joined import JoinedNames
 from mechanisms._assembly.limit import Collapse
-from mechanisms._assembly.parts import JoinedNames
 from mechanisms._assembly.rays import Frame, VelocityRows
 from mechanisms._assembly.unique import velocity_space
 from rocking_cli.core import Reals

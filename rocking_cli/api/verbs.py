@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from rocking_cli.io.tables import Columns
     from rocking_cli.processing.oscillator import ResponseSpectrum
     from rocking_cli.studies.contact import ContactDemand
-    from rocking_cli.studies.equivalent import EquivalentResponses
+    from rocking_cli.studies.equivalent_pulses import EquivalentResponses
     from rocking_cli.studies.fragility.assess import Fragility
     from rocking_cli.studies.linearisation import Linearisation
     from rocking_cli.studies.margin import Margin
@@ -148,7 +148,7 @@ def equiv(structure: StructureLike) -> Answer[Equivalence | None]:
     >>> round(answer.positive.lambda_, 6)
     0.25
     """
-    from rocking_cli.views import equiv as views
+    from rocking_cli.views import equivalent_block as views
 
     ready = _structure(structure)
     found = ready.equivalence if ready.why_no_block is None else None
@@ -909,14 +909,14 @@ def equivalent(
     -----
     DeJong and Dimitrakopoulos (2014): equal a and omega of Eq. 40, as in Fig. 15.
     """
-    from rocking_cli.studies import equivalent as study
-    from rocking_cli.views import equivalent as views
+    from rocking_cli.studies import equivalent_pulses as study
+    from rocking_cli.views import equivalent_pulses as views
 
     given = parse_pulse(pulse) if isinstance(pulse, str) else pulse
     found = study.equivalent([_structure(each).mechanism for each in structures], given, polarity=polarity)
 
     def figure() -> Figure:
-        from rocking_cli.plotting.equivalent import draw_equivalent
+        from rocking_cli.plotting.equivalent_pulses import draw_equivalent
 
         return draw_equivalent(found, views.title(found))
 

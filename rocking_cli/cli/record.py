@@ -316,7 +316,7 @@ class _Asked:
         if self.more.measures is None:
             return {}
         from rocking_cli.processing.intensity import ALL, parse_measures
-        from rocking_cli.studies.strength import intensities, reference_of
+        from rocking_cli.studies.motion_intensities import intensities, reference_of
 
         asked = parse_measures(self.more.measures)
         if self.structure is None and self.more.measures.strip().lower() == ALL:

@@ -37,7 +37,7 @@ from rocking_cli.text import printable
 from rocking_cli.views import assessment_words as words
 from rocking_cli.views.contact import COLUMNS as CONTACT_COLUMNS
 from rocking_cli.views.contact import contact_row
-from rocking_cli.views.equiv import EquivalentSide, is_symmetric, sentence, sides_of, without
+from rocking_cli.views.equivalent_block import EquivalentSide, is_symmetric, sentence, sides_of, without
 from rocking_cli.views.parameters import PARAMETERS, values
 
 BINS = 6000  # of all motions together: each curve has some two samples for a bin

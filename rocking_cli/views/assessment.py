@@ -7,7 +7,7 @@ from rocking_cli.studies.movements import Watched
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.views import assessment_words as words
 from rocking_cli.views import processing, verification
-from rocking_cli.views.equiv import sides_of, without
+from rocking_cli.views.equivalent_block import sides_of, without
 from rocking_cli.views.margin import margin_data
 from rocking_cli.views.parameters import values
 from rocking_cli.views.response import HistoryDetails, fit_data, runs_data

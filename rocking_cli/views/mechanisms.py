@@ -9,13 +9,13 @@ from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
 from rocking_cli.core import Mechanism
+from rocking_cli.core.contract import Verdict
 from rocking_cli.core.hung.crushing import Crushing
 from rocking_cli.core.hung.interlock import Interlock
 from rocking_cli.core.hung.loads import Load
 from rocking_cli.core.hung.ties import Face, Place, Tie
 from rocking_cli.core.strength import Strength
 from rocking_cli.core.uncertainty import Uncertainty
-from rocking_cli.core.verdict import Verdict
 from rocking_cli.units import units_of
 from rocking_cli.views.view import ABSENT, Table, View
 

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from mechanisms import _faces as faces
-from mechanisms._members import Member
+from mechanisms._linkage_sides import PlacedSide
 from mechanisms._polygons import distance, inside, size_of
-from mechanisms._sides import PlacedSide
+from mechanisms._shapes import Member
 from rocking_cli.core import Direction, Outline, Pin, RigidMotion
 
 BESIDE = 1e-2  # of the width and height of a body: how far beside it a joint may be drawn

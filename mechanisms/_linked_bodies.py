@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mechanisms._members import Member
+from mechanisms._shapes import Member
 from rocking_cli.core import Body, Direction, LinkageMotion, Mechanism, Reals, RigidMotion, geometry_error, rotation
 
 

@@ -10,7 +10,7 @@ from typing import Any, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from mechanisms._parts import BodyPart, plates, united
+from mechanisms._plates import BodyPart, plates, united
 from mechanisms._polygons import area_of, fault_of
 from rocking_cli.core import Body, Outline, Vertex, disc, geometry_error, point, polygon, quantity
 from rocking_cli.core.fields import Described
