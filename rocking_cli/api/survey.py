@@ -161,12 +161,16 @@ def design(
     span = Span.parse(vary) if isinstance(vary, str) else Span(vary[0], repr(float(vary[1])), repr(float(vary[2])))
     shaken = [_motion(each).scaled(scale) for each in _each(motions)]
     where = _site(site) if site is not None else None
-    shaking = Excitation(shaken, polarities, Neighbourhood(neighbours), where) if shaken or where is not None else None
-    found = study(ready, span.field, span.in_unit(ready.unit_of(span.field)), Aim.parse(until), shaking, points=points)
+    excitation = (
+        Excitation(shaken, polarities, Neighbourhood(neighbours), where) if shaken or where is not None else None
+    )
+    found = study(
+        ready, span.field, span.in_unit(ready.unit_of(span.field)), Aim.parse(until), excitation, points=points
+    )
 
     def figure() -> Figure:
         from rocking_cli.plotting.design import draw_design
 
         return draw_design(found)
 
-    return Answer("design", found, view(found, shaking), lambda: columns(found), figure)
+    return Answer("design", found, view(found, excitation), lambda: columns(found), figure)

@@ -119,21 +119,21 @@ def command(
     structure = structures.prepared([file] if file else [])
     span = vary.in_unit(structure.unit_of(vary.field))
     _warn_of_sizes(structure, vary.field, span)
-    shaking = None
+    excitation = None
     if asked:
         chosen, refused = motion_files.gather(paths, asked.pulses, asked.reading, asked.scaling, structure.growth)
         bad += refused
         if not chosen:
             ctx.exit(InputError.exit_code)
-        shaking = _shaking(chosen, asked, near)
+        excitation = _shaking(chosen, asked, near)
     elif site is not None:
         from rocking_cli.studies.metrics import Excitation
         from rocking_cli.studies.verification.check import read_site
 
-        shaking = Excitation([], site=read_site(Path(site)))
-    found = _design(structure, vary.field, span, until, shaking, points)
+        excitation = Excitation([], site=read_site(Path(site)))
+    found = _design(structure, vary.field, span, until, excitation, points)
     output.write(lambda: [columns(found)], lambda: _draw(found))
-    terminal.show(view(found, shaking), as_json=output.as_json)
+    terminal.show(view(found, excitation), as_json=output.as_json)
     if bad:
         ctx.exit(INCOMPLETE)
 
@@ -162,12 +162,12 @@ def _shaking(chosen: Any, asked: GroundMotions, near: Near) -> Excitation:
 
 
 def _design(
-    structure: Structure, field: str, span: tuple[float, float], until: Aim, shaking: Excitation | None, points: int
+    structure: Structure, field: str, span: tuple[float, float], until: Aim, excitation: Excitation | None, points: int
 ) -> Design:
     from rocking_cli.studies.design import design
 
     with terminal.progress(points, "values") as advance:
-        return design(structure, field, span, until, shaking, points=points, progress=advance)
+        return design(structure, field, span, until, excitation, points=points, progress=advance)
 
 
 def _draw(found: Design) -> Any:

@@ -280,12 +280,12 @@ class _Job:
     def follow(self, given: Scaled | None, out: Path | None, plot: Path | None) -> bool:
         """Simulate one motion, or a free release, and show it; return false for an unusable motion of several."""
         from rocking_cli.cli import structures
-        from rocking_cli.studies.response import answer
+        from rocking_cli.studies.response import response_of
         from rocking_cli.views.response import view
 
         mechanism, title = self._structure.mechanism, heading(self._structure.mechanism)
         try:
-            found = answer(self._structure, self._names, given, self._asked)
+            found = response_of(self._structure, self._names, given, self._asked)
         except RockingError as error:
             if not self._several or given is None:
                 raise

@@ -87,7 +87,7 @@ class Response:
     to_pulse_contact: ContactDemand | None = None
 
 
-def answer(structure: Structure, names: Sequence[ModelName], given: Scaled | None, asked: Question) -> Response:
+def response_of(structure: Structure, names: Sequence[ModelName], given: Scaled | None, asked: Question) -> Response:
     """Follow models of a structure under a motion, or freely from a release."""
     contacts = Contacts(structure.mechanism)
     follow = partial(respond, structure, models=names, release=asked.release, tail=asked.tail, rtol=asked.rtol)
