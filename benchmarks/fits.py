@@ -18,7 +18,7 @@ import numpy as np
 from fragility import EXAMPLES, in_process, write_records
 
 from rocking_cli.studies.fragility.campaign import prepare, run
-from rocking_cli.studies.fragility.store import Rows, Store
+from rocking_cli.studies.fragility.store import RunRows, Store
 from rocking_cli.studies.fragility.study import load_study
 from rocking_cli.studies.fragility.workers import threads
 
@@ -69,11 +69,11 @@ def beside_runs(folder: Path) -> None:
 def _fits(place: Path) -> float:
     """Seconds from a finished store to its curves, in a new process but for what every command imports."""
     code = (
-        "import sys, time; from pathlib import Path; from rocking_cli.cli.study_output import Shown, show_study;"
+        "import sys, time; from pathlib import Path; from rocking_cli.cli.study_output import CurveOutput, show_study;"
         "from rocking_cli.studies.fragility.store import Store; import rocking_cli.studies.fragility.campaign;"
         "start = time.perf_counter();\n"
         "with Store.reading(Path(sys.argv[1])) as store:\n"
-        "    show_study(store, Shown(None, None, False, False), as_json=True)\n"
+        "    show_study(store, CurveOutput(None, None, False, False), as_json=True)\n"
         "print(time.perf_counter() - start, file=sys.stderr)"
     )
     done = subprocess.run([sys.executable, "-c", code, str(place)], check=True, capture_output=True, text=True)
@@ -119,7 +119,7 @@ def _drawn(plan, runs, random):  # type: ignore[no-untyped-def]
     nothing = np.full(runs.size, np.nan)
     uplift = np.where(x > 0.3 * scatter, 1.0, np.nan)
     ended, known = np.where(fell, 2.0, np.nan), (nothing, nothing, nothing)
-    return Rows(runs, scale, nothing, fell.astype(np.int64), peak, peak, peak, uplift, ended, *known)
+    return RunRows(runs, scale, nothing, fell.astype(np.int64), peak, peak, peak, uplift, ended, *known)
 
 
 def main() -> None:

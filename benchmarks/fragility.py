@@ -157,7 +157,7 @@ def large(kernel: float, overhead: float) -> None:
 
 def collecting() -> float:
     """Runs a second that the store takes."""
-    from rocking_cli.studies.fragility.store import COLUMNS, Rows
+    from rocking_cli.studies.fragility.store import COLUMNS, RunRows
 
     with tempfile.TemporaryDirectory() as folder:
         path = write_study(Path(folder), 2)
@@ -170,7 +170,7 @@ def collecting() -> float:
             start = time.perf_counter()
             for k in range(50):
                 whole = np.arange(1_000_000 + n * k, 1_000_000 + n * (k + 1))
-                store.add(Rows(whole, columns[1], columns[2], np.zeros(n, dtype=np.int64), *columns[4:]))
+                store.add(RunRows(whole, columns[1], columns[2], np.zeros(n, dtype=np.int64), *columns[4:]))
             store.commit()
             return 50 * n / (time.perf_counter() - start)
 

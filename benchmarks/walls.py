@@ -48,8 +48,8 @@ def plain(file: str) -> None:
     """Print lambda of both directions by scipy's interface as it comes, with dense matrices."""
     from scipy.optimize import linprog
 
-    from mechanisms._assembly import Block, contacts
-    from mechanisms._assembly.problem import Problem
+    from mechanisms._assembly import AssemblyBlock, contacts
+    from mechanisms._assembly.problem import AssemblyProblem
     from rocking_cli.core import Direction
 
     given = json.loads(Path(file).read_text(encoding="utf-8"))
@@ -58,12 +58,12 @@ def plain(file: str) -> None:
         corners = np.array([complex(*vertex) for vertex in each["polygon"]])
         side = corners[2] - corners[0]
         mass = each["density"] * given["depth"] * side.real * side.imag
-        blocks.append(Block(name, tuple(corners), mass, complex(corners.mean())))
-    ground = [Block("floor", tuple(complex(*vertex) for vertex in given["ground"]["floor"]["polygon"]))]
+        blocks.append(AssemblyBlock(name, tuple(corners), mass, complex(corners.mean())))
+    ground = [AssemblyBlock("floor", tuple(complex(*vertex) for vertex in given["ground"]["floor"]["polygon"]))]
     joints = contacts(blocks, ground, friction=given["friction"])
     found = {}
     for direction in Direction:
-        problem = Problem.of(blocks, joints, (), direction)
+        problem = AssemblyProblem.of(blocks, joints, (), direction)
         rays = problem.bearings.rays()
         equal = np.column_stack([rays.rates.T.toarray(), problem.live])
         bounds = [*((low, None) for low in rays.low), (0, None)]

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking_cli.studies.fragility.curves import Curve, Observations, fit_capacities, fit_curve
+from rocking_cli.studies.fragility.curves import FragilityCurve, Observations, fit_capacities, fit_curve
 
 MEDIAN, DISPERSION = 0.4, 0.5
 RECORDS = (5, 10, 20, 50)
@@ -29,13 +29,13 @@ def _capacities(random: np.random.Generator, records: int, each: int, shared: fl
     return np.asarray(MEDIAN * np.exp(DISPERSION * scatter))
 
 
-def _stripes(random: np.random.Generator, records: int, levels: int, samples: int, shared: float) -> Curve:
+def _stripes(random: np.random.Generator, records: int, levels: int, samples: int, shared: float) -> FragilityCurve:
     x = np.tile(np.repeat(np.geomspace(0.15, 1.1, levels), samples), (records, 1))
     exceeded = x > _capacities(random, records, levels * samples, shared)
     return fit_curve(Observations.of(x.ravel(), exceeded.ravel(), np.repeat(np.arange(records), levels * samples)))
 
 
-def _ladders(random: np.random.Generator, records: int, each: int, shared: float) -> Curve:
+def _ladders(random: np.random.Generator, records: int, each: int, shared: float) -> FragilityCurve:
     ends = np.concatenate([[0.0], np.geomspace(0.1, 2.0, 12), [np.inf]])
     place = np.searchsorted(ends, _capacities(random, records, each, shared).ravel())
     return fit_capacities(ends[place - 1], ends[place], np.repeat(np.arange(records), each))
@@ -46,7 +46,7 @@ class Case:
     """Kind of study: its description, and how to draw one with a number of records."""
 
     words: str
-    draw: Callable[[np.random.Generator, int], Curve]
+    draw: Callable[[np.random.Generator, int], FragilityCurve]
 
 
 CASES = (

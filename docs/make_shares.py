@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from rocking_cli import GroundMotion, Registry, build_models
 from rocking_cli.dynamics.model import Model
-from rocking_cli.studies.neighbours import Around, neighbours
+from rocking_cli.studies.neighbours import Neighbourhood, neighbours
 
 Reals = NDArray[np.float64]
 PART = Path(__file__).resolve().with_name("validation_shares.md")
@@ -62,7 +62,7 @@ def tests(folder: Path) -> tuple[dict[str, Reals], Reals, Reals]:
             part = slice(shaken["start"][k], shaken["start"][k] + shaken["length"][k])
             motion = GroundMotion(row["test"], 0.01, shaken["samples"][part] / 32767 * float(shaken["peak"][k]))
             for model, shape, name in specimens:
-                share = neighbours(model, motion, Around()).overturned
+                share = neighbours(model, motion, Neighbourhood()).overturned
                 west = float(float(row["pga_acc_g"]) > tan(np.radians(shape[2])))
                 velocity = float(float(row["pgv_disp_ms"]) > housner(*shape))
                 rows.append((share, west, velocity, float(row[name])))
@@ -86,7 +86,7 @@ def brier(stated: Reals, seen: Reals) -> float:
 
 def log_loss(stated: Reals, seen: Reals) -> float:
     """Return the mean of -ln of the share stated for what happened; shares are held off 0 and 1."""
-    off = 0.5 / (Around().count + 1)
+    off = 0.5 / (Neighbourhood().count + 1)
     held = np.clip(stated, off, 1 - off)
     return float(-np.mean(seen * np.log(held) + (1 - seen) * np.log(1 - held)))
 

@@ -8,9 +8,9 @@ from typing import Annotated, Literal, NamedTuple, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from mechanisms._members import Shape
+from mechanisms._linkage_sides import Connection, LinkageSide
 from mechanisms._polygons import Points, area_of, distance, inside
-from mechanisms._sides import Connection, Side
+from mechanisms._shapes import Shape
 from rocking_cli.core import Direction, Reals, Vertex, geometry_error, quantity
 from rocking_cli.core.fields import Described, Name
 
@@ -100,14 +100,14 @@ class Cracked(NamedTuple):
     ----------
     shapes : mapping of str to Shape
         The bodies, with the pieces of those that are cut.
-    sides : mapping of Direction to Side
+    sides : mapping of Direction to LinkageSide
         The joints, which name pieces and points.
     pieces : mapping of str to sequence of str
         The pieces of each body that is cut.
     """
 
     shapes: Mapping[str, Shape]
-    sides: Mapping[Direction, Side]
+    sides: Mapping[Direction, LinkageSide]
     pieces: Mapping[str, Sequence[str]]
 
     def piece(self, body: str, at: complex) -> str:
@@ -119,7 +119,7 @@ class Cracked(NamedTuple):
         )
 
 
-def active(side: Side, cracks: Mapping[str, Crack]) -> list[str]:
+def active(side: LinkageSide, cracks: Mapping[str, Crack]) -> list[str]:
     """The cracks that a side speaks of; the others are closed in its direction."""
     words = [side.lead, *(each.at for each in side.joints.values() if isinstance(each.at, str))]
     words += [name for each in side.joints.values() for name in each.bodies]
@@ -130,7 +130,7 @@ def active(side: Side, cracks: Mapping[str, Crack]) -> list[str]:
 
 def cracked(
     shapes: Mapping[str, Shape],
-    sides: Mapping[Direction, Side],
+    sides: Mapping[Direction, LinkageSide],
     cracks: Mapping[str, Crack],
     shares: Mapping[Direction, Mapping[str, float]],
 ) -> Cracked:
@@ -194,7 +194,7 @@ class _Names(NamedTuple):
     made: Cracked
     ends: Mapping[tuple[str, float], tuple[complex, complex]]
 
-    def side(self, side: Side) -> Side:
+    def side(self, side: LinkageSide) -> LinkageSide:
         """The side with pieces and points, and what is closed in its direction."""
         joints: dict[str, Connection] = {}
         for name, each in side.joints.items():

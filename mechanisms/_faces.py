@@ -14,7 +14,7 @@ NEAR = 1e-6  # of the size of both: how far beside a side a point may be and be 
 PARALLEL = 1e-3  # sine of the angle between two sides that lie on one another
 
 
-class Face(NamedTuple):
+class BearingFace(NamedTuple):
     """What bears at a point.
 
     Parameters
@@ -32,10 +32,10 @@ class Face(NamedTuple):
     inside: int | None
 
 
-def between(one: Sequence[Outline], other: Sequence[Outline], at: complex) -> Face | None:
+def between(one: Sequence[Outline], other: Sequence[Outline], at: complex) -> BearingFace | None:
     """The face between two bodies at a point; None where they do not touch there, or a shape is not known."""
     size = _size([*one, *other])
-    best: Face | None = None
+    best: BearingFace | None = None
     for p, q in _sides_at(one, at, size):
         along = (q - p) / abs(q - p)
         for r, s in _sides_at(other, at, size):
@@ -47,28 +47,28 @@ def between(one: Sequence[Outline], other: Sequence[Outline], at: complex) -> Fa
             far = max(ends, key=lambda end: abs(end - at))
             if best is None or abs(far - at) > abs(best.far - at):
                 inside = next((k for k, (a, b) in enumerate(((p, q), (r, s))) if _is_inside(a, b, at, size)), None)
-                best = Face(-1j * along, far, inside)
+                best = BearingFace(-1j * along, far, inside)
     return best or _on_a_side(one, other, at, size)
 
 
-def under(body: Sequence[Outline], at: complex) -> Face | None:
+def under(body: Sequence[Outline], at: complex) -> BearingFace | None:
     """The side on which a body stands at a point; None where its shape is not known or has no corner there."""
     size, best = _size(body), None
     for p, q in _sides_at(body, at, size):
         inwards = 1j * (q - p) / abs(q - p)
         far = max((p, q), key=lambda end: abs(end - at))
         if best is None or inwards.imag > best.normal.imag:
-            best = Face(inwards, far, None)
+            best = BearingFace(inwards, far, None)
     return best
 
 
-def _on_a_side(one: Sequence[Outline], other: Sequence[Outline], at: complex, size: float) -> Face | None:
+def _on_a_side(one: Sequence[Outline], other: Sequence[Outline], at: complex, size: float) -> BearingFace | None:
     """A corner of one body on a side of the other."""
     for k, shapes in enumerate((one, other)):
         for p, q in _sides_at(shapes, at, size):
             if _is_inside(p, q, at, size):
                 outwards = -1j * (q - p) / abs(q - p)
-                return Face(outwards if k == 0 else -outwards, at, k)
+                return BearingFace(outwards if k == 0 else -outwards, at, k)
     return None
 
 

@@ -12,10 +12,10 @@ from pydantic import ConfigDict, Field, model_validator
 
 from mechanisms import _assembly as analysis
 from mechanisms._assembly.loads import Going, at_rest, under_way
-from mechanisms._membered import Membered
-from mechanisms._members import Member, Shape
+from mechanisms._linked_bodies import LinkedBodies
 from mechanisms._per_direction import per_direction
 from mechanisms._polygons import fault_of
+from mechanisms._shapes import Member, Shape
 from rocking_cli.core import (
     CollapseHinge,
     CollapseMechanism,
@@ -60,7 +60,7 @@ EXAMPLE_BLOCKS = {
 EXAMPLE_GROUND = {"floor": {"polygon": [[-1.0, -0.5], [5.0, -0.5], [5.0, 0.0], [-1.0, 0.0]]}}
 
 
-class Ground(Described):
+class AssemblyGround(Described):
     """What cannot move."""
 
     polygon: list[Vertex] = quantity(
@@ -79,7 +79,7 @@ class Ground(Described):
         """x + iy [m]."""
         return tuple(complex(*vertex) for vertex in self.polygon)
 
-    def enlarged(self, factor: float) -> Ground:
+    def enlarged(self, factor: float) -> AssemblyGround:
         """The same of a structure of another size."""
         return self.model_copy(update={"polygon": [[factor * each for each in vertex] for vertex in self.polygon]})
 
@@ -109,7 +109,7 @@ class Leads(Described):
     negative: Name | None = Field(None, description="in the negative one")
 
 
-class Assembly(Membered):
+class Assembly(LinkedBodies):
     """Rigid blocks that touch along joints without tension, on ground that does not move."""
 
     mechanism: ClassVar[str] = "assembly"
@@ -132,7 +132,7 @@ class Assembly(Membered):
         description="what can move, by names: polygons, each with density and depth, or mass, centroid and inertia",
         examples=[EXAMPLE_BLOCKS], min_length=1, max_length=10_000,
     )  # fmt: skip
-    ground: dict[Name, Ground] = Field(
+    ground: dict[Name, AssemblyGround] = Field(
         description="what cannot, by names: polygons", examples=[EXAMPLE_GROUND], min_length=1, max_length=100
     )
     supports: dict[Name, Support] | None = Field(
@@ -247,9 +247,9 @@ class Assembly(Membered):
 
     @staticmethod
     def _refused(field: tuple[str, ...], reason: str) -> Exception:
-        from rocking_cli.core.hung.attachments import Refused, as_validation_error
+        from rocking_cli.core.hung.attachments import RefusedFields, as_validation_error
 
-        return as_validation_error([Refused(field[:-1], field[-1], reason)], Assembly.mechanism)
+        return as_validation_error([RefusedFields(field[:-1], field[-1], reason)], Assembly.mechanism)
 
     def _check_stands(self) -> None:
         """The limit analysis sees whether it stands."""
@@ -264,16 +264,16 @@ class Assembly(Membered):
         return Sketch()  # its bodies have their outlines, and its hinges follow from its loads and ties
 
     @cached_property
-    def _blocks(self) -> Sequence[analysis.Block]:
+    def _blocks(self) -> Sequence[analysis.AssemblyBlock]:
         return [
-            analysis.Block(body.name, tuple(self.blocks[body.name].corners), body.mass, body.centroid)
+            analysis.AssemblyBlock(body.name, tuple(self.blocks[body.name].corners), body.mass, body.centroid)
             for body in self.weighed()
         ]
 
     @cached_property
-    def _contacts(self) -> Sequence[analysis.Contact]:
-        blocks = [analysis.Block(name, tuple(shape.corners)) for name, shape in self.blocks.items()]
-        ground = [analysis.Block(name, each.corners) for name, each in self.ground.items()]
+    def _contacts(self) -> Sequence[analysis.AssemblyContact]:
+        blocks = [analysis.AssemblyBlock(name, tuple(shape.corners)) for name, shape in self.blocks.items()]
+        ground = [analysis.AssemblyBlock(name, each.corners) for name, each in self.ground.items()]
         pairs: dict[tuple[str, str], float | None] = {self._pair(words): mu for words, mu in self._frictions.items()}
         try:
             return analysis.contacts(blocks, ground, friction=self.friction, per_pair=pairs, within=self.gap)
@@ -306,9 +306,9 @@ class Assembly(Membered):
         return found[0]
 
     @cached_property
-    def _guides(self) -> Sequence[analysis.Guide]:
+    def _guides(self) -> Sequence[analysis.AssemblyGuide]:
         return [
-            analysis.Guide(name, each.slide, complex(*each.at), complex(*each.along))
+            analysis.AssemblyGuide(name, each.slide, complex(*each.at), complex(*each.along))
             for name, each in (self.supports or {}).items()
         ]
 
@@ -322,7 +322,7 @@ class Assembly(Membered):
         )
 
     @per_direction
-    def _groups(self, direction: Direction) -> analysis.Linkage:
+    def _groups(self, direction: Direction) -> analysis.AssemblyLinkage:
         try:
             return analysis.linkage(self._blocks, self._contacts, self._guides, self._collapse(direction))
         except analysis.AssemblyFault as error:
@@ -414,7 +414,7 @@ class Assembly(Membered):
                         "rocking model exists for that"
                     )
 
-    def _hinges(self, direction: Direction) -> list[tuple[str, analysis.Contact, complex]]:
+    def _hinges(self, direction: Direction) -> list[tuple[str, analysis.AssemblyContact, complex]]:
         """Letter, joint and point of each hinge, from the left."""
         hinges = self._groups(direction).hinges
         order = from_the_left([hinge.point for hinge in hinges])
@@ -540,7 +540,7 @@ class Assembly(Membered):
             idle=state.idle,
         )
 
-    def _held(self, direction: Direction, phi: Reals) -> list[tuple[analysis.Displaced, Reals, float]]:
+    def _held(self, direction: Direction, phi: Reals) -> list[tuple[analysis.DisplacedAssembly, Reals, float]]:
         """At each rotation the displaced assembly, the forces on its blocks, and the acceleration over g that holds it.
 
         All rotations at once, because each body takes as long for many as for one.
@@ -555,7 +555,7 @@ class Assembly(Membered):
         turns = np.exp(1j * np.array([motion.psi for motion in motions]))
         weight, joints = self._collapse(direction).problem.weight, self._remaining(direction)
         return [
-            (analysis.Displaced(joints.moved(centres[:, k], turns[:, k]), weight), forces[k], share)
+            (analysis.DisplacedAssembly(joints.moved(centres[:, k], turns[:, k]), weight), forces[k], share)
             for k, share in enumerate(shares.tolist())
         ]
 
@@ -575,7 +575,7 @@ class Assembly(Membered):
         places = dict(zip(steps.tolist(), self._held(direction, steps), strict=True))
         known: Reals | None = None  # forces in the joints at the last rotation that holds
 
-        def at(phi: float) -> tuple[analysis.Displaced, Reals, float]:
+        def at(phi: float) -> tuple[analysis.DisplacedAssembly, Reals, float]:
             return places[phi] if phi in places else self._held(direction, np.array([phi]))[0]
 
         def held(phi: float) -> analysis.Admissible:
@@ -633,7 +633,7 @@ class Assembly(Membered):
     def sketch(self) -> Sketch:
         ground = []
         for each in self.ground.values():
-            z = list(analysis.Block("", each.corners).outline)[::-1]  # clockwise: the ground is on the right
+            z = list(analysis.AssemblyBlock("", each.corners).outline)[::-1]  # clockwise: the ground is on the right
             ground.append([*z, z[0]])
         return Sketch(
             hinges={direction: self.joints(direction) for direction in self.directions},
@@ -673,7 +673,7 @@ def from_the_left(points: Sequence[complex]) -> list[int]:
     return [k for _, k in pairs]
 
 
-def _name(contact: analysis.Contact) -> str:
+def _name(contact: analysis.AssemblyContact) -> str:
     """A joint by the two that it is of."""
     return f"{contact.a} and {contact.b}"
 

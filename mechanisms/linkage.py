@@ -12,10 +12,10 @@ from pydantic import ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from mechanisms._cracks import EDGE, Crack, Cracked, active, cracked, weakest
-from mechanisms._held_checks import beside, closing, face_at, turns_the_wrong_way
-from mechanisms._membered import Membered
-from mechanisms._members import Member, Shape
-from mechanisms._sides import GROUND, Held, Side, mirrored
+from mechanisms._linkage_checks import beside, closing, face_at, turns_the_wrong_way
+from mechanisms._linkage_sides import GROUND, LinkageSide, PlacedSide, mirrored
+from mechanisms._linked_bodies import LinkedBodies
+from mechanisms._shapes import Member, Shape
 from rocking_cli.core import (
     Contact,
     Direction,
@@ -52,7 +52,7 @@ EXAMPLE_SIDE = {
 }
 
 
-class Linkage(Membered):
+class Linkage(LinkedBodies):
     """Bodies and, for each direction, the joints that hold them."""
 
     mechanism: ClassVar[str] = "linkage"
@@ -71,11 +71,11 @@ class Linkage(Membered):
         min_length=1,
         max_length=1000,
     )
-    positive: Side | Literal["mirror", "none"] = Field(
+    positive: LinkageSide | Literal["mirror", "none"] = Field(
         description="clockwise rocking: {lead, joints}; mirror: the image of the other; none: it cannot",
         examples=[EXAMPLE_SIDE],
     )
-    negative: Side | Literal["mirror", "none"] = Field(
+    negative: LinkageSide | Literal["mirror", "none"] = Field(
         "mirror", description="anticlockwise rocking, in the same way", examples=["mirror"]
     )
 
@@ -97,7 +97,7 @@ class Linkage(Membered):
         for direction, side in sides.items():
             if direction in self._sides:
                 self._check_names(direction, self._cracked.sides[direction])
-            elif side == "mirror" and not isinstance(sides[direction.opposite], Side):
+            elif side == "mirror" and not isinstance(sides[direction.opposite], LinkageSide):
                 raise geometry_error(direction.label, "is the mirror of the other direction, which gives no joints")
             elif side == "none" and self.one_sided != direction.opposite.label:
                 raise geometry_error(
@@ -128,7 +128,7 @@ class Linkage(Membered):
             if len(named) > MOST_CRACKS:
                 raise geometry_error(direction.label, f"{', '.join(named)} are too many: one or two in a direction")
 
-    def _check_names(self, direction: Direction, side: Side) -> None:
+    def _check_names(self, direction: Direction, side: LinkageSide) -> None:
         bodies = self._cracked.shapes
         known = ", ".join(bodies)
         if side.lead not in bodies:
@@ -159,7 +159,7 @@ class Linkage(Membered):
 
     def _refused(self, direction: Direction, joint: str | None, reason: str) -> PydanticCustomError:
         """The error of a joint, where the file has it: in a mirror it has none."""
-        has_joints = joint is not None and isinstance(getattr(self, direction.label), Side)
+        has_joints = joint is not None and isinstance(getattr(self, direction.label), LinkageSide)
         return geometry_error((direction.label, "joints", joint or "") if has_joints else direction.label, reason)
 
     # Masses
@@ -178,14 +178,14 @@ class Linkage(Membered):
     # Motion
 
     @cached_property
-    def _sides(self) -> Mapping[Direction, Side]:
+    def _sides(self) -> Mapping[Direction, LinkageSide]:
         """The joints of the directions in which it can rock, as the file or its mirror has them."""
         found = {}
         for direction in self.directions:
             side, other = (getattr(self, each.label) for each in (direction, direction.opposite))
-            if side == "mirror" and isinstance(other, Side):
+            if side == "mirror" and isinstance(other, LinkageSide):
                 side = mirrored(other, self._middle, self._images(direction))
-            if isinstance(side, Side):
+            if isinstance(side, LinkageSide):
                 found[direction] = side
         return found
 
@@ -199,7 +199,7 @@ class Linkage(Membered):
     def _shares(self) -> Mapping[Direction, Mapping[str, float]]:
         return {direction: self._weakest(direction, side) for direction, side in self._sides.items()}
 
-    def _weakest(self, direction: Direction, side: Side) -> Mapping[str, float]:
+    def _weakest(self, direction: Direction, side: LinkageSide) -> Mapping[str, float]:
         """The shares along their lines at which the cracks of a direction give the least lambda."""
         cracks = {name: (self.cracks or {})[name] for name in active(side, self.cracks or {})}
         if not cracks:
@@ -269,8 +269,8 @@ class Linkage(Membered):
         return found
 
     @cached_property
-    def _held(self) -> Mapping[Direction, Held]:
-        return {direction: Held.of(side) for direction, side in self._cracked.sides.items()}
+    def _held(self) -> Mapping[Direction, PlacedSide]:
+        return {direction: PlacedSide.of(side) for direction, side in self._cracked.sides.items()}
 
     @cached_property
     def _linkages(self) -> Mapping[Direction, LinkageMotion]:

@@ -11,7 +11,7 @@ from typing import ClassVar, Self
 import numpy as np
 from pydantic import model_validator
 
-from mechanisms._parts import EXACT, Fillet, Part, Plate, fillet, foot_is_cut, plates, united
+from mechanisms._plates import EXACT, BodyPart, Fillet, Plate, fillet, foot_is_cut, plates, united
 from mechanisms._polygons import SAME, Bools, Points, fault_of, size_of
 from mechanisms._single_body import SingleBody
 from rocking_cli.core import (
@@ -70,7 +70,7 @@ class RigidBody(SingleBody):
         min_length=3,
         max_length=MOST,
     )
-    parts: list[Part] | None = quantity(
+    parts: list[BodyPart] | None = quantity(
         "plates that make it, each {polygon, density, depth}, or an opening in one: {polygon, opening: true}",
         example=[
             {"polygon": [[0.0, 0.0], [1.0, 0.0], [1.0, 3.0], [0.0, 3.0]]},

@@ -32,7 +32,7 @@ from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.fragility.assess import Bivariate
 from rocking_cli.studies.fragility.curves import Observations, fit_curve, fit_surface
 from rocking_cli.studies.margin import FACTORS, Margin
-from rocking_cli.studies.neighbours import Around
+from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.studies.overturning import OverturningMap, overturning_map
 from rocking_cli.studies.picture import picture
 from rocking_cli.studies.under_pulses import linear_block, parse_shape
@@ -73,7 +73,7 @@ def _margin() -> Figure:
     factors = np.union1d(FACTORS, 1.0)
     shares = np.clip(2 * np.log(factors), 0, 1) * np.where((factors > 2) & (factors < 2.6), 0.3, 1.0)  # and an island
     other = np.clip(np.log(factors / 0.6), 0, 0.95)
-    found = [Margin(Around(), 0.4, factors, each, np.zeros(factors.size)) for each in (shares, other)]
+    found = [Margin(Neighbourhood(), 0.4, factors, each, np.zeros(factors.size)) for each in (shares, other)]
     return draw_margins({"one": found[0], "other": found[1]}, "margin")
 
 

@@ -20,7 +20,7 @@ from typing import Any
 from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
-from rocking_cli.studies.fragility.store import COLUMNS, JOINTS, Rows, Store
+from rocking_cli.studies.fragility.store import COLUMNS, JOINTS, RunRows, Store
 from rocking_cli.studies.fragility.store_file import MARK
 from tests.conftest import EXAMPLES
 
@@ -76,7 +76,7 @@ def as_before_joints(store: Path, place: Path) -> Path:
         rows = new.runs(0, plan.size)
         old.with_joints = False
         old.begin(plan, new.facts())
-        old.add(Rows(**{name: getattr(rows, name) for name in rows.columns if name not in JOINTS}))
+        old.add(RunRows(**{name: getattr(rows, name) for name in rows.columns if name not in JOINTS}))
     return place
 
 

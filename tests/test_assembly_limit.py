@@ -13,15 +13,15 @@ from scipy.optimize import linprog
 from scipy.sparse import csr_array
 
 from mechanisms._assembly import (
+    AssemblyBlock,
+    AssemblyContact,
     AssemblyFault,
-    Block,
-    Contact,
+    AssemblyGuide,
+    AssemblyHinge,
+    AssemblyLinkage,
     ContactFault,
-    Displaced,
+    DisplacedAssembly,
     DoesNotStand,
-    Guide,
-    Hinge,
-    Linkage,
     NoAnswer,
     NothingMoves,
     Opening,
@@ -46,7 +46,7 @@ g = 9.80665
 
 def rectangle(name, x0, y0, x1, y1, density=1.0):
     corners = (complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1))
-    return Block(name, corners, density * (x1 - x0) * (y1 - y0), complex(x0 + x1, y0 + y1) / 2)
+    return AssemblyBlock(name, corners, density * (x1 - x0) * (y1 - y0), complex(x0 + x1, y0 + y1) / 2)
 
 
 FLOOR = [rectangle("ground", -10, -1, 10, 0)]
@@ -65,12 +65,14 @@ def ring(n, edges=8, exact=True):
         if not exact:
             z = np.array(corners)
             body = polygon("", abs((z.conj() * np.roll(z, -1)).imag.sum()) / 2, corners)
-        blocks.append(Block(f"v{k + 1}", corners, body.mass, body.centroid))
+        blocks.append(AssemblyBlock(f"v{k + 1}", corners, body.mass, body.centroid))
     springings = []
     for name, angle, sign in (("left", angles[0], 1), ("right", angles[-1], -1)):
         u = np.exp(1j * angle)
         inner, outer, down = (R - T / 2 - 1) * u, (R + T / 2 + 1) * u, sign * 1j * u
-        springings.append(Block(name, (complex(inner), complex(outer), complex(outer + down), complex(inner + down))))
+        springings.append(
+            AssemblyBlock(name, (complex(inner), complex(outer), complex(outer + down), complex(inner + down)))
+        )
     return blocks, springings
 
 
@@ -170,7 +172,7 @@ def test_a_gap_in_metres_is_that_of_small_blocks_beside_large_ones():
 
 def test_a_corner_on_an_edge_is_no_joint_and_corners_that_meet_are_none():
     with pytest.raises(ContactFault, match="a corner on an edge does not count as a joint") as caught:
-        contacts([Block("diamond", (0j, 1 + 1j, 2j, -1 + 1j), 2.0, 1j)], FLOOR)
+        contacts([AssemblyBlock("diamond", (0j, 1 + 1j, 2j, -1 + 1j), 2.0, 1j)], FLOOR)
     assert caught.value.blocks == ("diamond",)
     one, other = rectangle("one", 0, 0, 1, 1), rectangle("other", 1, 1, 2, 2)
     with pytest.raises(ContactFault, match="'other'"):
@@ -182,30 +184,30 @@ def test_a_corner_on_an_edge_is_no_joint_and_corners_that_meet_are_none():
 
 
 def test_edges_that_are_not_parallel_are_no_joint():
-    leaning = Block("leaning", (1 + 0j, 2 + 0j, 2 + 4j, 1.5 + 4j), 3.0, 1.6 + 1.8j)
+    leaning = AssemblyBlock("leaning", (1 + 0j, 2 + 0j, 2 + 4j, 1.5 + 4j), 3.0, 1.6 + 1.8j)
     found = contacts([rectangle("one", 0, 0, 1, 4), leaning], FLOOR)
     assert [(c.a, c.b) for c in found] == [("ground", "one"), ("ground", "leaning")]
     for foot, head in ((1.0, 1.1), (1.1, 1.0)):  # by 1.4 degrees, and they touch at one end
-        leaning = Block("leaning", (foot + 0j, 2 + 0j, 2 + 4j, head + 4j), 3.0, 1.6 + 1.8j)
+        leaning = AssemblyBlock("leaning", (foot + 0j, 2 + 0j, 2 + 4j, head + 4j), 3.0, 1.6 + 1.8j)
         found = contacts([rectangle("one", 0, 0, 1, 4), leaning], FLOOR)
         assert [(c.a, c.b) for c in found] == [("ground", "one"), ("ground", "leaning")]
 
 
 def test_collinear_parts_of_two_bodies_are_one_joint():
-    portal = Block("portal", (0j, 1, 1 + 2j, 3 + 2j, 3, 4, 4 + 3j, 3j), 8.0, 2 + 1.8j)
+    portal = AssemblyBlock("portal", (0j, 1, 1 + 2j, 3 + 2j, 3, 4, 4 + 3j, 3j), 8.0, 2 + 1.8j)
     joint = only([portal])
     assert {joint.start, joint.end} == {0, 4}
     # Corners along an edge divide nothing, nor do slight bends of a drawing.
-    many = Block("many", (0j, 0.3 + 0j, 0.7 + 1e-4j, 1 + 0j, 1 + 4j, 4j), 4.0, 0.5 + 2j)
+    many = AssemblyBlock("many", (0j, 0.3 + 0j, 0.7 + 1e-4j, 1 + 0j, 1 + 4j, 4j), 4.0, 0.5 + 2j)
     assert {z.real for z in only([many]).ends} == {0, 1}
     # A wedge bears on two lines, which are two joints.
-    pit = [Block("pit", (-5 - 5j, 5 - 5j, 5 + 5j, 0j, -5 + 5j))]
-    step = [Block("step", (-1j, 2 - 1j, 2 + 1j, 1 + 1j, 1 + 0j, 0j))]
-    stepped = Block("stepped", (0j, 1 + 0j, 1 + 1j, 2 + 1j, 2 + 4j, 4j), 7.0, 1 + 2j)
+    pit = [AssemblyBlock("pit", (-5 - 5j, 5 - 5j, 5 + 5j, 0j, -5 + 5j))]
+    step = [AssemblyBlock("step", (-1j, 2 - 1j, 2 + 1j, 1 + 1j, 1 + 0j, 0j))]
+    stepped = AssemblyBlock("stepped", (0j, 1 + 0j, 1 + 1j, 2 + 1j, 2 + 4j, 4j), 7.0, 1 + 2j)
     assert sorted(sorted(z.real for z in c.ends) for c in contacts([stepped], step) if abs(c.normal.real) < 0.1) == [
         [0, 1], [1, 2],
     ]  # fmt: skip
-    wedge = Block("wedge", (0j, 1 + 1j, -1 + 1j), 1.0, 2j / 3)
+    wedge = AssemblyBlock("wedge", (0j, 1 + 1j, -1 + 1j), 1.0, 2j / 3)
     assert len(contacts([wedge], pit)) == 2
 
 
@@ -574,7 +576,7 @@ def test_a_wall_held_at_its_top_has_the_weakest_hinge_of_its_formula(k):
     # The hinge of the upper body is on the left face; the load at k t from there, held where it acts.
     top = complex(k * t, h)
     dead[-1] += [0, load, load * (top - courses[-1].centroid).real]
-    guide = Guide("floor", "c29", top, 1j)
+    guide = AssemblyGuide("floor", "c29", top, 1j)
     joints = contacts(courses, FLOOR)
     found = collapse(courses, joints, [guide], dead=dead, live=live)
     xi = np.arange(1, n) / n
@@ -589,10 +591,12 @@ def test_a_wall_held_at_its_top_has_the_weakest_hinge_of_its_formula(k):
 
 
 def test_three_groups_about_one_point_are_two_hinges():
-    names = [Block(name, (0j, 1 + 0j, 1j), 1.0, 1 + 1j) for name in "abc"]
+    names = [AssemblyBlock(name, (0j, 1 + 0j, 1j), 1.0, 1 + 1j) for name in "abc"]
     joints = [
-        Contact("a", "b", 0j, 1 + 0j, 1j), Contact("b", "c", -1 + 0j, 0j, 1j), Contact("a", "c", 0j, 1j, -1 + 0j),
-    ]  # fmt: skip
+        AssemblyContact("a", "b", 0j, 1 + 0j, 1j),
+        AssemblyContact("b", "c", -1 + 0j, 0j, 1j),
+        AssemblyContact("a", "c", 0j, 1j, -1 + 0j),
+    ]
     turning = np.array([[1.0, -1.0, 1.0], [2.0, -2.0, 2.0], [-1.0, 1.0, -1.0]])  # all about the origin
     any_state = solved([rectangle("block", 0, 0, 1, 4)])
     fields = replace(any_state, velocity=turning, opening=np.array([[0, 1.0], [1.0, 0], [0, 1.0]]), sliding=np.zeros(3))
@@ -617,11 +621,18 @@ def test_a_resting_block_is_ground_to_what_moves_on_it():
 
 
 def test_what_leads_is_on_the_ground_and_turns_the_right_way():
-    hinges = (Hinge(None, 0, 0j, 0), Hinge(0, 1, 1j, 1), Hinge(None, 2, 1 + 0j, 2), Hinge(3, None, 2 + 0j, 3))
+    hinges = (
+        AssemblyHinge(None, 0, 0j, 0),
+        AssemblyHinge(0, 1, 1j, 1),
+        AssemblyHinge(None, 2, 1 + 0j, 2),
+        AssemblyHinge(3, None, 2 + 0j, 3),
+    )
 
     def lead(*turns, direction=POSITIVE):
         velocity = np.column_stack([np.zeros((4, 2)), turns])
-        return leading(Linkage((("a",), ("b",), ("c",), ("d",)), ("ground",), velocity, hinges, (), (), 1), direction)
+        return leading(
+            AssemblyLinkage((("a",), ("b",), ("c",), ("d",)), ("ground",), velocity, hinges, (), (), 1), direction
+        )
 
     assert lead(-0.5, -1.0, -0.7, 0.9) == 2  # not the faster one aloft, nor the one that turns back
     assert lead(-0.5, -1.0, -0.7, 0.9, direction=NEGATIVE) == 3
@@ -754,7 +765,7 @@ def displaced(blocks, joints, guides, states, moved, weight):
     """What is left of an assembly whose blocks have moved to places and by angles, by their names."""
     places = [moved.get(block.name, (block.centroid, 0.0)) for block in blocks]
     centroids, turned = (np.array(each) for each in zip(*places, strict=True))
-    return Displaced(remaining(blocks, joints, guides, states).moved(centroids, np.exp(1j * turned)), weight)
+    return DisplacedAssembly(remaining(blocks, joints, guides, states).moved(centroids, np.exp(1j * turned)), weight)
 
 
 def displaced_arch(phi):
@@ -904,7 +915,7 @@ def test_a_joint_that_is_lifted_bears_no_more():
 
 def test_a_wall_held_at_its_top_stays_held_when_displaced():
     low, top = rectangle("low", 0, 0, 0.3, 2), rectangle("top", 0, 2, 0.3, 3)
-    blocks, guide = [low, top], Guide("floor", "top", 0.15 + 3j, 1j)
+    blocks, guide = [low, top], AssemblyGuide("floor", "top", 0.15 + 3j, 1j)
     joints = contacts(blocks, FLOOR)
     made = linkage(blocks, joints, [guide], collapse(blocks, joints, [guide]))
 
@@ -928,9 +939,9 @@ def test_a_wall_held_at_its_top_stays_held_when_displaced():
 def test_parts_on_one_line_that_bear_opposite_ways_are_two_joints():
     """A body stands on a pedestal, and its foot reaches under an arm of the ground on the line of its base."""
     corners = ((0, 0), (5, 0), (5, 2), (2, 2), (2, 1), (4, 1), (4, 0.3), (1, 0.3), (1, 1), (0, 1))
-    pedestal = Block("pedestal", tuple(complex(*corner) for corner in corners))
+    pedestal = AssemblyBlock("pedestal", tuple(complex(*corner) for corner in corners))
     corners = ((0, 1), (1.1, 1), (1.1, 0.6), (3, 0.6), (3, 1), (1.5, 1), (1.5, 2), (0, 2))
-    hook = Block("hook", tuple(complex(*corner) for corner in corners), 2.0, 1.0 + 1.3j)
+    hook = AssemblyBlock("hook", tuple(complex(*corner) for corner in corners), 2.0, 1.0 + 1.3j)
     on, under = sorted(contacts([hook], [pedestal]), key=lambda joint: joint.start.real)
     for joint, ends, normal in ((on, {0, 1}, 1j), (under, {2, 3}, -1j)):
         assert {round(end.real, 9) for end in joint.ends} == ends

@@ -11,7 +11,7 @@ from pytest import approx
 from scipy.linalg import null_space as dense_null_space
 
 from mechanisms._assembly import (
-    Block,
+    AssemblyBlock,
     DoesNotStand,
     NothingMoves,
     collapse,
@@ -20,7 +20,7 @@ from mechanisms._assembly import (
     friction,
     linkage,
 )
-from mechanisms._assembly.problem import Problem
+from mechanisms._assembly.problem import AssemblyProblem
 from mechanisms._assembly.programme import LARGE
 from mechanisms._assembly.unique import kept_rays, velocity_space
 from mechanisms._polygons import nearby
@@ -93,7 +93,7 @@ def test_a_wall_solved_by_interior_points_has_both_theorems():
 @pytest.mark.parametrize("seed", range(12))
 def test_rigid_parts_leave_the_velocities_that_one_dense_matrix_has(seed):
     blocks, joints, direction = jumble(seed)
-    problem = Problem.of(blocks, joints, (), direction)
+    problem = AssemblyProblem.of(blocks, joints, (), direction)
     rays = problem.bearings.rays()
     _, _, raw = problem.greatest(rays)
     kept = kept_rays(rays, problem.dead, problem.live, raw)
@@ -136,7 +136,7 @@ def test_the_friction_needed_is_a_bracket():
         reached = []
         for mu in (needed * (1 + 1e-9), needed * (1 - 1.1e-6)):
             less = [replace(c, friction=mu if c.friction is None else min(mu, c.friction)) for c in joints]
-            problem = Problem.of(blocks, less, (), direction)
+            problem = AssemblyProblem.of(blocks, less, (), direction)
             reached.append(problem.greatest(problem.bearings.rays())[0] / problem.strength)
         assert reached[0] >= found.multiplier * (1 - 2e-9), seed
         assert reached[1] < found.multiplier * (1 - 1e-10), seed
@@ -214,7 +214,7 @@ def test_a_stack_that_slides_has_a_mechanism_for_each_joint():
 
 
 def test_walls_of_odd_blocks_have_an_answer_or_a_place():
-    sliver = Block("sliver", (1 + 0j, 1.0001 + 0j, 1.0001 + 4j, 1 + 4j), 4e-4, 1.00005 + 2j)
+    sliver = AssemblyBlock("sliver", (1 + 0j, 1.0001 + 0j, 1.0001 + 4j, 1 + 4j), 4e-4, 1.00005 + 2j)
     found = collapse([TOWER, sliver], contacts([TOWER, sliver], FLOOR, friction=0.6, within=1e-5))
     assert found.kinematic == approx(found.multiplier, rel=1e-9)
     gap = contacts([TOWER, rectangle("low", 1 + 0.0099, 0, 2, 4)], FLOOR)

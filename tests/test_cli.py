@@ -16,7 +16,7 @@ from click.testing import CliRunner
 from rocking_cli.cli.main import COMMANDS, main
 from rocking_cli.core.registry import Registry
 from rocking_cli.structure_file import parse_structure
-from rocking_cli.studies.neighbours import Around
+from rocking_cli.studies.neighbours import Neighbourhood
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
 
 ACCEL = str(EXAMPLES / "accel.csv")
@@ -70,7 +70,7 @@ class TestNeighbours:
         words = ("respond", FRAME, "--record", ACCEL, "--scale", "1.1", "--polarity", "-1", "--neighbours", 50)
         deviations = ("--amplitude-deviation", 0.05, "--restitution-deviation", 0.01, "--slenderness-deviation", "7%")
         found = run_json(*words, *deviations)["neighbours"]
-        around = Around(50, amplitude=0.05, restitution=0.01, slenderness=0.07)
+        around = Neighbourhood(50, amplitude=0.05, restitution=0.01, slenderness=0.07)
         alone = neighbours(build_model(load_structure(FRAME), "nonlinear"), read_record(ACCEL).scaled(-1.1), around)
         assert [found[name] for name in DRAWN] == [50, 0.05, 0.01, 0.07]
         assert [found[name] for name in ("overturned", "unknown", "sensitive")] == [
@@ -85,7 +85,7 @@ class TestNeighbours:
         said = [each["neighbours"] for each in found["polarities"].values()]
         for near in said:
             assert [near[name] for name in DRAWN] == [200, 0.04, 0.05, 0.1]
-            around = Around(200, amplitude=0.04, restitution=0.05, slenderness=0.1)
+            around = Neighbourhood(200, amplitude=0.04, restitution=0.05, slenderness=0.1)
             assert f"Of 200 neighbouring motions ({around.words}), {shares(near)}" in text
 
     def test_none_if_none_are_requested(self):

@@ -17,7 +17,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.structure_file import parse_structure
 from rocking_cli.studies.picture import picture
 from rocking_cli.testing import contract
-from rocking_cli.views.equiv import view
+from rocking_cli.views.equivalent_block import view
 
 POSITIVE, NEGATIVE = Direction
 G = 9.80665

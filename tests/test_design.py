@@ -13,8 +13,8 @@ import rocking_cli as rk
 from rocking_cli.errors import InputError
 from rocking_cli.structure import Structure
 from rocking_cli.studies.design import Aim, Span, design
-from rocking_cli.studies.metrics import METRICS, Metric, Shaking
-from rocking_cli.studies.neighbours import Around, neighbours
+from rocking_cli.studies.metrics import METRICS, Excitation, Metric
+from rocking_cli.studies.neighbours import Neighbourhood, neighbours
 from rocking_cli.views.design import answer
 from tests.conftest import EXAMPLES
 from tests.test_cli import run
@@ -35,7 +35,7 @@ def of(metric, values=(0.0, 1.0), points=11, until="m >= 0.5"):
     """A design of a metric that is a function of the width, which has no physics in it."""
     from unittest.mock import patch
 
-    made = Metric("m", "", "a test", lambda structure, shaking: metric(structure.mechanism.width))
+    made = Metric("m", "", "a test", lambda structure, excitation: metric(structure.mechanism.width))
     with patch.dict(METRICS, {"m": made}):
         return design(Structure(rk.Block(width=1.0, height=2.0)), "width", values, Aim.parse(until), points=points)
 
@@ -141,7 +141,7 @@ class TestShares:
     SINE = "sine:0.5g:0.8s"
 
     def test_the_metrics_are_those_of_the_neighbours(self):
-        motion, around = rk.parse_pulse(self.SINE).sampled(), Around(20)
+        motion, around = rk.parse_pulse(self.SINE).sampled(), Neighbourhood(20)
         found = rk.design(BLOCK, "width=0.3:1.2", "overturned < 5%", self.SINE, neighbours=20, points=7)
         peaks = rk.design(BLOCK, "width=0.3:1.2", "peak_ratio < 0.5", self.SINE, neighbours=20, points=7)
         block = rk.load_structure(BLOCK)
@@ -153,10 +153,10 @@ class TestShares:
     def test_the_answer_holds_and_just_below_it_does_not(self):
         found = rk.design(BLOCK, "width=0.5:1.2", "overturned <= 50%", self.SINE, neighbours=20, points=8)
         assert found.monotone
-        shaking = Shaking([rk.parse_pulse(self.SINE).sampled()], (1,), Around(20))
+        excitation = Excitation([rk.parse_pulse(self.SINE).sampled()], (1,), Neighbourhood(20))
         metric, block = METRICS["overturned"].value, Structure(rk.load_structure(BLOCK))
 
-        at, below = (metric(block.varied("width", found.value - off), shaking) for off in (0.0, 2e-3))
+        at, below = (metric(block.varied("width", found.value - off), excitation) for off in (0.0, 2e-3))
         assert at <= 0.5 < below
 
     def test_the_worse_of_motions_and_polarities_counts(self):

@@ -17,7 +17,7 @@ from statsmodels.discrete.discrete_model import Logit, Probit
 from rocking_cli.errors import InputError
 from rocking_cli.studies.fragility import curves
 from rocking_cli.studies.fragility import fit as fitting
-from rocking_cli.studies.fragility.curves import Curve, Observations, fit_capacities, fit_surface
+from rocking_cli.studies.fragility.curves import FragilityCurve, Observations, fit_capacities, fit_surface
 from rocking_cli.studies.fragility.fit import NO_ERRORS, fit_outcomes
 from rocking_cli.studies.fragility.goodness import goodness_of_runs
 from rocking_cli.studies.fragility.likelihood import separable
@@ -267,7 +267,7 @@ def pivots(fits):
 
 def covered(fits):
     """How many intervals contain the truth: of the median, of the dispersion."""
-    curves = [Curve("lognormal", "", 0.95, 0, 0, fit=fit) for fit in fits]
+    curves = [FragilityCurve("lognormal", "", 0.95, 0, 0, fit=fit) for fit in fits]
     return (
         sum(each.median.low <= MEDIAN <= each.median.high for each in curves),
         sum(each.dispersion.low <= DISPERSION <= each.dispersion.high for each in curves),

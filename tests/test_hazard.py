@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from scipy.stats import norm
 
 from rocking_cli.errors import InputError
-from rocking_cli.studies.fragility.curves import Curve, Estimate
+from rocking_cli.studies.fragility.curves import Estimate, FragilityCurve
 from rocking_cli.studies.fragility.fit import Fit
 from rocking_cli.studies.fragility.hazard import HazardCurve, annual_rate, read_hazard
 
@@ -19,11 +19,11 @@ COVARIANCE = np.array([[0.02, 0.015], [0.015, 0.03]])
 
 def lognormal(median, dispersion, covariance=COVARIANCE):
     coefficients = np.array([-log(median), 1.0]) / dispersion
-    return Curve("lognormal", "", 0.95, 100, 50, fit=Fit("probit", coefficients, covariance, -1.0, 0.95))
+    return FragilityCurve("lognormal", "", 0.95, 100, 50, fit=Fit("probit", coefficients, covariance, -1.0, 0.95))
 
 
 def step(at, low, high):
-    return Curve("step", "", 0.95, 100, 50, step=Estimate(at, low, high))
+    return FragilityCurve("step", "", 0.95, 100, 50, step=Estimate(at, low, high))
 
 
 def power_law(k, start=1e-4, stop=1e4, k0=1e-3):
@@ -64,7 +64,9 @@ class TestRate:
         assert found.above == pytest.approx(norm.sf(log(2 / 0.7) / dispersion) * 1e-5, rel=1e-9)
 
     def test_of_a_logistic_curve_is_a_plain_sum_and_open_below(self):
-        curve = Curve("logistic", "", 0.95, 100, 50, fit=Fit("logit", np.array([-4.0, 6.0]), COVARIANCE, -1.0, 0.95))
+        curve = FragilityCurve(
+            "logistic", "", 0.95, 100, 50, fit=Fit("logit", np.array([-4.0, 6.0]), COVARIANCE, -1.0, 0.95)
+        )
         hazard = power_law(2.0, 0.1, 5.0)
         found = annual_rate(curve, hazard)
         inside = quad(lambda x: 1 / (1 + exp(4 - 6 * x)) * 2e-3 * x**-3, 0.1, 5.0, epsabs=0, epsrel=1e-10)[0]
@@ -103,7 +105,7 @@ class TestRate:
 
     def test_of_no_curve_is_refused_with_the_reason(self):
         with pytest.raises(InputError, match="none of the 9 runs exceed"):
-            annual_rate(Curve("none", "none of the 9 runs exceed", 0.95, 9, 0), BENT)
+            annual_rate(FragilityCurve("none", "none of the 9 runs exceed", 0.95, 9, 0), BENT)
 
 
 class TestHazardCurve:

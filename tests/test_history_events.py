@@ -18,7 +18,7 @@ from rocking_cli.dynamics.deck import MOST_IMPACTS, run_deck
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import OUTCOME
-from rocking_cli.dynamics.tables import Table
+from rocking_cli.dynamics.tables import DirectionTable
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure, build_models
@@ -504,7 +504,7 @@ def hollow(end):
         np.array([[*g.coef, 0.0, 1.0, 0.0, 0.0, 0.0]]),
         np.array([[0.0, end, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]]),
     )
-    table = Table(forces, angles, np.array([-1.0]), np.array([0.0, end]), end)
+    table = DirectionTable(forces, angles, np.array([-1.0]), np.array([0.0, end]), end)
     numbers = [2.0, 1.0, 0.9, 1.0, 1e-6, end, 1 / end, 1.0, 0.0, 1.0, 0.0, 0.0]
     both = (np.stack([part, part], axis=1) for part in (forces, angles, table.certain))
     return Model("nonlinear", "hollow", (1.0, 1.0), np.array([numbers, numbers]), *both, (table, table))

@@ -16,7 +16,7 @@ from rocking_cli.core.hung.elements import Spring
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.dispatch import ELASTIC, KERNELS, kernel_for, register
 from rocking_cli.dynamics.history import follow
-from rocking_cli.studies.neighbours import Around
+from rocking_cli.studies.neighbours import Neighbourhood
 from tests.following import build_model
 from tests.test_batch import same
 from tests.test_cli import run, some
@@ -162,7 +162,7 @@ class TestPython:
         rk.respond("tied.yaml", motion, models="linear2")
         rk.respond("bare.yaml", motion, models="nonlinear")
         assert ran == {"elastic": 2, "second": 1}
-        monkeypatch.setattr("rocking_cli.studies.neighbours.Around", lambda: Around(2))
+        monkeypatch.setattr("rocking_cli.studies.neighbours.Neighbourhood", lambda: Neighbourhood(2))
         rk.margin("tied.yaml", motion)
         assert ran["elastic"] == 2 and ran["second"] > 1
 

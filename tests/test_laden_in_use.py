@@ -20,8 +20,8 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.structure import Structure
-from rocking_cli.studies.equivalent import equivalent
-from rocking_cli.studies.neighbours import Around, neighbours
+from rocking_cli.studies.equivalent_pulses import equivalent
+from rocking_cli.studies.neighbours import Neighbourhood, neighbours
 from rocking_cli.studies.sizes import Sizes
 from rocking_cli.studies.spectrum import shape_of
 from rocking_cli.studies.under_pulses import outcomes, parse_shape, pulsed_model
@@ -297,7 +297,7 @@ def test_a_rebound_of_nothing_stays_where_it_hits():
     still = made("block", **BLOCK, one_sided="positive", rebound=0.0)
     (model,) = build_models(still, ("nonlinear",))
     motion = shaking(vertical=False)[0]
-    near = neighbours(model, motion, Around(20))
+    near = neighbours(model, motion, Neighbourhood(20))
     assert near.as_itself == 1.0
     history = follow(model, None, release=0.4)
     assert history.impact_count == 1 and history.at_rest

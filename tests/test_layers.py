@@ -29,6 +29,26 @@ def test_no_layer_below_the_command_line_knows_a_flag(path):
     assert not found
 
 
+# Classes that share a name: plugins import the load of `rocking_cli.core`, users the mechanism of `rocking_cli`; the
+# shipped kernels are made of the text of theirs.
+SHARED = {
+    "PointMass": {"mechanisms/point_mass.py", "rocking_cli/core/hung/attached.py"},
+    "Structure": {"rocking_cli/dynamics/kernels.py", "rocking_cli/structure.py"},
+}
+
+
+def test_no_class_name_is_defined_in_two_files():
+    """One name for one thing, see `docs/architecture.md#names`."""
+    homes: dict[str, set[str]] = {}
+    for package in (rocking_cli, mechanisms):
+        folder = Path(package.__file__).parent
+        for path in sorted(folder.rglob("*.py")):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.ClassDef):
+                    homes.setdefault(node.name, set()).add(path.relative_to(folder.parent).as_posix())
+    assert {name: files for name, files in homes.items() if len(files) > 1} == SHARED
+
+
 ROOT = Path(rocking_cli.__file__).resolve().parents[1]
 BESIDE = [path for folder in ("benchmarks", "docs", "scripts") for path in sorted((ROOT / folder).glob("*.py"))]
 

@@ -18,7 +18,7 @@ from rocking_cli.structure import Structure, build_models
 from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.studies import margin as margins
 from rocking_cli.studies.margin import FACTORS, LEVELS, Margin, in_words, margin
-from rocking_cli.studies.neighbours import Around
+from rocking_cli.studies.neighbours import Neighbourhood
 from tests.conftest import EXAMPLES
 from tests.following import build_model
 from tests.test_cli import run, run_json
@@ -26,7 +26,7 @@ from tests.test_cli import run, run_json
 BLOCK = parse_structure("mechanism: block\nwidth: 0.7\nheight: 2.8\n", "block", "block")
 CORNERS = "mechanism: rigid_body\npolygon: [[0, 0], [0.7, 0], [0.69, 2.8], [0, 2.8]]\n"
 FRAME = load_structure(EXAMPLES / "frame.yaml")
-AROUND = Around(20)
+AROUND = Neighbourhood(20)
 
 
 SINGLE = {}
@@ -68,7 +68,7 @@ def test_the_shares_are_those_of_neighbours_followed_alone(mechanism, pulse, pol
     motion = parse_pulse(pulse).sampled()
     model = build_model(mechanism, "nonlinear")
     found = margin(model, motion, polarities, around=AROUND)
-    assert found.around == Around(20, 0.04, 0.05, 0.10) and found.checked and not found.unknown.any()
+    assert found.around == Neighbourhood(20, 0.04, 0.05, 0.10) and found.checked and not found.unknown.any()
     partly = np.flatnonzero((found.overturned > 0) & (found.overturned < 1))
     assert found.factors.tolist() == sorted([*FACTORS, 1.0]) and partly.size
     for k in [0, *partly[:2], partly[-1], FACTORS.size]:
@@ -80,7 +80,7 @@ def test_the_shares_are_those_of_neighbours_followed_alone(mechanism, pulse, pol
 def test_the_shares_of_unknown_outcome_are_those_of_neighbours_followed_alone(polarities):
     """Of a body that slides: more overturn for certain under one polarity, and more may do so under the other."""
     body = parse_structure(f"{CORNERS}friction: 0.4\n".replace("0.69", "0.6"), "sliding", "sliding")
-    motion, around = read_record(EXAMPLES / "accel.csv"), Around(10, slenderness=0.0)
+    motion, around = read_record(EXAMPLES / "accel.csv"), Neighbourhood(10, slenderness=0.0)
     found = margin(build_model(body, "nonlinear"), motion, polarities, around=around, factors=np.array([0.5, 2.0, 3.0]))
     assert found.factors.tolist() == [0.5, 1.0, 2.0, 3.0]
     expected = [share(body, motion, factor, polarities, around) for factor in found.factors]
@@ -91,7 +91,7 @@ def test_the_shares_of_unknown_outcome_are_those_of_neighbours_followed_alone(po
 
 def test_of_joints_that_the_mechanism_does_not_name_nothing_is_said_to_be_unknown():
     curve = build_model(load_structure(EXAMPLES / "curve.yaml"), "nonlinear")
-    found = margin(curve, parse_pulse("sine:0.5g:1s").sampled(), around=Around(2), factors=np.array([2.0]))
+    found = margin(curve, parse_pulse("sine:0.5g:1s").sampled(), around=Neighbourhood(2), factors=np.array([2.0]))
     assert not found.checked and not found.unknown.any()
 
 
@@ -100,7 +100,7 @@ def test_a_reversed_motion_is_followed_only_where_it_can_add_something(monkeypat
     follow = margins.follow
     monkeypatch.setattr(margins, "follow", lambda *a, **k: followed.append(len(a[2].amplitude)) or follow(*a, **k))
     motion = parse_pulse("sine:0.8g:0.5s").sampled()
-    around = Around(20, 0.02, 0.02, 0.0)
+    around = Neighbourhood(20, 0.02, 0.02, 0.0)
     every = 61 * around.count
     # A little heavier at one side, so that a reversed motion is another one.
     leaning = parse_structure(CORNERS, "leaning", "leaning")
@@ -212,9 +212,9 @@ class TestWords:
 def test_uplift_is_a_quotient(polarities):
     """A ground acceleration to the left lifts a block clockwise, at tan(alpha) g."""
     motion = GroundMotion("two pushes", 0.1, np.array([0.0, 4.0, 0.0, -2.0, 0.0]))
-    found = margin(build_model(BLOCK, "nonlinear"), motion, polarities, around=Around(1))
+    found = margin(build_model(BLOCK, "nonlinear"), motion, polarities, around=Neighbourhood(1))
     assert found.uplift == pytest.approx(0.25 * BLOCK.gravity / 4.0, rel=1e-12)
-    still = margin(build_model(BLOCK, "nonlinear"), motion.scaled(0), polarities, around=Around(1))
+    still = margin(build_model(BLOCK, "nonlinear"), motion.scaled(0), polarities, around=Neighbourhood(1))
     assert still.uplift is None and not still.overturned.any()
 
 
@@ -258,7 +258,7 @@ class TestCommand:
         words = ("margin", EXAMPLES / "arch.yaml", "--record", self.ACCEL, "--neighbours", 5, "--polarity", 1)
         (ours,) = run_json(*words)["motions"]
         model = build_model(load_structure(EXAMPLES / "arch.yaml"), "nonlinear")
-        found = margin(model, read_record(self.ACCEL), (1,), around=Around(5))
+        found = margin(model, read_record(self.ACCEL), (1,), around=Neighbourhood(5))
         assert ours["unknown"] == found.unknown.tolist() and max(ours["unknown"]) > 0.5
         assert ours["levels"]["50"]["first_or_unknown"] == found.possible(0.5) is not None
         assert ours["levels"]["10"]["last_below_or_unknown"] == found.last_possible_below(0.1) is not None

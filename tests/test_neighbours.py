@@ -20,8 +20,8 @@ from rocking_cli.excitation.pulses.shapes import Sine
 from rocking_cli.excitation.records import read_record
 from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.studies.neighbours import (
-    Around,
     Draws,
+    Neighbourhood,
     Neighbours,
     Severity,
     can_lift,
@@ -61,7 +61,7 @@ def one_in_each(uniform):
 
 class TestDraws:
     def test_they_are_lognormal_and_truncated_normal_and_not_correlated(self):
-        drawn = Around(2000, 0.03, 0.01, 0.08).drawn(build_model(FRAME, "nonlinear"))
+        drawn = Neighbourhood(2000, 0.03, 0.01, 0.08).drawn(build_model(FRAME, "nonlinear"))
         uniform = [ndtr(np.log(drawn.amplitude) / 0.03), ndtr(np.log(drawn.slender) / 0.08)]
         inertia = {side: FRAME.kinetic_inertia(np.zeros(1), side)[0] for side in Direction}
         for column, side in enumerate(Direction):
@@ -73,18 +73,18 @@ class TestDraws:
 
     def test_they_are_the_same_every_time(self):
         model = build_model(FRAME, "nonlinear")
-        for one, other in zip(Around().drawn(model), Around().drawn(model), strict=True):
+        for one, other in zip(Neighbourhood().drawn(model), Neighbourhood().drawn(model), strict=True):
             assert one.tolist() == other.tolist() and len(one) == 200
 
     def test_restitution_is_drawn_again_above_what_no_impact_exceeds(self):
         """That bound is 1 for a block, and the root of the ratio of the inertias at rest for a frame."""
         elastic = BLOCK.model_copy(update={"restitution": 0.995})
-        etas = Around().drawn(build_model(elastic, "nonlinear")).eta
+        etas = Neighbourhood().drawn(build_model(elastic, "nonlinear")).eta
         assert 0.9995 < etas.max() < 1.0
         # Half a normal distribution, and a little more: none of those above 1 is put at 1.
         assert np.median(etas) == pytest.approx(0.995 + 0.03 * ndtri(0.5 * ndtr(0.005 / 0.03)), abs=2e-4)
         inertia = {side: FRAME.kinetic_inertia(np.zeros(1), side)[0] for side in Direction}
-        etas = Around(restitution=0.5).drawn(build_model(FRAME, "nonlinear")).eta
+        etas = Neighbourhood(restitution=0.5).drawn(build_model(FRAME, "nonlinear")).eta
         for column, side in enumerate(Direction):
             most = (inertia[side] / inertia[side.opposite]) ** 0.5
             assert most - 0.01 < etas[:, column].max() < most
@@ -93,13 +93,13 @@ class TestDraws:
 
     def test_restitution_stays_positive(self):
         dead = BLOCK.model_copy(update={"restitution": 0.01})
-        etas = Around().drawn(build_model(dead, "nonlinear")).eta[:, 0]
+        etas = Neighbourhood().drawn(build_model(dead, "nonlinear")).eta[:, 0]
         assert etas.min() == 1e-3
         assert (etas == 1e-3).mean() == pytest.approx(ndtr((1e-3 - 0.01) / 0.03), abs=0.01)
 
     def test_deviations_of_nothing_are_the_structure_itself(self):
         model = build_model(FRAME, "nonlinear")
-        drawn = Around(7, 0.0, 0.0, 0.0).drawn(model)
+        drawn = Neighbourhood(7, 0.0, 0.0, 0.0).drawn(model)
         assert drawn.amplitude.tolist() == drawn.slender.tolist() == [1.0] * 7
         assert drawn.eta.tolist() == [list(model.eta)] * 7
 
@@ -117,7 +117,7 @@ class TestDraws:
     )
     def test_wrong_numbers_are_refused(self, wrong):
         with pytest.raises(InputError, match="must be from 0"):
-            Around(**wrong)
+            Neighbourhood(**wrong)
 
 
 LIFTED = replace(ACCEL, vertical=GroundMotion("up", 0.02, 4.0 * np.sin(np.arange(500) * 0.7)))
@@ -127,7 +127,7 @@ LIFTED = replace(ACCEL, vertical=GroundMotion("up", 0.02, 4.0 * np.sin(np.arange
 @pytest.mark.parametrize("mechanism", [BLOCK, FRAME], ids=["block", "frame"])
 @pytest.mark.parametrize("scale", [0.6, 0.9])
 def test_neighbours_are_what_each_would_be_alone(mechanism, scale, motion):
-    around = Around(30, 0.05, 0.03, 0.08)
+    around = Neighbourhood(30, 0.05, 0.03, 0.08)
     mechanism = mechanism.model_copy(update={"opening": 1.0})  # joints feel the ground as it is: see below
     model, motion = build_model(mechanism, "nonlinear"), motion.scaled(scale)
     fates = np.array([fate(alone(mechanism, motion, *each)) for each in zip(*around.drawn(model), strict=True)])
@@ -147,7 +147,7 @@ def test_neighbours_are_what_each_would_be_alone(mechanism, scale, motion):
 )
 def test_neighbours_of_unknown_outcome_are_what_each_would_be_alone(file, opening, scale, some, fell):
     structure = load_structure(EXAMPLES / f"{file}.yaml").model_copy(update={"opening": opening})
-    around, motion = Around(20, 0.1, 0.03, 0.0), ACCEL.scaled(scale)
+    around, motion = Neighbourhood(20, 0.1, 0.03, 0.0), ACCEL.scaled(scale)
     model = build_model(structure, "nonlinear")
     histories = [alone(structure, motion, *each) for each in zip(*around.drawn(model), strict=True)]
     found = neighbours(model, motion, around)
@@ -161,7 +161,7 @@ def test_neighbours_of_unknown_outcome_are_what_each_would_be_alone(file, openin
 
 
 def test_nothing_is_known_of_joints_that_the_mechanism_does_not_name():
-    found = neighbours(build_model(load_structure(EXAMPLES / "curve.yaml"), "nonlinear"), ACCEL, Around(5))
+    found = neighbours(build_model(load_structure(EXAMPLES / "curve.yaml"), "nonlinear"), ACCEL, Neighbourhood(5))
     assert found.unknown is None and found.at_most == found.overturned
 
 
@@ -177,7 +177,7 @@ def test_nothing_is_known_of_joints_that_the_mechanism_does_not_name():
 def test_two_hundred_tell_the_share_of_thousands(file, pulse):
     """On smooth cases and on fractal ones; independent samples would scatter by 3.5 % about a half."""
     model, motion = build_model(load_structure(EXAMPLES / f"{file}.yaml"), "nonlinear"), parse_pulse(pulse).sampled()
-    few, many = (neighbours(model, motion, Around(count)) for count in (200, 2_500))
+    few, many = (neighbours(model, motion, Neighbourhood(count)) for count in (200, 2_500))
     assert few.overturned == pytest.approx(many.overturned, abs=3.5 * 0.035)
     assert few.unknown == pytest.approx(many.unknown, abs=3.5 * 0.035)
 
@@ -206,7 +206,7 @@ def test_the_share_of_a_linear_block_is_that_of_its_islands(varied):
                 "sine", period / 20_000, Sine(amplitude, period).acceleration(np.arange(20_001) * period / 20_000)
             )
             deviations = {"amplitude": 0.0, "restitution": 0.0, "slenderness": 0.0, varied: deviation}
-            found = neighbours(model, motion, Around(1000, **deviations))
+            found = neighbours(model, motion, Neighbourhood(1000, **deviations))
             # Each part of the range has one sample: the share is off by a part at each boundary.
             assert found.overturned == pytest.approx(exact, abs=3e-3)
             checked += 0.05 < exact < 0.95
@@ -234,7 +234,7 @@ class TestWithoutShaking:
     @pytest.mark.parametrize("off", [-1e-9, 1e-9])
     def test_the_neighbour_that_lifts_first_decides(self, off):
         model = build_model(BLOCK, "nonlinear")
-        drawn = Around().drawn(model)
+        drawn = Neighbourhood().drawn(model)
         first = ACCEL.scaled(least_uplift(model, ACCEL) / (drawn.amplitude / drawn.slender).max())
         assert not can_lift(model, first, 1.2)
         assert neighbours(model, first.scaled(1 + off)).lifted == (off > 0)
@@ -251,7 +251,7 @@ class TestWithoutShaking:
     @pytest.mark.parametrize("sign", [1, -1])
     def test_a_release_next_to_the_critical_rotation_falls_as_often_as_it_is_beyond_it(self, sign):
         model = build_model(FRAME, "nonlinear")
-        dull = Around(restitution=0.0)
+        dull = Neighbourhood(restitution=0.0)
         found = neighbours(model, None, dull, release=0.99 * sign, release_is_angle=True)
         assert found.overturned == (dull.drawn(model).slender < 0.99).mean()
         assert found.overturned == pytest.approx(ndtr(log(0.99) / 0.10), abs=0.01)
@@ -295,7 +295,7 @@ def test_a_history_of_unknown_outcome_is_as_severe_as_one_that_overturns():
     unknown, rocks = (respond(PORTAL, ACCEL.scaled(scale), models=("nonlinear",))["nonlinear"] for scale in (2.0, 1.0))
     assert severity(unknown) == (0.0, 0.0, np.inf, 0.0)
     assert severity(rocks) == (0.0, 0.0, rocks.peak_ratio, 0.0) and rocks.peak_ratio > 0
-    near = Neighbours(Around(), "nonlinear", 0.2, (0.1, 0.3, np.inf), 1.0, unknown=0.1)
+    near = Neighbours(Neighbourhood(), "nonlinear", 0.2, (0.1, 0.3, np.inf), 1.0, unknown=0.1)
     assert severity(unknown, near) == (pytest.approx(0.3), 0.3, np.inf, 0.2)
 
 
@@ -308,13 +308,13 @@ class TestWords:
         assert str(found) == f"None of 200 neighbouring motions {NEAR[:-1]} uplifts the structure."
 
     def sentence(self, overturned, peaks, unknown=0.0):
-        around = Around(restitution=0.05, slenderness=0.10)
+        around = Neighbourhood(restitution=0.05, slenderness=0.10)
         return str(Neighbours(around, "nonlinear", overturned, peaks, 1.0, unknown=unknown))
 
     def test_deviations_that_are_not_given_are_those_of_the_structure(self):
         own = "and those of the structure for its"
-        assert Around().words == f"standard deviations 4 % of amplitude, {own} slenderness and restitution"
-        assert Around(20, 0.01, 0.02).words == (
+        assert Neighbourhood().words == f"standard deviations 4 % of amplitude, {own} slenderness and restitution"
+        assert Neighbourhood(20, 0.01, 0.02).words == (
             f"standard deviations 1 % of amplitude, 0.02 of restitution, {own} slenderness"
         )
 
@@ -372,7 +372,7 @@ class TestWords:
 
     @pytest.mark.parametrize("scale", [0.3, 0.7, 0.8, 0.9, 1.1])
     def test_the_numbers_are_those_of_the_neighbours(self, scale):
-        model, motion, around = build_model(BLOCK, "nonlinear"), ACCEL.scaled(scale), Around(400, 0.05)
+        model, motion, around = build_model(BLOCK, "nonlinear"), ACCEL.scaled(scale), Neighbourhood(400, 0.05)
         amplitude, slender, eta = around.drawn(model)
         runs = Runs.of(0, 0, scale=amplitude, slender=slender, eta=eta)
         fallen = respond_many([model], [motion], runs).overturned.mean()

@@ -16,7 +16,7 @@ from scipy.sparse import diags_array, eye_array, random_array, vstack
 
 from mechanisms._assembly import ContactFault, collapse, contacts, linkage, remaining
 from mechanisms._assembly import programme as programmes
-from mechanisms._assembly.displaced import Displaced
+from mechanisms._assembly.displaced import DisplacedAssembly
 from mechanisms._assembly.friction import friction
 from mechanisms._assembly.rays import scaled
 from rocking_cli.cli import waiting
@@ -101,8 +101,8 @@ def test_forces_near_a_state_balance_without_tension():
         blocks = [rectangle(f"b{k}", *box) for k, box in enumerate(cut(rng, 0, 0, 2, 4, 4))]
         joints = contacts(blocks, FLOOR)
         dead, live = weights(blocks)
-        there = Displaced(remaining(blocks, joints, (), linkage(blocks, joints, (), collapse(blocks, joints)).states),
-                          float(np.abs(dead).sum()))  # fmt: skip
+        states = linkage(blocks, joints, (), collapse(blocks, joints)).states
+        there = DisplacedAssembly(remaining(blocks, joints, (), states), float(np.abs(dead).sum()))
         forces = dead + there.multiplier(dead, live) * live
         (answer,) = there.admissible(forces)
         if answer.forces is None or answer.margin <= 0:

@@ -10,7 +10,7 @@ from scipy.optimize import differential_evolution, minimize
 
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, PulseFit, _Search, fit_pulse, fit_pulses
+from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, PulseFit, _PulseSearch, fit_pulse, fit_pulses
 from rocking_cli.excitation.pulses.shapes import MavroeidisPapageorgiou, Ricker, Sine
 from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.simplex import maximise
@@ -239,7 +239,7 @@ class TestSimplex:
 
 
 def test_coarser_levels_are_the_same_record_at_the_same_times():
-    search = _Search(np.sin(np.arange(4000) / 100), 0.01, False)
+    search = _PulseSearch(np.sin(np.arange(4000) / 100), 0.01, False)
     for k, level in enumerate(search.levels[:4]):
         np.testing.assert_allclose(level[1:-1], search.levels[0][:: 2**k][1 : level.size - 1], atol=2e-3)
     assert [search.level(period, 40) for period in (0.1, 0.79, 0.81, 1.61, 1e9)] == [0, 0, 1, 2, 8]

@@ -12,9 +12,17 @@ from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.plotting.record_set import MEAN, draw_record_set
 from rocking_cli.processing.oscillator import response_spectrum
 from rocking_cli.studies import subsets
-from rocking_cli.studies.record_set import Candidates, Wanted, candidates, choose, coarse, log_weights, periods_of
+from rocking_cli.studies.record_set import (
+    Candidates,
+    SetRequirements,
+    candidates,
+    choose,
+    coarse,
+    log_weights,
+    periods_of,
+)
 from rocking_cli.studies.target_spectrum import TargetSpectrum, doubts, read_target
-from rocking_cli.views.record_set import Results, ratio_in_words, view
+from rocking_cli.views.record_set import ShownSet, ratio_in_words, view
 
 BAND = (0.2, 2.0)
 CODE = TargetSpectrum("code", np.array([0.0, 0.15, 0.5, 1.0, 2.0, 4.0]), np.array([0.3, 0.75, 0.75, 0.375, 0.19, 0.05]))
@@ -42,7 +50,7 @@ def made(count: int, seed: int, rough: float, scatter: float = 0.4) -> Candidate
     return Candidates(motions, periods, target, spectra)
 
 
-def by_brute_force(found: Candidates, wanted: Wanted) -> tuple[float, float, int]:
+def by_brute_force(found: Candidates, wanted: SetRequirements) -> tuple[float, float, int]:
     """Excess and rms of the best set, trying common factors one by one; and how many sets there are."""
     periods, target = found.periods, found.target
     low, high = wanted.factors
@@ -73,7 +81,7 @@ def by_brute_force(found: Candidates, wanted: Wanted) -> tuple[float, float, int
 @pytest.mark.parametrize("policy", POLICIES)
 @pytest.mark.parametrize(("seed", "rough"), [(1, 0.25), (2, 0.25), (3, 0.5), (5, 0.9)])
 def test_the_best_of_all_sets_is_that_of_brute_force(policy, seed, rough):
-    found, wanted = made(8, seed, rough), Wanted(3, BAND, **POLICIES[policy])
+    found, wanted = made(8, seed, rough), SetRequirements(3, BAND, **POLICIES[policy])
     try:
         chosen = choose(found, wanted)
     except InputError:
@@ -94,13 +102,16 @@ def test_the_best_of_all_sets_is_that_of_brute_force(policy, seed, rough):
 
 
 def test_some_of_these_sets_fit_and_some_do_not():
-    fits = [choose(made(8, seed, rough), Wanted(3, BAND, one_per="none")).fits for seed, rough in ((1, 0.12), (3, 0.9))]
+    fits = [
+        choose(made(8, seed, rough), SetRequirements(3, BAND, one_per="none")).fits
+        for seed, rough in ((1, 0.12), (3, 0.9))
+    ]
     assert fits == [True, False]
 
 
 @pytest.mark.parametrize("policy", POLICIES)
 def test_a_set_keeps_to_what_is_asked(policy):
-    found, wanted = made(12, 7, 0.3, scatter=0.6), Wanted(4, BAND, **POLICIES[policy])
+    found, wanted = made(12, 7, 0.3, scatter=0.6), SetRequirements(4, BAND, **POLICIES[policy])
     chosen = choose(found, wanted)
     assert len(set(chosen.chosen.tolist())) == 4
     assert (chosen.factors >= wanted.factors[0] * (1 - 1e-12)).all()
@@ -117,7 +128,7 @@ def test_a_set_keeps_to_what_is_asked(policy):
 
 @pytest.mark.parametrize("seed", [0, 1, 2, 3])
 def test_searches_come_close_to_the_best_of_all(seed, monkeypatch):
-    found, wanted = made(14, seed, 0.4), Wanted(5, BAND, seed=seed)
+    found, wanted = made(14, seed, 0.4), SetRequirements(5, BAND, seed=seed)
     best = choose(found, wanted)
     monkeypatch.setattr(subsets, "MOST_TRIED", 10)
     searched = choose(found, wanted)
@@ -139,7 +150,7 @@ def test_large_sets_are_not_all_tried(monkeypatch):
     assert not subsets.all_tried(groups, 600)
     assert subsets.all_tried(np.arange(20), 7)
     monkeypatch.setattr(subsets, "BLOCK", 7)  # in small blocks the same set is found
-    found, wanted = made(9, 2, 0.3), Wanted(3, BAND)
+    found, wanted = made(9, 2, 0.3), SetRequirements(3, BAND)
     small = choose(found, wanted).chosen.tolist()
     monkeypatch.undo()
     assert small == choose(found, wanted).chosen.tolist()
@@ -158,10 +169,13 @@ def test_of_sets_that_are_alike_the_first_is_taken_whatever_the_last_bits():
     motions = [motion(f"r{k}") for k in range(6)]
     for shift in (0.0, 1e-13, -1e-13):
         spectra = twice * np.where(np.arange(6) < 3, 1.0, 1 + shift)[:, None]
-        chosen = choose(Candidates(motions, found.periods, found.target, spectra), Wanted(2, BAND))
+        chosen = choose(Candidates(motions, found.periods, found.target, spectra), SetRequirements(2, BAND))
         pair = chosen.chosen.tolist()
         assert pair in ([0, 1], [0, 2], [1, 2], [0, 3], [1, 4], [2, 5])
-        assert pair == choose(Candidates(motions, found.periods, found.target, twice), Wanted(2, BAND)).chosen.tolist()
+        assert (
+            pair
+            == choose(Candidates(motions, found.periods, found.target, twice), SetRequirements(2, BAND)).chosen.tolist()
+        )
 
 
 def test_the_better_set_is_within_the_limits_first_then_near_then_first():
@@ -180,12 +194,12 @@ def test_a_record_out_of_reach_is_left_out_and_said():
     found = made(5, 1, 0.1)
     found.spectra[1] /= 100
     found.spectra[2, 3] = 0.0
-    chosen = choose(found, Wanted(3, BAND))
+    chosen = choose(found, SetRequirements(3, BAND))
     assert set(chosen.left_out) == {1, 2}
     assert "outside 0.2 to 5" in chosen.left_out[1]
     assert "does not move" in chosen.left_out[2]
     assert chosen.silent == 1
-    said = view(Results(chosen, CODE, [None] * 5)).parts
+    said = view(ShownSet(chosen, CODE, [None] * 5)).parts
     assert any("r1: it needs a factor of" in part for part in said if isinstance(part, str))
     assert any(
         "1 of 5 records gives no earthquake; it counts as a separate earthquake." in part
@@ -207,7 +221,7 @@ def test_too_few_records(count, more, message, hint):
     if more.get("one_per") == "station":
         count = 5
     with pytest.raises(InputError) as caught:
-        choose(found, Wanted(count, BAND, **more))
+        choose(found, SetRequirements(count, BAND, **more))
     (problem,) = caught.value.problems
     assert message in problem.message
     assert hint in problem.hint
@@ -229,7 +243,7 @@ def test_too_few_records(count, more, message, hint):
 )
 def test_what_makes_no_sense_is_refused(changes):
     with pytest.raises(InputError) as caught:
-        Wanted(**{"count": 3, "band": BAND} | changes)
+        SetRequirements(**{"count": 3, "band": BAND} | changes)
     assert f"`{next(iter(changes))}`" in str(caught.value)
 
 
@@ -239,9 +253,9 @@ def test_what_makes_no_sense_is_refused(changes):
 @pytest.mark.parametrize(("seed", "rough", "fits"), [(1, 0.12, True), (3, 0.9, False), (5, 0.9, False)])
 def test_the_sentence_says_what_the_numbers_say(seed, rough, fits):
     found = made(8, seed, rough)
-    chosen = choose(found, Wanted(3, BAND, one_per="none"))
+    chosen = choose(found, SetRequirements(3, BAND, one_per="none"))
     ratio = np.mean(chosen.factors[:, None] * found.spectra[chosen.chosen], axis=0) / found.target
-    shown = view(Results(chosen, CODE, [None] * 8))
+    shown = view(ShownSet(chosen, CODE, [None] * 8))
     said = shown.data()["verdict"]
     assert chosen.fits is fits
     assert said in shown.parts
@@ -268,7 +282,7 @@ def test_a_ratio_is_shown_on_its_side_of_the_limits(value, shown):
 
 
 def test_the_picture_shows_the_mean_and_marks_where_it_does_not_fit():
-    chosen = choose(made(8, 3, 0.9), Wanted(3, BAND, one_per="none"))
+    chosen = choose(made(8, 3, 0.9), SetRequirements(3, BAND, one_per="none"))
     (axes,) = draw_record_set(chosen, "a title").axes
     lines = {line.get_color(): line for line in axes.lines if line.get_linewidth() > 2}
     np.testing.assert_allclose(lines[MEAN].get_ydata(), chosen.mean)
@@ -315,17 +329,17 @@ def test_candidates_have_the_spectra_of_their_motions():
     time = np.arange(400) * 0.01
     motions = [GroundMotion(f"m{k}", 0.01, np.sin((5 + k) * time)) for k in range(3)]
     done = []
-    found = candidates(motions, CODE, Wanted(2, BAND, damping=0.02), done.append)
+    found = candidates(motions, CODE, SetRequirements(2, BAND, damping=0.02), done.append)
     assert sum(done) == 3
     np.testing.assert_allclose(found.spectra[1], response_spectrum(motions[1], found.periods, 0.02).sa)
     np.testing.assert_allclose(found.target, np.interp(found.periods, CODE.periods, CODE.sa))
     assert coarse(found) == []
-    short = Wanted(2, (0.03, 2.0))
+    short = SetRequirements(2, (0.03, 2.0))
     assert len(coarse(candidates(motions, CODE, short))) == 3
     with pytest.raises(
         InputError, match="a set of 9 was requested, but 3 records are available"
     ):  # before any spectrum is computed
-        candidates(motions, CODE, Wanted(9, BAND), lambda done: pytest.fail("too late"))
+        candidates(motions, CODE, SetRequirements(9, BAND), lambda done: pytest.fail("too late"))
 
 
 # --- the target -----------------------------------------------------------------------------------------------------

@@ -21,7 +21,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records import read_record
 from rocking_cli.report.page import symbols
 from rocking_cli.structure_file import load_structure
-from rocking_cli.studies.neighbours import Around
+from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.parameters import values
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, PROJECT, RECORDS
 from tests.following import respond
@@ -168,7 +168,7 @@ class TestContent:
             "At least 10 % of the neighbouring motions first overturn the structure at a factor of 0.2 (PGA 10 g), "
             "50 % at 0.2 (10 g) and 90 % at 0.2 (10 g)" in said
         )
-        around = Around(20, slenderness=0.1, restitution=0.05)  # its restitution is not given
+        around = Neighbourhood(20, slenderness=0.1, restitution=0.05)  # its restitution is not given
         assert f"Of 20 neighbouring motions ({around.words}), all overturn the structure." in said
         assert any("scaled by large factors" in each for each in found["doubts"])
 

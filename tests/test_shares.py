@@ -11,7 +11,7 @@ import pytest
 
 from rocking_cli import GroundMotion, Registry, build_models
 from rocking_cli.errors import InputError
-from rocking_cli.studies.neighbours import Around, neighbours
+from rocking_cli.studies.neighbours import Neighbourhood, neighbours
 from tests.conftest import SHARED
 
 TESTS = SHARED / "experiments" / "granite_boulders.csv"
@@ -41,13 +41,13 @@ def test_what_a_force_holds_is_not_scaled_with_the_slenderness():
     made = model("block", **fields, loads=[force])
     own = model("block", **fields).lambda_[0]
     assert made.weight_share == pytest.approx(own / made.lambda_[0], rel=1e-9)
-    drawn = Around(2000).drawn(made)
+    drawn = Neighbourhood(2000).drawn(made)
     assert drawn.slender.std() == pytest.approx(0.10 * made.weight_share, rel=0.05)
 
 
 def test_restitution_is_drawn_from_what_no_impact_exceeds():
     made = model()
-    drawn = Around(4000, restitution=0.05).drawn(made).eta
+    drawn = Neighbourhood(4000, restitution=0.05).drawn(made).eta
     assert drawn.max() < 1
     mean, top = made.eta[0], (1 - made.eta[0]) / 0.05
     ratio = NORMAL.pdf(top) / NORMAL.cdf(top)
@@ -57,7 +57,7 @@ def test_restitution_is_drawn_from_what_no_impact_exceeds():
 
 
 def test_amplitude_and_slenderness_are_lognormal():
-    drawn = Around(4000).drawn(model())
+    drawn = Neighbourhood(4000).drawn(model())
     for values, deviation in ((drawn.amplitude, 0.04), (drawn.slender, 0.10)):
         assert np.log(values).mean() == pytest.approx(0, abs=1e-4)
         assert np.log(values).std() == pytest.approx(deviation, rel=1e-2)
@@ -73,25 +73,25 @@ def test_deviations_come_from_the_file_and_options_win():
     assert tuple(measured.scatter) == (0.01, 0.03)
     exact = model("block", width=0.7, height=2.8, uncertainty={"slenderness": 0.0, "restitution": 0.0})
     assert tuple(exact.scatter) == (0.0, 0.0)  # none is not the same as not given
-    assert Around().of(measured).words == (
+    assert Neighbourhood().of(measured).words == (
         "standard deviations 4 % of amplitude, 3 % of slenderness, 0.01 of restitution"
     )
-    assert Around(slenderness=0.07).of(measured).slenderness == 0.07
+    assert Neighbourhood(slenderness=0.07).of(measured).slenderness == 0.07
     with pytest.raises(InputError, match="slenderness_deviation must be from 0 to below 1"):
-        Around(slenderness=-0.1)
+        Neighbourhood(slenderness=-0.1)
 
 
 def test_without_deviations_all_neighbours_are_the_motion_itself():
     made = model()
     motion = held(1.2 * made.lambda_[0])
-    found = neighbours(made, motion, Around(50, amplitude=0.0, restitution=0.0, slenderness=0.0))
+    found = neighbours(made, motion, Neighbourhood(50, amplitude=0.0, restitution=0.0, slenderness=0.0))
     assert found.as_itself == 1
 
 
 def test_a_release_stays_a_share_of_phi_cr_or_an_angle():
     made = model("block", width=0.7, height=2.8, restitution=0.5)
-    share = neighbours(made, None, Around(200), release=0.9)
-    angle = neighbours(made, None, Around(200), release=0.9, release_is_angle=True)
+    share = neighbours(made, None, Neighbourhood(200), release=0.9)
+    angle = neighbours(made, None, Neighbourhood(200), release=0.9, release_is_angle=True)
     assert share.overturned == 0
     # An angle of 0.9 phi_cr overturns whatever is less slender than 0.9 of the nominal.
     assert angle.overturned == pytest.approx(NORMAL.cdf(log(0.9) / 0.10), abs=0.02)
@@ -120,7 +120,7 @@ def boulders(count, every):
             part = slice(shaken["start"][k], shaken["start"][k] + shaken["length"][k])
             motion = GroundMotion(row["test"], 0.01, shaken["samples"][part] / 32767 * float(shaken["peak"][k]))
             for each, outcome in zip(specimens, ("sp1", "sp2"), strict=True):
-                stated.append(neighbours(each, motion, Around(count)).overturned)
+                stated.append(neighbours(each, motion, Neighbourhood(count)).overturned)
                 seen.append(int(row[outcome]))
     return np.array(stated), np.array(seen)
 

@@ -15,7 +15,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.structure import Structure
 from rocking_cli.structure_file import parse_structure
 from rocking_cli.testing import contract
-from rocking_cli.views.equiv import view
+from rocking_cli.views.equivalent_block import view
 from tests.test_lagrange import Piece, agrees, point, t, turned
 
 POSITIVE, NEGATIVE = Direction

@@ -17,7 +17,15 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting.spectrum import draw_spectra
-from rocking_cli.studies.spectrum import Shape, Spectrum, blocks_of, count_histories, fractile, shape_of, spectra
+from rocking_cli.studies.spectrum import (
+    Spectrum,
+    SpectrumShape,
+    blocks_of,
+    count_histories,
+    fractile,
+    shape_of,
+    spectra,
+)
 from tests.following import respond
 
 PULSE = parse_pulse("sine:0.45g:0.8s")
@@ -217,7 +225,7 @@ class TestPicture:
         assert (np.isfinite(line) == finite).all() and (line[finite] == found.peak_ratio[0][finite]).all()
 
     def test_nothing_but_overturning_and_nothing_at_all_can_be_drawn(self):
-        shape = Shape(blocks_of(0.1, "linear2").structure)
+        shape = SpectrumShape(blocks_of(0.1, "linear2").structure)
         for peaks in (inf, nan, 0.0):
             found = Spectrum(shape, np.array([0.5, 1.0]), np.full((2, 2), peaks))
             draw_spectra([found], (0.5,), "title").draw_without_rendering()

@@ -21,7 +21,7 @@ from rocking_cli.errors import InputError, Refused
 from rocking_cli.io.dotted import HOLE, closed, put, words
 from rocking_cli.io.spreadsheet import parse_sheet
 from rocking_cli.studies.structure_table import StructureTable
-from rocking_cli.studies.survey import Made, Under, survey
+from rocking_cli.studies.survey import MadeStructure, Under, survey
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, some
 
@@ -296,7 +296,7 @@ class TestRanking:
         frame = rk.load_structure(EXAMPLES / "frame.yaml")
         motion = rk.read_record(ACCEL)
         one, other, both, back = (
-            survey([Made(frame)], [motion], signs).rows[0].under for signs in ((1,), (-1,), (1, -1), (-1, 1))
+            survey([MadeStructure(frame)], [motion], signs).rows[0].under for signs in ((1,), (-1,), (1, -1), (-1, 1))
         )
         assert one != other
         for each in (both, back):
@@ -306,14 +306,16 @@ class TestRanking:
 
     def test_what_no_motion_lifts_is_not_followed_and_one_that_just_does_is(self):
         motion = rk.parse_pulse("rectangular:0.25g:1s").sampled()
-        low, high = (survey([Made(rk.Block(width=b, height=2.0))], [motion]).rows[0].under for b in (0.499, 0.51))
+        low, high = (
+            survey([MadeStructure(rk.Block(width=b, height=2.0))], [motion]).rows[0].under for b in (0.499, 0.51)
+        )
         assert low.overturned or low.peak_ratio > 0
         assert high == Under(0.0, 0.0, motion.name)
 
     @pytest.mark.parametrize(("aside", "direction"), [(0.0, "positive"), (-1e-10, "positive"), (-1e-6, "negative")])
     def test_directions_that_differ_by_rounding_are_alike_and_the_first_is_shown(self, aside, direction):
         load = {"name": "speck", "mass": 100.0, "at": [aside, 2.0]}
-        (row,) = survey([Made(rk.Block(width=0.5, height=2.0, mass=1000.0, loads=[load]))]).rows
+        (row,) = survey([MadeStructure(rk.Block(width=0.5, height=2.0, mass=1000.0, loads=[load]))]).rows
         assert row.direction == direction
         assert isclose(row.lambda_, (1000 * 0.25 + 100 * (0.25 + aside)) / (1000 * 1.0 + 100 * 2.0), rel_tol=1e-9)
 
@@ -324,7 +326,7 @@ class TestRanking:
         falling = rk.GroundMotion("up", 0.01, np.full(n, -0.5 * G))
         both = dataclasses.replace(push, vertical=falling)
         block = rk.Block(width=0.5, height=2.0)
-        alone, shaken = (survey([Made(block)], [motion]).rows[0].under for motion in (push, both))
+        alone, shaken = (survey([MadeStructure(block)], [motion]).rows[0].under for motion in (push, both))
         assert alone == Under(0.0, 0.0, "push")
         wanted = rk.respond(block, both, models="nonlinear")["nonlinear"]
         assert wanted.lifted and (shaken.overturned, shaken.over) == (float(wanted.overturned), "phi_cr")
@@ -339,7 +341,7 @@ class TestRanking:
         assert made["bad"][0]["name"] == "flat" and "restitution" in made["bad"][0]["reason"]
 
     def test_threads_change_nothing(self):
-        entries = [Made(rk.Block(name=f"b{k}", width=0.3 + 0.01 * k, height=2.8)) for k in range(20)]
+        entries = [MadeStructure(rk.Block(name=f"b{k}", width=0.3 + 0.01 * k, height=2.8)) for k in range(20)]
         motion = rk.read_record(ACCEL)
         one, two = (survey(entries, [motion], threads=count) for count in (1, 3))
         assert [str(row) for row in one.rows] == [str(row) for row in two.rows]

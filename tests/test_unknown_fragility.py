@@ -26,7 +26,7 @@ from rocking_cli.studies.fragility.displacements import kept
 from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.studies.fragility.quantiles import all_quantiles
 from rocking_cli.studies.fragility.ranking import judge, rank
-from rocking_cli.studies.fragility.store import JOINTS, UNKNOWN, Endings, Rows, Store
+from rocking_cli.studies.fragility.store import JOINTS, UNKNOWN, Endings, RunRows, Store
 from rocking_cli.studies.fragility.study import load_study
 from tests.conftest import EXAMPLES
 from tests.following import build_model
@@ -355,7 +355,7 @@ def test_an_older_store_is_shown_and_not_continued(whole, tmp_path):
     with Store.writing(place) as held:
         held.with_joints = False
         held.begin(plan, facts)
-        held.add(Rows(**before))
+        held.add(RunRows(**before))
     with closing(sqlite3.connect(place)) as connection:
         assert connection.execute("PRAGMA user_version").fetchone()[0] <= 4
     data = json.loads(command("results", place, "--json").stdout)

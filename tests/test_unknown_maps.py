@@ -19,7 +19,7 @@ from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.plotting import style
 from rocking_cli.plotting.animation import animation_page
-from rocking_cli.plotting.equivalent import draw_equivalent
+from rocking_cli.plotting.equivalent_pulses import draw_equivalent
 from rocking_cli.plotting.history import draw_history
 from rocking_cli.plotting.moving import ratio_chart
 from rocking_cli.plotting.overturning import draw_comparison, draw_map
@@ -27,7 +27,7 @@ from rocking_cli.plotting.spectrum import draw_spectra
 from rocking_cli.structure import Structure
 from rocking_cli.structure_file import load_structure
 from rocking_cli.studies import under_pulses
-from rocking_cli.studies.equivalent import equivalent, judge
+from rocking_cli.studies.equivalent_pulses import equivalent, judge
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.overturning import FALLS, Comparison, Region, compare, overturning_map
 from rocking_cli.studies.picture import picture
@@ -239,7 +239,7 @@ class TestSpectrum:
     def test_data_words_and_picture(self):
         motions = [RECORD, RECORD.scaled(0.5), parse_pulse("sine:1g:0.5s").sampled()]
         found = spectra([shape_of(PORTAL, "nonlinear")], np.geomspace(1, 10, 6), motions)
-        results = spectrum_views.Results(found, [Scaled(each, 1.0) for each in motions], (0.16, 0.5, 0.84), "1")
+        results = spectrum_views.ShownSpectra(found, [Scaled(each, 1.0) for each in motions], (0.16, 0.5, 0.84), "1")
         view = spectrum_views.view(results)
         (data,) = view.data()["spectra"]
         place = data["given"]

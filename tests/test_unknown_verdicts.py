@@ -27,11 +27,11 @@ from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.plotting.survey import draw_survey
 from rocking_cli.studies import assessment
 from rocking_cli.studies import survey as survey_studies
-from rocking_cli.studies.azimuths import Around as AllAround
+from rocking_cli.studies.azimuths import AzimuthResponses
 from rocking_cli.studies.margin import LEVELS, Margin
-from rocking_cli.studies.metrics import METRICS, Shaking
+from rocking_cli.studies.metrics import METRICS, Excitation
 from rocking_cli.studies.movements import Watched, largest
-from rocking_cli.studies.neighbours import Around, Neighbours, Severity, governing
+from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, Severity, governing
 from rocking_cli.studies.survey import ORDERS, Survey, Surveyed, Under
 from rocking_cli.views import assessment_words
 from rocking_cli.views import azimuths as azimuth_views
@@ -211,7 +211,7 @@ def test_the_walk_sees_a_pass(folder, command, monkeypatch):
 
 class TestMargin:
     FOUND = Margin(
-        Around(20, 0.04, 0.05, 0.1), 0.3, np.array([0.5, 1.0, 2.0, 4.0]), np.array([0.0, 0.05, 0.2, 0.6]),
+        Neighbourhood(20, 0.04, 0.05, 0.1), 0.3, np.array([0.5, 1.0, 2.0, 4.0]), np.array([0.0, 0.05, 0.2, 0.6]),
         np.array([0.0, 0.1, 0.4, 0.4]),
     )  # fmt: skip
 
@@ -230,11 +230,11 @@ class TestMargin:
         found = replace(self.FOUND, unknown=np.zeros(4), checked=False)
         assert margin_views.margin_data(found)["unknown"] is None
         mechanism = rk.load_structure(EXAMPLES / "curve.yaml")
-        parts = margin_views.view(mechanism, [margin_views.Row("a", 1.0, 0.5, found)], "1", found.around).parts
+        parts = margin_views.view(mechanism, [margin_views.MarginRow("a", 1.0, 0.5, found)], "1", found.around).parts
         assert str(parts[-1]).startswith("Caution: the joints of this mechanism are not checked")
 
     def test_the_table_has_a_second_row_and_the_plot_a_band(self):
-        row = margin_views.Row("a.csv", 1.0, 0.5, self.FOUND)
+        row = margin_views.MarginRow("a.csv", 1.0, 0.5, self.FOUND)
         table = margin_views.view(rk.Block(width=0.5, height=2.0), [row], "both", self.FOUND.around).parts[2]
         assert [cells[0].strip() for cells in table.rows] == ["a.csv", "or unknown"]
         assert [cells[3] for cells in table.rows] == ["5 %", "15 %"] and table.rows[1][4:7] == ["1", "2", "4"]
@@ -328,13 +328,13 @@ class TestSurvey:
 
 
 def near(overturned, unknown, median=0.3):
-    return Neighbours(Around(20), "nonlinear", overturned, (0.1, median, 0.5), 1.0, unknown=unknown)
+    return Neighbours(Neighbourhood(20), "nonlinear", overturned, (0.1, median, 0.5), 1.0, unknown=unknown)
 
 
 class TestDesign:
     def test_the_share_is_the_largest_that_may_overturn(self, monkeypatch):
-        monkeypatch.setattr(Shaking, "each", lambda self, structure: [near(0.3, 0.0), near(0.1, 0.5)])
-        value, behind = METRICS["overturned"].at(None, Shaking([]))
+        monkeypatch.setattr(Excitation, "each", lambda self, structure: [near(0.3, 0.0), near(0.1, 0.5)])
+        value, behind = METRICS["overturned"].at(None, Excitation([]))
         assert isclose(value, 0.6) and behind.unknown == 0.5
 
     @pytest.mark.parametrize("op", ["<", ">"])
@@ -367,7 +367,7 @@ class TestAzimuths:
             peak_ratio=np.array([nan, 0.9, 0.1, 0.4, 0.3, 0.2]), known_to=np.array([nan, 1.0, 2.0, nan, nan, nan]),
             lower_bound=np.array([nan, 0.5, 0.1, nan, 0.2, nan]), uplift_time=np.ones(6),
         )  # fmt: skip
-        return AllAround(("x", "y"), 1.0, azimuths, np.full(6, 0.5), {"nonlinear": many})
+        return AzimuthResponses(("x", "y"), 1.0, azimuths, np.full(6, 0.5), {"nonlinear": many})
 
     def test_they_are_told_apart(self):
         found = self.found()

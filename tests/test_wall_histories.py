@@ -14,7 +14,7 @@ from rocking_cli.core import Direction, both_statics
 from rocking_cli.core import linkage as of_linkages
 from rocking_cli.core import released as of_released
 from rocking_cli.core.loops import Loops
-from rocking_cli.core.rates import Rates, Share
+from rocking_cli.core.rates import Rates, VelocityTerm
 from rocking_cli.core.released import ONE, PUSH, RATE, Pieces, Undetermined, _check_count, released
 from rocking_cli.dynamics import modes as of_modes
 from rocking_cli.dynamics.joints import joints_of
@@ -265,7 +265,7 @@ def joined(*rows, count, centres, rotations=1):
     def share(piece, sign, at, way):
         arm = at - centres[piece]
         each = [way.real, way.imag, (np.conj(arm) * way).imag]
-        return Share(piece, sign * np.tile(each, (rotations, 1)))
+        return VelocityTerm(piece, sign * np.tile(each, (rotations, 1)))
 
     held = [
         [share(one, sign, at, way) for one, sign in ((second, 1.0), (first, -1.0)) if one >= 0]
@@ -312,7 +312,9 @@ def test_forces_that_statics_does_not_determine_are_said_to_be_sums():
 
 
 def test_pieces_are_not_stuck_that_move_at_some_rotation():
-    rows = [[Share(0, np.array(each))] for each in ([[0, 1.0, -1]] * 2, [[0, 1.0, 1], [0, 1, -1]], [[1.0, 0, 1]] * 2)]
+    rows = [
+        [VelocityTerm(0, np.array(each))] for each in ([[0, 1.0, -1]] * 2, [[0, 1.0, 1], [0, 1, -1]], [[1.0, 0, 1]] * 2)
+    ]
     assert stuck(Rates.of(rows, 1, 2), np.zeros((2, 1), complex)).count == 1
     assert stuck(Rates.of(rows, 1, 2).rotations([0]), np.zeros((1, 1), complex)).count == 0
 

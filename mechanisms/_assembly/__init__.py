@@ -2,16 +2,16 @@
 
 Blocks touch along joints that bear no tension. `contacts` finds the joints, `collapse` the multiplier of the weakest
 mechanism and its velocities, `friction` what friction that needs, `linkage` its groups and hinges, `thrust` the line of
-thrust, and `Displaced` whether the joints still carry the forces once it has moved.
+thrust, and `DisplacedAssembly` whether the joints still carry the forces once it has moved.
 """
 
-from mechanisms._assembly.blocks import Block as Block
-from mechanisms._assembly.blocks import Contact as Contact
-from mechanisms._assembly.blocks import Guide as Guide
+from mechanisms._assembly.blocks import AssemblyBlock as AssemblyBlock
+from mechanisms._assembly.blocks import AssemblyContact as AssemblyContact
+from mechanisms._assembly.blocks import AssemblyGuide as AssemblyGuide
 from mechanisms._assembly.contacts import contacts as contacts
 from mechanisms._assembly.displaced import STEPS as STEPS
 from mechanisms._assembly.displaced import Admissible as Admissible
-from mechanisms._assembly.displaced import Displaced as Displaced
+from mechanisms._assembly.displaced import DisplacedAssembly as DisplacedAssembly
 from mechanisms._assembly.displaced import first_violation as first_violation
 from mechanisms._assembly.displaced import remaining as remaining
 from mechanisms._assembly.faults import AssemblyFault as AssemblyFault
@@ -28,8 +28,8 @@ from mechanisms._assembly.leading import leading as leading
 from mechanisms._assembly.limit import Collapse as Collapse
 from mechanisms._assembly.limit import Shared as Shared
 from mechanisms._assembly.limit import collapse as collapse
-from mechanisms._assembly.mechanism import Hinge as Hinge
-from mechanisms._assembly.mechanism import Linkage as Linkage
+from mechanisms._assembly.mechanism import AssemblyHinge as AssemblyHinge
+from mechanisms._assembly.mechanism import AssemblyLinkage as AssemblyLinkage
 from mechanisms._assembly.mechanism import Opening as Opening
 from mechanisms._assembly.mechanism import linkage as linkage
 from mechanisms._assembly.rays import Bearings as Bearings

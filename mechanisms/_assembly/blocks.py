@@ -10,7 +10,7 @@ from mechanisms._polygons import Points, area_of
 
 
 @dataclass(frozen=True)
-class Block:
+class AssemblyBlock:
     """A rigid block, or a part of the ground.
 
     Parameters
@@ -38,7 +38,7 @@ class Block:
 
 
 @dataclass(frozen=True)
-class Contact:
+class AssemblyContact:
     """A joint: the common part of an edge of one body and an edge of another.
 
     Parameters
@@ -77,7 +77,7 @@ class Contact:
         """The body whose face bears the corner of the other at an end, 0 or 1."""
         return self.faces[end] or self.a
 
-    def turned(self) -> Contact:
+    def turned(self) -> AssemblyContact:
         """The same joint seen from the other body."""
         return replace(
             self, a=self.b, b=self.a, start=self.end, end=self.start, normal=-self.normal, faces=self.faces[::-1]
@@ -85,7 +85,7 @@ class Contact:
 
 
 @dataclass(frozen=True)
-class Guide:
+class AssemblyGuide:
     """A support that holds a point of a block sideways to a line of the ground, both ways and without friction.
 
     Parameters

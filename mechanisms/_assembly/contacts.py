@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mechanisms._assembly.blocks import Block, Contact
+from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
 from mechanisms._assembly.faults import ContactFault, listed
 from mechanisms._polygons import Points, distance, inside, nearby, overlap, size_of, thickness_of
 from rocking_cli.core import Reals
@@ -26,21 +26,21 @@ Piece = tuple[complex, complex]  # from its start to its end the second body is 
 
 
 def contacts(
-    blocks: Sequence[Block],
-    ground: Sequence[Block],
+    blocks: Sequence[AssemblyBlock],
+    ground: Sequence[AssemblyBlock],
     *,
     gap: float = GAP,
     within: float | None = None,
     friction: float | None = None,
     per_pair: Mapping[tuple[str, str], float | None] | None = None,
-) -> list[Contact]:
+) -> list[AssemblyContact]:
     """All joints of an assembly.
 
     Parameters
     ----------
-    blocks : sequence of Block
+    blocks : sequence of AssemblyBlock
         What can move.
-    ground : sequence of Block
+    ground : sequence of AssemblyBlock
         What cannot; parts of the ground may overlap each other.
     gap : float
         How far edges that touch may be apart, over width and height together of the smaller block.
@@ -53,7 +53,7 @@ def contacts(
 
     Returns
     -------
-    list of Contact
+    list of AssemblyContact
         In the order of the bodies, the ground last. Collinear parts between the same two bodies are one joint, from
         the first end to the last; a corner on an edge is none.
 
@@ -70,7 +70,7 @@ def contacts(
         raise ContactFault(f"more than one body is called {listed(twice)}", twice)
     outlines = [body.outline for body in bodies]
     sizes = [size_of(z) if k < len(blocks) else np.inf for k, z in enumerate(outlines)]
-    found: list[Contact] = []
+    found: list[AssemblyContact] = []
     reach = np.array(
         [0.0 if k >= len(blocks) else gap * size if within is None else within for k, size in enumerate(sizes)]
     )
@@ -84,7 +84,7 @@ def contacts(
             raise ContactFault(f"{listed([names[i], names[j]])} overlap", (names[i], names[j]))
         for start, end in _merged(_pieces(outlines[i], outlines[j], tolerance), tolerance):
             normal = 1j * (end - start) / abs(end - start)
-            joint = Contact(names[i], names[j], start, end, normal, friction)
+            joint = AssemblyContact(names[i], names[j], start, end, normal, friction)
             joint = replace(joint, faces=_faces(joint, outlines[i], outlines[j], tolerance))
             bears = j >= len(blocks) or normal.imag < -LEVEL  # the ground, or the lower of the two
             found.append(joint.turned() if bears else joint)
@@ -99,14 +99,16 @@ def contacts(
     return _with_friction(found, per_pair or {})
 
 
-def _none_thinner(blocks: Sequence[Block], thick: Mapping[str, float], reach: Reals) -> None:
+def _none_thinner(blocks: Sequence[AssemblyBlock], thick: Mapping[str, float], reach: Reals) -> None:
     """Refuse a block no thicker than what its faces may be apart from others."""
     for block, tolerance in zip(blocks, reach.tolist(), strict=False):
         if thick[block.name] <= tolerance:
             raise _thin(block.name, thick[block.name], tolerance)
 
 
-def _none_bridged(found: Sequence[Contact], bodies: Mapping[str, Points], thick: Mapping[str, float], gap: Gap) -> None:
+def _none_bridged(
+    found: Sequence[AssemblyContact], bodies: Mapping[str, Points], thick: Mapping[str, float], gap: Gap
+) -> None:
     """Refuse a block across which its neighbours are joined."""
     touch: dict[str, set[str]] = {name: set() for name in bodies}
     for joint in found:
@@ -177,7 +179,7 @@ def _merged(pieces: list[Piece], tolerance: float) -> list[Piece]:
     return [joined[n] for n in sorted(joined)]
 
 
-def _faces(joint: Contact, one: Points, other: Points, tolerance: float) -> tuple[str, str]:
+def _faces(joint: AssemblyContact, one: Points, other: Points, tolerance: float) -> tuple[str, str]:
     """At each end the body whose face goes on beyond it; empty where both or neither do."""
     along = 3 * tolerance * (joint.end - joint.start) / joint.length
     beyond = np.array([joint.start - along, joint.end + along])
@@ -186,7 +188,7 @@ def _faces(joint: Contact, one: Points, other: Points, tolerance: float) -> tupl
     return first, last
 
 
-def _all_touch(blocks: Sequence[Block], found: Sequence[Contact]) -> None:
+def _all_touch(blocks: Sequence[AssemblyBlock], found: Sequence[AssemblyContact]) -> None:
     touched = {name for joint in found for name in (joint.a, joint.b)}
     loose = [block.name for block in blocks if block.name not in touched]
     if loose:
@@ -196,7 +198,9 @@ def _all_touch(blocks: Sequence[Block], found: Sequence[Contact]) -> None:
         )
 
 
-def _with_friction(found: list[Contact], per_pair: Mapping[tuple[str, str], float | None]) -> list[Contact]:
+def _with_friction(
+    found: list[AssemblyContact], per_pair: Mapping[tuple[str, str], float | None]
+) -> list[AssemblyContact]:
     given = {frozenset(pair): value for pair, value in per_pair.items()}
     touch = {frozenset((c.a, c.b)) for c in found}
     missing = [pair for pair in per_pair if frozenset(pair) not in touch]

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from mechanisms._assembly.blocks import Block, Contact, Guide
+from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, AssemblyGuide
 from mechanisms._assembly.faults import NoAnswer
 from mechanisms._assembly.mechanism import Opening
 from mechanisms._assembly.programme import TOLERANCE, least
@@ -33,7 +33,10 @@ ENDS = {Opening.CLOSED: (0, 1), Opening.START: (0,), Opening.END: (1,), Opening.
 
 
 def remaining(
-    blocks: Sequence[Block], contacts: Sequence[Contact], guides: Sequence[Guide], states: Sequence[Opening]
+    blocks: Sequence[AssemblyBlock],
+    contacts: Sequence[AssemblyContact],
+    guides: Sequence[AssemblyGuide],
+    states: Sequence[Opening],
 ) -> Bearings:
     """The joints that a mechanism leaves, where they are at rest: what `states` say of each; none may slide."""
     for contact, state in zip(contacts, states, strict=True):
@@ -68,7 +71,7 @@ class Admissible:
 
 
 @dataclass(frozen=True, eq=False)
-class Displaced:
+class DisplacedAssembly:
     """An assembly whose mechanism has moved.
 
     Parameters

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mechanisms._assembly.blocks import Contact
+from mechanisms._assembly.blocks import AssemblyContact
 from mechanisms._assembly.limit import Collapse
 from mechanisms._assembly.mechanism import STILL
-from mechanisms._assembly.problem import Problem
+from mechanisms._assembly.problem import AssemblyProblem
 from mechanisms._assembly.programme import least
 from mechanisms._assembly.rays import Rays
 from mechanisms._assembly.sparse import beside
@@ -55,7 +55,7 @@ def friction(found: Collapse) -> Friction:
     kinds whatever the guesses are.
     """
     problem, multiplier = found.problem, found.multiplier * found.problem.strength
-    search = _Search(problem, multiplier)
+    search = _FrictionSearch(problem, multiplier)
     most = float(np.nan_to_num(problem.bearings.friction, nan=MOST).clip(max=MOST).max(initial=0.0))
     shown = np.concatenate([np.column_stack([found.normal, found.shear]).ravel(), found.guide]) / problem.weight
     limit = search.uses(shown)
@@ -86,10 +86,10 @@ def _roots(known: Sequence[tuple[float, float, float]]) -> Iterator[float]:
         yield (mu + lacks / growth) * (1 + FINE / 3)
 
 
-class _Search:
+class _FrictionSearch:
     """A bracket of the friction that a multiplier needs: `high` carries it with `state`, `low` does not."""
 
-    def __init__(self, problem: Problem, multiplier: float) -> None:
+    def __init__(self, problem: AssemblyProblem, multiplier: float) -> None:
         self.problem, self.multiplier = problem, multiplier
         self.low, self.high = 0.0, MOST
         self.state: Reals = np.zeros(0)
@@ -162,14 +162,14 @@ def with_usual(found: Collapse) -> float | None:
     return max(reached, 0.0) / problem.strength
 
 
-def sheared(found: Friction, contacts: Sequence[Contact]) -> tuple[int, ...]:
+def sheared(found: Friction, contacts: Sequence[AssemblyContact]) -> tuple[int, ...]:
     """Joints without friction that carry more shear in the state shown than the usual friction would let them."""
     least = SAME * float(np.abs(found.normal).max(initial=0.0))
     beyond = np.abs(found.shear) > MASONRY * np.maximum(found.normal.sum(axis=1), 0.0) + least
     return tuple(k for k, each in enumerate(contacts) if each.friction is None and beyond[k])
 
 
-def _may_carry(found: Collapse, search: _Search) -> bool:
+def _may_carry(found: Collapse, search: _FrictionSearch) -> bool:
     """Whether just less friction than joints slide with carries their multiplier.
 
     They open faster than they slide along a cone of less friction, and so bear nothing. Mostly there is no balance
@@ -194,7 +194,9 @@ def _glued(found: Collapse, multiplier: float) -> tuple[Reals, tuple[int, ...]]:
     return state, tuple(int(k) for k in np.flatnonzero(np.abs(beyond) > SAME))
 
 
-def _beyond(problem: Problem, multiplier: float, mu: float, most: Reals | None = None) -> tuple[Reals, Reals, Reals]:
+def _beyond(
+    problem: AssemblyProblem, multiplier: float, mu: float, most: Reals | None = None
+) -> tuple[Reals, Reals, Reals]:
     """A state with as little shear beyond a friction as there can be, that shear by joints, and the velocities.
 
     The shear may be beyond `mu` in joints whose own friction is more, or not given: so far as that. With `most`, upper

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from mechanisms._assembly.mechanism import STILL, Linkage
+from mechanisms._assembly.mechanism import STILL, AssemblyLinkage
 from rocking_cli.core import Direction
 
 
-def leading(found: Linkage, direction: Direction) -> int | None:
+def leading(found: AssemblyLinkage, direction: Direction) -> int | None:
     """The group by which to measure a mechanism: on the ground, turning the right way, the fastest; None if none turns.
 
     Those that hinge on what rests come first, of them those that turn clockwise in the positive direction; of groups

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mechanisms._assembly.blocks import Block, Contact, Guide
+from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, AssemblyGuide
 from mechanisms._assembly.faults import DoesNotStand, NothingMoves, listed
-from mechanisms._assembly.problem import NOTHING, STRONGEST, Problem
+from mechanisms._assembly.problem import NOTHING, STRONGEST, AssemblyProblem
 from mechanisms._assembly.rays import moving
 from mechanisms._assembly.smallest import smallest
 from mechanisms._assembly.unique import kept_rays, mechanisms_of, velocity_space
@@ -72,7 +72,7 @@ class Collapse:
         If not unique: mechanisms that have it, of which the others are mixtures.
     idle : tuple of str
         Blocks that rest here and may move along at no cost, see `smallest`.
-    problem : Problem
+    problem : AssemblyProblem
         What was solved.
     """
 
@@ -87,13 +87,13 @@ class Collapse:
     unique: bool
     several: tuple[Shared, ...]
     idle: tuple[str, ...]
-    problem: Problem
+    problem: AssemblyProblem
 
 
 def collapse(
-    blocks: Sequence[Block],
-    contacts: Sequence[Contact],
-    guides: Sequence[Guide] = (),
+    blocks: Sequence[AssemblyBlock],
+    contacts: Sequence[AssemblyContact],
+    guides: Sequence[AssemblyGuide] = (),
     direction: Direction = Direction.POSITIVE,
     *,
     dead: Reals | None = None,
@@ -104,11 +104,11 @@ def collapse(
 
     Parameters
     ----------
-    blocks : sequence of Block
+    blocks : sequence of AssemblyBlock
         What can move.
-    contacts : sequence of Contact
+    contacts : sequence of AssemblyContact
         Its joints.
-    guides : sequence of Guide
+    guides : sequence of AssemblyGuide
         Its supports that hold both ways.
     direction : Direction
         Where it is thrown: positive to +x.
@@ -132,7 +132,7 @@ def collapse(
     NoAnswer
         If the solver fails.
     """
-    problem = Problem.of(blocks, contacts, guides, direction, dead=dead, live=live, gravity=gravity)
+    problem = AssemblyProblem.of(blocks, contacts, guides, direction, dead=dead, live=live, gravity=gravity)
     rays = problem.bearings.rays()
     falls = problem.why_not(rays)
     if falls:
@@ -171,16 +171,16 @@ def collapse(
     )
 
 
-def _kinematic(problem: Problem, field: Reals) -> float:
+def _kinematic(problem: AssemblyProblem, field: Reals) -> float:
     return -float(problem.dead @ field) / float(problem.live @ field)
 
 
-def _worked_on(problem: Problem, field: Reals) -> bool:
+def _worked_on(problem: AssemblyProblem, field: Reals) -> bool:
     """Whether the live forces do work on a mechanism; else it moves without any."""
     return abs(float(problem.live @ field)) > NOTHING * float(np.abs(field).max())
 
 
-def _sized(problem: Problem, field: Reals) -> Reals:
+def _sized(problem: AssemblyProblem, field: Reals) -> Reals:
     """Velocities with units from those without, the fastest rotation 1."""
     velocity = field.reshape(-1, 3) * np.array([problem.frame.size, problem.frame.size, 1.0])
     turns = np.abs(velocity[:, 2]).max()
@@ -188,13 +188,13 @@ def _sized(problem: Problem, field: Reals) -> Reals:
     return np.asarray(velocity / most)
 
 
-def _rates(problem: Problem, velocity: Reals) -> Reals:
+def _rates(problem: AssemblyProblem, velocity: Reals) -> Reals:
     """How fast each joint opens and slides; what is rounding is nothing."""
     field = (velocity * np.array([1.0, 1.0, problem.frame.size])).ravel()
     rates: Reals = problem.bearings.rates @ field
     return np.asarray(np.where(np.abs(rates) > NOISE * np.abs(field).max(), rates, 0.0))
 
 
-def _shared(problem: Problem, field: Reals) -> Shared:
+def _shared(problem: AssemblyProblem, field: Reals) -> Shared:
     multiplier = _kinematic(problem, field) / problem.strength if _worked_on(problem, field) else np.nan
     return Shared(multiplier, _sized(problem, field), moving(problem.frame.names, field, NOTHING))

@@ -8,10 +8,10 @@ from enum import Enum
 
 import numpy as np
 
-from mechanisms._assembly.blocks import Block, Contact, Guide
+from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, AssemblyGuide
+from mechanisms._assembly.joined import JoinedNames
 from mechanisms._assembly.limit import Collapse
-from mechanisms._assembly.parts import Parts
-from mechanisms._assembly.rays import Frame, Rows
+from mechanisms._assembly.rays import Frame, VelocityRows
 from mechanisms._assembly.unique import velocity_space
 from rocking_cli.core import Reals
 
@@ -30,7 +30,7 @@ class Opening(Enum):
 
 
 @dataclass(frozen=True)
-class Hinge:
+class AssemblyHinge:
     """A point that two groups share, or a group and what rests.
 
     Parameters
@@ -50,7 +50,7 @@ class Hinge:
 
 
 @dataclass(frozen=True, eq=False)
-class Linkage:
+class AssemblyLinkage:
     """A mechanism as a linkage of rigid groups.
 
     Parameters
@@ -61,9 +61,9 @@ class Linkage:
         Blocks that do not move, and the ground bodies that joints name.
     velocity : ndarray, shape (groups, 3)
         Velocity of the point (0, 0) of each group [m/s], and its rotation, anticlockwise [rad/s].
-    hinges : tuple of Hinge
+    hinges : tuple of AssemblyHinge
         A point shared by k groups is k - 1 of them.
-    guides : tuple of Guide
+    guides : tuple of AssemblyGuide
         Those of groups that move.
     states : tuple of Opening
         What each joint does.
@@ -75,8 +75,8 @@ class Linkage:
     groups: tuple[tuple[str, ...], ...]
     rest: tuple[str, ...]
     velocity: Reals
-    hinges: tuple[Hinge, ...]
-    guides: tuple[Guide, ...]
+    hinges: tuple[AssemblyHinge, ...]
+    guides: tuple[AssemblyGuide, ...]
     states: tuple[Opening, ...]
     freedom: int
 
@@ -91,7 +91,12 @@ class Linkage:
         return tuple(k for k, state in enumerate(self.states) if state is Opening.SLIDES)
 
 
-def linkage(blocks: Sequence[Block], contacts: Sequence[Contact], guides: Sequence[Guide], found: Collapse) -> Linkage:
+def linkage(
+    blocks: Sequence[AssemblyBlock],
+    contacts: Sequence[AssemblyContact],
+    guides: Sequence[AssemblyGuide],
+    found: Collapse,
+) -> AssemblyLinkage:
     """The groups, hinges and guides of a mechanism.
 
     Parameters
@@ -103,7 +108,7 @@ def linkage(blocks: Sequence[Block], contacts: Sequence[Contact], guides: Sequen
 
     Returns
     -------
-    Linkage
+    AssemblyLinkage
         Its groups in the order of their first blocks.
     """
     size = Frame.of(blocks).size
@@ -114,7 +119,7 @@ def linkage(blocks: Sequence[Block], contacts: Sequence[Contact], guides: Sequen
         for o, s, c in zip(found.opening, found.sliding, contacts, strict=True)
     )
     moves = {block.name: bool(v > still) for block, v in zip(blocks, speed, strict=True)}
-    parts = Parts([name for name, does in moves.items() if does])
+    parts = JoinedNames([name for name, does in moves.items() if does])
     for state, contact in zip(states, contacts, strict=True):
         if state is Opening.CLOSED and moves.get(contact.a) and moves.get(contact.b):
             parts.join(contact.a, contact.b)
@@ -129,7 +134,7 @@ def linkage(blocks: Sequence[Block], contacts: Sequence[Contact], guides: Sequen
             velocity[first[block.name]] = origin.real, origin.imag, omega
     hinges = _hinges(contacts, states, number, SAME_PLACE * size)
     held = tuple(guide for guide in guides if guide.body in number)
-    return Linkage(
+    return AssemblyLinkage(
         tuple(groups),
         (*(name for name, does in moves.items() if not does), *ground),
         velocity,
@@ -140,7 +145,7 @@ def linkage(blocks: Sequence[Block], contacts: Sequence[Contact], guides: Sequen
     )
 
 
-def _state(start: float, end: float, slide: float, contact: Contact, still: float) -> Opening:
+def _state(start: float, end: float, slide: float, contact: AssemblyContact, still: float) -> Opening:
     """What a joint does, by its rates; one with friction opens as it slides, by no more than that friction."""
     dilates = (contact.friction or 0.0) * slide
     if slide > still and min(start, end) <= dilates + still:
@@ -154,10 +159,10 @@ def _state(start: float, end: float, slide: float, contact: Contact, still: floa
 
 
 def _hinges(
-    contacts: Sequence[Contact], states: Sequence[Opening], number: dict[str, int], near: float
-) -> tuple[Hinge, ...]:
+    contacts: Sequence[AssemblyContact], states: Sequence[Opening], number: dict[str, int], near: float
+) -> tuple[AssemblyHinge, ...]:
     """One hinge for each joint that opens about an end, but none that others at its place make already."""
-    places: list[tuple[complex, Parts]] = []
+    places: list[tuple[complex, JoinedNames]] = []
     found = []
     for k, (contact, state) in enumerate(zip(contacts, states, strict=True)):
         if state not in (Opening.START, Opening.END):
@@ -165,17 +170,17 @@ def _hinges(
         point = contact.start if state is Opening.START else contact.end
         one, other = number.get(contact.a), number.get(contact.b)
         if not any(abs(point - place) <= near for place, _ in places):
-            places.append((point, Parts([None, *range(len(number))])))
+            places.append((point, JoinedNames([None, *range(len(number))])))
         here = min(places, key=lambda place: abs(place[0] - point))[1]
         if here.join(one, other):
-            found.append(Hinge(one, other, point, k))
+            found.append(AssemblyHinge(one, other, point, k))
     return tuple(found)
 
 
 def _freedom(
     groups: Sequence[tuple[str, ...]],
-    hinges: Sequence[Hinge],
-    guides: Sequence[Guide],
+    hinges: Sequence[AssemblyHinge],
+    guides: Sequence[AssemblyGuide],
     number: dict[str, int],
     size: float,
 ) -> int:
@@ -188,4 +193,4 @@ def _freedom(
     ]  # fmt: skip
     rows += [(still, number[g.body], g.at, 1j * g.along / abs(g.along)) for g in guides]
     one, other, points, ways = (np.array(each) for each in zip(*rows, strict=True)) if rows else (np.zeros(0, int),) * 4
-    return int(velocity_space(frame.rates(Rows(one, other, points, ways)), frame).shape[1])
+    return int(velocity_space(frame.rates(VelocityRows(one, other, points, ways)), frame).shape[1])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mechanisms._assembly.blocks import Block, Contact, Guide
+from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, AssemblyGuide
 from mechanisms._assembly.faults import NothingMoves
 from mechanisms._assembly.programme import least
 from mechanisms._assembly.rays import Bearings, Frame, Rays, moving, scaled
@@ -19,7 +19,7 @@ NOTHING = 1e-9  # of the weight: a force that is none; of the multiplier: what i
 
 
 @dataclass(frozen=True, eq=False)
-class Problem:
+class AssemblyProblem:
     """An assembly and what acts on it, without units: moments over the size, forces over the weight.
 
     The live forces have a sum of 1, so that their unit, which may be any, decides nothing; `strength` is what it was.
@@ -35,15 +35,15 @@ class Problem:
     @classmethod
     def of(
         cls,
-        blocks: Sequence[Block],
-        contacts: Sequence[Contact],
-        guides: Sequence[Guide] = (),
+        blocks: Sequence[AssemblyBlock],
+        contacts: Sequence[AssemblyContact],
+        guides: Sequence[AssemblyGuide] = (),
         direction: Direction = Direction.POSITIVE,
         *,
         dead: Reals | None = None,
         live: Reals | None = None,
         gravity: float = 9.80665,
-    ) -> Problem:
+    ) -> AssemblyProblem:
         """The programme of blocks; see `collapse`."""
         weights = np.array([block.mass for block in blocks]) * gravity
         nothing = np.zeros_like(weights)

@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from mechanisms._assembly.blocks import Block, Contact, Guide
+from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, AssemblyGuide
 from mechanisms._assembly.sparse import Sparse, from_entries
 from mechanisms._polygons import Points
 from rocking_cli.core import Reals
@@ -29,7 +29,7 @@ Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
-class Rows:
+class VelocityRows:
     """Relative velocities, one a row: that of a point of one body relative to another, along a direction.
 
     Parameters
@@ -57,7 +57,7 @@ class Frame:
     size: float
 
     @classmethod
-    def of(cls, blocks: Sequence[Block]) -> Frame:
+    def of(cls, blocks: Sequence[AssemblyBlock]) -> Frame:
         """Build the frame of blocks at rest."""
         corners = np.array([corner for block in blocks for corner in block.corners])
         size = float(np.ptp(corners.real) + np.ptp(corners.imag))
@@ -68,7 +68,7 @@ class Frame:
         """Number of each block in the order of the unknowns."""
         return {name: k for k, name in enumerate(self.names)}
 
-    def rates(self, rows: Rows) -> Sparse:
+    def rates(self, rows: VelocityRows) -> Sparse:
         """Build the matrix of relative velocities, shape (rows, 3 blocks)."""
         block, ways = np.concatenate([rows.other, rows.one]), np.tile(rows.ways, 2)
         moves = block >= 0
@@ -89,7 +89,7 @@ class Bearings:
     ----------
     frame : Frame
         The blocks.
-    rows : Rows
+    rows : VelocityRows
         The normals of the points of each joint and its shear, joint after joint; then the guides.
     carried, turned : ndarray of int
         Of each row the body that its point is carried by, and the one that its direction turns with.
@@ -102,7 +102,7 @@ class Bearings:
     """
 
     frame: Frame
-    rows: Rows
+    rows: VelocityRows
     carried: Indices
     turned: Indices
     contact: Indices
@@ -113,8 +113,8 @@ class Bearings:
     def of(
         cls,
         frame: Frame,
-        contacts: Sequence[Contact],
-        guides: Sequence[Guide],
+        contacts: Sequence[AssemblyContact],
+        guides: Sequence[AssemblyGuide],
         ends: Sequence[tuple[int, ...]] | None = None,
     ) -> Bearings:
         """Of joints that bear at some of their ends, or not at all, and of guides; without `ends`, at both."""
@@ -134,7 +134,9 @@ class Bearings:
         one, other, points, ways, carried, turned = zip(*rows, strict=True) if rows else ((),) * 6
         return cls(
             frame,
-            Rows(_indices(one), _indices(other), np.array(points, np.complex128), np.array(ways, np.complex128)),
+            VelocityRows(
+                _indices(one), _indices(other), np.array(points, np.complex128), np.array(ways, np.complex128)
+            ),
             _indices(carried),
             _indices(turned),
             _indices([k for k, _ in bear]),

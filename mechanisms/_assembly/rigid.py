@@ -21,7 +21,7 @@ APART = 1e-9  # of the size of the whole: lines of action that do not pass one p
 
 
 @dataclass(frozen=True, eq=False)
-class Parts:
+class RigidParts:
     """Blocks joined to parts.
 
     Parameters
@@ -42,7 +42,7 @@ class Parts:
     between: Bools
 
 
-def rigid_parts(rates: Sparse, frame: Frame) -> Parts:
+def rigid_parts(rates: Sparse, frame: Frame) -> RigidParts:
     """Join the blocks that some rates, of which none may occur, make rigid.
 
     Parameters
@@ -109,7 +109,7 @@ def _holds(number: Indices, count: int, wrench: Reals, place: Points) -> Bools:
     return (np.sqrt(dot(minor, minor)) > ACROSS * length) & (np.sqrt(dot(moment, moment)) > APART * length)
 
 
-def _parts(label: Indices, place: Points, between: Bools) -> Parts:
+def _parts(label: Indices, place: Points, between: Bools) -> RigidParts:
     """Number the parts in the order of their first blocks, and build their velocities."""
     label, ground = label[:-1], label[-1]
     moves = np.flatnonzero(label != ground)
@@ -127,4 +127,4 @@ def _parts(label: Indices, place: Points, between: Bools) -> Parts:
         np.concatenate([ones, -arm.imag, ones, arm.real, ones]),
         (3 * len(label), 3 * len(about)),
     )
-    return Parts(of, len(about), basis, between)
+    return RigidParts(of, len(about), basis, between)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mechanisms._assembly.problem import NOTHING, Problem
+from mechanisms._assembly.problem import NOTHING, AssemblyProblem
 from mechanisms._assembly.programme import least
 from mechanisms._assembly.rays import Bools, Indices, Rays
 from mechanisms._assembly.sparse import from_blocks
@@ -21,12 +21,12 @@ SAME = 1e-6  # of a velocity: two that are one
 MOST = 30  # dimensions of the velocities: more are several mechanisms
 
 
-def smallest(problem: Problem, rays: Rays, kept: Bools, space: Reals) -> tuple[Reals, tuple[str, ...]] | None:
+def smallest(problem: AssemblyProblem, rays: Rays, kept: Bools, space: Reals) -> tuple[Reals, tuple[str, ...]] | None:
     """The mechanism that moves the fewest blocks, and those idle; None if the mechanisms are not the same motion.
 
     Parameters
     ----------
-    problem : Problem
+    problem : AssemblyProblem
         The assembly.
     rays : Rays
         What its joints can exert.
@@ -70,7 +70,7 @@ def smallest(problem: Problem, rays: Rays, kept: Bools, space: Reals) -> tuple[R
     return None
 
 
-def _does_work(problem: Problem, by_block: Reals) -> Bools:
+def _does_work(problem: AssemblyProblem, by_block: Reals) -> Bools:
     """On which blocks the forces do work in some velocity."""
     work = [np.abs(np.einsum("bi,bid->bd", each.reshape(-1, 3), by_block)).max(axis=1)
             for each in (problem.dead, problem.live)]  # fmt: skip
@@ -114,7 +114,7 @@ def _least_motion(opening: Reals, space: Reals, by_block: Reals, able: Bools, sh
     return None
 
 
-def _turns_with(problem: Problem, field: Reals, moves: Bools, block: int, way: Reals) -> bool:
+def _turns_with(problem: AssemblyProblem, field: Reals, moves: Bools, block: int, way: Reals) -> bool:
     """Whether a block's one way is to move as if it belonged to a block that moves."""
     place = np.array(problem.frame.centroids) / problem.frame.size
     for k in np.flatnonzero(moves):

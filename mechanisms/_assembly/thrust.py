@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mechanisms._assembly.blocks import Contact
+from mechanisms._assembly.blocks import AssemblyContact
 from rocking_cli.core import Reals
 
 NONE = 1e-9  # of the largest force: no force
@@ -48,12 +48,12 @@ class Thrust:
     chain: bool
 
 
-def thrust(contacts: Sequence[Contact], blocks: Sequence[str], normal: Reals, shear: Reals) -> Thrust:
+def thrust(contacts: Sequence[AssemblyContact], blocks: Sequence[str], normal: Reals, shear: Reals) -> Thrust:
     """The points at which the forces of a state pass through the joints.
 
     Parameters
     ----------
-    contacts : sequence of Contact
+    contacts : sequence of AssemblyContact
         The joints.
     blocks : sequence of str
         Names of what can move.
@@ -79,7 +79,7 @@ def thrust(contacts: Sequence[Contact], blocks: Sequence[str], normal: Reals, sh
     return Thrust(tuple(found[k] for k in order if k in found), True)
 
 
-def _chain(contacts: Sequence[Contact], blocks: Sequence[str]) -> list[int] | None:
+def _chain(contacts: Sequence[AssemblyContact], blocks: Sequence[str]) -> list[int] | None:
     """Joints in order along a chain of blocks; None if the assembly is none."""
     of: dict[str, list[int]] = {name: [] for name in blocks}
     for k, contact in enumerate(contacts):

@@ -43,7 +43,7 @@ def equiv(structure: StructureLike) -> Answer[Equivalence | None]:
     >>> round(answer.positive.lambda_, 6)
     0.25
     """
-    from rocking_cli.views import equiv as views
+    from rocking_cli.views import equivalent_block as views
 
     ready = structure_of(structure)
     found = ready.equivalence if ready.why_no_block is None else None

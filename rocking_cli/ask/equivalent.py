@@ -12,7 +12,7 @@ from rocking_cli.excitation.pulses import Pulse, parse_pulse
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.studies.equivalent import EquivalentResponses
+    from rocking_cli.studies.equivalent_pulses import EquivalentResponses
 
 
 def equivalent(
@@ -47,14 +47,14 @@ def equivalent(
     -----
     DeJong and Dimitrakopoulos (2014): equal a and omega of Eq. 40, as in Fig. 15.
     """
-    from rocking_cli.studies import equivalent as study
-    from rocking_cli.views import equivalent as views
+    from rocking_cli.studies import equivalent_pulses as study
+    from rocking_cli.views import equivalent_pulses as views
 
     given = parse_pulse(pulse) if isinstance(pulse, str) else pulse
     found = study.equivalent([structure_of(each).mechanism for each in structures], given, polarity=polarity)
 
     def figure() -> Figure:
-        from rocking_cli.plotting.equivalent import draw_equivalent
+        from rocking_cli.plotting.equivalent_pulses import draw_equivalent
 
         return draw_equivalent(found, views.title(found))
 

@@ -52,13 +52,13 @@ def margin(
     each of many scale factors.
     """
     from rocking_cli.studies import margin as study
-    from rocking_cli.studies.neighbours import Around
+    from rocking_cli.studies.neighbours import Neighbourhood
     from rocking_cli.views import margin as views
 
-    ready, around = structure_of(structure), Around()
+    ready, around = structure_of(structure), Neighbourhood()
     shaking = [motion_of(each) for each in each_of(motions)]
     found = {each.name: study.margin(ready.model("nonlinear"), each, polarities, around=around) for each in shaking}
-    rows = [views.Row(each.name, 1.0, each.of_ground.pga_g, found[each.name]) for each in shaking]
+    rows = [views.MarginRow(each.name, 1.0, each.of_ground.pga_g, found[each.name]) for each in shaking]
     polarity = "both" if len(polarities) > 1 else str(polarities[0])
 
     def columns() -> Columns:

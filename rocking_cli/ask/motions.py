@@ -11,7 +11,7 @@ from rocking_cli.dynamics.history import RTOL
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.steps import Step, parse_steps, process
-from rocking_cli.studies.azimuths import Around
+from rocking_cli.studies.azimuths import AzimuthResponses
 from rocking_cli.studies.release import Release
 from rocking_cli.views.view import heading
 
@@ -85,7 +85,7 @@ def respond_around(
     scale: float = 1.0,
     release: float | str | None = None,
     rtol: float = RTOL,
-) -> Answer[Around]:
+) -> Answer[AzimuthResponses]:
     """Compute the response of a structure in every direction between two components.
 
     Parameters
@@ -105,7 +105,7 @@ def respond_around(
 
     Returns
     -------
-    Answer of Around
+    Answer of AzimuthResponses
         `azimuths` [deg], and `outcomes` of each model at them.
 
     Raises

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.io.tables import Columns
-    from rocking_cli.studies.contact import Contact
+    from rocking_cli.studies.contact import ContactDemand
 
 
 def respond(
@@ -114,7 +114,7 @@ def _history_figure(
     shaking: GroundMotion | None,
     ready: Structure,
     title: str,
-    contacts: Mapping[int, Contact],
+    contacts: Mapping[int, ContactDemand],
 ) -> Figure:
     from rocking_cli.plotting.history import draw_history
     from rocking_cli.studies.movements import Watched

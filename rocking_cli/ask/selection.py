@@ -75,13 +75,13 @@ def select(
     times the fundamental period of a structure.
     """
     from rocking_cli.studies import record_set
-    from rocking_cli.views.record_set import Results, table, title, view
+    from rocking_cli.views.record_set import ShownSet, table, title, view
 
     motions, files = _candidates(records)
-    wanted = record_set.Wanted(count, band, within, damping, factors, one_per, same_factor, seed)
+    wanted = record_set.SetRequirements(count, band, within, damping, factors, one_per, same_factor, seed)
     spectrum = _target(target)
     found = record_set.choose(record_set.candidates(motions, spectrum, wanted), wanted)
-    results = Results(found, spectrum, files)
+    results = ShownSet(found, spectrum, files)
 
     def figure() -> Figure:
         from rocking_cli.plotting.record_set import draw_record_set

@@ -81,7 +81,9 @@ def spectrum(
     periods = np.geomspace(*(sizes or study.usual_sizes(shapes)), count)
     found = study.spectra(shapes, periods, shaking, polarities=polarities)
     polarity = "both" if len(polarities) > 1 else str(polarities[0])
-    results = views.Results(found, [Scaled(each, 1.0) for each in shaking], tuple(sorted({*fractiles, 0.5})), polarity)
+    results = views.ShownSpectra(
+        found, [Scaled(each, 1.0) for each in shaking], tuple(sorted({*fractiles, 0.5})), polarity
+    )
 
     def figure() -> Figure:
         from rocking_cli.plotting.spectrum import draw_spectra

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.studies.design import Design
-    from rocking_cli.studies.survey import Entry, Survey
+    from rocking_cli.studies.survey import Survey, SurveyEntry
 
 Table = str | Path | Mapping[str, Sequence[Any]]
 """CSV file, or columns by their headings."""
@@ -84,15 +84,15 @@ def survey(
     return Answer("survey", found, view(found), lambda: columns(found), figure)
 
 
-def _entries(given: Any) -> Sequence[Entry]:
+def _entries(given: Any) -> Sequence[SurveyEntry]:
     from rocking_cli.studies.structure_table import StructureTable, of_mapping
-    from rocking_cli.studies.survey import Made
+    from rocking_cli.studies.survey import MadeStructure
 
     if isinstance(given, str | Path):
         return StructureTable.read(Path(given))
     if isinstance(given, Mapping) or hasattr(given, "columns"):
         return of_mapping(given)
-    return [Made(structure_of(each).mechanism) for each in given]
+    return [MadeStructure(structure_of(each).mechanism) for each in given]
 
 
 def design(
@@ -153,20 +153,24 @@ def design(
     """
     from rocking_cli.studies.design import Aim, Span
     from rocking_cli.studies.design import design as study
-    from rocking_cli.studies.metrics import Shaking
-    from rocking_cli.studies.neighbours import Around
+    from rocking_cli.studies.metrics import Excitation
+    from rocking_cli.studies.neighbours import Neighbourhood
     from rocking_cli.views.design import columns, view
 
     ready = structure_of(structure)
     span = Span.parse(vary) if isinstance(vary, str) else Span(vary[0], repr(float(vary[1])), repr(float(vary[2])))
     shaken = [motion_of(each).scaled(scale) for each in each_of(motions)]
     where = _site(site) if site is not None else None
-    shaking = Shaking(shaken, polarities, Around(neighbours), where) if shaken or where is not None else None
-    found = study(ready, span.field, span.in_unit(ready.unit_of(span.field)), Aim.parse(until), shaking, points=points)
+    excitation = (
+        Excitation(shaken, polarities, Neighbourhood(neighbours), where) if shaken or where is not None else None
+    )
+    found = study(
+        ready, span.field, span.in_unit(ready.unit_of(span.field)), Aim.parse(until), excitation, points=points
+    )
 
     def figure() -> Figure:
         from rocking_cli.plotting.design import draw_design
 
         return draw_design(found)
 
-    return Answer("design", found, view(found, shaking), lambda: columns(found), figure)
+    return Answer("design", found, view(found, excitation), lambda: columns(found), figure)

@@ -10,7 +10,7 @@ import click
 from click.core import ParameterSource
 
 from rocking_cli.cli import inputs, motion_files, terminal
-from rocking_cli.cli.groups import GroundMotions, History, Output, Vertical
+from rocking_cli.cli.groups import GroundMotions, HistoryOptions, Output, Vertical
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 COMMANDLINE = ParameterSource.COMMANDLINE
 
 
-def check(asked: GroundMotions, history: History, count: int, *, impacts: bool, contact: bool) -> None:
+def check(asked: GroundMotions, history: HistoryOptions, count: int, *, impacts: bool, contact: bool) -> None:
     """Refuse options that apply to a single direction."""
     if count != 1 or asked.pulses:
         raise click.UsageError("--azimuth all takes a single pair of components: give one --record FILE.")
@@ -43,7 +43,7 @@ def respond(
     record: Listed,
     asked: GroundMotions,
     vertical: Vertical,
-    history: History,
+    history: HistoryOptions,
     output: Output,
 ) -> None:
     """Simulate a structure in all directions under a pair of components, and show the outcomes."""

@@ -17,7 +17,7 @@ from rocking_cli.errors import INCOMPLETE, InputError
 if TYPE_CHECKING:
     from rocking_cli.structure import Structure
     from rocking_cli.studies.design import Aim, Design, Span
-    from rocking_cli.studies.metrics import Shaking
+    from rocking_cli.studies.metrics import Excitation
 
 
 def _span() -> Callable[[str], Any]:
@@ -119,21 +119,21 @@ def command(
     structure = structures.prepared([file] if file else [])
     span = vary.in_unit(structure.unit_of(vary.field))
     _warn_of_sizes(structure, vary.field, span)
-    shaking = None
+    excitation = None
     if asked:
         chosen, refused = motion_files.gather(paths, asked.pulses, asked.reading, asked.scaling, structure.growth)
         bad += refused
         if not chosen:
             ctx.exit(InputError.exit_code)
-        shaking = _shaking(chosen, asked, near)
+        excitation = _shaking(chosen, asked, near)
     elif site is not None:
-        from rocking_cli.studies.metrics import Shaking as Conditions
+        from rocking_cli.studies.metrics import Excitation
         from rocking_cli.studies.verification.check import read_site
 
-        shaking = Conditions([], site=read_site(Path(site)))
-    found = _design(structure, vary.field, span, until, shaking, points)
+        excitation = Excitation([], site=read_site(Path(site)))
+    found = _design(structure, vary.field, span, until, excitation, points)
     output.write(lambda: [columns(found)], lambda: _draw(found))
-    terminal.show(view(found, shaking), as_json=output.as_json)
+    terminal.show(view(found, excitation), as_json=output.as_json)
     if bad:
         ctx.exit(INCOMPLETE)
 
@@ -153,21 +153,21 @@ def _warn_of_sizes(structure: Structure, field: str, span: tuple[float, float]) 
             terminal.warning(f"at {at}: {doubt}")
 
 
-def _shaking(chosen: Any, asked: GroundMotions, near: Near) -> Shaking:
+def _shaking(chosen: Any, asked: GroundMotions, near: Near) -> Excitation:
     from rocking_cli.cli.waiting import compile_first
-    from rocking_cli.studies.metrics import Shaking
+    from rocking_cli.studies.metrics import Excitation
 
     compile_first()
-    return Shaking([each.motion.scaled(each.factor) for each in chosen], asked.signs, near.around)
+    return Excitation([each.motion.scaled(each.factor) for each in chosen], asked.signs, near.around)
 
 
 def _design(
-    structure: Structure, field: str, span: tuple[float, float], until: Aim, shaking: Shaking | None, points: int
+    structure: Structure, field: str, span: tuple[float, float], until: Aim, excitation: Excitation | None, points: int
 ) -> Design:
     from rocking_cli.studies.design import design
 
     with terminal.progress(points, "values") as advance:
-        return design(structure, field, span, until, shaking, points=points, progress=advance)
+        return design(structure, field, span, until, excitation, points=points, progress=advance)
 
 
 def _draw(found: Design) -> Any:

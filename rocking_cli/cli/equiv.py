@@ -36,7 +36,7 @@ def command(ctx: click.Context, files: tuple[str, ...], as_json: bool, as_csv: b
     from rocking_cli.errors import INCOMPLETE, MechanismError
     from rocking_cli.io.tables import write_csv
     from rocking_cli.structure import Structure
-    from rocking_cli.views import equiv
+    from rocking_cli.views import equivalent_block
 
     mechanisms, _, bad = structures.load_each(files)
     found = []
@@ -55,14 +55,14 @@ def command(ctx: click.Context, files: tuple[str, ...], as_json: bool, as_csv: b
         ctx.exit(refused.exit_code)
     if as_csv:
         lines = io.BytesIO()
-        write_csv(lines, [equiv.table(found)], digits=None)
+        write_csv(lines, [equivalent_block.table(found)], digits=None)
         terminal.result(lines.getvalue().decode().rstrip("\n"))
     for structure in found:
         if not as_csv:
-            terminal.show(equiv.view(structure), as_json=as_json)
-        for each in equiv.warnings(structure):
+            terminal.show(equivalent_block.view(structure), as_json=as_json)
+        for each in equivalent_block.warnings(structure):
             terminal.warning(each)
-        for each in equiv.notes(structure.mechanism):
+        for each in equivalent_block.notes(structure.mechanism):
             terminal.note(each)
     if bad:
         ctx.exit(INCOMPLETE)

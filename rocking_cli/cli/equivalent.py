@@ -87,8 +87,8 @@ def command(
     from rocking_cli.cli import structures, waiting
     from rocking_cli.io.files import keep_apart
     from rocking_cli.structure import Structure
-    from rocking_cli.studies.equivalent import equivalent, judge
-    from rocking_cli.views.equivalent import table, title, view
+    from rocking_cli.studies.equivalent_pulses import equivalent, judge
+    from rocking_cli.views.equivalent_pulses import table, title, view
 
     keep_apart([("--out", output.out), ("--plot", output.plot)], files)
     given = pulse.pulse
@@ -100,7 +100,7 @@ def command(
     found = equivalent(mechanisms, given, polarity=pulse.signs[0], kappa=cast(Literal[1, 2], int(kappa)), eta=eta)
 
     def draw() -> Figure:
-        from rocking_cli.plotting.equivalent import draw_equivalent
+        from rocking_cli.plotting.equivalent_pulses import draw_equivalent
 
         return draw_equivalent(found, title(found))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rocking_cli.cli import motion_files, options, terminal
-from rocking_cli.cli.groups import Reading
+from rocking_cli.cli.groups import ReadingOptions
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
@@ -52,11 +52,11 @@ OF_HISTORIES = {14, 15}
     help="File format of the plots.",
 )
 @options.as_json
-@options.grouped(reading=Reading)
+@options.grouped(reading=ReadingOptions)
 def command(
     number: str,
     records: tuple[str, ...],
-    reading: Reading,
+    reading: ReadingOptions,
     out: str,
     suffix: str,
     as_json: bool,
@@ -99,7 +99,7 @@ def command(
         terminal.sentence(f"figure {each}: {', '.join(files)}")
 
 
-def _motion(record: str | None, reading: Reading) -> GroundMotion:
+def _motion(record: str | None, reading: ReadingOptions) -> GroundMotion:
     """Return the record of Figure 14: the user's, or the shipped example, which is elsewhere in a checkout."""
     from rocking_cli.excitation.records import read_record
     from rocking_cli.processing.listed import Listed

@@ -11,7 +11,7 @@ import click
 
 from rocking_cli.cli import endings, options, terminal
 from rocking_cli.cli.defaults import from_default
-from rocking_cli.cli.study_output import Shown, show_study
+from rocking_cli.cli.study_output import CurveOutput, show_study
 from rocking_cli.errors import INCOMPLETE
 
 if TYPE_CHECKING:
@@ -64,13 +64,13 @@ class Running:
 @options.quantiles
 @options.as_json
 @click.pass_context
-@options.grouped(running=Running, shown=Shown)
+@options.grouped(running=Running, shown=CurveOutput)
 def command(
     ctx: click.Context,
     file: str,
     check: bool,
     running: Running,
-    shown: Shown,
+    shown: CurveOutput,
     as_json: bool,
 ) -> None:
     """Run a fragility study and fit its curves.

@@ -23,16 +23,16 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.pulses import Pulse
     from rocking_cli.excitation.records.sensor import Gain, Quantity
     from rocking_cli.io.tables import Columns
-    from rocking_cli.processing import reading as processing
     from rocking_cli.processing.floor import Floor
-    from rocking_cli.studies.neighbours import Around
+    from rocking_cli.processing.reading import Reading
+    from rocking_cli.studies.neighbours import Neighbourhood
     from rocking_cli.studies.release import Release
 
 SPELLED = {"quantity": "from", "other": "with"}  # options by the names of their parameters
 
 
 @dataclass(frozen=True)
-class Reading:
+class ReadingOptions:
     """Options for reading and processing records."""
 
     units: str | None
@@ -69,17 +69,17 @@ class Reading:
         return self.azimuth == Azimuth.ALL
 
     @property
-    def reading(self) -> processing.Reading:
+    def reading(self) -> Reading:
         """Options for reading a record, in one direction."""
         if self.all_azimuths:
             raise click.UsageError("--azimuth all works with `rocking respond` only: give one angle here.")
         return self.towards(self.azimuth or 0.0)
 
-    def towards(self, azimuth: float | str) -> processing.Reading:
+    def towards(self, azimuth: float | str) -> Reading:
         """Return the options for reading a record, in the direction of an azimuth [deg]."""
-        from rocking_cli.processing.reading import Reading as Made
+        from rocking_cli.processing.reading import Reading
 
-        return Made(
+        return Reading(
             self.dt, self.units, self.channel, self.quantity, self.gain, self.other, self.other_channel,
             float(azimuth), tuple(each.step for each in self.placed), self.floor,
         )  # fmt: skip
@@ -117,14 +117,14 @@ class Scaling:
 
 
 @dataclass(frozen=True)
-class GroundMotions(Scaling, Reading):
+class GroundMotions(Scaling, ReadingOptions):
     """Ground motions, with the options for reading and scaling them."""
 
     records: tuple[str, ...]
     pulses: tuple[str, ...]
 
     def __post_init__(self) -> None:
-        Reading.__post_init__(self)
+        ReadingOptions.__post_init__(self)
         Scaling.__post_init__(self)
 
     def __bool__(self) -> bool:
@@ -202,15 +202,17 @@ class Near:
     restitution_deviation: float | None
 
     @property
-    def around(self) -> Around:
+    def around(self) -> Neighbourhood:
         """How the neighbours are drawn."""
-        from rocking_cli.studies.neighbours import Around
+        from rocking_cli.studies.neighbours import Neighbourhood
 
-        return Around(self.neighbours, self.amplitude_deviation, self.restitution_deviation, self.slenderness_deviation)
+        return Neighbourhood(
+            self.neighbours, self.amplitude_deviation, self.restitution_deviation, self.slenderness_deviation
+        )
 
 
 @dataclass(frozen=True)
-class History:
+class HistoryOptions:
     """Models, initial state, length and accuracy of time histories."""
 
     models: tuple[str, ...]

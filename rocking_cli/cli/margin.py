@@ -16,7 +16,7 @@ from rocking_cli.views.view import heading
 if TYPE_CHECKING:
     from rocking_cli.dynamics.model import Model
     from rocking_cli.excitation.scaled import Scaled
-    from rocking_cli.studies.neighbours import Around
+    from rocking_cli.studies.neighbours import Neighbourhood
 
 
 @click.command(cls=Command, short_help="Compute how close ground motions are to overturning.")
@@ -78,11 +78,11 @@ def command(
         ctx.exit(INCOMPLETE)
 
 
-def _rows(model: Model, chosen: list[Scaled], polarities: tuple[int, ...], around: Around) -> list[Any]:
+def _rows(model: Model, chosen: list[Scaled], polarities: tuple[int, ...], around: Neighbourhood) -> list[Any]:
     """Return the margin of each motion, with the share of its own neighbours that overturn."""
     from rocking_cli.cli import waiting
     from rocking_cli.studies.margin import FACTORS, margin
-    from rocking_cli.views.margin import Row
+    from rocking_cli.views.margin import MarginRow
 
     rows = []
     each_has = (FACTORS.size + 1) * around.count * len(polarities)
@@ -90,5 +90,5 @@ def _rows(model: Model, chosen: list[Scaled], polarities: tuple[int, ...], aroun
         for motion, factor, *_ in chosen:
             scaled = motion.scaled(factor)
             found = margin(model, scaled, polarities, around=around, progress=progress)
-            rows.append(Row(motion.name, factor, scaled.of_ground.pga_g, found))
+            rows.append(MarginRow(motion.name, factor, scaled.of_ground.pga_g, found))
     return rows

@@ -22,7 +22,7 @@ def command(as_json: bool) -> None:
     """
     from rocking_cli.errors import MechanismError
     from rocking_cli.processing.intensity import IntensityMeasures, MotionMeasure, power_of
-    from rocking_cli.views.measures import Installed, view
+    from rocking_cli.views.measures import InstalledMeasure, view
 
     known, found = IntensityMeasures(), []
     for name in known:
@@ -31,9 +31,9 @@ def command(as_json: bool) -> None:
             cls = known[name]
             relative = not issubclass(cls, MotionMeasure)
             of = (cls.title, cls.unit, power_of(cls), relative, cls.source or None)
-            found.append(Installed(name, cls.form(), package, *of))
+            found.append(InstalledMeasure(name, cls.form(), package, *of))
         except MechanismError as error:  # one broken plugin must not hide the others
             terminal.warning(str(error))
             terminal.debug_traceback(error)
-            found.append(Installed(name, name, package))
+            found.append(InstalledMeasure(name, name, package))
     terminal.show(view(found), as_json=as_json)

@@ -11,8 +11,8 @@ from rocking_cli.errors import InputError, MechanismError
 
 if TYPE_CHECKING:
     from rocking_cli.core import Mechanism
+    from rocking_cli.core.contract import Verdict
     from rocking_cli.core.registry import Registry
-    from rocking_cli.core.verdict import Verdict
 
 LOADS = "The plugin can be loaded, and is a mechanism."
 MADE = "The file that `rocking new` prints is a structure."

@@ -66,7 +66,7 @@ def command(name: str | None, file: str | None, checked: bool, as_json: bool) ->
 
 def _all(registry: Registry, as_json: bool) -> None:
     from rocking_cli.errors import MechanismError
-    from rocking_cli.views.mechanisms import Installed, installed
+    from rocking_cli.views.mechanisms import InstalledMechanism, installed
 
     found = []
     for name in registry:
@@ -76,5 +76,5 @@ def _all(registry: Registry, as_json: bool) -> None:
             terminal.warning(str(error))
             terminal.debug_traceback(error)
             title = None
-        found.append(Installed(name, title, registry.package_of(name)))
+        found.append(InstalledMechanism(name, title, registry.package_of(name)))
     terminal.show(installed(found), as_json=as_json)

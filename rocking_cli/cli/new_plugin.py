@@ -35,7 +35,7 @@ IMPORTED = ("ClassVar", "CodeContract", "MechanismContract", "Self", "Sequence",
 
 
 @dataclass(frozen=True)
-class Kind:
+class PluginKind:
     """What a package can be for.
 
     Parameters
@@ -87,7 +87,7 @@ class Kind:
         return self.named(content, name)
 
 
-def write(name: str, out: str | None, kind: Kind, *, printed: Collection[str], as_json: bool) -> None:
+def write(name: str, out: str | None, kind: PluginKind, *, printed: Collection[str], as_json: bool) -> None:
     """Write the package, and print its files and the next commands.
 
     Parameters
@@ -96,7 +96,7 @@ def write(name: str, out: str | None, kind: Kind, *, printed: Collection[str], a
         Name of the mechanism or code.
     out : str or None
         Folder of the package; None for one with its name, in this folder.
-    kind : Kind
+    kind : PluginKind
         `MECHANISM` or `CODE`.
     printed : collection of str
         Names of other templates that `rocking new` prints.
@@ -129,7 +129,7 @@ def write(name: str, out: str | None, kind: Kind, *, printed: Collection[str], a
             terminal.result(f"  {each}")  # as it is: it is copied
 
 
-def check_name(name: str, kind: Kind, printed: Collection[str]) -> None:
+def check_name(name: str, kind: PluginKind, printed: Collection[str]) -> None:
     """Raise `InputError` if a text cannot be the name of a mechanism, or code, in a package of its own."""
     from rocking_cli.core.registry import Registry
     from rocking_cli.studies.verification.installed import Codes
@@ -156,7 +156,7 @@ def _spelled(name: str) -> str:
     return re.sub(r"[^a-z0-9]+", "_", plain).lstrip("_0123456789")[:LONGEST].rstrip("_")
 
 
-def _taken(name: str, kind: Kind, printed: Collection[str]) -> str | None:
+def _taken(name: str, kind: PluginKind, printed: Collection[str]) -> str | None:
     """Return why a well-spelled name is not free, or None if it is."""
     import yaml
 
@@ -186,14 +186,14 @@ def _taken(name: str, kind: Kind, printed: Collection[str]) -> str | None:
     return None
 
 
-def package(name: str, kind: Kind | None = None) -> dict[str, bytes]:
+def package(name: str, kind: PluginKind | None = None) -> dict[str, bytes]:
     """Return the files of the package for a mechanism, or code, of this name, with its example.
 
     Parameters
     ----------
     name : str
         Name that has passed `check_name`.
-    kind : Kind, optional
+    kind : PluginKind, optional
         By default `MECHANISM`.
 
     Returns
@@ -275,7 +275,7 @@ def quoted(word: str) -> str:
     return subprocess.list2cmdline([word]) if os.name == "nt" else shlex.quote(word)
 
 
-MECHANISM = Kind(
+MECHANISM = PluginKind(
     word="mechanism",
     folder="plugin",
     placeholder="my_mechanism",
@@ -291,7 +291,7 @@ MECHANISM = Kind(
     file="structure",
     example="leaning_pier",
 )
-CODE = Kind(
+CODE = PluginKind(
     word="code",
     folder="plugin_code",
     placeholder="my_code",

@@ -89,7 +89,7 @@ class Parsed(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generi
 
 
 @dataclass(frozen=True)
-class Kind:
+class QuantityKind:
     """Kind of a quantity, with its unit and bounds.
 
     Parameters
@@ -115,13 +115,13 @@ class Kind:
     zero: bool = False
 
 
-AMPLITUDE = Kind("acceleration", "g", "0.6g", "0.1g:2g", 1e-9, 1e6)  # of a pulse
-PERIOD = Kind("period", "s", "0.8s", "0.2s:4s", 1e-6, 1e6)
-NUMBER = Kind("number", "", "4", "0.5:10", 1e-6, 1e6)
-PGA = Kind("acceleration", "g", "0.35g")
-PGV = Kind("velocity", "m/s", "0.4m/s")
-INTERVAL = Kind("time", "s", "0.01s")
-TAIL = Kind("time", "s", "10s", most=3600, zero=True)
+AMPLITUDE = QuantityKind("acceleration", "g", "0.6g", "0.1g:2g", 1e-9, 1e6)  # of a pulse
+PERIOD = QuantityKind("period", "s", "0.8s", "0.2s:4s", 1e-6, 1e6)
+NUMBER = QuantityKind("number", "", "4", "0.5:10", 1e-6, 1e6)
+PGA = QuantityKind("acceleration", "g", "0.35g")
+PGV = QuantityKind("velocity", "m/s", "0.4m/s")
+INTERVAL = QuantityKind("time", "s", "0.01s")
+TAIL = QuantityKind("time", "s", "10s", most=3600, zero=True)
 
 
 class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
@@ -129,13 +129,13 @@ class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # gene
 
     Parameters
     ----------
-    kind : Kind
+    kind : QuantityKind
         Kind of the quantity.
     """
 
     name = "quantity"
 
-    def __init__(self, kind: Kind) -> None:
+    def __init__(self, kind: QuantityKind) -> None:
         self.kind = kind
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
@@ -269,13 +269,13 @@ class Range(Quantity):
         return low, high
 
 
-class Sizes(Range):
+class SizeRange(Range):
     """Two periods in s, the smaller first, and optionally the number of sizes between them."""
 
     name = "sizes"
 
     def __init__(self, count: int, most: int) -> None:
-        super().__init__(Kind("period", "s", "0.8s", "1s:10s", 1e-3, 1e4))  # blocks of 0.2 um to 19,000 km
+        super().__init__(QuantityKind("period", "s", "0.8s", "1s:10s", 1e-3, 1e4))  # blocks of 0.2 um to 19,000 km
         self.count, self.most = count, most
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rocking_cli.cli import motion_files, options, terminal
-from rocking_cli.cli.groups import Output, Reading, Scaling
+from rocking_cli.cli.groups import Output, ReadingOptions, Scaling
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import PERIOD, Range, Share
 from rocking_cli.errors import INCOMPLETE, InputError, Problem
@@ -111,11 +111,11 @@ def _folder_of_today(ctx: click.Context, param: click.Parameter, value: str | No
 @options.plot("Plot one record, or the spectra")
 @options.as_json
 @click.pass_context
-@options.grouped(reading=Reading, scaling=Scaling, more=More, output=Output)
+@options.grouped(reading=ReadingOptions, scaling=Scaling, more=More, output=Output)
 def command(
     ctx: click.Context,
     files: tuple[str, ...],
-    reading: Reading,
+    reading: ReadingOptions,
     scaling: Scaling,
     more: More,
     output: Output,
@@ -248,7 +248,7 @@ class _Asked:
 
     Parameters
     ----------
-    reading, scaling : Reading, Scaling
+    reading, scaling : ReadingOptions, Scaling
         Options for reading and scaling.
     more : More
         Additional results.
@@ -258,7 +258,7 @@ class _Asked:
         File of the plot.
     """
 
-    reading: Reading
+    reading: ReadingOptions
     scaling: Scaling
     more: More
     structure: Structure | None
@@ -316,7 +316,7 @@ class _Asked:
         if self.more.measures is None:
             return {}
         from rocking_cli.processing.intensity import ALL, parse_measures
-        from rocking_cli.studies.strength import intensities, reference_of
+        from rocking_cli.studies.motion_intensities import intensities, reference_of
 
         asked = parse_measures(self.more.measures)
         if self.structure is None and self.more.measures.strip().lower() == ALL:

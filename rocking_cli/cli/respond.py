@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rocking_cli.cli import complete, motion_files, options, terminal
-from rocking_cli.cli.groups import GroundMotions, History, Near, Output, Vertical
+from rocking_cli.cli.groups import GroundMotions, HistoryOptions, Near, Output, Vertical
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import INTERVAL, TAIL, Finite, Quantity, Tilt
 from rocking_cli.errors import INCOMPLETE, InputError, RockingError
@@ -19,12 +19,12 @@ from rocking_cli.views.view import View, heading
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.dynamics import history as dynamics
+    from rocking_cli.dynamics.history import History
     from rocking_cli.dynamics.model import ModelName
     from rocking_cli.excitation.pulse_fit import PulseFit
     from rocking_cli.io.tables import Columns
     from rocking_cli.structure import Structure
-    from rocking_cli.studies.response import Answer, Question
+    from rocking_cli.studies.response import Question, Response
     from rocking_cli.views.view import Table
 
 # The models, the pulses that are fitted and the least tolerance stand here again so that `--help` needs no numpy.
@@ -118,13 +118,13 @@ def _rtol(ctx: click.Context, param: click.Parameter, value: float) -> float:
 )
 @options.as_json
 @click.pass_context
-@options.grouped(asked=GroundMotions, vertical=Vertical, history=History, near=Near, output=Output)
+@options.grouped(asked=GroundMotions, vertical=Vertical, history=HistoryOptions, near=Near, output=Output)
 def command(
     ctx: click.Context,
     files: tuple[str, ...],
     asked: GroundMotions,
     vertical: Vertical,
-    history: History,
+    history: HistoryOptions,
     near: Near,
     output: Output,
     impacts: bool,
@@ -211,7 +211,7 @@ def command(
         ctx.exit(INCOMPLETE)
 
 
-def _hold_together(asked: GroundMotions, vertical: Vertical, history: History) -> None:
+def _hold_together(asked: GroundMotions, vertical: Vertical, history: HistoryOptions) -> None:
     """Raise if options have no effect or cannot be combined."""
     if asked.records and asked.pulses:
         raise click.UsageError("--record and --pulse cannot be combined: choose one.")
@@ -228,7 +228,7 @@ def _hold_together(asked: GroundMotions, vertical: Vertical, history: History) -
         raise click.UsageError("--with-pulse cannot be combined with --polarity both: run one polarity at a time.")
 
 
-def _names(structure: Structure, history: History) -> tuple[ModelName, ...]:
+def _names(structure: Structure, history: HistoryOptions) -> tuple[ModelName, ...]:
     """Return the models to run: those given, or else those that do not mislead, with a note on the others."""
     if not history.by_default:
         return history.names
@@ -280,12 +280,12 @@ class _Job:
     def follow(self, given: Scaled | None, out: Path | None, plot: Path | None) -> bool:
         """Simulate one motion, or a free release, and show it; return false for an unusable motion of several."""
         from rocking_cli.cli import structures
-        from rocking_cli.studies.response import answer
+        from rocking_cli.studies.response import response_of
         from rocking_cli.views.response import view
 
         mechanism, title = self._structure.mechanism, heading(self._structure.mechanism)
         try:
-            found = answer(self._structure, self._names, given, self._asked)
+            found = response_of(self._structure, self._names, given, self._asked)
         except RockingError as error:
             if not self._several or given is None:
                 raise
@@ -322,7 +322,7 @@ def _say_which_pulse(fit: PulseFit | None) -> None:
 
 
 def _write(
-    found: Answer, out: Path | None, plot: Path | None, title: str, structure: Structure, *, contact: bool
+    found: Response, out: Path | None, plot: Path | None, title: str, structure: Structure, *, contact: bool
 ) -> None:  # fmt: skip
     """Write the time histories and their plot to the requested files.
 
@@ -337,7 +337,7 @@ def _write(
     def table() -> Iterable[Columns]:
         from rocking_cli.views import history_table
 
-        columns: dict[str, dynamics.History] = dict(first.items())
+        columns: dict[str, History] = dict(first.items())
         columns |= {f"reversed {name}": run for other in others for name, run in other.items()}
         columns |= {f"pulse {name}": run for name, run in (found.to_pulse or {}).items()}
         contacts = Contacts(structure.mechanism)

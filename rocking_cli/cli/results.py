@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from rocking_cli.cli import complete, options, terminal
-from rocking_cli.cli.study_output import Shown, Tables, show_study
+from rocking_cli.cli.study_output import CurveOutput, Tables, show_study
 from rocking_cli.errors import INCOMPLETE
 
 
@@ -29,8 +29,8 @@ from rocking_cli.errors import INCOMPLETE
 @options.rank_measures
 @options.as_json
 @click.pass_context
-@options.grouped(shown=Shown, tables=Tables)
-def command(ctx: click.Context, file: str, shown: Shown, tables: Tables, as_json: bool) -> None:
+@options.grouped(shown=CurveOutput, tables=Tables)
+def command(ctx: click.Context, file: str, shown: CurveOutput, tables: Tables, as_json: bool) -> None:
     """Summarise and export the fragility curves and runs of a study, from its store.
 
     The command needs no other file of the study, and can read the store while the study runs.

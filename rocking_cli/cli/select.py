@@ -10,26 +10,26 @@ from typing import TYPE_CHECKING
 import click
 
 from rocking_cli.cli import complete, motion_files, options, terminal
-from rocking_cli.cli.groups import Output, Reading
+from rocking_cli.cli.groups import Output, ReadingOptions
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.quantities import PERIOD, Kind, Range, Share
+from rocking_cli.cli.quantities import PERIOD, QuantityKind, Range, Share
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.scaled import Scaled
     from rocking_cli.processing.listed import Listed
-    from rocking_cli.studies.record_set import RecordSet, Wanted
+    from rocking_cli.studies.record_set import RecordSet, SetRequirements
     from rocking_cli.studies.target_spectrum import TargetSpectrum
-    from rocking_cli.views.record_set import Results
+    from rocking_cli.views.record_set import ShownSet
 
-RATIO = Kind("ratio", "", "0.9", "0.9:1.3", 1e-3, 1e3)
-FACTOR = Kind("factor", "", "0.5", "0.5:3", 1e-6, 1e6)
+RATIO = QuantityKind("ratio", "", "0.9", "0.9:1.3", 1e-3, 1e3)
+FACTOR = QuantityKind("factor", "", "0.5", "0.5:3", 1e-6, 1e6)
 MOST = 1000  # records of a set
 
 
 @dataclass(frozen=True)
-class Asked:
+class SetOptions:
     """Requirements on the set of records."""
 
     count: int
@@ -42,11 +42,11 @@ class Asked:
     seed: int
 
     @property
-    def wanted(self) -> Wanted:
+    def wanted(self) -> SetRequirements:
         """Requirements, in the form that the study needs."""
-        from rocking_cli.studies.record_set import Wanted
+        from rocking_cli.studies.record_set import SetRequirements
 
-        return Wanted(**vars(self))
+        return SetRequirements(**vars(self))
 
 
 @click.command(cls=Command, short_help="Select records whose mean spectrum matches a target.")
@@ -119,9 +119,14 @@ class Asked:
 @options.plot("Plot the spectra, their mean and the target")
 @options.as_json
 @click.pass_context
-@options.grouped(asked=Asked, reading=Reading, output=Output)
+@options.grouped(asked=SetOptions, reading=ReadingOptions, output=Output)
 def command(
-    ctx: click.Context, records: tuple[str, ...], target: Path, asked: Asked, reading: Reading, output: Output
+    ctx: click.Context,
+    records: tuple[str, ...],
+    target: Path,
+    asked: SetOptions,
+    reading: ReadingOptions,
+    output: Output,
 ) -> None:
     """Select records whose mean response spectrum matches a target, with a scale factor for each.
 
@@ -193,17 +198,17 @@ def _without(target: Path, listed: list[Listed]) -> list[Listed]:
     return kept
 
 
-def _results(chosen: list[Scaled], listed: list[Listed], target: TargetSpectrum, wanted: Wanted) -> Results:
+def _results(chosen: list[Scaled], listed: list[Listed], target: TargetSpectrum, wanted: SetRequirements) -> ShownSet:
     """Select among the records that were read."""
-    from rocking_cli.views.record_set import Results
+    from rocking_cli.views.record_set import ShownSet
 
     read = {each.place for each in chosen}
     unusable = [str(each.path) for place, each in enumerate(listed) if place not in read]
     found = _found([each.motion for each in chosen], target, wanted)
-    return Results(found, target, [str(each.file) for each in chosen], unusable)
+    return ShownSet(found, target, [str(each.file) for each in chosen], unusable)
 
 
-def _found(motions: list[GroundMotion], target: TargetSpectrum, wanted: Wanted) -> RecordSet:
+def _found(motions: list[GroundMotion], target: TargetSpectrum, wanted: SetRequirements) -> RecordSet:
     """Select the set, with progress bars for the spectra and the search."""
     from rocking_cli.studies import record_set
 

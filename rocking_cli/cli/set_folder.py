@@ -14,21 +14,21 @@ from rocking_cli.text import one_line
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.processing.reading import Reading
-    from rocking_cli.views.record_set import Results
+    from rocking_cli.views.record_set import ShownSet
 
 LIST = "set.yaml"
 ELSEWHERE = "move it, or name another folder"
 MARK = "# A set of records, chosen by rocking select."
 
 
-def write_set(folder_: Path, results: Results, readings: Sequence[Reading | None]) -> None:
+def write_set(folder_: Path, results: ShownSet, readings: Sequence[Reading | None]) -> None:
     """Write the scaled records and their list; records of an earlier set in that folder are removed.
 
     Parameters
     ----------
     folder_ : Path
         Folder, created if missing.
-    results : Results
+    results : ShownSet
         The set.
     readings : sequence of (Reading or None)
         How each record of the set was read; None if it cannot be read again: the list then names its scaled file.
@@ -105,7 +105,7 @@ def _earlier(path: Path) -> set[str]:
     return {line.removeprefix("#   ") for line in lines if line.startswith("#   ")}
 
 
-def _list(place: Path, results: Results, readings: Sequence[Reading | None], paths: Sequence[Path]) -> str:
+def _list(place: Path, results: ShownSet, readings: Sequence[Reading | None], paths: Sequence[Path]) -> str:
     """Return the list as YAML: the path of each record, its factor, and how it was read."""
     import yaml
 

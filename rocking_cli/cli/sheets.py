@@ -14,7 +14,7 @@ from rocking_cli.report.verified import VerifiedReport
 from rocking_cli.studies.assessment import File, TitleBlock, file_of_motion, versions
 from rocking_cli.studies.verification.check import read_site, refuse, verify, with_histories
 from rocking_cli.studies.verification.motions import Histories
-from rocking_cli.views.sheet.build import Made, sheet, sheet_of
+from rocking_cli.views.sheet.build import SheetSources, sheet, sheet_of
 from rocking_cli.views.sheet.language import Language
 
 if TYPE_CHECKING:
@@ -44,9 +44,9 @@ def _is_docx(path: Path | None) -> bool:
     return path is not None and path.suffix.lower() == ".docx"
 
 
-def made(structure: Structure, given: str | None, site: Path, motions: Sequence[Scaled]) -> Made:
+def made(structure: Structure, given: str | None, site: Path, motions: Sequence[Scaled]) -> SheetSources:
     """Return the inputs of a sheet: the structure, its file as given, the site, and the ground motions."""
-    return Made(
+    return SheetSources(
         heads.file_of(structure, given),
         File(str(site), original(site)),
         {each.motion.name: file_of_motion(each) for each in motions},
@@ -54,7 +54,7 @@ def made(structure: Structure, given: str | None, site: Path, motions: Sequence[
     )
 
 
-def write(asked: SheetAsked, found: Verification, site: SiteFile, title: TitleBlock, of: Made) -> None:
+def write(asked: SheetAsked, found: Verification, site: SiteFile, title: TitleBlock, of: SheetSources) -> None:
     """Write the sheet, and report it."""
     assert asked.sheet is not None  # the caller has checked
     content = sheet(found, site, asked.spoken, title, of)

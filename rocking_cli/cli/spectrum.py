@@ -12,16 +12,16 @@ import click
 from rocking_cli.cli import motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, Output
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.quantities import Finite, Share, Sizes
+from rocking_cli.cli.quantities import Finite, Share, SizeRange
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.dynamics.model import ModelName
-    from rocking_cli.studies.spectrum import Shape
+    from rocking_cli.studies.spectrum import SpectrumShape
     from rocking_cli.studies.under_pulses import Reals
-    from rocking_cli.views.spectrum import Results
+    from rocking_cli.views.spectrum import ShownSpectra
 
 MODELS = ("nonlinear", "linear1", "linear2")
 SIZES, MOST = 60, 2000  # of a curve: by default, and at most
@@ -81,7 +81,7 @@ class Sizing:
 )
 @click.option(
     "--sizes",
-    type=Sizes(SIZES, MOST),
+    type=SizeRange(SIZES, MOST),
     metavar="FROM:TO[:COUNT]",
     help="Sizes, as 2 pi/p in s, such as 1:10:60.  [default: FILE scaled by 0.1 to 10; 1:10 for blocks alone]",
 )
@@ -144,7 +144,7 @@ def command(
     from rocking_cli.cli import waiting
     from rocking_cli.io.files import keep_apart
     from rocking_cli.studies import spectrum as study
-    from rocking_cli.views.spectrum import Results, lost
+    from rocking_cli.views.spectrum import ShownSpectra, lost
 
     paths, missing = motion_files.find(asked.records)
     keep_apart([("--out", output.out), ("--plot", output.plot)], [*files, *(str(each.path) for each in paths)])
@@ -157,7 +157,7 @@ def command(
     scaled = [each.motion.scaled(each.factor) for each in chosen]
     with waiting.histories(study.count_histories(shapes, periods, len(chosen), asked.signs)) as progress:
         found = study.spectra(shapes, periods, scaled, polarities=asked.signs, threads=jobs, progress=progress)
-    results = Results(found, chosen, tuple(sorted({*fractiles, 0.5})), asked.polarity)
+    results = ShownSpectra(found, chosen, tuple(sorted({*fractiles, 0.5})), asked.polarity)
     if unfollowed := lost(results):
         terminal.error(unfollowed)
     _give(results, output)
@@ -165,7 +165,7 @@ def command(
         ctx.exit(INCOMPLETE)
 
 
-def _give(results: Results, output: Output) -> None:
+def _give(results: ShownSpectra, output: Output) -> None:
     """Write the requested files, and show the result."""
     from rocking_cli.views.spectrum import table, title, view
 
@@ -180,7 +180,7 @@ def _give(results: Results, output: Output) -> None:
 
 def _shapes(
     files: tuple[str, ...], slenderness: tuple[float, ...], model: ModelName, eta: float | None
-) -> tuple[list[Shape], int]:
+) -> tuple[list[SpectrumShape], int]:
     """Return the shape of each curve, structures first, then blocks; and the number of unusable files."""
     from rocking_cli.cli import structures
     from rocking_cli.studies.spectrum import blocks_of, shape_of
@@ -193,7 +193,7 @@ def _shapes(
     return found + [blocks_of(alpha, model, eta) for alpha in slenderness], bad
 
 
-def _sizes(shapes: list[Shape], asked: tuple[float, float, int] | None) -> Reals:
+def _sizes(shapes: list[SpectrumShape], asked: tuple[float, float, int] | None) -> Reals:
     """Return 2 pi/p of the sizes, at equal ratios [s]."""
     import numpy as np
 

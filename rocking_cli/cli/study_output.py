@@ -11,7 +11,7 @@ from rocking_cli.cli import terminal
 from rocking_cli.errors import InputError, Problem
 
 if TYPE_CHECKING:
-    from rocking_cli.studies.fragility.assess import Bivariate, Fragility, Outcomes
+    from rocking_cli.studies.fragility.assess import Bivariate, Fragility, UnknownRuns
     from rocking_cli.studies.fragility.definition import Definition
     from rocking_cli.studies.fragility.plan import Plan
     from rocking_cli.studies.fragility.store import Store
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Shown:
+class CurveOutput:
     """Additional outputs of curves: plots, a file for OpenQuake, quantiles and a ranking of measures."""
 
     plot: str | None
@@ -36,7 +36,7 @@ class Tables:
     curves: Path | None = None
 
 
-def show_study(store: Store, shown: Shown, tables: Tables = Tables(), *, as_json: bool) -> bool:
+def show_study(store: Store, shown: CurveOutput, tables: Tables = Tables(), *, as_json: bool) -> bool:
     """Show what a store holds, write its runs and curves and draw them.
 
     Returns
@@ -88,7 +88,7 @@ def _definition(store: Store) -> Definition:
         ) from None
 
 
-def _with_ranking(result: View, store: Store, plan: Plan, definition: Definition, shown: Shown) -> View:
+def _with_ranking(result: View, store: Store, plan: Plan, definition: Definition, shown: CurveOutput) -> View:
     """Add the ranking of measures to a view; draw it too if plots are requested."""
     from rocking_cli.studies.fragility.ranking import rank
     from rocking_cli.views.ranking import added
@@ -104,7 +104,7 @@ def _with_ranking(result: View, store: Store, plan: Plan, definition: Definition
 
 def _fitted(
     store: Store, plan: Plan, definition: Definition
-) -> tuple[list[Fragility], list[Bivariate], list[Outcomes]]:
+) -> tuple[list[Fragility], list[Bivariate], list[UnknownRuns]]:
     """Count the runs of a store, and fit the curves of its study."""
     import numpy as np
 

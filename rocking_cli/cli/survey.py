@@ -26,7 +26,7 @@ FEW = 3  # doubts about sizes, likewise
 
 
 @dataclass(frozen=True)
-class Results:
+class SurveyOutput:
     """Outputs of a survey."""
 
     top: int
@@ -81,8 +81,8 @@ class Results:
 @options.plot("Plot the uplift acceleration against the frequency parameter")
 @options.as_json
 @click.pass_context
-@options.grouped(asked=GroundMotions, results=Results)
-def command(ctx: click.Context, file: str, asked: GroundMotions, site: str | None, results: Results) -> None:
+@options.grouped(asked=GroundMotions, results=SurveyOutput)
+def command(ctx: click.Context, file: str, asked: GroundMotions, site: str | None, results: SurveyOutput) -> None:
     """Rank many structures, one per table row, by vulnerability.
 
     The columns of the table are `mechanism`, `name` and fields of mechanisms, with dots for nested fields

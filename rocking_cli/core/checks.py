@@ -1,4 +1,4 @@
-"""Whether the fields of a structure fit together: each check raises `Refused` at the field that does not."""
+"""Whether the fields of a structure fit together: each check raises `RefusedFields` at the field that does not."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.given import KINEMATIC, NEEDS_A_SIDE, DirectionalRestitution, Given
-from rocking_cli.core.hung.attachments import Refused
+from rocking_cli.core.hung.attachments import RefusedFields
 from rocking_cli.core.hung.everything import Hung
 from rocking_cli.core.kinematics import Direction
 from rocking_cli.core.strength import Strength
@@ -19,31 +19,31 @@ AtRest = Mapping[Direction, Coefficients]
 def check_masses(given: Given) -> None:
     """Refuse two ways to give the masses."""
     if given.mass is not None and given.density is not None:
-        raise Refused((), "mass", "give mass, or density and depth: one of them")
+        raise RefusedFields((), "mass", "give mass, or density and depth: one of them")
 
 
 def check_crushed(moved: Mapping[Direction, Mapping[str, float]], rest: AtRest, gravity: float) -> None:
     """Refuse crushing that can move no joint inwards, or by `moved` [m] so far that the structure does not stand."""
     if not moved:
         reason = "its pivots cannot be moved in this version, only those of single bodies and of walls: leave it out"
-        raise Refused((), "crushing", reason)
+        raise RefusedFields((), "crushing", reason)
     for direction, here in rest.items():
         if not here.restoring(gravity)[0] > 0:
             far = max(moved[direction].values())
             reason = f"the structure cannot stand on what is left: a pivot moves inwards by {far:.4g} m"
-            raise Refused((), "crushing", reason)
+            raise RefusedFields((), "crushing", reason)
 
 
 def check_one_sided(given: Given, from_impacts: Callable[[], float | None]) -> None:
     """Refuse a rebound without a side, a restitution beside one, and `kinematic` where the shape gives no rebound."""
     if given.one_sided is None and given.rebound is not None:
-        raise Refused((), "rebound", NEEDS_A_SIDE)
+        raise RefusedFields((), "rebound", NEEDS_A_SIDE)
     if given.one_sided is not None and given.restitution is not None:
-        raise Refused((), "restitution", "cannot be combined with `one_sided`: give `rebound` instead")
+        raise RefusedFields((), "restitution", "cannot be combined with `one_sided`: give `rebound` instead")
     asked = "rebound" in given.model_fields_set and given.rebound is None
     if given.one_sided is not None and asked and from_impacts() is None:
         why = "only for a plain rectangle does it follow from the shape; give a number in [0, 1)"
-        raise Refused((), "rebound", f"cannot be {KINEMATIC}: {why}")
+        raise RefusedFields((), "rebound", f"cannot be {KINEMATIC}: {why}")
 
 
 def check_restitution(given: Given, eta: Callable[[Direction], float], greatest: Callable[[Direction], float]) -> None:
@@ -57,7 +57,7 @@ def check_restitution(given: Given, eta: Callable[[Direction], float], greatest:
             if isinstance(given.restitution, DirectionalRestitution):
                 field = "positive_to_negative" if direction > 0 else "negative_to_positive"
             reason = f"must be at most {most:.6g}, got {own:g}: a larger value would add energy at an impact"
-            raise Refused(() if field == "restitution" else ("restitution",), field, reason)
+            raise RefusedFields(() if field == "restitution" else ("restitution",), field, reason)
 
 
 def check_strength(given: Given) -> None:
@@ -65,16 +65,16 @@ def check_strength(given: Given) -> None:
     if not isinstance(given.strength, Strength):  # None, or a field of a plugin of that name
         return
     if not given.has_mass:
-        raise Refused((), "strength", "the structure has no masses: give density and depth, or its mass")
+        raise RefusedFields((), "strength", "the structure has no masses: give density and depth, or its mass")
     if given.depth is None:
-        raise Refused((), "depth", "is missing: the contacts are as long as the structure is deep")
+        raise RefusedFields((), "depth", "is missing: the contacts are as long as the structure is deep")
 
 
 def check_weighs(given: Given) -> None:
     """Refuse loads and ties on a structure without masses."""
     if not given.has_mass:
         key = "loads" if given.loads else "ties" if given.ties else "interlock"
-        raise Refused((), key, "the structure has no masses: give density and depth, or its mass")
+        raise RefusedFields((), key, "the structure has no masses: give density and depth, or its mass")
 
 
 def check_stands(given: Given, hung: Hung, mass: float, rest: AtRest, bare: AtRest) -> None:
@@ -94,10 +94,10 @@ def check_stands(given: Given, hung: Hung, mass: float, rest: AtRest, bare: AtRe
     weight = given.gravity * (mass + hung.carried)
     if hung.lifting >= weight:
         reason = f"forces lift it by {hung.lifting:.4g} N, more than all of its weight, {weight:.4g} N"
-        raise Refused((), "loads", reason)
+        raise RefusedFields((), "loads", reason)
     for direction, here in rest.items():
         if bare[direction].G[0] > 0 and not here.restoring(given.gravity)[0] > 0:
-            raise Refused(
+            raise RefusedFields(
                 (),
                 "loads" if given.loads else "ties",
                 f"the structure cannot stand under them: at rest they turn it in the {direction.label} direction "

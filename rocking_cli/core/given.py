@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import Field, SerializeAsAny, ValidationError, model_validator
 
 from rocking_cli.core.fields import Described, Name, geometry_error, quantity
-from rocking_cli.core.hung.attachments import Refused
+from rocking_cli.core.hung.attachments import RefusedFields
 from rocking_cli.core.hung.crushing import Crushing
 from rocking_cli.core.hung.interlock import Interlock
 from rocking_cli.core.hung.loads import Load
@@ -235,9 +235,9 @@ class Given(Described):
 
     @property
     def given_depth(self) -> float:
-        """Size out of plane that `density` needs [m]. Raises `Refused` if the file gives none."""
+        """Size out of plane that `density` needs [m]. Raises `RefusedFields` if the file gives none."""
         if self.depth is None:
-            raise Refused((), "depth", "is missing: density needs the size out of plane")
+            raise RefusedFields((), "depth", "is missing: density needs the size out of plane")
         return self.depth
 
     def enlarged(self, factor: float) -> Self:

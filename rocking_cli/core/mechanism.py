@@ -23,7 +23,7 @@ from rocking_cli.core.hung.attached import Attached, Follow
 from rocking_cli.core.hung.attachments import (
     Carrier,
     Loc,
-    Refused,
+    RefusedFields,
     as_validation_error,
     attach,
     far_off,
@@ -91,7 +91,7 @@ class Mechanism(Given, ABC):
                     s: coefficients(np.zeros(1), s, self.bodies(), self.motion(np.zeros(1), s)) for s in self.directions
                 }
                 checks.check_stands(self, self.hung, sum(body.mass for body in self.weighed()), self._at_rest(), bare)
-        except Refused as error:
+        except RefusedFields as error:
             raise as_validation_error([error], self.mechanism) from error
 
     def _at_rest(self) -> Mapping[Direction, Coefficients]:
@@ -101,7 +101,7 @@ class Mechanism(Given, ABC):
     def __pydantic_init_subclass__(cls, **named: Any) -> None:
         """What a subclass says of its own mechanics is guarded: whatever fails there is an error of the plugin."""
         super().__pydantic_init_subclass__(**named)
-        guard(cls, ANSWERS, _failed, but=Refused)
+        guard(cls, ANSWERS, _failed, but=RefusedFields)
         for name in OF_THE_BARE:
             if isfunction(own := vars(cls).get(name)):
                 setattr(cls, name, _of_the_bare(own))
@@ -200,7 +200,7 @@ class Mechanism(Given, ABC):
         try:
             sound = self.model_copy(update={"crushing": None})
         except ValidationError as error:
-            raise Refused.first_of(error) from None
+            raise RefusedFields.first_of(error) from None
         per_metre = 2 * self.crushing.strength * (self.crushing.depth or self.depth or 1.0)
         moved = {direction: sound.bearing(direction) for direction in Direction}
         found = {s: {joint: max(force, 0.0) / per_metre for joint, force in moved[s].items()} for s in Direction}
@@ -219,7 +219,7 @@ class Mechanism(Given, ABC):
         for body in self.bodies():
             shapes = body.shapes(sketch.outlines if sketch.uniform else {})
             if not shapes:
-                raise Refused((), "density", f"the shape of its {body.name} is not known: give its mass instead")
+                raise RefusedFields((), "density", f"the shape of its {body.name} is not known: give its mass instead")
             area += sum(abs(area_of(shape)) for shape in shapes)
         return area * deep
 

@@ -15,7 +15,7 @@ Integers = NDArray[np.intp]
 GROUND = -1
 
 
-class Share(NamedTuple):
+class VelocityTerm(NamedTuple):
     """What one piece adds to a velocity: its number, and the factors of its x, y and rotation, shape (n, 3)."""
 
     piece: int
@@ -41,7 +41,7 @@ class Rates:
     factors: Reals
 
     @classmethod
-    def of(cls, rows: Sequence[Sequence[Share]], count: int, rotations: int) -> Rates:
+    def of(cls, rows: Sequence[Sequence[VelocityTerm]], count: int, rotations: int) -> Rates:
         """Lay out rows of at most two pieces each."""
         pieces = np.full((len(rows), 2), GROUND, np.intp)
         factors = np.zeros((rotations, len(rows), 2, 3))

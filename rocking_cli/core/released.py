@@ -17,7 +17,7 @@ from rocking_cli.core.contacts import Contact, Piece
 from rocking_cli.core.hung.attached import PointMass, Spot
 from rocking_cli.core.kinematics import Direction, Points, Reals, RigidMotion, rotation
 from rocking_cli.core.mechanism import Mechanism
-from rocking_cli.core.rates import Integers, Rates, Share
+from rocking_cli.core.rates import Integers, Rates, VelocityTerm
 
 SINGULAR = 1e-9  # least pivot, about, of rates over the size of the whole: with less, forces are not determined
 AT_ONCE = 1_000_000  # entries of the matrices that are inverted at once: 8 MB of each
@@ -305,7 +305,7 @@ class Pieces:
 
     def rates(self, contacts: Sequence[Contact]) -> tuple[Rates, list[tuple[tuple[int, ...], int | None]]]:
         """The velocities at contacts over those of the pieces, and the rows of each contact."""
-        found: list[list[Share]] = []
+        found: list[list[VelocityTerm]] = []
         rows: list[tuple[tuple[int, ...], int | None]] = []
         for contact in contacts:
             normal = self.normal(contact)
@@ -338,13 +338,13 @@ class Pieces:
         turned = self._motions[contact.face].psi if contact.face is not None else np.zeros(self.phi.size)
         return np.asarray(contact.normal * np.exp(1j * turned))
 
-    def _of_held(self, contact: Contact, normal: Points) -> list[list[Share]]:
+    def _of_held(self, contact: Contact, normal: Points) -> list[list[VelocityTerm]]:
         (at,) = (self._carried(contact.pieces[1], point) for point in contact.points[:1])
         if contact.held == "slide":
             return [self._between(contact, at, normal)]
         turn = np.tile([0.0, 0.0, 1.0], (self.phi.size, 1))
         turns = [
-            Share(self.number(name), sign * turn)
+            VelocityTerm(self.number(name), sign * turn)
             for name, sign in zip(contact.pieces[::-1], (1.0, -1.0), strict=True)
             if name is not None and (sign > 0 or contact.held == "fixed")
         ]
@@ -356,10 +356,10 @@ class Pieces:
         where = self._carried(contact.pieces[1] if contact.pieces[1] is not None else contact.pieces[0], at)
         return where - contact.roll * normal
 
-    def _between(self, contact: Contact, at: Points, way: Points) -> list[Share]:
+    def _between(self, contact: Contact, at: Points, way: Points) -> list[VelocityTerm]:
         """The velocity of the second piece over the first at a point, along a way."""
         return [
-            Share(self.number(name), sign * self._factors(name, at, way))
+            VelocityTerm(self.number(name), sign * self._factors(name, at, way))
             for name, sign in zip(contact.pieces[::-1], (1.0, -1.0), strict=True)
             if name is not None
         ]

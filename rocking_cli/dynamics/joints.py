@@ -18,7 +18,7 @@ from rocking_cli.core.statics import Statics
 from rocking_cli.core.strength import Strength
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.modes import modes
-from rocking_cli.dynamics.tables import Table
+from rocking_cli.dynamics.tables import DirectionTable
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -34,7 +34,7 @@ SAFE = 0.01  # of the width of the certain bounds, which the cubics may leave be
 
 
 @dataclass(frozen=True, eq=False)
-class Joints:
+class JointTables:
     """The joints of a structure.
 
     Parameters
@@ -143,7 +143,7 @@ class JointCheck:
 REASONS = ("opens", "slides", "crushes", "weightless")  # in the order of the kernel
 
 
-def check_of(joints: Joints | None, marks: Reals) -> JointCheck | None:
+def check_of(joints: JointTables | None, marks: Reals) -> JointCheck | None:
     """Return what the kernel says of the joints in one history; None if they are not known."""
     if joints is None:
         return None
@@ -176,7 +176,9 @@ def check_of(joints: Joints | None, marks: Reals) -> JointCheck | None:
     )
 
 
-def joints_of(mechanism: Mechanism, statics: Sequence[Statics], tables: Sequence[Table], p: float) -> Joints | None:
+def joints_of(
+    mechanism: Mechanism, statics: Sequence[Statics], tables: Sequence[DirectionTable], p: float
+) -> JointTables | None:
     """Lay out the joints of a structure for the kernel.
 
     Parameters
@@ -185,14 +187,14 @@ def joints_of(mechanism: Mechanism, statics: Sequence[Statics], tables: Sequence
         The structure.
     statics : sequence of Statics
         Of both of its sides.
-    tables : sequence of Table
+    tables : sequence of DirectionTable
         Of both of its sides.
     p : float
         Frequency parameter [rad/s].
 
     Returns
     -------
-    Joints or None
+    JointTables or None
         None if its joints are not known, so that no history of it is checked.
     """
     cells = max(TO_CRITICAL * table.end / table.q(side.reference) for table, side in zip(tables, statics, strict=True))
@@ -231,7 +233,7 @@ def joints_of(mechanism: Mechanism, statics: Sequence[Statics], tables: Sequence
         within[:, d] = _within(cubics, contacts[:, d], bearing)
         if (hit := answers[d][1]) is not None:
             struck[d, :count] = hit
-    return Joints(
+    return JointTables(
         labels, contacts, bearing, rows, struck, within, _reach(mechanism, statics), mechanism.opening,
         not any(table.held.size for table in tables), QUICK / p, mechanism.gravity,
         redundant, _calm(within, tables, statics),
@@ -244,7 +246,7 @@ def _determined(mechanism: Mechanism, direction: Direction, phi: Reals) -> tuple
     return released(mechanism, direction, phi), impulses(mechanism, direction.opposite)
 
 
-def _at(table: Table, cells: int) -> Reals:
+def _at(table: DirectionTable, cells: int) -> Reals:
     """Rotations at even steps of q [rad]."""
     place = np.linspace(0.0, len(table.angles), cells + 1)
     k = np.minimum(place.astype(np.intp), len(table.angles) - 1)
@@ -334,7 +336,7 @@ def _within(cubics: Reals, contacts: Integers, bearing: Reals) -> Reals:
     return found
 
 
-def _calm(within: Reals, tables: Sequence[Table], statics: Sequence[Statics]) -> tuple[float, float]:
+def _calm(within: Reals, tables: Sequence[DirectionTable], statics: Sequence[Statics]) -> tuple[float, float]:
     """What all joints bear anywhere between rest and phi_cr: u_g'' at q.^2 = 0, and q.^2 at u_g'' = 0.
 
     Between the two they bear what lies below the straight line, as each cell is convex.
@@ -390,7 +392,7 @@ def _reach(mechanism: Mechanism, statics: Sequence[Statics]) -> float:
     return min(reaches)
 
 
-def laid_out(all_joints: Sequence[Joints | None]) -> tuple[Integers, Integers, Reals, Reals, Reals, Reals, Reals]:
+def laid_out(all_joints: Sequence[JointTables | None]) -> tuple[Integers, Integers, Reals, Reals, Reals, Reals, Reals]:
     """Lay out the joints of several structures one after the other, as the fields of `kernels.Joints`."""
     counts = np.zeros((len(all_joints), 8), np.int64)
     numbers = np.ones((len(all_joints), 6))

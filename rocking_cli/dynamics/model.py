@@ -14,8 +14,8 @@ from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism
 from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.statics import Statics
 from rocking_cli.core.uncertainty import Uncertainty
-from rocking_cli.dynamics.joints import Joints, joints_of
-from rocking_cli.dynamics.tables import Table, tabulate
+from rocking_cli.dynamics.joints import JointTables, joints_of
+from rocking_cli.dynamics.tables import DirectionTable, tabulate
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -54,12 +54,12 @@ class Model:
     numbers, forces, angles, certain : ndarray
         See `rocking_cli.dynamics.kernels.Deck`.
     held : ndarray, shape (cells, 2, 5)
-        The part of the first force that does not scale with g, see `Table`; of no rows where there is none.
+        The part of the first force that does not scale with g, see `DirectionTable`; of no rows where there is none.
     ends_at_limit : tuple of bool
         Whether a direction has no critical rotation: `phi_cr` then is the kinematic limit, the only end it has.
     one_sided : Direction, optional
         The only direction it rocks in: an impact throws it back, and its restitution is the rebound.
-    tables : tuple of Table, optional
+    tables : tuple of DirectionTable, optional
         What the arrays are made of, if nonlinear.
     uplift_error : float
         By how much its uplift acceleration is off that of the structure, relative, in the worse direction.
@@ -68,7 +68,7 @@ class Model:
         energy; 1 for a symmetric structure.
     corners : ndarray
         See `rocking_cli.dynamics.kernels.Deck`; of no rows where no tie goes slack or comes into play.
-    joints : Joints, optional
+    joints : JointTables, optional
         The joints that its histories are checked against; None if they are not known, or of a linear model.
     scatter : Scatter
         How well the structure is known.
@@ -83,14 +83,14 @@ class Model:
     forces: Reals
     angles: Reals
     certain: Reals
-    tables: tuple[Table, Table] | None = None
+    tables: tuple[DirectionTable, DirectionTable] | None = None
     held: Reals = field(default_factory=lambda: np.zeros((0, 2, 5)))
     ends_at_limit: tuple[bool, bool] = (False, False)
     one_sided: Direction | None = None
     uplift_error: float = 0.0
     most_eta: tuple[float, float] = (1.0, 1.0)
     corners: Integers = field(default_factory=lambda: np.zeros((0, 2), np.int64))
-    joints: Joints | None = None
+    joints: JointTables | None = None
     scatter: Scatter = field(default_factory=lambda: Scatter(KINEMATIC, SLENDERNESS))
     kernel: str = "elastic"
 

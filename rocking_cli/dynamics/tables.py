@@ -26,7 +26,7 @@ END = 0.999  # of the kinematic limit: a locking linkage has infinite inertia at
 
 
 @dataclass(frozen=True)
-class Table:
+class DirectionTable:
     """Tables of one direction.
 
     Parameters
@@ -76,7 +76,7 @@ class Table:
         return self.cell * float(k + x)
 
 
-def tabulate(mechanism: Mechanism, statics: Sequence[Statics] | None = None) -> tuple[Table, Table]:
+def tabulate(mechanism: Mechanism, statics: Sequence[Statics] | None = None) -> tuple[DirectionTable, DirectionTable]:
     """Tabulate both directions of a mechanism, positive first, from rest to its kinematic limits.
 
     Where it rocks to one side only, its table stands for both.
@@ -151,7 +151,7 @@ def _bent(mechanism: Mechanism, direction: Direction, phi: Reals) -> tuple[Bools
     return sign, sign[:, :-1] != sign[:, 1:]
 
 
-def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Table:
+def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> DirectionTable:
     phi, width = _even_steps(mechanism, direction, cells)
     at = mechanism.coefficients(phi, direction)
     c = 1 / np.sqrt(at.I)
@@ -180,7 +180,7 @@ def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Ta
     if at.Q.any():
         to_come = np.maximum.accumulate(most_held[::-1])[::-1]
         held = np.column_stack([over_root(at.Q / gravity, at.dQ / gravity, at.U / gravity), to_come[:-1]])
-    return Table(
+    return DirectionTable(
         np.hstack(forces),
         np.hstack([_cubics(width, phi, c), _cubics(width, c, dc)]),
         certain[:-1],

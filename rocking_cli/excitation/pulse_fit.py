@@ -124,7 +124,7 @@ def fit_pulses(
             raise InputError(Problem("the record is zero throughout, so it contains no pulse", motion.name))
         if motion.npts <= 2 * SHORTEST:
             raise InputError(Problem(f"{motion.npts} samples are too few to find a pulse in", motion.name))
-        search = _Search(values / peak, motion.dt, criterion == "velocity")
+        search = _PulseSearch(values / peak, motion.dt, criterion == "velocity")
         for shape in shapes:
             place = search.best(shape)
             captured, weights = search.fit(shape, place)
@@ -161,7 +161,7 @@ def _as_pulse(shape: str, place: _Place, weights: Reals) -> tuple[Pulse, int]:
     return MavroeidisPapageorgiou(amplitude, place.period, phase, place.cycles), sign
 
 
-class _Search:
+class _PulseSearch:
     """A record to find pulses in.
 
     Parameters

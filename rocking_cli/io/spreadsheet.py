@@ -42,7 +42,7 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Sheet:
+class Spreadsheet:
     """A table.
 
     Parameters
@@ -66,12 +66,12 @@ class Sheet:
     decimal_comma: bool
 
 
-def read_sheet(path: Path) -> Sheet:
+def read_sheet(path: Path) -> Spreadsheet:
     """The table of a file. Raises `InputError` if there is none, or it has no headings, or one of them twice."""
     return parse_sheet(read_bytes(path, "table", LARGEST), str(path))
 
 
-def parse_sheet(raw: bytes, file: str) -> Sheet:
+def parse_sheet(raw: bytes, file: str) -> Spreadsheet:
     """The table in the content of a file, or of what is called so. Raises as `read_sheet`."""
     text, skipped = _decoded(raw, file), 0
     if found := re.match(r"(?i)\s*\"?sep=(.)\"?\r?\n", text):  # what some spreadsheets begin with
@@ -88,7 +88,7 @@ def parse_sheet(raw: bytes, file: str) -> Sheet:
     _check_headings(headings, file, line)
     rows = tuple(_row(number, cells, len(headings)) for number, cells in lines)
     comma = separator != "," and any(DECIMAL_COMMA.fullmatch(cell) for row in rows for cell in row.cells if "," in cell)
-    return Sheet(file, line, tuple(headings), rows, comma)
+    return Spreadsheet(file, line, tuple(headings), rows, comma)
 
 
 def _decoded(raw: bytes, file: str) -> str:

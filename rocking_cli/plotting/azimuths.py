@@ -10,18 +10,18 @@ from matplotlib.figure import Figure
 
 from rocking_cli import names
 from rocking_cli.plotting import style
-from rocking_cli.studies.azimuths import Around
+from rocking_cli.studies.azimuths import AzimuthResponses
 
 OUTSIDE = 1.08  # phi/phi_cr at which directions that overturn are marked: beyond all that can come back, as a rule
 LONGEST = 32  # characters of a name
 
 
-def draw_azimuths(found: Around, title: str, over: str) -> Figure:
+def draw_azimuths(found: AzimuthResponses, title: str, over: str) -> Figure:
     """Draw the largest rotation in each direction.
 
     Parameters
     ----------
-    found : Around
+    found : AzimuthResponses
         What is drawn: a closed curve for each model, crosses outside where it overturns, circles where its outcome is
         unknown.
     title : str

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 from rocking_cli.core import Angle, Length
 from rocking_cli.plotting import style
-from rocking_cli.plotting.labels import Labels, Place, mathematics
+from rocking_cli.plotting.labels import LabelPlace, Labels, mathematics
 from rocking_cli.plotting.panels import Panel
 
 ROW = 0.26  # inches from a dimension line to the next
@@ -77,7 +77,7 @@ def draw_outside(axes: Axes, rows: Rows, panel: Panel, low: complex, high: compl
                 size = style.size_of(text, style.LABEL)
                 middle = sum(ends) / 2 * panel.scale
                 if each.value * panel.scale > size.real + 0.2:
-                    place = Place(middle, 90.0 if upright else 0.0, 0.0)
+                    place = LabelPlace(middle, 90.0 if upright else 0.0, 0.0)
                     labels.put(text, place, size, bbox=BEHIND, **LOOK)
                     labels.keep_off(ends)
                 else:
@@ -87,20 +87,22 @@ def draw_outside(axes: Axes, rows: Rows, panel: Panel, low: complex, high: compl
         labels.write(text, _beside(out, middle, 0.5 * abs(ends[1] - ends[0]) * panel.scale, size), **LOOK)
 
 
-def _beside(out: complex, middle: complex, half: float, size: complex) -> list[Place]:
+def _beside(out: complex, middle: complex, half: float, size: complex) -> list[LabelPlace]:
     """Places for words of a size that a dimension line, `half` long to either side, is too short for [inches]."""
     upright = out.imag == 0
     along, turned = (1j, 90.0) if upright else (1 + 0j, 0.0)
     slack = 0.5 * size.real + half + 0.06
     places = [  # beyond it, shifted along it as far as past its ends
-        Place(middle + beyond * out + shift * slack * along, turned, 2 * abs(shift) + 10 * abs(beyond - BEYOND))
+        LabelPlace(middle + beyond * out + shift * slack * along, turned, 2 * abs(shift) + 10 * abs(beyond - BEYOND))
         for beyond in (BEYOND, 0.2, 0.36, 0.0, -BEYOND)
         for shift in (0.0, 0.3, -0.3, 0.6, -0.6, 1.0, -1.0)
     ]
     if upright:  # or level, at its side or past its ends
-        places += [Place(middle + (size.real / 2 + 0.08) * out + 1j * up, 0.0, 2.0) for up in (0.0, 0.1, -0.1, 0.2)]
+        places += [
+            LabelPlace(middle + (size.real / 2 + 0.08) * out + 1j * up, 0.0, 2.0) for up in (0.0, 0.1, -0.1, 0.2)
+        ]
         ends = [side * 1j * (half + 0.12) for side in (1, -1)]
-        places += [Place(middle + aside * out + end, 0.0, 4.0) for aside in (0.0, 0.2, -0.2) for end in ends]
+        places += [LabelPlace(middle + aside * out + end, 0.0, 4.0) for aside in (0.0, 0.2, -0.2) for end in ends]
     return places
 
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from rocking_cli import names
 from rocking_cli.plotting import style
 from rocking_cli.studies.fragility.assess import Bivariate, Fragility
-from rocking_cli.studies.fragility.curves import Curve, Observations, Surface
+from rocking_cli.studies.fragility.curves import FragilityCurve, Observations, Surface
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -49,7 +49,7 @@ class LabelledCurve:
     ----------
     name : str
         The limit state, or the structure.
-    curve : Curve
+    curve : FragilityCurve
         What was fitted.
     observations : Observations
         The runs.
@@ -60,7 +60,7 @@ class LabelledCurve:
     """
 
     name: str
-    curve: Curve
+    curve: FragilityCurve
     observations: Observations
     lower: LabelledCurve | None = None
     share: float = 0.0

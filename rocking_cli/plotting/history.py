@@ -19,7 +19,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
 from rocking_cli.plotting.thinning import visible
-from rocking_cli.studies.contact import Contact
+from rocking_cli.studies.contact import ContactDemand
 from rocking_cli.studies.movements import Watched
 
 TALLEST = 1.6  # phi/phi_cr shown at most
@@ -42,7 +42,7 @@ def draw_history(
     reversed_histories: Mapping[ModelName, History] | None = None,
     pulse: tuple[PulseFit, Mapping[ModelName, History]] | None = None,
     uplift: tuple[float, float] | None = None,
-    contacts: Sequence[Contact] = (),
+    contacts: Sequence[ContactDemand] = (),
     watched: Watched | None = None,
 ) -> Figure:
     """Draw histories over time.
@@ -64,7 +64,7 @@ def draw_history(
     uplift : (float, float), optional
         The ground acceleration that lifts the structure to the positive and to the negative direction [standard
         gravity], drawn over the motion where nothing lifts it.
-    contacts : sequence of Contact
+    contacts : sequence of ContactDemand
         Of the nonlinear history under the motion, and under the reversed one: the friction required, in a panel below.
     watched : Watched, optional
         With it the forces of ties are drawn below each response, and the side walls of what rocks to one side only.
@@ -193,7 +193,7 @@ def _draw_responses(
     style.tidy(axes)
 
 
-def _draw_contacts(axes: Axes, contacts: Sequence[Contact]) -> None:
+def _draw_contacts(axes: Axes, contacts: Sequence[ContactDemand]) -> None:
     """Draw the friction required at the joints, and the friction available."""
     for k, found in enumerate(contacts):
         shown = visible(found.demand)

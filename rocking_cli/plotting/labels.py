@@ -39,7 +39,7 @@ def mathematics(each: Length | Angle) -> str:
 
 
 @dataclass(frozen=True)
-class Place:
+class LabelPlace:
     """Where words could go: their middle [inches], how far they are turned [degrees], and what is against it."""
 
     middle: complex
@@ -69,7 +69,7 @@ class Labels:
         self._points.append(points)
         self._costs.append(np.full(points.size, cost))
 
-    def write(self, text: str, places: Iterable[Place], **look: Any) -> None:
+    def write(self, text: str, places: Iterable[LabelPlace], **look: Any) -> None:
         """Write words at the best of some places."""
         points, costs = np.concatenate([[], *self._points]), np.concatenate([[], *self._costs])
         size = style.size_of(text, float(look["fontsize"]), str(look.get("fontweight", "normal")))
@@ -81,7 +81,7 @@ class Labels:
             near &= (of.min() - reach < along) & (along < of.max() + reach)
         points, costs = points[near], costs[near]
 
-        def against(place: Place) -> float:
+        def against(place: LabelPlace) -> float:
             turn = np.exp(1j * np.radians(place.turned))
             local = (points - place.middle) / turn
             hit = (np.abs(local.real) < size.real / 2 + CLEAR) & (np.abs(local.imag) < size.imag / 2 + CLEAR)
@@ -95,7 +95,7 @@ class Labels:
         best = min(places, key=against)
         self.put(text, best, size, **look)
 
-    def put(self, text: str, place: Place, size: complex | None = None, **look: Any) -> None:
+    def put(self, text: str, place: LabelPlace, size: complex | None = None, **look: Any) -> None:
         """Write words at a place, for others to keep off."""
         size = style.size_of(text, float(look["fontsize"])) if size is None else size
         at = place.middle / self._scale
@@ -108,7 +108,7 @@ class Labels:
         turn = np.exp(1j * np.radians(place.turned))
         self._note((place.middle + turn * (across[:, None] + 1j * up)).ravel(), WORD)
 
-    def along(self, start: complex, end: complex, size: complex) -> Iterator[Place]:
+    def along(self, start: complex, end: complex, size: complex) -> Iterator[LabelPlace]:
         """Places beside a line [m] for words of a size: along it where they fit, else to its sides."""
         start, end = start * self._scale, end * self._scale
         length = abs(end - start)
@@ -119,20 +119,20 @@ class Labels:
             for gap in GAPS:
                 if min(share, 1 - share) * 2 * length > size.real:
                     for side in (1j, -1j):
-                        yield Place(at + side * unit * (gap + size.imag / 2), turned, off_middle + AWAY * gap)
+                        yield LabelPlace(at + side * unit * (gap + size.imag / 2), turned, off_middle + AWAY * gap)
                 for side in (1.0, -1.0):
                     reach = gap + size.real / 2 + abs(unit.real) * size.imag / 2
-                    yield Place(at + side * reach, 0.0, 1.5 + off_middle + AWAY * gap)
+                    yield LabelPlace(at + side * reach, 0.0, 1.5 + off_middle + AWAY * gap)
                     reach = gap + size.imag / 2 + abs(unit.imag) * size.real / 2
-                    yield Place(at + 1j * side * reach, 0.0, 2.0 + off_middle + AWAY * gap)
+                    yield LabelPlace(at + 1j * side * reach, 0.0, 2.0 + off_middle + AWAY * gap)
         for tip, out in ((start, -unit), (end, unit)):
             for gap in GAPS:
                 reach = gap + abs(out.real) * size.real / 2 + abs(out.imag) * size.imag / 2
-                yield Place(tip + out * reach, 0.0, 8.0 + AWAY * gap)
+                yield LabelPlace(tip + out * reach, 0.0, 8.0 + AWAY * gap)
 
     def around(
         self, apex: complex, towards: complex, radius: float, size: complex, turning: float = 4.0
-    ) -> Iterator[Place]:
+    ) -> Iterator[LabelPlace]:
         """Places around a point [m] for words of a size, beyond a radius [inches], best in one direction."""
         apex *= self._scale
         for turn in np.linspace(-np.pi, np.pi, 25)[1:]:
@@ -140,4 +140,4 @@ class Labels:
             for gap in (0.03, 0.08, 0.15, 0.25, 0.4):
                 # The nearest edge of the words is so far from the point.
                 reach = min(size.real / 2 / max(abs(way.real), 1e-9), size.imag / 2 / max(abs(way.imag), 1e-9))
-                yield Place(apex + (radius + gap + reach) * way, 0.0, turning * abs(float(turn)) + AWAY * gap)
+                yield LabelPlace(apex + (radius + gap + reach) * way, 0.0, turning * abs(float(turn)) + AWAY * gap)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
 from rocking_cli.plotting.structure import draw_at_rest
-from rocking_cli.studies.paper_figures import Panel, PaperFigure
+from rocking_cli.studies.paper_figures import PaperFigure, PaperPanel
 from rocking_cli.studies.picture import picture
 
 Reals = NDArray[np.float64]
@@ -90,11 +90,11 @@ def draw_paper_figure(paper: PaperFigure) -> Figure:
     return figure
 
 
-def _values(panel: Panel) -> Reals:
+def _values(panel: PaperPanel) -> Reals:
     """Every finite value of a panel."""
     return np.concatenate([curve.y[np.isfinite(curve.y)] for curve in panel.curves])
 
 
-def _is_ratio(panel: Panel) -> bool:
+def _is_ratio(panel: PaperPanel) -> bool:
     """Whether it shows times of the block over those of the structure."""
     return panel.ylabel.startswith(("$T", "$t"))

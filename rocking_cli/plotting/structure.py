@@ -20,7 +20,7 @@ from rocking_cli.core import Angle, Direction, Forces, Length, Line, three_digit
 from rocking_cli.plotting import dimensions, hung, style
 from rocking_cli.plotting.labels import EDGE, MARK, Labels, mathematics
 from rocking_cli.plotting.panels import GAP, Panel, lay_out
-from rocking_cli.studies.picture import MANY, Part, Picture, Pin, box_around
+from rocking_cli.studies.picture import MANY, DrawnHinge, DrawnPart, Picture, box_around
 
 Points = NDArray[np.complex128]
 HEAD, FOOT = 0.42, 0.34  # inches above a panel for its heading, and below it for the scale
@@ -174,7 +174,7 @@ def _head(picture: Picture, direction: Direction, ratio: float) -> str:
     return f"{direction.label} ({SENSE[direction]})\n" rf"$\phi$ = {of}{phi:.3g} rad = {three_digits(degrees(phi))}°"
 
 
-def _is_at_rest(picture: Picture, each: Length | Angle | Line | Forces | Pin) -> bool:
+def _is_at_rest(picture: Picture, each: Length | Angle | Line | Forces | DrawnHinge) -> bool:
     """Whether it is shown at rest: what belongs to both directions, or to the first."""
     return each.direction in (None, picture.directions[0])
 
@@ -201,7 +201,7 @@ def _of(thing: Line | Forces) -> str:
     return f" ({thing.direction.label} direction)" if thing.direction is not None else ""
 
 
-def _at_rest(picture: Picture) -> list[Pin]:
+def _at_rest(picture: Picture) -> list[DrawnHinge]:
     """Hinges to mark at rest: of a linkage those of the positive direction, else all."""
     first = [pin for pin in picture.pins if _is_at_rest(picture, pin)]
     if picture.sketch.hinges and len(first) > 1:
@@ -244,7 +244,7 @@ def _draw_outline_at_rest(axes: Axes, picture: Picture, line: float) -> None:
             axes.add_patch(patch)
 
 
-def _patches(part: Part, polygons: Sequence[Points], **look: Any) -> list[Patch]:
+def _patches(part: DrawnPart, polygons: Sequence[Points], **look: Any) -> list[Patch]:
     """The outlines of a part, the first at the back; those of many blocks, which do not overlap, as one path."""
     if not part.mass:
         return [Polygon(_xy(each), closed=True, **look) for each in polygons]
@@ -268,8 +268,8 @@ def _labels(axes: Axes, picture: Picture, panel: Panel, rotation: float) -> Labe
 
 
 def _draw_pins(
-    axes: Axes, picture: Picture, rotation: float, pins: Sequence[Pin], panel: Panel, labels: Labels
-) -> Sequence[Pin]:
+    axes: Axes, picture: Picture, rotation: float, pins: Sequence[DrawnHinge], panel: Panel, labels: Labels
+) -> Sequence[DrawnHinge]:
     """Mark hinges and pivots, those of one link joined by a line where all have a letter."""
     if not pins:
         return pins
@@ -298,7 +298,7 @@ def _draw_pins(
     return pins
 
 
-def _draw_letters(picture: Picture, rotation: float, pins: Sequence[Pin], labels: Labels) -> None:
+def _draw_letters(picture: Picture, rotation: float, pins: Sequence[DrawnHinge], labels: Labels) -> None:
     """Name the hinges, each where its letter is outside of the structure if there is room."""
     _, every = picture.placed(rotation)
     middle = (picture.extent[0] + picture.extent[1]) / 2

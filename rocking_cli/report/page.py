@@ -37,7 +37,7 @@ from rocking_cli.text import printable
 from rocking_cli.views import assessment_words as words
 from rocking_cli.views.contact import COLUMNS as CONTACT_COLUMNS
 from rocking_cli.views.contact import contact_row
-from rocking_cli.views.equiv import Side, is_symmetric, sentence, sides_of, without
+from rocking_cli.views.equivalent_block import EquivalentSide, is_symmetric, sentence, sides_of, without
 from rocking_cli.views.parameters import PARAMETERS, values
 
 BINS = 6000  # of all motions together: each curve has some two samples for a bin
@@ -156,7 +156,7 @@ def _directions(content: Assessment) -> list[str]:
     return [f"{side.direction.label} ({SENSE[side.direction]})" for side in sides]
 
 
-def _shown(content: Assessment) -> list[Side]:
+def _shown(content: Assessment) -> list[EquivalentSide]:
     """The directions that have values of their own."""
     sides = sides_of(content.structure)
     return sides[:1] if is_symmetric(content.structure) else sides
@@ -182,7 +182,7 @@ def _parameters(content: Assessment) -> list[dict[str, Any]]:
     return rows if content.has_block else rows + _without_block(shown)
 
 
-def _without_block(shown: Sequence[Side]) -> list[dict[str, Any]]:
+def _without_block(shown: Sequence[EquivalentSide]) -> list[dict[str, Any]]:
     """Return the further parameters of a structure without an equivalent block."""
     limits = [side.statics.limit for side in shown]
     return [

@@ -14,7 +14,7 @@ from rocking_cli.plotting import style
 from rocking_cli.report.sheet_page import MARKS, figure_of
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.text import printable
-from rocking_cli.views.sheet.document import Drawing, Grid, Item, Listing, Part, Sentence, Sheet, Steps
+from rocking_cli.views.sheet.document import Drawing, Grid, Item, Listing, Sentence, Sheet, SheetPart, Steps
 from rocking_cli.views.sheet.markup import runs
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ class _Writer:
         except Exception as error:  # what python-docx raises of a damaged picture is of many kinds
             raise InputError(Problem(f"the logo cannot be put into a .docx file: {error!r}", field="logo")) from None
 
-    def _part(self, part: Part, level: int) -> None:
+    def _part(self, part: SheetPart, level: int) -> None:
         self._text(self.document.add_heading(level=min(level, 9)), part.heading)
         for item in part.items:
             self._item(item)

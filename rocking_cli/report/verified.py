@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from rocking_cli.studies.verification.results import Verification
-from rocking_cli.views.sheet.document import Part, Sheet
+from rocking_cli.views.sheet.document import Sheet, SheetPart
 
 OWN = frozenset({"drawing", "structure_text"})
 """The parts of a sheet that a report has anyway."""
@@ -24,6 +24,6 @@ class VerifiedReport:
         return replace(self.sheet, parts=[_apart(each) for each in self.sheet.parts if each.key not in OWN])
 
 
-def _apart(part: Part) -> Part:
+def _apart(part: SheetPart) -> SheetPart:
     below = [_apart(each) for each in part.parts if each.key not in OWN]
     return replace(part, key=f"verification-{part.key}", parts=below)

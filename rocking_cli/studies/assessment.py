@@ -27,10 +27,10 @@ from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.excitation.records.opening import name_of, original
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.structure import Structure
-from rocking_cli.studies.contact import Contact, Contacts
+from rocking_cli.studies.contact import ContactDemand, Contacts
 from rocking_cli.studies.linearisation import Linearisation, compare
 from rocking_cli.studies.margin import LEVELS, Margin, margin
-from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
+from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 from rocking_cli.studies.overturning import OverturningMap, Region, overturning_map
 from rocking_cli.studies.picture import Picture, picture
 from rocking_cli.studies.trust import trust
@@ -120,7 +120,7 @@ class MotionResult:
         The pulses in it, the best first; of a pulse itself.
     alone : float or None
         What the best pulse alone does: the peak ratio, NaN if it overturns; None if there is no pulse.
-    contacts : mapping of int to Contact
+    contacts : mapping of int to ContactDemand
         What the nonlinear history asks of the contacts, under each polarity.
     alone_unknown : bool
         Whether the outcome under that pulse is unknown: the ratio is then that up to where it is known.
@@ -137,7 +137,7 @@ class MotionResult:
     margin: Margin
     fits: tuple[PulseFit, ...]
     alone: float | None
-    contacts: Mapping[int, Contact]
+    contacts: Mapping[int, ContactDemand]
     alone_unknown: bool = False
 
     @property
@@ -258,7 +258,7 @@ def gather(
     polarities: Sequence[int],
     *,
     title: TitleBlock,
-    around: Around | None = None,
+    around: Neighbourhood | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Assessment:
     """Compute everything a report says.
@@ -275,7 +275,7 @@ def gather(
         Of 1 and -1: those of the motions to look at.
     title : TitleBlock
         For whom, by whom and how it is made.
-    around : Around, optional
+    around : Neighbourhood, optional
         How to draw the neighbours of a motion, at least one.
     progress : callable, optional
         Called with the number of steps done since the last call, of `steps(given)`.
@@ -291,7 +291,7 @@ def gather(
     done(1)
     results = []
     for each in given:
-        results.append(_result(structure, each, polarities, around or Around()))
+        results.append(_result(structure, each, polarities, around or Neighbourhood()))
         done(1)
     maps = _maps(structure, results)
     done(1)
@@ -344,7 +344,7 @@ def _plugin(mechanism: Mechanism) -> str:
     return registry.package_of(mechanism.mechanism) if mechanism.mechanism in registry else "not installed as a plugin"
 
 
-def _result(structure: Structure, given: Scaled, polarities: Sequence[int], around: Around) -> MotionResult:
+def _result(structure: Structure, given: Scaled, polarities: Sequence[int], around: Neighbourhood) -> MotionResult:
     ground = given.motion.of_ground
     found = [] if given.pulse is not None else doubts(ground, measure(ground))
     doubtful = [*found, *(coarse_for(given.motion, structure.p) if given.pulse is None else [])]

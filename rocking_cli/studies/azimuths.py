@@ -22,7 +22,7 @@ STEP = 2  # degrees
 
 
 @dataclass(frozen=True, eq=False)
-class Around:
+class AzimuthResponses:
     """The responses of a structure to a pair of components, in all directions.
 
     Parameters
@@ -57,7 +57,7 @@ def all_around(
     *,
     release: float | None = None,
     rtol: float = RTOL,
-) -> Around:
+) -> AzimuthResponses:
     """Turn a pair of components into all directions, and follow a structure in each.
 
     Parameters
@@ -98,7 +98,7 @@ def all_around(
     }
     pga = np.array([motion.pga_g for motion in motions])
     checked = all(model.is_linear or model.joints is not None for model in followed)
-    return Around((pair[0].name, pair[1].name), scale, azimuths, pga, outcomes, checked)
+    return AzimuthResponses((pair[0].name, pair[1].name), scale, azimuths, pga, outcomes, checked)
 
 
 def sectors(azimuths: Reals, flags: NDArray[np.bool_]) -> list[tuple[float, float]]:

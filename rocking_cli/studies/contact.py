@@ -32,7 +32,7 @@ DEMAND, PULL, USED = range(3)
 
 
 @dataclass(frozen=True)
-class Crushing:
+class CrushingDemand:
     """The largest force normal to a contact over what the contact bears.
 
     Parameters
@@ -51,7 +51,7 @@ class Crushing:
 
 
 @dataclass(frozen=True, eq=False)
-class Contact:
+class ContactDemand:
     """What a history asks of its contacts; NaN where there is nothing to say, such as of a structure at rest.
 
     Parameters
@@ -88,7 +88,7 @@ class Contact:
         When first more is needed than there is [s]; NaN: never.
     slides_joint : str
         Where.
-    crushing : Crushing or None
+    crushing : CrushingDemand or None
         Of a structure whose strength is given.
     times, demand : ndarray, shape (n,)
         The friction needed over time; 0 at rest. At an impact there are two values at one time.
@@ -116,7 +116,7 @@ class Contact:
     friction: float | None
     slides: float
     slides_joint: str
-    crushing: Crushing | None
+    crushing: CrushingDemand | None
     times: Reals
     demand: Reals
     opens: float | None = None
@@ -155,7 +155,7 @@ class Contacts:
 
     mechanism: Mechanism
 
-    def check(self, history: History, motion: GroundMotion | None) -> Contact:
+    def check(self, history: History, motion: GroundMotion | None) -> ContactDemand:
         """Hold a history against what its contacts can do.
 
         Parameters
@@ -220,13 +220,13 @@ class Contacts:
         joint = each.argmax(axis=1)
         return np.take_along_axis(each, joint[:, None], axis=1)[:, 0], joint
 
-    def _summed_up(self, history: History, states: _States, most: Reals, joint: Places, shear: float) -> Contact:
+    def _summed_up(self, history: History, states: _States, most: Reals, joint: Places, shear: float) -> ContactDemand:
         friction, time = self.mechanism.friction, states.time
         thrown = {direction: self._impulses[direction] for direction in _ended(history)}
         hits = [found for found in thrown.values() if found is not None]
         lost, lost_joint = self._lost(history, states, most[PULL], joint[PULL])
         if not states.rocks.any():
-            return Contact(
+            return ContactDemand(
                 NONE, "", NONE, NONE, NONE, NONE, NONE, NONE, "", False, friction, NONE, "", None, time, most[DEMAND]
             )  # fmt: skip
         most[DEMAND, time > lost] = 0.0  # what is needed beyond that is of no motion that there is
@@ -238,7 +238,7 @@ class Contacts:
             starts, ends = starts[around], ends[around]
         slides = int((most[DEMAND] > friction).argmax()) if friction is not None and starts.size else None
         loaded = int(most[USED].argmax())
-        return Contact(
+        return ContactDemand(
             friction_needed=needed,
             joint=self._letter(states, joint[DEMAND], peak),
             time=float(time[peak]),
@@ -252,7 +252,9 @@ class Contacts:
             friction=friction,
             slides=float(starts[0]) if slides is not None else NONE,
             slides_joint=self._letter(states, joint[DEMAND], slides) if slides is not None else "",
-            crushing=Crushing(float(most[USED, loaded]), self._letter(states, joint[USED], loaded), float(time[loaded]))
+            crushing=CrushingDemand(
+                float(most[USED, loaded]), self._letter(states, joint[USED], loaded), float(time[loaded])
+            )
             if np.isfinite(most[USED, loaded])
             else None,
             times=time,

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
-from rocking_cli.studies.metrics import Metric, Shaking, metric, taken_otherwise
+from rocking_cli.studies.metrics import Excitation, Metric, metric, taken_otherwise
 from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import cut
 from rocking_cli.units import UnitError, read, split
@@ -213,7 +213,7 @@ def design(
     field: str,
     span: tuple[float, float],
     aim: Aim,
-    shaking: Shaking | None = None,
+    excitation: Excitation | None = None,
     *,
     points: int = POINTS,
     progress: Callable[[int], None] | None = None,
@@ -230,7 +230,7 @@ def design(
         From where to where, in the unit of the field.
     aim : Aim
         The requirement.
-    shaking : Shaking, optional
+    excitation : Excitation, optional
         For a metric that needs ground motions.
     points : int
         How many values are tried first, at equal steps.
@@ -253,20 +253,20 @@ def design(
     exist where more is.
     """
     if aim.metric.sited:
-        _check_site(aim.metric, shaking)
-    if aim.metric.shaken and (shaking is None or not shaking.motions or not shaking.around.count):
+        _check_site(aim.metric, excitation)
+    if aim.metric.shaken and (excitation is None or not excitation.motions or not excitation.around.count):
         message = f"{aim.metric.name} needs a ground motion with neighbouring motions"
         raise InputError(Problem(message, hint="give `records` or `pulses`"))
     if points < 2:
         raise InputError(Problem(f"must be at least 2, got {points}", field="points"))
 
     def metric(value: float) -> float:
-        return _at(structure, field, value, aim, shaking)[0]
+        return _at(structure, field, value, aim, excitation)[0]
 
     values = np.linspace(*span, points)
     found, reasons, behind = np.full(points, nan), dict[int, str](), list[Neighbours | None]()
     for k, value in enumerate(values.tolist()):
-        found[k], near, reason = _at(structure, field, value, aim, shaking)
+        found[k], near, reason = _at(structure, field, value, aim, excitation)
         behind.append(near)
         if reason is not None:
             reasons[k] = reason
@@ -290,42 +290,42 @@ def design(
     return Design(
         structure.name, field, structure.unit_of(field), aim, structure.value_of(field), values, found, holds, monotone,
         value, _not_built(values, reasons), behind, structure.mechanism.own_caution(),
-        _taken_otherwise(structure, field, span, aim, shaking),
+        _taken_otherwise(structure, field, span, aim, excitation),
     )  # fmt: skip
 
 
-def _check_site(metric: Metric, shaking: Shaking | None) -> None:
+def _check_site(metric: Metric, excitation: Excitation | None) -> None:
     """Raise `InputError` if a metric of a site cannot be had: there is no site, or it is for another code."""
-    if shaking is None or shaking.site is None:
+    if excitation is None or excitation.site is None:
         hint = "give the file of a site: `rocking new site` prints one"
         raise InputError(Problem(f"{metric.name} requires a site", field="`site`", hint=hint))
-    code = shaking.site.site.code
+    code = excitation.site.site.code
     if metric.codes and code not in metric.codes:
         message = f"{metric.name} is a number of {' and '.join(metric.codes)}, but the site is for {code}"
         raise InputError(Problem(message, hint="every code has a `ratio`"))
 
 
 def _taken_otherwise(
-    structure: Structure, field: str, span: tuple[float, float], aim: Aim, shaking: Shaking | None
+    structure: Structure, field: str, span: tuple[float, float], aim: Aim, excitation: Excitation | None
 ) -> Sequence[str]:
     """What a code takes otherwise than the structure gives it at the ends of the range, each sentence once."""
-    if not aim.metric.sited or shaking is None or shaking.site is None:
+    if not aim.metric.sited or excitation is None or excitation.site is None:
         return []
     said: dict[str, None] = {}
     for value in span:
         try:
-            said |= dict.fromkeys(taken_otherwise(structure.varied(field, value), shaking.site))
+            said |= dict.fromkeys(taken_otherwise(structure.varied(field, value), excitation.site))
         except (InputError, MechanismError):  # its reason is among those of `not_built`
             continue
     return list(said)
 
 
 def _at(
-    structure: Structure, field: str, value: float, aim: Aim, shaking: Shaking | None
+    structure: Structure, field: str, value: float, aim: Aim, excitation: Excitation | None
 ) -> tuple[float, Neighbours | None, str | None]:
     """Return the metric at a value, and the neighbours behind it; or NaN, and why it does not exist."""
     try:
-        found, near = aim.metric.at(structure.varied(field, value), shaking)
+        found, near = aim.metric.at(structure.varied(field, value), excitation)
     except InputError as error:
         return nan, None, "; ".join(str(Problem(each.message, field=each.field)) for each in error.problems)
     except (MechanismError, SolverError) as error:

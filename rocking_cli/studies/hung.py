@@ -32,7 +32,7 @@ class End(NamedTuple):
     lead: complex = 0j
 
 
-class Piece(NamedTuple):
+class TiePiece(NamedTuple):
     """A piece of a tie: a line, a line with a spring in it, or all of it a spring."""
 
     start: End
@@ -82,14 +82,14 @@ class Strand:
     ----------
     name : str
         What it is called.
-    pieces : tuple of Piece
+    pieces : tuple of TiePiece
         From end to end; of a bed, some of its springs.
     thing : Element
         What it does.
     """
 
     name: str
-    pieces: tuple[Piece, ...]
+    pieces: tuple[TiePiece, ...]
     thing: Element
 
     @property
@@ -171,25 +171,25 @@ def _copies(body: str | None, copies: Copies, *, every: bool) -> Sequence[tuple[
     return found if every else found[:1]
 
 
-def _pieces(tie: Stretched, of_body: Mapping[str, int], shift: complex) -> Iterator[Piece]:
+def _pieces(tie: Stretched, of_body: Mapping[str, int], shift: complex) -> Iterator[TiePiece]:
     for one, other in zip(tie.spots, tie.spots[1:], strict=False):
         parts = [None if spot.body is None else of_body[spot.body] for spot in (one, other)]
         if abs(other.at - one.at) <= TOGETHER * (1 + abs(one.at)):
             # Its ends are together at rest: they are drawn apart, what holds it below what moves.
             up = -1j if parts[1] is None else 1j
-            yield Piece(End(parts[0], one.at + shift, -up), End(parts[1], other.at + shift, up), "symbol")
+            yield TiePiece(End(parts[0], one.at + shift, -up), End(parts[1], other.at + shift, up), "symbol")
         else:
             kind: Literal["line", "spring"] = "spring" if None in parts else "line"
-            yield Piece(End(parts[0], one.at + shift), End(parts[1], other.at + shift), kind)
+            yield TiePiece(End(parts[0], one.at + shift), End(parts[1], other.at + shift), kind)
 
 
-def _bed(bed: SpringBed, part: int, shift: complex, centroid: complex) -> Iterator[Piece]:
+def _bed(bed: SpringBed, part: int, shift: complex, centroid: complex) -> Iterator[TiePiece]:
     along = (bed.end.at - bed.start.at) / abs(bed.end.at - bed.start.at)
     middle = (bed.start.at + bed.end.at) / 2 + shift
     out = 1j * along if ((middle - centroid) * (1j * along).conjugate()).real > 0 else -1j * along
     for share in (np.arange(BED) + 0.5) / BED:
         at = bed.start.at + complex(share) * (bed.end.at - bed.start.at) + shift
-        yield Piece(End(None, at, 1.5 * out), End(part, at), "symbol")
+        yield TiePiece(End(None, at, 1.5 * out), End(part, at), "symbol")
 
 
 def _mass(mass: float) -> str:

@@ -16,7 +16,7 @@ from rocking_cli.dynamics.model import Model
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import percent
-from rocking_cli.studies.neighbours import Around, Draws, follow, least_uplift
+from rocking_cli.studies.neighbours import Draws, Neighbourhood, follow, least_uplift
 
 Reals = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ class Margin:
 
     Parameters
     ----------
-    around : Around
+    around : Neighbourhood
         How the neighbours of each factor were drawn.
     uplift : float or None
         The least factor that lifts the structure, exact (its vertical component apart); None if none does.
@@ -45,7 +45,7 @@ class Margin:
         Whether the joints of the structure are known; if not, nothing is said to be unknown.
     """
 
-    around: Around
+    around: Neighbourhood
     uplift: float | None
     factors: Reals
     overturned: Reals
@@ -101,7 +101,7 @@ def margin(
     motion: GroundMotion,
     polarities: Sequence[int] = (1, -1),
     *,
-    around: Around | None = None,
+    around: Neighbourhood | None = None,
     factors: Reals = FACTORS,
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
@@ -116,7 +116,7 @@ def margin(
         What shakes it at a factor of 1.
     polarities : sequence of int
         Of 1 and -1; with both, the worse counts.
-    around : Around, optional
+    around : Neighbourhood, optional
         How to draw the neighbours of each factor.
     factors : ndarray, shape (n,)
         On the motion, positive and ascending; 1 is added.
@@ -133,7 +133,7 @@ def margin(
     SolverError
         If a motion cannot be followed.
     """
-    around = (around or Around()).of(model)
+    around = (around or Neighbourhood()).of(model)
     if not around.count:
         raise InputError(Problem("neighbouring motions are needed: at least 1", field="neighbours"))
     if not (factors.ndim == 1 and factors.size and np.isfinite(factors).all() and (np.diff([0.0, *factors]) > 0).all()):

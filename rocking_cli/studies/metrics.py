@@ -12,7 +12,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.installed import leave_out
 from rocking_cli.structure import Structure
-from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
+from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 from rocking_cli.studies.verification.check import verify
 from rocking_cli.studies.verification.code import Number
 from rocking_cli.studies.verification.installed import codes
@@ -21,7 +21,7 @@ from rocking_cli.text import cut, did_you_mean
 
 
 @dataclass(frozen=True)
-class Shaking:
+class Excitation:
     """What shakes a structure.
 
     Parameters
@@ -30,7 +30,7 @@ class Shaking:
         As scaled; the worst counts.
     polarities : sequence of int
         Of 1 and -1; the worse counts.
-    around : Around
+    around : Neighbourhood
         How the neighbours of each motion are drawn.
     site : SiteFile, optional
         Where it stands, for what a code asks.
@@ -38,7 +38,7 @@ class Shaking:
 
     motions: Sequence[GroundMotion]
     polarities: Sequence[int] = (1,)
-    around: Around = field(default_factory=Around)
+    around: Neighbourhood = field(default_factory=Neighbourhood)
     site: SiteFile | None = None
 
     def each(self, structure: Structure) -> list[Neighbours]:
@@ -75,7 +75,7 @@ class Metric:
     name: str
     unit: str
     meaning: str
-    of_structure: Callable[[Structure, Shaking | None], float] | None = None
+    of_structure: Callable[[Structure, Excitation | None], float] | None = None
     of_neighbours: Callable[[Neighbours], float] | None = None
     sited: bool = False
     codes: Sequence[str] = ()
@@ -85,37 +85,37 @@ class Metric:
         """Whether it needs ground motions."""
         return self.of_neighbours is not None
 
-    def value(self, structure: Structure, shaking: Shaking | None) -> float:
+    def value(self, structure: Structure, excitation: Excitation | None) -> float:
         """Return the metric of a structure."""
-        return self.at(structure, shaking)[0]
+        return self.at(structure, excitation)[0]
 
-    def at(self, structure: Structure, shaking: Shaking | None) -> tuple[float, Neighbours | None]:
+    def at(self, structure: Structure, excitation: Excitation | None) -> tuple[float, Neighbours | None]:
         """Return the metric of a structure, and the neighbours of the motion that governs if it needs motions."""
         of = self.of_neighbours
         if of is None:
             assert self.of_structure is not None
-            return self.of_structure(structure, shaking), None
-        assert shaking is not None
-        worst = max(shaking.each(structure), key=lambda near: (of(near), near.at_most, near.overturned))
+            return self.of_structure(structure, excitation), None
+        assert excitation is not None
+        worst = max(excitation.each(structure), key=lambda near: (of(near), near.at_most, near.overturned))
         return of(worst), worst
 
 
-def _lambda(structure: Structure, shaking: Shaking | None) -> float:
+def _lambda(structure: Structure, excitation: Excitation | None) -> float:
     return min(side.lambda_ for side in structure.statics)
 
 
-def _phi_cr(structure: Structure, shaking: Shaking | None) -> float:
+def _phi_cr(structure: Structure, excitation: Excitation | None) -> float:
     found = [side.phi_cr for side in structure.statics]
     return min((each for each in found if each is not None), default=nan) if None not in found else nan
 
 
-def _p(structure: Structure, shaking: Shaking | None) -> float:
+def _p(structure: Structure, excitation: Excitation | None) -> float:
     return structure.p if structure.why_no_block is None else nan
 
 
-def _ratio(structure: Structure, shaking: Shaking | None) -> float:
-    assert shaking is not None and shaking.site is not None
-    return verify(structure, shaking.site).ratio
+def _ratio(structure: Structure, excitation: Excitation | None) -> float:
+    assert excitation is not None and excitation.site is not None
+    return verify(structure, excitation.site).ratio
 
 
 def taken_otherwise(structure: Structure, site: SiteFile) -> Sequence[str]:
@@ -152,16 +152,16 @@ def _of_codes(name: str) -> Metric | None:
     if not own:
         return None
 
-    def value(structure: Structure, shaking: Shaking | None) -> float:
+    def value(structure: Structure, excitation: Excitation | None) -> float:
         if one.of_structure is not None:
             structure.statics  # noqa: B018 - what does not stand is refused with its name
             with _blamed(first, name):
                 return min(one.of_structure(structure.mechanism, each) for each in structure.mechanism.directions)
-        assert shaking is not None and shaking.site is not None
-        key = shaking.site.site.code
+        assert excitation is not None and excitation.site is not None
+        key = excitation.site.site.code
         of = own[key].of
         assert of is not None  # else it is of the structure
-        found = verify(structure, shaking.site).directions.values()
+        found = verify(structure, excitation.site).directions.values()
         with _blamed(key, name):
             return min((value for each in found if (value := of(each)) is not None), default=nan)
 

@@ -44,7 +44,7 @@ class Draws(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Around:
+class Neighbourhood:
     """How many neighbours a motion has, and how they are drawn.
 
     Parameters
@@ -83,7 +83,7 @@ class Around:
             if value is not None and not 0 <= value < 1:
                 raise InputError(Problem(f"must be from 0 to below 1, got {value:g}", field=f"{field}_deviation"))
 
-    def of(self, model: Model) -> Around:
+    def of(self, model: Model) -> Neighbourhood:
         """Return the same neighbours with the deviations of a structure where none are given."""
         restitution, slenderness = model.scatter
         return replace(
@@ -143,7 +143,7 @@ class Neighbours:
 
     Parameters
     ----------
-    around : Around
+    around : Neighbourhood
         How they were drawn.
     model : str
         Which model followed them.
@@ -163,7 +163,7 @@ class Neighbours:
         known, so that nothing was checked.
     """
 
-    around: Around
+    around: Neighbourhood
     model: ModelName
     overturned: float
     peak_ratio: tuple[float, float, float]
@@ -206,7 +206,7 @@ class Neighbours:
 def neighbours(
     model: Model,
     motion: GroundMotion | None,
-    around: Around | None = None,
+    around: Neighbourhood | None = None,
     *,
     release: float | None = None,
     release_is_angle: bool = False,
@@ -221,7 +221,7 @@ def neighbours(
         Of the structure; the nonlinear one is the structure itself.
     motion : GroundMotion or None
         As in the history, scaled and reversed; None for a release alone.
-    around : Around, optional
+    around : Neighbourhood, optional
         How to draw them.
     release : float, optional
         Start at rest, tilted by this fraction of the critical rotation.
@@ -237,7 +237,7 @@ def neighbours(
     SolverError
         If one of them cannot be followed.
     """
-    around = (around or Around()).of(model)
+    around = (around or Neighbourhood()).of(model)
     if not around.count:
         raise InputError(Problem("must be at least 1", field="neighbours"))
     draws = around.drawn(model)

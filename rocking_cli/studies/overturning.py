@@ -300,7 +300,7 @@ def _least(
 ) -> tuple[Reals, Reals]:
     """Return the least amplitude that overturns a structure, and that which does or may, for each period [m/s2]."""
     beyond = np.full(periods.size, top * STANDARD_GRAVITY / structure.unit - 1)  # a - 1 up to which to look
-    search = _Search(structure, shape, periods, polarities, progress)
+    search = _OverturningSearch(structure, shape, periods, polarities, progress)
     least = search.least(beyond, np.full(periods.size, np.nan), _overturns)
     possible = least
     if structure.may_open:
@@ -318,7 +318,7 @@ def _may_overturn(found: Outcomes) -> NDArray[np.bool_]:
 
 
 @dataclass(frozen=True, eq=False)
-class _Search:
+class _OverturningSearch:
     """The search for least amplitudes of pulses on a structure."""
 
     structure: PulsedModel

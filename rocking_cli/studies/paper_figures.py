@@ -31,7 +31,7 @@ OVER_AMPLITUDE, OVER_ACCELERATION = r"$\phi/\phi_{cr}$", r"$\ddot u_g/g\lambda$"
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class PaperCurve:
     """A line of a panel.
 
     Parameters
@@ -51,14 +51,14 @@ class Curve:
 
 
 @dataclass(frozen=True, eq=False)
-class Panel:
+class PaperPanel:
     """Axes with curves.
 
     Parameters
     ----------
     title, xlabel, ylabel : str
         Words at the axes; labels may hold mathematics between dollars.
-    curves : list of Curve
+    curves : list of PaperCurve
         What is drawn.
     log : bool
         Whether x is logarithmic.
@@ -67,7 +67,7 @@ class Panel:
     title: str
     xlabel: str
     ylabel: str
-    curves: list[Curve] = field(default_factory=list)
+    curves: list[PaperCurve] = field(default_factory=list)
     log: bool = False
 
 
@@ -81,7 +81,7 @@ class PaperFigure:
         Its number there.
     title, caption : str
         What it shows, and what of it is our choice.
-    panels : list of list of Panel
+    panels : list of list of PaperPanel
         By rows.
     structures : mapping of str to Mechanism, optional
         What they are of, drawn above by their names.
@@ -90,7 +90,7 @@ class PaperFigure:
     number: int
     title: str
     caption: str
-    panels: list[list[Panel]]
+    panels: list[list[PaperPanel]]
     structures: Mapping[str, Mechanism] = field(default_factory=dict)
 
     def rows(self) -> Iterator[list[str]]:
@@ -119,18 +119,18 @@ def paper_figure(number: int) -> PaperFigure:
 
 def wall_errors() -> PaperFigure:
     """Figure 3."""
-    period = Panel("free rocking period", OVER_AMPLITUDE, "$T_{r,block}/T_{r,wall}$")
+    period = PaperPanel("free rocking period", OVER_AMPLITUDE, "$T_{r,block}/T_{r,wall}$")
     over = [_overturning(f"overturning time, $\\kappa_{k}$", "wall") for k in (1, 2)]
     for alpha in SLENDERNESS:
         wall = make("wall", thickness=2 * sin(alpha), height=4 * cos(alpha))
         found = linearisation(wall, Direction.POSITIVE, AMPLITUDES, ACCELERATIONS)
         label = rf"$\alpha$ = {alpha:g}"
-        period.curves.append(Curve(label, AMPLITUDES, found.period_ratio))
-        over[0].curves.append(Curve(label, ACCELERATIONS, found.overturning_ratio1))
-        over[1].curves.append(Curve(label, ACCELERATIONS, found.overturning_ratio2))
+        period.curves.append(PaperCurve(label, AMPLITUDES, found.period_ratio))
+        over[0].curves.append(PaperCurve(label, ACCELERATIONS, found.overturning_ratio1))
+        over[1].curves.append(PaperCurve(label, ACCELERATIONS, found.overturning_ratio2))
     slenderness = np.linspace(0.01, 0.5, 50)
-    uplift = Panel("uplift", r"$\alpha$ [rad]", r"$\lambda_{lin}/\lambda$")
-    uplift.curves.append(Curve("wall", slenderness, slenderness / np.tan(slenderness)))
+    uplift = PaperPanel("uplift", r"$\alpha$ [rad]", r"$\lambda_{lin}/\lambda$")
+    uplift.curves.append(PaperCurve("wall", slenderness, slenderness / np.tan(slenderness)))
     caption = (
         "Ratios of the equivalent block's value to the wall's, for slenderness of one block from 0.1 to 0.4. " + OURS
     )
@@ -182,7 +182,7 @@ def frame_parameters() -> PaperFigure:
     )
     columns = []
     for shape in SHAPES:
-        column = [Panel(f"{title}: {shape.name}", "$H_1/H$", label) for title, label in names]
+        column = [PaperPanel(f"{title}: {shape.name}", "$H_1/H$", label) for title, label in names]
         blocks = [equivalent_block(shape.frame(ratio)) for ratio in ratios]
         for direction in Direction:
             each = [block[direction] for block in blocks]
@@ -193,7 +193,7 @@ def frame_parameters() -> PaperFigure:
                 [block.lambda_lin / block.lambda_ for block in each],
             )
             for panel, values in zip(column, series, strict=True):
-                panel.curves.append(Curve(direction.label, ratios, np.array(values)))
+                panel.curves.append(PaperCurve(direction.label, ratios, np.array(values)))
         columns.append(column)
     caption = "Parameters of the equivalent block of the asymmetric frame, in both directions. " + FRAMES
     panels = [list(row) for row in zip(*columns, strict=True)]
@@ -210,7 +210,7 @@ def frame_errors(number: int) -> PaperFigure:
             panel = make(f"{direction.label} direction: {shape.name}")
             for ratio in HEIGHTS:
                 y = pick(shape.frame(ratio), direction)
-                panel.curves.append(Curve(f"$H_1/H$ = {ratio:g}", x, y))
+                panel.curves.append(PaperCurve(f"$H_1/H$ = {ratio:g}", x, y))
             row.append(panel)
         rows.append(row)
     caption = f"{title}: ratio of the equivalent block's value to the asymmetric frame's. {FRAMES}"
@@ -226,7 +226,7 @@ def arch_parameters() -> PaperFigure:
         ("frequency parameter", r"$p\sqrt{r_a/g}$"),
         ("linearised uplift", r"$\lambda_{lin}/\lambda$"),
     )
-    panels = [Panel(title, r"$\beta$ [deg]", label) for title, label in names]
+    panels = [PaperPanel(title, r"$\beta$ [deg]", label) for title, label in names]
     for thickness in THICKNESSES:
         stands, blocks = [], []
         for angle in angles.tolist():
@@ -241,7 +241,7 @@ def arch_parameters() -> PaperFigure:
             [block.lambda_lin / block.lambda_ for block, _ in blocks],
         )
         for panel, values in zip(panels, series, strict=True):
-            panel.curves.append(Curve(f"$t_a/r_a$ = {thickness:g}", np.array(stands), np.array(values)))
+            panel.curves.append(PaperCurve(f"$t_a/r_a$ = {thickness:g}", np.array(stands), np.array(values)))
     caption = (
         "Parameters of the equivalent block of the arch over its inclusion angle, hinges anywhere. The range of angles "
         "is ours; a curve is there where the arch has a four-hinge mechanism."
@@ -258,7 +258,7 @@ def arch_errors(number: int) -> PaperFigure:
         for angle in ANGLES:
             arch = _arch(thickness, angle)
             if arch is not None:
-                panel.curves.append(Curve(rf"$\beta$ = {angle:g} deg", x, pick(arch, Direction.POSITIVE)))
+                panel.curves.append(PaperCurve(rf"$\beta$ = {angle:g} deg", x, pick(arch, Direction.POSITIVE)))
         panels.append(panel)
     caption = (
         f"{title}: ratio of the equivalent block's value to the arch's, hinges anywhere; the least slender arches are "
@@ -270,13 +270,13 @@ def arch_errors(number: int) -> PaperFigure:
 
 def _measure(
     which: int, structure: str
-) -> tuple[str, Callable[[str], Panel], Reals, Callable[[Mechanism, Direction], Reals]]:
+) -> tuple[str, Callable[[str], PaperPanel], Reals, Callable[[Mechanism, Direction], Reals]]:
     """Title, an empty panel, x, and y of a structure for one of the three measures of error."""
     if which == 0:
         ylabel = f"$T_{{r,block}}/T_{{r,{structure}}}$"
         return (
             "Free rocking period",
-            lambda title: Panel(title, OVER_AMPLITUDE, ylabel),
+            lambda title: PaperPanel(title, OVER_AMPLITUDE, ylabel),
             AMPLITUDES,
             lambda mechanism, direction: linearisation(mechanism, direction, AMPLITUDES).period_ratio,
         )
@@ -290,8 +290,8 @@ def _measure(
     )
 
 
-def _overturning(title: str, structure: str) -> Panel:
-    return Panel(title, OVER_ACCELERATION, f"$t_{{over,block}}/t_{{over,{structure}}}$", log=True)
+def _overturning(title: str, structure: str) -> PaperPanel:
+    return PaperPanel(title, OVER_ACCELERATION, f"$t_{{over,block}}/t_{{over,{structure}}}$", log=True)
 
 
 def make(name: str, **values: Any) -> Mechanism:

@@ -14,7 +14,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import fit_pulse
 from rocking_cli.excitation.pulses.shapes import Sine
 from rocking_cli.structure import Structure
-from rocking_cli.studies.paper_figures import Curve, Panel, PaperFigure, Reals, make
+from rocking_cli.studies.paper_figures import PaperCurve, PaperFigure, PaperPanel, Reals, make
 from rocking_cli.text import printable
 
 A, OMEGA, ETA = 2.0, 5.0, 0.9  # of the pulse of Figure 15, and the restitution that all its structures are given
@@ -45,11 +45,11 @@ def record_response(motion: GroundMotion) -> PaperFigure:
     fit = fit_pulse(motion, "sine", "acceleration")
     alone = fit.alone(motion)
     time = np.arange(motion.npts, dtype=np.float64) * motion.dt
-    ground = Panel("ground motion", "time [s]", r"$\ddot u_g$ [g]")
+    ground = PaperPanel("ground motion", "time [s]", r"$\ddot u_g$ [g]")
     called = printable(motion.name).replace("$", r"\$")  # labels and captions hold mathematics: a $ in a name is a $
-    ground.curves.append(Curve(called, time, motion.acceleration / STANDARD_GRAVITY, thin=True))
-    ground.curves.append(Curve("sine pulse in it", time, alone.acceleration / STANDARD_GRAVITY))
-    response = Panel("response", "time [s]", OVER)
+    ground.curves.append(PaperCurve(called, time, motion.acceleration / STANDARD_GRAVITY, thin=True))
+    ground.curves.append(PaperCurve("sine pulse in it", time, alone.acceleration / STANDARD_GRAVITY))
+    response = PaperPanel("response", "time [s]", OVER)
     for what, shaking in (("record", motion), ("its pulse", alone)):
         for name, run in respond(Structure(frame), shaking, models=("nonlinear", "linear2"), tail=0.0).items():
             response.curves.append(_followed(f"{LABELS[name]}, {what}", run))
@@ -63,10 +63,10 @@ def record_response(motion: GroundMotion) -> PaperFigure:
     return PaperFigure(14, title, caption, [[ground], [response]], {"": frame})
 
 
-def _followed(label: str, run: History, scale: float = 1.0) -> Curve:
+def _followed(label: str, run: History, scale: float = 1.0) -> PaperCurve:
     there = np.isfinite(run.ratio) & (np.abs(run.ratio) <= 1.5)  # a fall is cut off
     time: Reals = run.time[there] * scale
-    return Curve(label, time, run.ratio[there])
+    return PaperCurve(label, time, run.ratio[there])
 
 
 def structures() -> dict[str, Mechanism]:
@@ -88,20 +88,20 @@ def structures() -> dict[str, Mechanism]:
 
 def equivalent_vulnerability() -> PaperFigure:
     """Figure 15: four structures under the pulses to which they are equivalently vulnerable."""
-    pulses = Panel("the pulse of each", "time [s]", r"$\ddot u_g$ [g]")
-    responses = Panel("response", "$p\\,t$", OVER)
+    pulses = PaperPanel("the pulse of each", "time [s]", r"$\ddot u_g$ [g]")
+    responses = PaperPanel("response", "$p\\,t$", OVER)
     for name, structure in structures().items():
         block = equivalent_block(structure).positive
         pulse = Sine(A * block.lambda_ * structure.gravity, 2 * pi / (OMEGA * block.p))
         motion = pulse.sampled()
         drawn = motion.kept
         time = np.arange(drawn.npts, dtype=np.float64) * drawn.dt
-        pulses.curves.append(Curve(name, time, drawn.acceleration / STANDARD_GRAVITY))
+        pulses.curves.append(PaperCurve(name, time, drawn.acceleration / STANDARD_GRAVITY))
         model = Structure(structure).model("nonlinear")
         run = follow(replace(model, joints=None), motion, tail=SHOWN / block.p)  # as the paper: all joints hold
         curve = _followed(name, run, block.p)
         shown = curve.x <= SHOWN
-        responses.curves.append(Curve(name, curve.x[shown], curve.y[shown]))
+        responses.curves.append(PaperCurve(name, curve.x[shown], curve.y[shown]))
     caption = (
         f"Full sine pulses of the same a = {A:g} and omega = {OMEGA:g} (with kappa2), and the nonlinear responses to "
         f"them, over p t. All have the restitution {ETA:g}. Geometry ours: block and frame of slenderness 0.2 (columns "

@@ -51,7 +51,7 @@ ASSUMED = (
 
 
 @dataclass(frozen=True)
-class Part:
+class DrawnPart:
     """A body as it is drawn, or one of several alike that a body stands for.
 
     Parameters
@@ -82,7 +82,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Pin:
+class DrawnHinge:
     """A hinge of one direction as it is drawn: where it rests [m], and the part that carries it."""
 
     letter: str
@@ -133,9 +133,9 @@ class Picture:
     ----------
     mechanism : Mechanism
         The structure.
-    parts : tuple of Part
+    parts : tuple of DrawnPart
         What is drawn, the first at the back.
-    pins : tuple of Pin
+    pins : tuple of DrawnHinge
         The hinges and pivots of both directions.
     phi_cr, limit : mapping of Direction to float
         Critical rotation, None where there is none, and the furthest that can be drawn [rad], of the directions that it
@@ -153,8 +153,8 @@ class Picture:
     """
 
     mechanism: Mechanism
-    parts: tuple[Part, ...]
-    pins: tuple[Pin, ...]
+    parts: tuple[DrawnPart, ...]
+    pins: tuple[DrawnHinge, ...]
     phi_cr: Mapping[Direction, float | None]
     limit: Mapping[Direction, float]
     ground: tuple[Points, ...]
@@ -369,7 +369,7 @@ class Picture:
             ),
         )
 
-    def chains(self, pins: Sequence[Pin]) -> list[list[int]]:
+    def chains(self, pins: Sequence[DrawnHinge]) -> list[list[int]]:
         """Pins of one direction that are joined by links, by their places: in their order first, then what is left."""
         held = [self._links_at(pin) for pin in pins]
         found: list[list[int]] = []
@@ -384,7 +384,7 @@ class Picture:
             found += [[one, other] for one, other in pairwise(on) if other - one > 1]
         return found
 
-    def _links_at(self, pin: Pin) -> set[int]:
+    def _links_at(self, pin: DrawnHinge) -> set[int]:
         """The links that move and have a hinge in common."""
         hinges = self.sketch.hinges.get(pin.direction, ())
         here = [hinge.bodies for hinge in hinges if (hinge.letter, hinge.point) == (pin.letter, pin.point)]
@@ -551,7 +551,7 @@ def _picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism])
     if start is None and not (min(seen.values()) > 0 and extent(mechanism) > TINIEST):
         raise StructureError("it is too small to be drawn: check the sizes and their units")
     parts = tuple(
-        Part(
+        DrawnPart(
             body.name,
             k,
             body.centroid + shift,
@@ -598,11 +598,11 @@ def _outlines(body: Body, sketch: Sketch) -> Sequence[Outline]:
     return [disc(body.centroid, float(radius))] if radius > 0 else []
 
 
-def _pins(hinge: Hinge, direction: Direction, parts: Sequence[Part]) -> list[Pin]:
+def _pins(hinge: Hinge, direction: Direction, parts: Sequence[DrawnPart]) -> list[DrawnHinge]:
     """The hinge on its first body, or on each copy of it, of which the first has the letter."""
     carriers = [k for k, part in enumerate(parts) if part.name == hinge.bodies[0]]
     return [
-        Pin(hinge.letter if k == carriers[0] else "", hinge.point + parts[k].shift, k, direction, hinge.slide)
+        DrawnHinge(hinge.letter if k == carriers[0] else "", hinge.point + parts[k].shift, k, direction, hinge.slide)
         for k in carriers
     ]
 
@@ -637,7 +637,7 @@ def _found(bodies: Sequence[Body], motions: Sequence[RigidMotion]) -> list[Hinge
     return hinges
 
 
-def _level_ground(parts: Sequence[Part], pins: Sequence[Pin]) -> tuple[Points, ...]:
+def _level_ground(parts: Sequence[DrawnPart], pins: Sequence[DrawnHinge]) -> tuple[Points, ...]:
     """Level ground under the lowest of the pivots, wider than the structure."""
     z = [point for part in parts for each in part.outlines for point in each.tolist()]
     z += [part.centroid for part in parts]

@@ -31,7 +31,7 @@ FEWEST = 4  # intervals of a record to a period, for its samples to show it
 
 
 @dataclass(frozen=True)
-class Wanted:
+class SetRequirements:
     """What a set is to be.
 
     Parameters
@@ -111,7 +111,7 @@ class RecordSet:
 
     Parameters
     ----------
-    wanted : Wanted
+    wanted : SetRequirements
         What was requested.
     candidates : Candidates
         What it was chosen from.
@@ -129,7 +129,7 @@ class RecordSet:
         Whether all of them were tried; else the best of several searches is given.
     """
 
-    wanted: Wanted
+    wanted: SetRequirements
     candidates: Candidates
     chosen: NDArray[np.intp]
     factors: Reals
@@ -180,7 +180,7 @@ class RecordSet:
 def candidates(
     motions: Sequence[GroundMotion],
     target: TargetSpectrum,
-    wanted: Wanted,
+    wanted: SetRequirements,
     progress: Callable[[int], object] = lambda done: None,
 ) -> Candidates:
     """The spectra of records over the band of a target.
@@ -191,7 +191,7 @@ def candidates(
         The records, as read.
     target : TargetSpectrum
         What they are to fit.
-    wanted : Wanted
+    wanted : SetRequirements
         The band and the damping.
     progress : callable, optional
         Told 1 for each record.
@@ -230,7 +230,7 @@ def periods_of(band: tuple[float, float], target: TargetSpectrum, damping: float
 
 def choose(
     found: Candidates,
-    wanted: Wanted,
+    wanted: SetRequirements,
     begin: Callable[[int], Callable[[int], object]] = lambda steps: lambda done: None,
 ) -> RecordSet:
     """Choose the records and their factors.
@@ -239,7 +239,7 @@ def choose(
     ----------
     found : Candidates
         What to choose from.
-    wanted : Wanted
+    wanted : SetRequirements
         What the set is to be.
     begin : callable, optional
         Told how many sets, or searches, there are; what it gives is told how many more are done.
@@ -259,7 +259,7 @@ def choose(
     names = [key_of(motion, wanted.one_per) for motion in found.motions]
     groups = _groups([names[k] for k in usable.tolist()])
     _check_enough(len(found.motions), usable.size, int(groups.max(initial=-1)) + 1, wanted)
-    problem = subsets.Problem(
+    problem = subsets.SubsetProblem(
         own[usable, None] * found.spectra[usable] / found.target,
         log_weights(found.periods),
         np.log(own[usable]),
@@ -275,7 +275,7 @@ def choose(
     return RecordSet(wanted, found, chosen, own[chosen] * best.common, left_out, silent, sets, exact)
 
 
-def own_factors(found: Candidates, wanted: Wanted) -> tuple[Reals, dict[int, str]]:
+def own_factors(found: Candidates, wanted: SetRequirements) -> tuple[Reals, dict[int, str]]:
     """The factor on each record that brings it to the target on logarithmic average; and why others have none.
 
     With the same factor for all it is 1.
@@ -324,7 +324,7 @@ def _groups(names: Sequence[str | None]) -> NDArray[np.intp]:
     )
 
 
-def _check_enough(given: int, usable: int, groups: int, wanted: Wanted) -> None:
+def _check_enough(given: int, usable: int, groups: int, wanted: SetRequirements) -> None:
     if wanted.count <= groups:
         return
     one = f", and one per {wanted.one_per} leaves {groups}" if groups < usable else ""

@@ -13,8 +13,8 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.structure import Structure
-from rocking_cli.studies.contact import Contact, Contacts
-from rocking_cli.studies.neighbours import Around, Neighbours, neighbours
+from rocking_cli.studies.contact import ContactDemand, Contacts
+from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 
 Histories = Mapping[ModelName, History]
 Runs = Mapping[int, Histories]
@@ -40,7 +40,7 @@ class Question:
         Relative local error of a step.
     with_pulse : str or None
         Also the response to the pulse in the record alone: its shape, or "best".
-    around : Around
+    around : Neighbourhood
         The neighbours of every motion; a count of 0 for none.
     release_is_angle : bool
         Whether the release was given as an angle.
@@ -51,12 +51,12 @@ class Question:
     tail: float
     rtol: float
     with_pulse: str | None = None
-    around: Around = field(default_factory=Around)
+    around: Neighbourhood = field(default_factory=Neighbourhood)
     release_is_angle: bool = False
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class Response:
     """What became of a structure under one motion.
 
     Parameters
@@ -71,9 +71,9 @@ class Answer:
         What became of the neighbours of the motion, under each polarity; empty if there were to be none.
     fit, to_pulse : PulseFit and mapping of str to History, optional
         The pulse in the motion, and the histories under it alone.
-    contacts : mapping of int to Contact
+    contacts : mapping of int to ContactDemand
         What the nonlinear history asks of the contacts, under each polarity; empty without that history.
-    to_pulse_contact : Contact, optional
+    to_pulse_contact : ContactDemand, optional
         The same under the pulse alone.
     """
 
@@ -83,11 +83,11 @@ class Answer:
     neighbours: Mapping[int, Neighbours]
     fit: PulseFit | None = None
     to_pulse: Histories | None = None
-    contacts: Mapping[int, Contact] = field(default_factory=dict)
-    to_pulse_contact: Contact | None = None
+    contacts: Mapping[int, ContactDemand] = field(default_factory=dict)
+    to_pulse_contact: ContactDemand | None = None
 
 
-def answer(structure: Structure, names: Sequence[ModelName], given: Scaled | None, asked: Question) -> Answer:
+def response_of(structure: Structure, names: Sequence[ModelName], given: Scaled | None, asked: Question) -> Response:
     """Follow models of a structure under a motion, or freely from a release."""
     contacts = Contacts(structure.mechanism)
     follow = partial(respond, structure, models=names, release=asked.release, tail=asked.tail, rtol=asked.rtol)
@@ -110,11 +110,11 @@ def answer(structure: Structure, names: Sequence[ModelName], given: Scaled | Non
     }
     checked = {sign: contacts.check(run["nonlinear"], under[sign]) for sign, run in runs.items() if "nonlinear" in run}
     if fit is None or first is None:
-        return Answer(given, first, runs, near, contacts=checked)
+        return Response(given, first, runs, near, contacts=checked)
     pulse = fit.alone(first)
     alone = follow(pulse)
     checked_alone = contacts.check(alone["nonlinear"], pulse) if "nonlinear" in alone else None
-    return Answer(given, first, runs, near, fit, alone, checked, checked_alone)
+    return Response(given, first, runs, near, fit, alone, checked, checked_alone)
 
 
 def _find(motion: GroundMotion, shape: str) -> PulseFit:

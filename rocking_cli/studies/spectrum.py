@@ -27,7 +27,7 @@ TOGETHER = 50  # sizes of their own in one call: their tables are in memory at o
 
 
 @dataclass(frozen=True, eq=False)
-class Shape:
+class SpectrumShape:
     """What a spectrum is of: a structure, or a block of a slenderness, to be enlarged and reduced.
 
     Parameters
@@ -77,7 +77,9 @@ class Shape:
         return self.period * np.sqrt(scales)
 
 
-def shape_of(mechanism: Mechanism, model: ModelName, eta: float | None = None, file: str | None = None) -> Shape:
+def shape_of(
+    mechanism: Mechanism, model: ModelName, eta: float | None = None, file: str | None = None
+) -> SpectrumShape:
     """A structure to be enlarged and reduced.
 
     Parameters
@@ -101,12 +103,12 @@ def shape_of(mechanism: Mechanism, model: ModelName, eta: float | None = None, f
     given = mechanism if eta is None else with_restitution(mechanism, eta)
     sizes = Sizes(given, model, found.direction)
     own = None if sizes.are_alike() else sizes
-    return Shape(
+    return SpectrumShape(
         found, own=own, hung=bool(mechanism.attached), bodies=len(mechanism.bodies()), caution=mechanism.own_caution()
     )
 
 
-def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) -> Shape:
+def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) -> SpectrumShape:
     """Rectangular blocks of one slenderness alpha = atan(b/h) [rad] and any size. Raises as `shape_of`."""
     if not 0 < slenderness < pi / 2:
         raise InputError(
@@ -122,10 +124,10 @@ def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) ->
     if eta is None and own <= 0:
         message = f"blocks of {name}: the kinematics give {own:.3g} for an impact: too stocky to rock the other way"
         raise InputError(Problem(message, hint="give a measured eta in (0, 1], or a smaller slenderness"))
-    return Shape(shape_of(block, model, eta).structure, slenderness)
+    return SpectrumShape(shape_of(block, model, eta).structure, slenderness)
 
 
-def usual_sizes(shapes: Sequence[Shape]) -> tuple[float, float]:
+def usual_sizes(shapes: Sequence[SpectrumShape]) -> tuple[float, float]:
     """The smallest and the largest size to show, as 2 pi/p [s]."""
     own = [each.period for each in shapes if each.slenderness is None]
     return (min(own) / AROUND**0.5, max(own) * AROUND**0.5) if own else BLOCKS
@@ -137,7 +139,7 @@ class Spectrum:
 
     Parameters
     ----------
-    shape : Shape
+    shape : SpectrumShape
         What is shaken.
     scales : ndarray, shape (n,)
         Factors on every length, ascending; 1 is among them if it is a structure as given.
@@ -149,7 +151,7 @@ class Spectrum:
         closed; NaN if the outcome is known.
     """
 
-    shape: Shape
+    shape: SpectrumShape
     scales: Reals
     peak_ratio: Reals
     lower_bound: Reals | float = nan
@@ -249,7 +251,7 @@ def fractile(peaks: Reals, q: float) -> Reals:
 
 
 def spectra(
-    shapes: Sequence[Shape],
+    shapes: Sequence[SpectrumShape],
     periods: Reals,
     motions: Sequence[GroundMotion],
     *,
@@ -261,7 +263,7 @@ def spectra(
 
     Parameters
     ----------
-    shapes : sequence of Shape
+    shapes : sequence of SpectrumShape
         See `shape_of` and `blocks_of`.
     periods : ndarray, shape (n,)
         Sizes, as 2 pi/p [s].
@@ -307,7 +309,7 @@ def _worst(found: Outcomes) -> tuple[Reals, Reals]:
 
 
 def _of_one_shape(
-    shape: Shape,
+    shape: SpectrumShape,
     scales: Reals,
     motions: Sequence[GroundMotion],
     signs: Sequence[int],
@@ -321,7 +323,7 @@ def _of_one_shape(
 
 
 def _each_its_own(
-    shape: Shape,
+    shape: SpectrumShape,
     scales: Reals,
     motions: Sequence[GroundMotion],
     signs: Sequence[int],
@@ -352,12 +354,12 @@ def _outcomes(
     return respond_many(models, motions, runs, threads=threads, only_peaks=True, progress=progress)
 
 
-def count_histories(shapes: Sequence[Shape], periods: Reals, motions: int, polarities: Sequence[int]) -> int:
+def count_histories(shapes: Sequence[SpectrumShape], periods: Reals, motions: int, polarities: Sequence[int]) -> int:
     """How many histories `spectra` runs."""
     return motions * sum(_scales(each, periods).size * len(_signs(each, polarities)) for each in shapes)
 
 
-def _scales(shape: Shape, periods: Reals) -> Reals:
+def _scales(shape: SpectrumShape, periods: Reals) -> Reals:
     scales = np.sort(shape.scales(periods))
     if shape.slenderness is not None:
         return scales
@@ -365,6 +367,6 @@ def _scales(shape: Shape, periods: Reals) -> Reals:
     return np.union1d([scale for scale in scales if not isclose(scale, 1.0, rel_tol=near)], 1.0)
 
 
-def _signs(shape: Shape, polarities: Sequence[int]) -> Sequence[int]:
+def _signs(shape: SpectrumShape, polarities: Sequence[int]) -> Sequence[int]:
     # A reversed motion does the same to a symmetric structure.
     return polarities[:1] if shape.structure.symmetric else polarities

@@ -17,7 +17,7 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.io.dotted import closed, copied, put, replace_at, words
 from rocking_cli.io.field_problems import lists_models, types_at
-from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Sheet, read_sheet
+from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Spreadsheet, read_sheet
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text, spell
 from rocking_cli.structure_file import HINT, of_document
 from rocking_cli.text import cut, did_you_mean, one_line
@@ -93,7 +93,7 @@ class StructureTable(Sequence["TableRow"]):
 
     Parameters
     ----------
-    sheet : Sheet
+    sheet : Spreadsheet
         The table.
     folder : Path
         Where files that it names are.
@@ -106,7 +106,7 @@ class StructureTable(Sequence["TableRow"]):
         If a heading is no field of any mechanism that its rows have.
     """
 
-    def __init__(self, sheet: Sheet, folder: Path, registry: Registry | None = None) -> None:
+    def __init__(self, sheet: Spreadsheet, folder: Path, registry: Registry | None = None) -> None:
         self.sheet, self.folder = sheet, folder
         self.registry = registry if registry is not None else _Kept()
         self._bases: dict[str, dict[str, Any] | InputError] = {}
@@ -382,7 +382,7 @@ def of_mapping(columns: Mapping[str, Sequence[Any]], name: str = "table") -> Str
     if len({len(each) for each in cells}) > 1:
         raise InputError("the columns of a table must have the same length")
     rows = tuple(Row(k + 1, tuple(row)) for k, row in enumerate(zip(*cells, strict=True)))
-    return StructureTable(Sheet(name, 0, headings, rows, decimal_comma=False), Path())
+    return StructureTable(Spreadsheet(name, 0, headings, rows, decimal_comma=False), Path())
 
 
 def _text(value: Any) -> str:

@@ -27,7 +27,7 @@ EXCHANGES = 1000  # in a search, at most
 
 
 @dataclass(frozen=True, eq=False)
-class Problem:
+class SubsetProblem:
     """What is to be chosen.
 
     Parameters
@@ -103,12 +103,12 @@ def all_tried(groups: Integers, count: int) -> bool:
     return sets <= MOST_TRIED and sets * count <= MOST_MEMBERS
 
 
-def best(problem: Problem, seed: int, progress: Callable[[int], object] = lambda done: None) -> Best:
+def best(problem: SubsetProblem, seed: int, progress: Callable[[int], object] = lambda done: None) -> Best:
     """The best set of all, or the best that searches find.
 
     Parameters
     ----------
-    problem : Problem
+    problem : SubsetProblem
         With at least `count` groups.
     seed : int
         Of the starts of the searches.
@@ -129,12 +129,12 @@ def best(problem: Problem, seed: int, progress: Callable[[int], object] = lambda
     return found
 
 
-def judge(problem: Problem, sums: Reals, count: int, least: Reals, most: Reals) -> Judged:
+def judge(problem: SubsetProblem, sums: Reals, count: int, least: Reals, most: Reals) -> Judged:
     """How good sets are, each with the best common factor that is allowed.
 
     Parameters
     ----------
-    problem : Problem
+    problem : SubsetProblem
         The limits and weights.
     sums : ndarray, shape (sets, n)
         Of the curves of each set.
@@ -162,14 +162,14 @@ def judge(problem: Problem, sums: Reals, count: int, least: Reals, most: Reals) 
     return Judged(np.where(fits, 0.0, excess), rms, common)
 
 
-def _judge_members(problem: Problem, members: Integers) -> Judged:
+def _judge_members(problem: SubsetProblem, members: Integers) -> Judged:
     """The same of sets given by their curves, shape (sets, count)."""
     factors = problem.log_factors[members]
     sums = problem.curves[members].sum(axis=1)
     return judge(problem, sums, members.shape[1], factors.min(axis=1), factors.max(axis=1))
 
 
-def _best_of_all(problem: Problem, progress: Callable[[int], object]) -> Best:
+def _best_of_all(problem: SubsetProblem, progress: Callable[[int], object]) -> Best:
     blocks, judged = [], []
     sets = _all_sets(problem)
     while block := list(islice(sets, max(BLOCK // problem.count, 1))):
@@ -184,7 +184,7 @@ def _best_of_all(problem: Problem, progress: Callable[[int], object]) -> Best:
     return _picked(members, every)
 
 
-def _all_sets(problem: Problem) -> Iterator[tuple[int, ...]]:
+def _all_sets(problem: SubsetProblem) -> Iterator[tuple[int, ...]]:
     """Every set: of every choice of groups every choice of one from each."""
     of_group = [np.flatnonzero(problem.groups == k).tolist() for k in range(int(problem.groups.max()) + 1)]
     for groups in combinations(of_group, problem.count):
@@ -199,14 +199,14 @@ def _picked(members: Integers, judged: Judged) -> Best:
     return Best(members[k], float(judged.excess[k]), float(judged.rms[k]), float(np.exp(judged.common[k])))
 
 
-def _grown(problem: Problem, members: list[int]) -> list[int]:
+def _grown(problem: SubsetProblem, members: list[int]) -> list[int]:
     """A set with the best curve added until there are enough."""
     while len(members) < problem.count:
         members = [*members, _added(problem, members)[0]]
     return members
 
 
-def _exchanged(problem: Problem, members: list[int]) -> Best:
+def _exchanged(problem: SubsetProblem, members: list[int]) -> Best:
     """A set with one curve exchanged for another, the best of all such steps, as long as there is a better one."""
     now = _picked(every := np.sort(np.array([members], dtype=np.intp)), _judge_members(problem, every))
     for _ in range(EXCHANGES):
@@ -222,7 +222,7 @@ def _exchanged(problem: Problem, members: list[int]) -> Best:
     return now
 
 
-def _added(problem: Problem, members: list[int]) -> tuple[int, float, float, float]:
+def _added(problem: SubsetProblem, members: list[int]) -> tuple[int, float, float, float]:
     """The curve that is best added to a set, and excess, rms and common factor of what results."""
     free = np.flatnonzero(~np.isin(problem.groups, problem.groups[members]))
     sums = problem.curves[members].sum(axis=0) + problem.curves[free]

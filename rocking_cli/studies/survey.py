@@ -26,7 +26,7 @@ from rocking_cli.studies.verification.site_file import SiteFile
 PART = 8  # structures that a thread has in memory at a time: the tables of each are one megabyte, at most ten
 
 
-class Entry(Protocol):
+class SurveyEntry(Protocol):
     """A structure that is still to be made."""
 
     @property
@@ -204,7 +204,7 @@ class Survey:
 
 
 def survey(
-    entries: Sequence[Entry],
+    entries: Sequence[SurveyEntry],
     motions: Sequence[GroundMotion] = (),
     polarities: Sequence[int] = (1,),
     *,
@@ -218,7 +218,7 @@ def survey(
 
     Parameters
     ----------
-    entries : sequence of Entry
+    entries : sequence of SurveyEntry
         The structures. They are made and dropped a few at a time, so that any number fits in memory.
     motions : sequence of GroundMotion
         What shakes them, as scaled.
@@ -262,7 +262,7 @@ def survey(
 
 
 def _places(
-    entries: Sequence[Entry],
+    entries: Sequence[SurveyEntry],
     motions: Sequence[GroundMotion],
     polarities: Sequence[int],
     site: SiteFile | None,
@@ -275,7 +275,7 @@ def _places(
 
 
 def _part(
-    entries: Sequence[Entry],
+    entries: Sequence[SurveyEntry],
     places: range,
     motions: Sequence[GroundMotion],
     polarities: Sequence[int],
@@ -309,7 +309,7 @@ def _part(
     return found
 
 
-def _placed(error: RockingError, entry: Entry) -> RockingError:
+def _placed(error: RockingError, entry: SurveyEntry) -> RockingError:
     """An error of the mechanics of a structure with its line, which only those of its fields have."""
     if not isinstance(error, InputError):
         return error
@@ -318,7 +318,7 @@ def _placed(error: RockingError, entry: Entry) -> RockingError:
     )
 
 
-def _alone(place: int, entry: Entry, structure: Structure, site: SiteFile | None) -> Surveyed:
+def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile | None) -> Surveyed:
     """A structure without ground motions."""
     mechanism, sides = structure.mechanism, structure.statics
     k = int(sides[1].lambda_ < sides[0].lambda_ * (1 - 1e-9))
@@ -391,14 +391,14 @@ def _of_one(
     return Under(fell.size / len(motions), float(peaks[most]) if stays.any() else nan, worst, over, unknown)
 
 
-def _with(one: Surveyed, under: Under | SolverError, entry: Entry) -> Surveyed | Bad:
+def _with(one: Surveyed, under: Under | SolverError, entry: SurveyEntry) -> Surveyed | Bad:
     if isinstance(under, SolverError):
         return Bad(one.row, entry.line, one.name, under)
     return replace(one, under=under)
 
 
 @dataclass(frozen=True)
-class Made:
+class MadeStructure:
     """A structure that is made already.
 
     Parameters

@@ -44,6 +44,7 @@ from rocking_cli.core import (
     polygon,
 )
 from rocking_cli.core.coefficients import coefficients, jump
+from rocking_cli.core.contract import Verdict as Verdict
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.attachments import followed
@@ -51,7 +52,6 @@ from rocking_cli.core.reactions import reactions
 from rocking_cli.core.registry import conformance
 from rocking_cli.core.released import Pieces, Undetermined, released
 from rocking_cli.core.restitution import kinematic_restitution
-from rocking_cli.core.verdict import Verdict as Verdict
 from rocking_cli.errors import RockingError
 from rocking_cli.plugins.errors import own_traceback
 from rocking_cli.studies.picture import picture

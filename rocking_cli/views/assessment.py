@@ -7,10 +7,10 @@ from rocking_cli.studies.movements import Watched
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.views import assessment_words as words
 from rocking_cli.views import processing, verification
-from rocking_cli.views.equiv import sides_of, without
+from rocking_cli.views.equivalent_block import sides_of, without
 from rocking_cli.views.margin import margin_data
 from rocking_cli.views.parameters import values
-from rocking_cli.views.response import Shown, fit_data, runs_data
+from rocking_cli.views.response import HistoryDetails, fit_data, runs_data
 from rocking_cli.views.view import View
 
 
@@ -44,7 +44,9 @@ def view(content: Assessment, verified: Verification | None = None) -> View:
                 "answers": {item.question: item.answer for item in said.answers},
                 "doubts": list(said.doubts),
                 **runs_data(
-                    each.runs, each.neighbours, Shown(watched, mechanism=content.mechanism, contacts=each.contacts)
+                    each.runs,
+                    each.neighbours,
+                    HistoryDetails(watched, mechanism=content.mechanism, contacts=each.contacts),
                 ),
                 "polarity": each.polarity,
                 "margin": margin_data(each.margin),

@@ -32,7 +32,7 @@ MODELS: Mapping[ModelName, str] = {
 
 
 @dataclass(frozen=True)
-class Answer:
+class ReaderAnswer:
     """A question of the reader and its answer."""
 
     question: str
@@ -40,7 +40,7 @@ class Answer:
 
 
 @dataclass(frozen=True)
-class Verdict:
+class MotionAnswers:
     """The answers for one ground motion.
 
     Parameters
@@ -49,7 +49,7 @@ class Verdict:
         Of the motion.
     headline : str
         A few words.
-    answers : tuple of Answer
+    answers : tuple of ReaderAnswer
         One for each question.
     doubts : tuple of str
         What is doubtful about the motion and the result.
@@ -57,11 +57,11 @@ class Verdict:
 
     name: str
     headline: str
-    answers: tuple[Answer, ...]
+    answers: tuple[ReaderAnswer, ...]
     doubts: tuple[str, ...]
 
 
-def verdicts(content: Assessment) -> tuple[Verdict, ...]:
+def verdicts(content: Assessment) -> tuple[MotionAnswers, ...]:
     """The answers for each ground motion."""
     return tuple(_verdict(content, each) for each in content.results)
 
@@ -218,29 +218,29 @@ def doubts(content: Assessment) -> list[str]:
     return said
 
 
-def _verdict(content: Assessment, result: MotionResult) -> Verdict:
+def _verdict(content: Assessment, result: MotionResult) -> MotionAnswers:
     best = result.histories["nonlinear"]
     headline = best.words if best.overturned or best.unknown else names.ROCKS if best.peak_ratio else names.NO_UPLIFT
-    return Verdict(
+    return MotionAnswers(
         result.given.motion.name,
         f"{headline}{' (close)' if result.close else ''}",
         (
-            Answer("Will it uplift?", _uplift(content, result)),
-            Answer("Will it overturn?", _overturning(result)),
-            Answer("How close is that?", _closeness(content, result)),
-            Answer("Which model to trust?", _trusted(content, result)),
+            ReaderAnswer("Will it uplift?", _uplift(content, result)),
+            ReaderAnswer("Will it overturn?", _overturning(result)),
+            ReaderAnswer("How close is that?", _closeness(content, result)),
+            ReaderAnswer("Which model to trust?", _trusted(content, result)),
             *_joints(content, result),
         ),
         tuple(_doubts(result)),
     )
 
 
-def _joints(content: Assessment, result: MotionResult) -> tuple[Answer, ...]:
+def _joints(content: Assessment, result: MotionResult) -> tuple[ReaderAnswer, ...]:
     """Answer whether the joints hold, in the polarity that governs; empty for a structure that does not rock."""
     run, contact = result.histories["nonlinear"], result.contacts[result.polarity]
     said = [joints_in_words(run).replace("`", "") if run.check is not None else ""]
     said.append(contact_words(contact, content.mechanism))
-    return (Answer("Do its joints hold?", " ".join(filter(None, said))),) if said[1] else ()
+    return (ReaderAnswer("Do its joints hold?", " ".join(filter(None, said))),) if said[1] else ()
 
 
 def _uplift(content: Assessment, result: MotionResult) -> str:

@@ -14,13 +14,13 @@ from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
-from rocking_cli.studies.azimuths import Around, sectors
+from rocking_cli.studies.azimuths import AzimuthResponses, sectors
 from rocking_cli.views.view import ABSENT, Table, View, heading
 
 Flags = NDArray[np.bool_]
 
 
-def view(structure: Structure, found: Around, doubts: Iterable[str] = ()) -> View:
+def view(structure: Structure, found: AzimuthResponses, doubts: Iterable[str] = ()) -> View:
     """What a pair of components does in all directions."""
     one, other = found.names
     unknown = any(each.unknown.any() for each in found.outcomes.values())
@@ -42,7 +42,7 @@ def view(structure: Structure, found: Around, doubts: Iterable[str] = ()) -> Vie
     return View(_data(structure, found), [*parts, *doubts])
 
 
-def in_words(found: Around, outcomes: Outcomes) -> str:
+def in_words(found: AzimuthResponses, outcomes: Outcomes) -> str:
     """Where a structure overturns, and where its outcome is unknown, in a sentence or two."""
     falls, unknown = outcomes.overturned, outcomes.unknown
     if not unknown.any():
@@ -51,7 +51,7 @@ def in_words(found: Around, outcomes: Outcomes) -> str:
     return f"it overturns in {_where(found, falls)}; {doubt}." if falls.any() else f"{doubt}."
 
 
-def _where(found: Around, flags: Flags) -> str:
+def _where(found: AzimuthResponses, flags: Flags) -> str:
     """In how many directions something is so, and in which."""
     if not flags.any():
         return "no direction"
@@ -61,7 +61,7 @@ def _where(found: Around, flags: Flags) -> str:
     return f"{int(flags.sum())} of {flags.size} directions, at {', '.join(ranges)} degrees"
 
 
-def columns(found: Around) -> Columns:
+def columns(found: AzimuthResponses) -> Columns:
     """A row for each direction; a motion that overturns has no peak, and one of unknown outcome that until then."""
     table: dict[str, Any] = {"azimuth [deg]": found.azimuths, "PGA [g]": found.pga}
     for name, each in found.outcomes.items():
@@ -72,7 +72,7 @@ def columns(found: Around) -> Columns:
     return table
 
 
-def _cells(found: Around, each: Outcomes, *, unknown: bool) -> list[str]:
+def _cells(found: AzimuthResponses, each: Outcomes, *, unknown: bool) -> list[str]:
     standing = np.where(each.overturned | each.unknown, -1.0, each.peak_ratio)
     k = int(standing.argmax())
     peak = [f"{standing[k]:.4g}", f"{found.azimuths[k]:g}"] if standing[k] > 0 else [ABSENT, ABSENT]
@@ -80,7 +80,7 @@ def _cells(found: Around, each: Outcomes, *, unknown: bool) -> list[str]:
     return [*(percent(float(flag.mean())) for flag in flags), *peak]
 
 
-def _data(structure: Structure, found: Around) -> dict[str, Any]:
+def _data(structure: Structure, found: AzimuthResponses) -> dict[str, Any]:
     mechanism = structure.mechanism
     return {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},

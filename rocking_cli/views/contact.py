@@ -7,13 +7,13 @@ from typing import Any
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.contacts import MASONRY
-from rocking_cli.studies.contact import NEAR_PEAK, NONE, Contact
+from rocking_cli.studies.contact import NEAR_PEAK, NONE, ContactDemand
 from rocking_cli.views.view import number
 
 BEYOND = ": the result is not valid beyond that time"
 
 
-def contact_data(found: Contact, mechanism: Mechanism) -> dict[str, Any]:
+def contact_data(found: ContactDemand, mechanism: Mechanism) -> dict[str, Any]:
     """Return the demands as plain data; missing values are null."""
     crushing = found.crushing
     return {
@@ -51,7 +51,7 @@ COLUMNS = (
 """Headings of the rows of `contact_row`."""
 
 
-def contact_row(found: Contact, mechanism: Mechanism) -> list[str]:
+def contact_row(found: ContactDemand, mechanism: Mechanism) -> list[str]:
     """Return the demands as cells of a table row."""
     per, unit = (1000, "kN") if mechanism.has_mass else (1, "N/kg")
     numbers = [number(each, 3) for each in (found.time, found.duration, found.impact_friction)]
@@ -61,7 +61,7 @@ def contact_row(found: Contact, mechanism: Mechanism) -> list[str]:
     return [number(found.friction_needed, 3), found.joint or "-", *numbers, shear, least, lost]
 
 
-def contact_words(found: Contact, mechanism: Mechanism) -> str:
+def contact_words(found: ContactDemand, mechanism: Mechanism) -> str:
     """Return the demands as sentences; empty for a structure that does not rock.
 
     Whether a joint opens or slides so far that the result ends is said with the outcome, if the joints are checked.
@@ -112,7 +112,7 @@ def contact_words(found: Contact, mechanism: Mechanism) -> str:
     return " ".join(said)
 
 
-def _friction(found: Contact, beyond: str) -> str:
+def _friction(found: ContactDemand, beyond: str) -> str:
     needed, at = number(found.friction_needed, 3), f"at {number(found.time, 4)} s"
     where = _where(found.joint) if found.joint else "the structure"
     if found.friction is None:
@@ -137,7 +137,7 @@ def _where(letter: str) -> str:
     return f"joint {letter}" if letter else "the ground"
 
 
-def _sums(found: Contact, mechanism: Mechanism) -> str | None:
+def _sums(found: ContactDemand, mechanism: Mechanism) -> str | None:
     """Return what the forces are summed over: the whole structure, identical bodies, or nothing (None).
 
     `shared` is a least-squares estimate where statics alone does not determine the force at each joint.

@@ -12,7 +12,7 @@ from rocking_cli.dynamics.holding import NOT_CHECKED
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import percent
 from rocking_cli.studies.design import Design
-from rocking_cli.studies.metrics import Shaking
+from rocking_cli.studies.metrics import Excitation
 from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import one_line
 from rocking_cli.views.view import ABSENT, Table, View
@@ -20,9 +20,9 @@ from rocking_cli.views.view import ABSENT, Table, View
 ROWS = 11  # of the scan in the table, at most
 
 
-def view(found: Design, shaking: Shaking | None = None) -> View:
+def view(found: Design, excitation: Excitation | None = None) -> View:
     """The answer in a sentence, the scan, and what to know of both."""
-    said = [answer(found), *doubts(found, shaking)]
+    said = [answer(found), *doubts(found, excitation)]
     return View(lambda: data(found), [f"{found.structure}: {found.field} for {found.aim}", scan(found), *said])
 
 
@@ -106,7 +106,7 @@ def answer(found: Design) -> str:
     return f"{said}." if len(ranges) == 1 else f"{said}: from {_with_unit(found, found.value)} {way} without a gap."
 
 
-def doubts(found: Design, shaking: Shaking | None) -> list[str]:
+def doubts(found: Design, excitation: Excitation | None) -> list[str]:
     """What to know of the answer."""
     said = list(found.taken_otherwise)
     count = len(found.values)
@@ -124,15 +124,15 @@ def doubts(found: Design, shaking: Shaking | None) -> list[str]:
         said.append(f"{span} {found.aim.metric.name} could not be computed: {one_line(each.reason)}.")
     if found.caution:
         said.append(f"Caution, of the structure as given: {found.caution}")
-    if found.aim.metric.shaken and shaking is not None:
+    if found.aim.metric.shaken and excitation is not None:
         said.append(
-            f"One time history is one sample: at each value, {shaking.around.count} neighbouring motions are "
-            f"simulated, {shaking.around.words}. The metric is based on a share of them, which changes in steps of "
-            f"{percent(1 / shaking.around.count)}."
+            f"One time history is one sample: at each value, {excitation.around.count} neighbouring motions are "
+            f"simulated, {excitation.around.words}. The metric is based on a share of them, which changes in steps of "
+            f"{percent(1 / excitation.around.count)}."
         )
         said += _not_known(found)
-        if len(shaking.motions) > 1:
-            said.append(f"At each value, the worst of {len(shaking.motions)} motions governs.")
+        if len(excitation.motions) > 1:
+            said.append(f"At each value, the worst of {len(excitation.motions)} motions governs.")
     return said
 
 

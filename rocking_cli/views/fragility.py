@@ -15,8 +15,8 @@ from rocking_cli.studies.fragility.intensity import label
 from rocking_cli.views.view import ABSENT, Table, View, number
 
 if TYPE_CHECKING:  # fits need scipy, and what would be run needs no fit
-    from rocking_cli.studies.fragility.assess import Bivariate, Fragility, Outcomes
-    from rocking_cli.studies.fragility.curves import Curve, Estimate, Surface
+    from rocking_cli.studies.fragility.assess import Bivariate, Fragility, UnknownRuns
+    from rocking_cli.studies.fragility.curves import Estimate, FragilityCurve, Surface
     from rocking_cli.studies.fragility.definition import Definition, Limit
     from rocking_cli.studies.fragility.hazard import Rate
     from rocking_cli.studies.fragility.plan import Plan
@@ -86,7 +86,7 @@ def view(
     failed: int,
     curves: Sequence[Fragility],
     surfaces: Sequence[Bivariate],
-    outcomes: Sequence[Outcomes] = (),
+    outcomes: Sequence[UnknownRuns] = (),
 ) -> View:
     """What was found: the curves and surfaces that were fitted to the runs of a store.
 
@@ -102,7 +102,7 @@ def view(
         Runs in the store, and those of them that could not be simulated.
     curves, surfaces : sequence
         What was fitted to them.
-    outcomes : sequence of Outcomes
+    outcomes : sequence of UnknownRuns
         How many runs of each structure are of unknown outcome.
     """
     name, confidence = store.fact("name"), definition.confidence
@@ -273,7 +273,7 @@ def _undecided(found: Sequence[Fragility | Bivariate], *, capacities: bool) -> I
         )
 
 
-def _unknown_in_words(outcomes: Sequence[Outcomes]) -> list[str]:
+def _unknown_in_words(outcomes: Sequence[UnknownRuns]) -> list[str]:
     """A sentence on each structure with runs of unknown outcome."""
     return [
         f"{each.structure}: {each.unknown:,} of {each.runs:,} runs ({percent(each.share or 0.0)}) {_are(each.unknown)} "
@@ -289,7 +289,7 @@ def _are(number: int) -> str:
     return "are" if number != 1 else "is"
 
 
-def _unchecked_in_words(store: Store, outcomes: Sequence[Outcomes]) -> list[str]:
+def _unchecked_in_words(store: Store, outcomes: Sequence[UnknownRuns]) -> list[str]:
     """Say for which structures no joint was checked; empty if for none."""
     unchecked = [each.structure for each in outcomes if not each.checked]
     if not unchecked:
@@ -314,7 +314,7 @@ def _left_out(measure: str, runs: int) -> Iterator[str]:
         )
 
 
-def _warnings(fitted: Sequence[Curve | Surface]) -> Iterator[str]:
+def _warnings(fitted: Sequence[FragilityCurve | Surface]) -> Iterator[str]:
     """What to be careful about in some fits, each thing once; with the result, as it belongs to the numbers."""
     for warning in dict.fromkeys(each.warning for each in fitted if each.warning):
         yield f"Warning: {warning}."

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.studies.fragility.assess import Fragility
-from rocking_cli.studies.fragility.curves import Curve
+from rocking_cli.studies.fragility.curves import FragilityCurve
 
 POINTS = 101  # of a curve
 WIDEST = 30.0  # ratio of the least and the largest intensity from which on steps are of equal ratio
@@ -48,7 +48,7 @@ def _is_drawn(found: Fragility) -> bool:
     return found.curve.kind != "none" or (found.lower is not None and found.lower.curve.kind != "none")
 
 
-def _fit(curve: Curve, x: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+def _fit(curve: FragilityCurve, x: NDArray[np.float64]) -> list[NDArray[np.float64]]:
     """Return median, dispersion, scale, probability and its band at intensities; NaN where there is none."""
     same = [np.nan if one is None else one.value for one in (curve.median, curve.dispersion, curve.scale)]
     return [*(np.full(x.size, value) for value in same), curve.probability(x), *curve.band(x)]

@@ -9,11 +9,11 @@ from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.holding import NOT_CHECKED
 from rocking_cli.names import percent
 from rocking_cli.studies.margin import LEVELS, Margin, in_words
-from rocking_cli.studies.neighbours import Around
+from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.view import FEW, Table, View, heading, number
 
 
-class Row(NamedTuple):
+class MarginRow(NamedTuple):
     """A motion, the factor on it as read, its PGA [g] with that, and its margin."""
 
     name: str
@@ -22,7 +22,7 @@ class Row(NamedTuple):
     margin: Margin
 
 
-def view(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Around) -> View:
+def view(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood) -> View:
     """The margins of a structure under some motions."""
     around = rows[0].margin.around if rows else around  # with the deviations of the structure
     heads = ["motion", "PGA\n[g]", "uplift\nat", "overturn\nat 1"]
@@ -52,7 +52,7 @@ def view(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Aroun
     return View(_data(mechanism, rows, polarity, around), parts)
 
 
-def _cells(row: Row) -> Iterator[list[str]]:
+def _cells(row: MarginRow) -> Iterator[list[str]]:
     """The row of a motion and, if some outcomes are unknown, another one in which these count as overturning."""
     found = row.margin
     yield [
@@ -79,7 +79,7 @@ def _last(found: Margin, factor: float | None) -> str:
     return f"{number(factor, 3)}{'+' if factor == found.factors[-1] else ''}"
 
 
-def _doubtful(rows: Sequence[Row]) -> Iterator[str]:
+def _doubtful(rows: Sequence[MarginRow]) -> Iterator[str]:
     """Say how to read the rows of unknown outcomes, if there are any."""
     if any(row.margin.unknown.any() for row in rows):
         yield (
@@ -89,7 +89,7 @@ def _doubtful(rows: Sequence[Row]) -> Iterator[str]:
         )
 
 
-def _data(mechanism: Mechanism, rows: Sequence[Row], polarity: str, around: Around) -> dict[str, Any]:
+def _data(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood) -> dict[str, Any]:
     return {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
         "model": "nonlinear",

@@ -9,7 +9,7 @@ from rocking_cli.views.view import ABSENT, Table, View
 
 
 @dataclass(frozen=True)
-class Installed:
+class InstalledMeasure:
     """A measure that is installed.
 
     Parameters
@@ -38,7 +38,7 @@ class Installed:
     source: str | None = None
 
 
-def view(found: Sequence[Installed]) -> View:
+def view(found: Sequence[InstalledMeasure]) -> View:
     """Show the installed measures in a table."""
     rows = [
         [each.form, each.unit or ABSENT, _power(each), each.title or "(cannot be loaded)", each.package]
@@ -55,7 +55,7 @@ def view(found: Sequence[Installed]) -> View:
     )
 
 
-def _power(each: Installed) -> str:
+def _power(each: InstalledMeasure) -> str:
     if each.title is None:
         return ABSENT
     if each.power is None:

@@ -9,13 +9,13 @@ from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
 from rocking_cli.core import Mechanism
+from rocking_cli.core.contract import Verdict
 from rocking_cli.core.hung.crushing import Crushing
 from rocking_cli.core.hung.interlock import Interlock
 from rocking_cli.core.hung.loads import Load
 from rocking_cli.core.hung.ties import Face, Place, Tie
 from rocking_cli.core.strength import Strength
 from rocking_cli.core.uncertainty import Uncertainty
-from rocking_cli.core.verdict import Verdict
 from rocking_cli.units import units_of
 from rocking_cli.views.view import ABSENT, Table, View
 
@@ -30,7 +30,7 @@ BOUNDS = (
 )
 
 
-class Installed(NamedTuple):
+class InstalledMechanism(NamedTuple):
     """A mechanism, its title, which is None if it cannot be loaded, and the package it comes from."""
 
     name: str
@@ -38,7 +38,7 @@ class Installed(NamedTuple):
     package: str
 
 
-def installed(found: Sequence[Installed]) -> View:
+def installed(found: Sequence[InstalledMechanism]) -> View:
     """The mechanisms that are installed."""
     cells = [[each.name, each.title or "(cannot be loaded)", each.package] for each in found]
     return View(

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from xml.etree import ElementTree
 
-from rocking_cli.studies.fragility.openquake import Model, identifier
+from rocking_cli.studies.fragility.openquake import OpenQuakeModel, identifier
 from rocking_cli.text import one_line
 
 NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
 
 
-def nrml(model: Model, name: str, description: str) -> bytes:
+def nrml(model: OpenQuakeModel, name: str, description: str) -> bytes:
     """The document.
 
     Parameters
     ----------
-    model : Model
+    model : OpenQuakeModel
         The curves.
     name : str
         Of the study.

@@ -21,7 +21,7 @@ SPANS = 4  # of periods, in a sentence
 
 
 @dataclass(frozen=True)
-class Results:
+class ShownSet:
     """A set, the target, and where the candidates come from.
 
     Parameters
@@ -42,14 +42,14 @@ class Results:
     unusable: Sequence[str] = ()
 
 
-def view(results: Results) -> View:
+def view(results: ShownSet) -> View:
     """The records and their factors, the range of the mean over the target, and what to know of both."""
     parts: list[Table | str] = [_records(results), _range(results), verdict(results), search(results)]
     parts += [said for said in (_left_out(results), _silent(results)) if said]
     return View(lambda: data(results), parts)
 
 
-def data(results: Results) -> dict[str, Any]:
+def data(results: ShownSet) -> dict[str, Any]:
     """A set as plain data."""
     found, wanted = results.found, results.found.wanted
     ratio = found.ratio
@@ -91,7 +91,7 @@ def data(results: Results) -> dict[str, Any]:
     }
 
 
-def table(results: Results) -> dict[str, Sequence[object]]:
+def table(results: ShownSet) -> dict[str, Sequence[object]]:
     """The columns of the spectra: the target, the mean, and each scaled record."""
     found = results.found
     names = [found.candidates.motions[k].name for k, _ in _chosen(found)]
@@ -103,13 +103,13 @@ def table(results: Results) -> dict[str, Sequence[object]]:
     }
 
 
-def title(results: Results) -> str:
+def title(results: ShownSet) -> str:
     """What is shown, as a heading."""
     found = results.found
     return f"{_records_in_words(len(found.chosen))} for {results.target.name}"
 
 
-def verdict(results: Results) -> str:
+def verdict(results: ShownSet) -> str:
     """Whether the mean lies within the limits, where it is least and most, and over which periods it does not fit."""
     found, wanted = results.found, results.found.wanted
     periods, ratio = found.candidates.periods, found.ratio
@@ -137,7 +137,7 @@ def verdict(results: Results) -> str:
     )
 
 
-def search(results: Results) -> str:
+def search(results: ShownSet) -> str:
     """How the set was found, and how good it is therefore."""
     found = results.found
     if found.exact:
@@ -168,7 +168,7 @@ def _records_in_words(count: int) -> str:
     return "1 record" if count == 1 else f"{count} records"
 
 
-def _records(results: Results) -> Table:
+def _records(results: ShownSet) -> Table:
     """A row for each record of the set."""
     found = results.found
     rows = []
@@ -180,7 +180,7 @@ def _records(results: Results) -> Table:
     return Table(title(results), heads, rows, numbers=(3, 4))
 
 
-def _range(results: Results) -> Table:
+def _range(results: ShownSet) -> Table:
     """Where the mean is least and most over the target."""
     found = results.found
     ratio, periods = found.ratio, found.candidates.periods
@@ -211,7 +211,7 @@ def _large(count: int) -> str:
     return f"{count:,}" if count < 1_000_000 else f"{count:.3g}".replace("e+0", "e").replace("e+", "e")
 
 
-def _left_out(results: Results) -> str:
+def _left_out(results: ShownSet) -> str:
     """Which records could not be chosen."""
     found = results.found
     said = [f"{found.candidates.motions[k].name}: {why}" for k, why in found.left_out.items()]
@@ -221,7 +221,7 @@ def _left_out(results: Results) -> str:
     return f"Left out: {'; '.join(said[:LISTED])}{more}."
 
 
-def _silent(results: Results) -> str:
+def _silent(results: ShownSet) -> str:
     """Return a sentence on the records whose file names no earthquake or station."""
     found = results.found
     if not found.silent:

@@ -20,10 +20,10 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.structure import Structure
-from rocking_cli.studies.contact import Contact
+from rocking_cli.studies.contact import ContactDemand
 from rocking_cli.studies.movements import Movements, Watched
 from rocking_cli.studies.neighbours import FRACTILES, Neighbours
-from rocking_cli.studies.response import Answer, Histories, Question, Runs
+from rocking_cli.studies.response import Histories, Question, Response, Runs
 from rocking_cli.views import processing
 from rocking_cli.views.contact import contact_data, contact_words
 from rocking_cli.views.restitution import restitution_data, restitution_used
@@ -32,14 +32,14 @@ from rocking_cli.views.view import ABSENT, Table, View, in_degrees, number
 FIRST = 12  # impacts of a model in its table; the data have all
 
 
-class Shown(NamedTuple):
+class HistoryDetails(NamedTuple):
     """What is shown of each history beside its outcome.
 
     Parameters
     ----------
     watched : Watched or None
         Points and ties, whose movement is shown.
-    contacts : mapping of int to Contact
+    contacts : mapping of int to ContactDemand
         Contact demands of the nonlinear history, by polarity.
     mechanism : Mechanism or None
         The structure that they are of.
@@ -49,7 +49,7 @@ class Shown(NamedTuple):
 
     watched: Watched | None = None
     etas: tuple[float, float] | None = None
-    contacts: Mapping[int, Contact] = MappingProxyType({})
+    contacts: Mapping[int, ContactDemand] = MappingProxyType({})
     mechanism: Mechanism | None = None
 
     def contact(self, polarity: int, name: ModelName) -> dict[str, Any] | None:
@@ -66,7 +66,7 @@ class Shown(NamedTuple):
         return [said] if said else []
 
 
-NOTHING_MORE = Shown()
+NOTHING_MORE = HistoryDetails()
 
 
 def record_data(motion: GroundMotion, factor: float, polarity: str, pulse: Pulse | None) -> dict[str, Any]:
@@ -116,7 +116,7 @@ def _motion_data(motion: GroundMotion) -> dict[str, Any]:
     }
 
 
-def runs_data(runs: Runs, near: Mapping[int, Neighbours], shown: Shown = NOTHING_MORE) -> dict[str, Any]:
+def runs_data(runs: Runs, near: Mapping[int, Neighbours], shown: HistoryDetails = NOTHING_MORE) -> dict[str, Any]:
     """Responses and neighbours, under their polarities if there are two."""
     each = {
         str(polarity): {
@@ -130,7 +130,7 @@ def runs_data(runs: Runs, near: Mapping[int, Neighbours], shown: Shown = NOTHING
     return each.popitem()[1] if len(each) == 1 else {"polarities": each, "governs": governs(runs)[0]}
 
 
-def histories_data(histories: Histories, shown: Shown = NOTHING_MORE, polarity: int = 1) -> dict[str, Any]:
+def histories_data(histories: Histories, shown: HistoryDetails = NOTHING_MORE, polarity: int = 1) -> dict[str, Any]:
     """The response of each model."""
     return {
         name: {**_history_data(run, shown), "contact": shown.contact(polarity, name)} for name, run in histories.items()
@@ -211,7 +211,7 @@ def not_checked(histories: Iterable[History]) -> list[str]:
     return [unchecked()]
 
 
-def _history_data(history: History, shown: Shown) -> dict[str, Any]:
+def _history_data(history: History, shown: HistoryDetails) -> dict[str, Any]:
     found: dict[str, Any] = {
         "peak_positive": history.peak_positive,
         "peak_negative": history.peak_negative,
@@ -255,7 +255,7 @@ def _impacts(history: History, etas: tuple[float, float], most: int) -> list[tup
 
 
 def view(
-    found: Answer,
+    found: Response,
     structure: Structure,
     asked: Question,
     polarity: str,
@@ -268,7 +268,7 @@ def view(
 
     Parameters
     ----------
-    found : Answer
+    found : Response
         What became of the structure.
     structure : Structure
         The structure.
@@ -284,7 +284,7 @@ def view(
         Whether to list the impacts: the first in a table, all in the data.
     """
     mechanism, given = structure.mechanism, found.given
-    shown = Shown(Watched(mechanism), structure.etas if impacts else None, found.contacts, mechanism)
+    shown = HistoryDetails(Watched(mechanism), structure.etas if impacts else None, found.contacts, mechanism)
     notes = vertical_notes(found.first, mechanism.gravity) if found.first is not None else []
     data: dict[str, Any] = {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
@@ -314,7 +314,7 @@ def view(
     return View({**data, "notes": [*doubts, *notes, *caution]}, said)
 
 
-def _apart(shown: Shown, runs: Runs) -> Iterator[str]:
+def _apart(shown: HistoryDetails, runs: Runs) -> Iterator[str]:
     """Warn if blocks of crossing walls have slid out of one another."""
     interlock = shown.watched.mechanism.interlock if shown.watched is not None else None
     every = [run for histories in runs.values() for run in histories.values()]
@@ -325,15 +325,15 @@ def _apart(shown: Shown, runs: Runs) -> Iterator[str]:
         )
 
 
-def runs_view(title: str, runs: Runs, mechanism: Mechanism, contacts: Mapping[int, Contact]) -> View:
+def runs_view(title: str, runs: Runs, mechanism: Mechanism, contacts: Mapping[int, ContactDemand]) -> View:
     """Responses alone, under one polarity or both."""
-    shown = Shown(Watched(mechanism), contacts=contacts, mechanism=mechanism)
+    shown = HistoryDetails(Watched(mechanism), contacts=contacts, mechanism=mechanism)
     caution = [f"Caution: {text}" for text in _apart(shown, runs)]
     return View(lambda: runs_data(runs, {}, shown), [*_tables(title, runs, {}, shown), *caution])
 
 
 def _tables(
-    title: str, runs: Runs, near: Mapping[int, Neighbours], shown: Shown = NOTHING_MORE
+    title: str, runs: Runs, near: Mapping[int, Neighbours], shown: HistoryDetails = NOTHING_MORE
 ) -> list[Table | str]:  # fmt: skip
     """A table and sentences on each polarity, and which of two governs."""
     parts: list[Table | str] = []
@@ -349,7 +349,7 @@ def _tables(
     return [*parts, governs(runs)[1]] if len(runs) > 1 else parts
 
 
-def _table(title: str, histories: Histories, shown: Shown, polarity: int) -> Table:
+def _table(title: str, histories: Histories, shown: HistoryDetails, polarity: int) -> Table:
     runs = list(histories.values())
     free = runs[0].ends_at_limit
     over = "limit" if all(free) else "phi_cr or limit" if any(free) else "phi_cr"

@@ -12,9 +12,9 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import peaks_over, percent
 from rocking_cli.structure import Structure
-from rocking_cli.studies.contact import Contact
-from rocking_cli.studies.neighbours import Around, Neighbours, Severity, governing, severity
-from rocking_cli.studies.response import Answer, Histories
+from rocking_cli.studies.contact import ContactDemand
+from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, Severity, governing, severity
+from rocking_cli.studies.response import Histories, Response
 from rocking_cli.views.contact import contact_words
 from rocking_cli.views.response import models_used
 from rocking_cli.views.restitution import restitution_used
@@ -43,11 +43,11 @@ class Several:
         self._fallen = self._unknown = 0
         self._checked, self._doubtful = True, False
         self._until: dict[str, str] = {}
-        self._around: Around | None = None
+        self._around: Neighbourhood | None = None
         self._mechanism = structure.mechanism
-        self._contacts: dict[str, Contact] = {}
+        self._contacts: dict[str, ContactDemand] = {}
 
-    def add(self, found: Answer) -> None:
+    def add(self, found: Response) -> None:
         """Add the response to one motion."""
         assert found.given is not None
         pga = f"{abs(found.given.factor) * found.given.motion.of_ground.pga_g:.4g}"

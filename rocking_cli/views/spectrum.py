@@ -25,7 +25,7 @@ BECAUSE = "a joint opens or slides so far that the model no longer holds"
 
 
 @dataclass(frozen=True, eq=False)
-class Results:
+class ShownSpectra:
     """Spectra, the motions they are of, the fractiles to show (0.5 among them), and the polarity as given."""
 
     spectra: Sequence[Spectrum]
@@ -47,7 +47,7 @@ class Results:
         return what + {"1": "", "-1": ", reversed", "both": ", either polarity"}[self.polarity]
 
 
-def view(results: Results) -> View:
+def view(results: ShownSpectra) -> View:
     """The peaks over the size of each shape, and what becomes of each."""
     parts = [part for each in results.spectra for part in _curve(results, each)]
     said = [_verdict(results, each) for each in results.spectra]
@@ -64,7 +64,7 @@ def view(results: Results) -> View:
     return View(lambda: _all(results), [*parts, *said])
 
 
-def _all(results: Results) -> dict[str, Any]:
+def _all(results: ShownSpectra) -> dict[str, Any]:
     return {
         "model": results.spectra[0].shape.structure.model.name,
         "polarity": results.polarity,
@@ -78,7 +78,7 @@ def _all(results: Results) -> dict[str, Any]:
     }
 
 
-def _joints(results: Results) -> list[str]:
+def _joints(results: ShownSpectra) -> list[str]:
     """Say what is not checked of the joints of the structures; nothing if all of them are."""
     said = [NO_JOINTS] if any(each.shape.leaves_out_joints for each in results.spectra) else []
     several = len(results.spectra) > 1
@@ -88,12 +88,12 @@ def _joints(results: Results) -> list[str]:
     ]
 
 
-def title(results: Results) -> str:
+def title(results: ShownSpectra) -> str:
     """Return the motions and the model of the spectra, as a heading."""
     return f"{results.shaking}, {results.spectra[0].shape.structure.model.name}"
 
 
-def lost(results: Results) -> str:
+def lost(results: ShownSpectra) -> str:
     """List the responses that could not be simulated; empty if all could."""
     found = [
         f"{each.shape.structure.name} at 2 pi/p = {each.periods[k]:.4g} s under {results.motions[m].motion.name}"
@@ -109,7 +109,7 @@ def lost(results: Results) -> str:
     )
 
 
-def table(results: Results) -> dict[str, Sequence[object]]:
+def table(results: ShownSpectra) -> dict[str, Sequence[object]]:
     """The columns of the curves, a row for each shape and size."""
     columns: dict[str, list[object]] = {}
     doubtful = any(each.shape.structure.may_open for each in results.spectra)
@@ -143,7 +143,7 @@ def table(results: Results) -> dict[str, Sequence[object]]:
     return columns  # type: ignore[return-value]
 
 
-def _data(results: Results, each: Spectrum) -> dict[str, Any]:
+def _data(results: ShownSpectra, each: Spectrum) -> dict[str, Any]:
     structure, blocks = each.shape.structure, each.shape.slenderness is not None
     return {
         "name": structure.name,
@@ -198,7 +198,7 @@ def _fractile(each: Spectrum, q: float) -> list[str]:
     ]
 
 
-def _curve(results: Results, each: Spectrum) -> Iterator[Table | str]:
+def _curve(results: ShownSpectra, each: Spectrum) -> Iterator[Table | str]:
     """The table of a shape, below what it is of."""
     structure = each.shape.structure
     shown = sorted({round(k) for k in np.linspace(0, each.scales.size - 1, min(ROWS, each.scales.size)).tolist()})
@@ -237,7 +237,7 @@ def _curve(results: Results, each: Spectrum) -> Iterator[Table | str]:
     yield Table("", heads, rows, numbers=range(len(heads)))
 
 
-def _verdict(results: Results, each: Spectrum) -> str:
+def _verdict(results: ShownSpectra, each: Spectrum) -> str:
     """Where the structure lies and what becomes of larger and smaller ones, or which blocks overturn."""
     place = each.given
     if place is None:
@@ -255,7 +255,7 @@ def _verdict(results: Results, each: Spectrum) -> str:
     )
 
 
-def _itself(results: Results, each: Spectrum) -> str:
+def _itself(results: ShownSpectra, each: Spectrum) -> str:
     assert each.given is not None
     peaks, unknown = each.peak_ratio[:, each.given], each.unknown[:, each.given]
     if results.one and unknown[0]:
@@ -280,7 +280,7 @@ def _itself(results: Results, each: Spectrum) -> str:
     return said if np.isinf(median) else f"{said}, and its median peak is {median:.3g} of phi_cr"
 
 
-def _side(results: Results, each: Spectrum, what: str, part: slice) -> str:
+def _side(results: ShownSpectra, each: Spectrum, what: str, part: slice) -> str:
     """A sentence on the sizes to one side of the structure; nothing if there are none."""
     falls, of, scales = each.overturned[part], each.followed[part], each.scales[part]
     if not falls.size:
@@ -301,7 +301,7 @@ def _side(results: Results, each: Spectrum, what: str, part: slice) -> str:
     return f"Of the {what} sizes {end}, {falls.sum()} of {of.sum()} overturn, {where}."
 
 
-def _blocks(results: Results, each: Spectrum) -> str:
+def _blocks(results: ShownSpectra, each: Spectrum) -> str:
     """Which sizes of blocks overturn."""
     falls, of = each.overturned, each.followed
     names = [f"{period:.3g} s (R = {R:.3g} m)" for period, R in zip(each.periods, each.scales, strict=True)]
@@ -324,7 +324,7 @@ def _most(falls: Integers, of: Integers, names: Sequence[str]) -> str:
     return f"{said}, and none {'overturns a larger size' if worst == last else f'does above {names[last]}'}"
 
 
-def _doubt(results: Results, falls: Integers, doubtful: Integers, of: Integers, names: Sequence[str]) -> str:
+def _doubt(results: ShownSpectra, falls: Integers, doubtful: Integers, of: Integers, names: Sequence[str]) -> str:
     """Say how many sizes, or motions at the worst size, are known to overturn, and how many may."""
     places = np.flatnonzero(doubtful)
     where = f"at {names[places[0]]}" if places.size == 1 else f"between {names[places[0]]} and {names[places[-1]]}"

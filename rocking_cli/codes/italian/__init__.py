@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from rocking_cli.codes.italian import method
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.method import EDITION, KEY, NAME
-from rocking_cli.codes.italian.results import Verification, Verified
+from rocking_cli.codes.italian.results import ItalianVerification, ItalianVerified
 from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, NONLINEAR
 from rocking_cli.codes.italian.site import ItalianSite, of_each
 from rocking_cli.core import Mechanism
@@ -24,7 +24,7 @@ def _zeta(key: str) -> Number:
     return Number(f"capacity over demand, by the {key} method of `verify`", of=partial(_zeta_of, key))
 
 
-def _zeta_of(key: str, found: Verified) -> float | None:
+def _zeta_of(key: str, found: ItalianVerified) -> float | None:
     return found.methods[key].zeta
 
 
@@ -43,13 +43,13 @@ class Italian(Code):
     }
     takes_control = True
 
-    def verify(self, mechanism: Mechanism, site: ItalianSite, control: Control | None = None) -> Verification:
+    def verify(self, mechanism: Mechanism, site: ItalianSite, control: Control | None = None) -> ItalianVerification:
         """Verify a structure by the damage, linear and nonlinear methods."""
         return method.verify(mechanism, site, control)
 
     def with_histories(
-        self, found: Verification, structure: Structure, site: ItalianSite, asked: Histories
-    ) -> Verification:
+        self, found: ItalianVerification, structure: Structure, site: ItalianSite, asked: Histories
+    ) -> ItalianVerification:
         """Return a verification with time histories on the capacity curve."""
         from rocking_cli.codes.italian import dynamic
 

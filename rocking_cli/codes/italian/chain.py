@@ -39,7 +39,7 @@ class Weight:
 
 
 @dataclass(frozen=True)
-class Block:
+class ChainBlock:
     """Pieces that move as one, and the loads they carry.
 
     Parameters
@@ -99,7 +99,7 @@ class Chain:
         ]
 
     @cached_property
-    def blocks(self) -> Sequence[Block]:
+    def blocks(self) -> Sequence[ChainBlock]:
         """The blocks of the chain: cutting one into pieces that move as one changes nothing."""
         pairs = zip(self._names_of_blocks, self._weights_of_blocks, strict=True)
         return [self._block(names, weights) for names, weights in pairs]
@@ -113,7 +113,7 @@ class Chain:
     def _weights_of_blocks(self) -> Sequence[Sequence[Weight]]:
         return [[each for each in self.weights if each.spot.body in names] for names in self._names_of_blocks]
 
-    def _block(self, names: Sequence[str], weights: Sequence[Weight]) -> Block:
+    def _block(self, names: Sequence[str], weights: Sequence[Weight]) -> ChainBlock:
         P, PQ = (sum(getattr(each, key) for each in weights) for key in ("carried", "inertial"))
         shares = [each.inertial for each in weights] if PQ else [each.carried for each in weights]
         at = sum(share * each.spot.at for share, each in zip(shares, weights, strict=True)) / (sum(shares) or 1.0)
@@ -121,7 +121,7 @@ class Chain:
         dx = sum(share * v.real for share, v in zip(shares, velocity, strict=True)) / (sum(shares) or 1.0)
         dy = sum(each.carried * v.imag for each, v in zip(weights, velocity, strict=True)) / (P or 1.0)
         x_of_P = sum(each.carried * each.spot.at.real for each in weights) / (P or 1.0)
-        return Block(names, P, PQ, complex(at), self.direction * dx, dy, x_of_P)
+        return ChainBlock(names, P, PQ, complex(at), self.direction * dx, dy, x_of_P)
 
     @cached_property
     def _follow_at_rest(self) -> Follow:

@@ -5,18 +5,18 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rocking_cli.codes.italian.results import Verification, Verified
+from rocking_cli.codes.italian.results import ItalianVerification, ItalianVerified
 from rocking_cli.plotting import style
 from rocking_cli.views.verification import shown
 from rocking_cli.views.view import heading
 
 
-def draw_verification(found: Verification) -> Figure:
+def draw_verification(found: ItalianVerification) -> Figure:
     """Draw the capacity curve of each direction that differs.
 
     Parameters
     ----------
-    found : Verification
+    found : ItalianVerification
         The verification by a code.
     """
     sides = shown(found)
@@ -30,7 +30,7 @@ def draw_verification(found: Verification) -> Figure:
     return figure
 
 
-def _draw(axes: Axes, side: Verified) -> None:
+def _draw(axes: Axes, side: ItalianVerified) -> None:
     d, a = side.exact.points()
     axes.plot(d, a, color=style.INK, linewidth=style.BOLD, label="exact curve")
     axes.plot(

@@ -32,7 +32,7 @@ def correction(damping: float) -> float:
     return max(sqrt(10 / (5 + 100 * damping)), 0.55)
 
 
-class Spectrum(Protocol):
+class DemandSpectrum(Protocol):
     """What shakes one degree of freedom, on the ground or above."""
 
     @property
@@ -45,7 +45,7 @@ class Spectrum(Protocol):
         """Largest acceleration of what it stands on [m/s2]: a_g S, or S_Z."""
         ...
 
-    def with_ag(self, ag: float) -> Spectrum:
+    def with_ag(self, ag: float) -> DemandSpectrum:
         """The same for another ground acceleration [g]: F0 and T_C held, T_D following."""
         ...
 
@@ -236,7 +236,7 @@ class FloorSpectrum:
 
     Parameters
     ----------
-    ground : Spectrum
+    ground : DemandSpectrum
         That of the ground.
     z, H : float
         Heights of the floor and of the building above its foundation [m].
@@ -315,6 +315,6 @@ class FloorSpectrum:
         return found
 
 
-def ordinates(spectrum: Spectrum, periods: Reals, damping: float) -> Reals:
+def ordinates(spectrum: DemandSpectrum, periods: Reals, damping: float) -> Reals:
     """S_e at many periods [m/s2], for pictures and tests."""
     return np.array([spectrum.acceleration(float(T), damping) for T in periods])

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from rocking_cli.codes.italian.capacity import ExactCurve
-from rocking_cli.codes.italian.chain import Block, Chain
+from rocking_cli.codes.italian.chain import Chain, ChainBlock
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.attached import Follow, Spot
 from rocking_cli.core.hung.element import Stretched
@@ -25,7 +25,7 @@ class Moved:
 
     Parameters
     ----------
-    block : Block
+    block : ChainBlock
         The block.
     gone : float
         How far its barycentre has gone sideways, in the direction of rocking [m].
@@ -39,7 +39,7 @@ class Moved:
         x' of the barycentre of P + Q, in the direction of rocking, and y' of that of P, upwards [m].
     """
 
-    block: Block
+    block: ChainBlock
     gone: float
     at: complex
     turns: float
@@ -49,7 +49,7 @@ class Moved:
 
 
 @dataclass(frozen=True)
-class Held:
+class ForceWork:
     """What a force or a tie does there: the force [N], how fast its point goes [m], and what that takes [N m]."""
 
     name: str
@@ -59,7 +59,7 @@ class Held:
 
 
 @dataclass(frozen=True, eq=False)
-class Displaced:
+class DisplacedChain:
     """The chain at a rotation.
 
     Parameters
@@ -87,7 +87,7 @@ class Displaced:
         """Its blocks."""
         return [self._moved(block) for block in self.chain.blocks]
 
-    def _moved(self, block: Block) -> Moved:
+    def _moved(self, block: ChainBlock) -> Moved:
         s, body = self.chain.direction, block.bodies[0]
         here, beside = (self._follow(Spot(body, at)) for at in (block.at, block.at + 1))
         velocity = complex(here.dz[0])
@@ -97,7 +97,7 @@ class Displaced:
         centre = None if abs(turns) < TURNS else now - velocity / (1j * spin.imag)
         return Moved(block, s * (now - block.at).real, now, turns, centre, s * velocity.real, lifted)
 
-    def _lift(self, block: Block) -> float:
+    def _lift(self, block: ChainBlock) -> float:
         """y' of the barycentre of what a block carries [m]."""
         own = [each for each in self.chain.weights if each.spot.body in block.bodies]
         lifts = [each.carried * float(self._follow(each.spot).dz[0].imag) for each in own]
@@ -114,12 +114,12 @@ class Displaced:
         return sum(each.block.PQ * each.dx for each in self.blocks)
 
     @cached_property
-    def held(self) -> Sequence[Held]:
+    def held(self) -> Sequence[ForceWork]:
         """What forces and ties do."""
         torn = self.curve.torn is not None and self.phi > self.curve.torn
         mechanism = self.chain.mechanism
         standing = mechanism.model_copy(update={"interlock": None}) if torn else mechanism
-        found: list[Held] = []
+        found: list[ForceWork] = []
         for each in standing.hung.elements:
             if isinstance(each, ConstantForce):
                 found += self._of_force(each)
@@ -127,18 +127,18 @@ class Displaced:
                 found += [self._of_tie(tie) for tie in each.stretched]
         return found
 
-    def _of_force(self, thing: ConstantForce) -> list[Held]:
+    def _of_force(self, thing: ConstantForce) -> list[ForceWork]:
         s, force = self.chain.direction, thing.in_direction(self.chain.direction)
         rate = complex(self._follow(thing.spot).dz[0])
         parts = [("x", s * force.real, s * rate.real), ("y", force.imag, rate.imag)]
-        return [Held(f"{thing.name}, {axis}", F, r, -F * r) for axis, F, r in parts if F]
+        return [ForceWork(f"{thing.name}, {axis}", F, r, -F * r) for axis, F, r in parts if F]
 
-    def _of_tie(self, tie: Stretched) -> Held:
+    def _of_tie(self, tie: Stretched) -> ForceWork:
         e, first, _ = tie.elongation(self._follow)
         rest = np.zeros(1)
         total = Coefficients(rest, *(np.zeros(1) for _ in range(7)))
         tie.act(total, self.chain.direction, self._follow)
-        return Held(tie.name, tie.count * float(tie.force(e)[0]), float(first[0]), float(total.Q[0]))
+        return ForceWork(tie.name, tie.count * float(tie.force(e)[0]), float(first[0]), float(total.Q[0]))
 
     @cached_property
     def _own(self) -> _Sums:

@@ -13,7 +13,7 @@ from functools import partial
 from math import sqrt
 
 from rocking_cli.codes.italian.capacity import ExactCurve
-from rocking_cli.codes.italian.results import Dynamic, RecordPeak, Verification
+from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, RecordPeak
 from rocking_cli.codes.italian.site import ItalianSite, floor_at
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History
@@ -71,7 +71,9 @@ def peaks(
     return found
 
 
-def with_histories(found: Verification, structure: Structure, site: ItalianSite, asked: Histories) -> Verification:
+def with_histories(
+    found: ItalianVerification, structure: Structure, site: ItalianSite, asked: Histories
+) -> ItalianVerification:
     """Return a verification with time histories under a set of records; see `check.with_histories`."""
     taken = structure if found.mechanism is structure.mechanism else Structure(found.mechanism, structure.file)
     checked = "joints" in engine_of(taken).knows and taken.model("nonlinear").joints is not None
@@ -99,7 +101,7 @@ def with_histories(found: Verification, structure: Structure, site: ItalianSite,
     return replace(found, directions=directions)
 
 
-def _state_of_records(found: Verification, state: str | None) -> str:
+def _state_of_records(found: ItalianVerification, state: str | None) -> str:
     """Return the limit state of a set of records. Raises `InputError` if the site does not give it."""
     if state is None:
         return found.first

@@ -8,9 +8,9 @@ from functools import cached_property
 
 from rocking_cli.codes.italian.capacity import root
 from rocking_cli.codes.italian.demand import (
+    DemandSpectrum,
     FloorSpectrum,
     GroundSpectrum,
-    Spectrum,
     TableSpectrum,
 )
 from rocking_cli.codes.italian.hazard import Hazard
@@ -21,7 +21,7 @@ AS_LARGE = 1e-13  # relative: a demand that scales with a_g
 
 
 @dataclass(frozen=True)
-class Ground:
+class SiteGround:
     """What a site does to a structure.
 
     Parameters
@@ -58,7 +58,7 @@ class Ground:
         assert given.ag is not None and given.F0 is not None and given.TC is not None and given.S is not None
         return GroundSpectrum(given.ag, given.F0, given.TC, given.S, self.site.soil)
 
-    def spectrum(self, state: str) -> Spectrum | None:
+    def spectrum(self, state: str) -> DemandSpectrum | None:
         """The spectrum where the structure stands; None where the file does not give the limit state."""
         ground = self.on_ground(state)
         return None if ground is None else self._where_it_stands(ground, state)
@@ -72,13 +72,13 @@ class Ground:
         return "SLD" if type(self.on_ground("SLD")) is type(self.on_ground("SLV")) else "SLV"
 
     @property
-    def of_activation(self) -> Spectrum:
+    def of_activation(self) -> DemandSpectrum:
         """The spectrum that the linear method takes, on a floor with the mode of SLD."""
         ground = self.on_ground(self.state_of_activation)
         assert ground is not None  # SLV is always given
         return self._where_it_stands(ground, "SLD")
 
-    def at_return_period(self, TR: float, state: str) -> Spectrum:
+    def at_return_period(self, TR: float, state: str) -> DemandSpectrum:
         """The spectrum where the structure stands at a return period [years], with the mode of a limit state.
 
         The hazard must be known.
@@ -86,14 +86,14 @@ class Ground:
         assert self.hazard is not None
         return self._where_it_stands(self.hazard.spectrum(TR), state)
 
-    def _where_it_stands(self, ground: GroundSpectrum | TableSpectrum, state: str) -> Spectrum:
+    def _where_it_stands(self, ground: GroundSpectrum | TableSpectrum, state: str) -> DemandSpectrum:
         floor = self.site.floor
         if floor is None:
             return ground
         mode = floor.mode(state)
         return FloorSpectrum(ground, floor.z, floor.H, mode.T1, mode.xi1, floor.n)
 
-    def capacity(self, spectrum: Spectrum, demand: Callable[[Spectrum], float], capacity: float) -> float:
+    def capacity(self, spectrum: DemandSpectrum, demand: Callable[[DemandSpectrum], float], capacity: float) -> float:
         """The a_g at which a demand reaches a capacity [g]; F0 and T_C those of a spectrum, T_D following."""
         own = demand(spectrum)
         in_ratio = spectrum.ag * capacity / own
@@ -104,7 +104,9 @@ class Ground:
             low, high = high, 2 * high
         return root(lambda ag: demand(spectrum.with_ag(ag)) - capacity, low, high)
 
-    def lasts(self, state: str, demand: Callable[[Spectrum], float], capacity: float) -> tuple[float | None, bool]:
+    def lasts(
+        self, state: str, demand: Callable[[DemandSpectrum], float], capacity: float
+    ) -> tuple[float | None, bool]:
         """The return period at which a demand reaches a capacity [years], all of that period; whether it is beyond."""
         hazard = self.hazard
         if hazard is None:

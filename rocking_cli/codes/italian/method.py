@@ -13,9 +13,9 @@ from math import pi, sqrt
 from rocking_cli.codes.italian import clauses, wordings
 from rocking_cli.codes.italian.capacity import CapacityCurve, ExactCurve, StraightCurve, with_elastic_branch
 from rocking_cli.codes.italian.chain import Chain
-from rocking_cli.codes.italian.demand import DAMPING, Spectrum
-from rocking_cli.codes.italian.ground import Ground
-from rocking_cli.codes.italian.results import Method, State, Verification, Verified
+from rocking_cli.codes.italian.demand import DAMPING, DemandSpectrum
+from rocking_cli.codes.italian.ground import SiteGround
+from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerification, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import DAMAGE, FIRST, LINEAR, NONLINEAR, OF_STATE, RULES, Rule
 from rocking_cli.codes.italian.sheet.steps import workings_of_direction, workings_of_site
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
@@ -32,10 +32,10 @@ EDITION = "NTC 2018 and Circolare 7/2019"
 class _Case:
     """A direction at a site, on one curve."""
 
-    ground: Ground
+    ground: SiteGround
     curve: CapacityCurve
 
-    def state(self, rule: Rule) -> State:
+    def state(self, rule: Rule) -> LimitState:
         """What the curve allows at a limit state, and what the site asks for [§C8.7.1.2.1.6, C8.7.1.10-12]."""
         site, curve = self.ground.site, self.curve
         d = rule.share * curve.d0
@@ -46,38 +46,38 @@ class _Case:
         a = with_elastic_branch(curve.acceleration(d), d, site.own_period)
         T = rule.factor * pi * sqrt(d / a)
         spectrum = self.ground.spectrum(rule.state)
-        return State(d, a, T, None if spectrum is None else spectrum.displacement(T, rule.damping))
+        return LimitState(d, a, T, None if spectrum is None else spectrum.displacement(T, rule.damping))
 
     def method(
-        self, title: str, clause: str, state: str, demand: Callable[[Spectrum], float], capacity: float
-    ) -> Method:
+        self, title: str, clause: str, state: str, demand: Callable[[DemandSpectrum], float], capacity: float
+    ) -> ItalianMethod:
         """Capacity of the structure by one method."""
         spectrum = self.ground.spectrum(state)
         if spectrum is None:
-            return Method(title, None, None, clause)
+            return ItalianMethod(title, None, None, clause)
         a_g = self.ground.capacity(spectrum, demand, capacity)
-        return Method(title, a_g, spectrum.ag, clause, *self.ground.lasts(state, demand, capacity))
+        return ItalianMethod(title, a_g, spectrum.ag, clause, *self.ground.lasts(state, demand, capacity))
 
-    def linear(self) -> Method:
+    def linear(self) -> ItalianMethod:
         """Return the capacity by the linear method: q times the a_g at which rocking starts at SLD [§C8.7.1.2.1.7]."""
         start = self.ground.capacity(self.ground.of_activation, self.forces, self.curve.a0)
         a_g = self.ground.site.q * start
         asked = self.ground.on_ground("SLV")
         assert asked is not None  # always given
         lasts = self.ground.lasts("SLV", lambda spectrum: spectrum.ag, a_g)
-        return Method("linear (q times onset) at SLV", a_g, asked.ag, clauses.LINEAR, *lasts)
+        return ItalianMethod("linear (q times onset) at SLV", a_g, asked.ag, clauses.LINEAR, *lasts)
 
     @property
     def of_damage(self) -> str:
         """The formula by which rocking starts."""
         return clauses.DAMAGE if self.ground.site.own_period is None else clauses.DAMAGE_VIBRATING
 
-    def forces(self, spectrum: Spectrum) -> float:
+    def forces(self, spectrum: DemandSpectrum) -> float:
         """Acceleration demand on the element [m/s2]: the peak of the ground or floor, or the ordinate at its own T0."""
         T0 = self.ground.site.own_period
         return spectrum.peak if T0 is None else spectrum.acceleration(T0, DAMPING)
 
-    def methods(self, states: Mapping[str, State]) -> dict[str, Method]:
+    def methods(self, states: Mapping[str, LimitState]) -> dict[str, ItalianMethod]:
         """Return the methods, by key."""
         a0 = self.curve.a0
         found = {
@@ -89,7 +89,7 @@ class _Case:
             title = f"onset of rocking at {rule.state}"
             found.setdefault(damage, self.method(title, self.of_damage, rule.state, self.forces, a0))
 
-            def asked(spectrum: Spectrum, T: float = at.T, damping: float = rule.damping) -> float:
+            def asked(spectrum: DemandSpectrum, T: float = at.T, damping: float = rule.damping) -> float:
                 return spectrum.displacement(T, damping)
 
             title = f"nonlinear at {rule.state}"
@@ -98,7 +98,7 @@ class _Case:
         return found
 
 
-def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = None) -> Verification:
+def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = None) -> ItalianVerification:
     """Verify a structure at a site.
 
     Parameters
@@ -117,17 +117,19 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     MechanismError
         If the structure does not stand.
     """
-    ground, taken = Ground(of_structure(site, mechanism)), lasting(mechanism)
+    ground, taken = SiteGround(of_structure(site, mechanism)), lasting(mechanism)
     found = {direction: _verified(taken, direction, ground, control) for direction in taken.directions}
     otherwise = [wordings.of_ties_at_rest(elastic(mechanism))] if taken is not mechanism else []
     remarks = [*otherwise, *wordings.of_site(ground, list(found.values()))]
-    return Verification(
+    return ItalianVerification(
         taken, KEY, NAME, EDITION, found,
         workings=Later(partial(workings_of_site, ground)), remarks=remarks, taken_otherwise=otherwise,
     )  # fmt: skip
 
 
-def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, control: Control | None) -> Verified:
+def _verified(
+    mechanism: Mechanism, direction: Direction, ground: SiteGround, control: Control | None
+) -> ItalianVerified:
     chain = Chain(mechanism, direction)
     exact = ExactCurve(chain, control or chain.barycentre, ground.site.FC)
     straight = StraightCurve(exact.a0, exact.d0, exact.broken, exact.seat)
@@ -141,7 +143,7 @@ def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, contro
         by_it = _Case(ground, usual)
         others = by_it.methods({rule.state: by_it.state(rule) for rule in RULES})
         remarks.append(wordings.of_control(methods[NONLINEAR], others[NONLINEAR], exact.d0, usual.d0))
-    found = Verified(
+    found = ItalianVerified(
         direction=direction,
         first=FIRST,
         exact=exact,
@@ -160,7 +162,7 @@ def _verified(mechanism: Mechanism, direction: Direction, ground: Ground, contro
     return replace(found, workings=Later(partial(workings_of_direction, ground, found)))
 
 
-def _governs(methods: Mapping[str, Method], damage: str, nonlinear: str) -> str:
+def _governs(methods: Mapping[str, ItalianMethod], damage: str, nonlinear: str) -> str:
     """The method that governs of the two of a limit state: the nonlinear one is never below damage."""
     start, moved = methods[damage].a_g, methods[nonlinear].a_g
     return damage if start is not None and moved is not None and start > moved else nonlinear

@@ -17,7 +17,7 @@ AGREE = 1e-9  # relative: directions that differ by less are shown once
 
 
 @dataclass(frozen=True)
-class State:
+class LimitState:
     """A limit state on a capacity curve.
 
     Parameters
@@ -45,7 +45,7 @@ class State:
 
 
 @dataclass(frozen=True)
-class Method(frame.Method):
+class ItalianMethod(frame.Method):
     """Capacity of the structure by one method of verification, as ground acceleration on rock [g].
 
     Parameters
@@ -162,7 +162,7 @@ class Dynamic:
 
 
 @dataclass(frozen=True, eq=False)
-class Verified(frame.Verified):
+class ItalianVerified(frame.Verified):
     """What was found in one direction of rocking, with what all codes have.
 
     Parameters
@@ -173,9 +173,9 @@ class Verified(frame.Verified):
         Uplift acceleration over g; a0* [m/s2]; d0* [m]; M* [kg], None without masses.
     exact : ExactCurve
         The capacity curve as the mechanism moves, with the control point and FC.
-    states, straight_states : mapping of str to State
+    states, straight_states : mapping of str to LimitState
         The limit states on the exact curve, and on the straight line.
-    methods, straight_methods : mapping of str to Method
+    methods, straight_methods : mapping of str to ItalianMethod
         What each method says on either.
     governing : mapping of str to str
         The method that governs at each limit state; `governs` is that at the first one.
@@ -183,16 +183,16 @@ class Verified(frame.Verified):
         What histories say.
     """
 
-    methods: Mapping[str, Method]
+    methods: Mapping[str, ItalianMethod]
     first: str
     lambda_: float
     a0: float
     d0: float
     M: float | None
     exact: ExactCurve
-    states: Mapping[str, State]
-    straight_states: Mapping[str, State]
-    straight_methods: Mapping[str, Method]
+    states: Mapping[str, LimitState]
+    straight_states: Mapping[str, LimitState]
+    straight_methods: Mapping[str, ItalianMethod]
     governing: Mapping[str, str]
     dynamic: Dynamic | None = None
 
@@ -202,7 +202,7 @@ class Verified(frame.Verified):
         return self.exact.chain
 
     @property
-    def counts(self) -> Method:
+    def counts(self) -> ItalianMethod:
         """The method that governs at the first limit state."""
         return self.methods[self.governs]
 
@@ -224,17 +224,17 @@ class Verified(frame.Verified):
 
     def is_like(self, other: frame.Verified) -> bool:
         """Whether another direction has the same curve; with histories none is, as the ground is not symmetric."""
-        assert isinstance(other, Verified)  # of one code
+        assert isinstance(other, ItalianVerified)  # of one code
         pairs = [(self.a0, other.a0), (self.d0, other.d0), (self.chain.e_star, other.chain.e_star)]
         pairs += [(self.states[key].a, other.states[key].a) for key in self.states]
         return self.dynamic is None and other.dynamic is None and all(isclose(a, b, rel_tol=AGREE) for a, b in pairs)
 
 
 @dataclass(frozen=True, eq=False)
-class Verification(frame.Verification):
+class ItalianVerification(frame.Verification):
     """Verification of a structure by the Italian code."""
 
-    directions: Mapping[Direction, Verified]
+    directions: Mapping[Direction, ItalianVerified]
 
     @property
     def first(self) -> str:

@@ -15,7 +15,7 @@ from rocking_cli.core.fields import quantity
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.yaml_file import Place
-from rocking_cli.processing.floor import Floor as MovingFloor
+from rocking_cli.processing.floor import Floor
 from rocking_cli.studies.fragility.together import Part, Sound
 from rocking_cli.studies.verification.site_file import Site
 
@@ -34,7 +34,7 @@ def _ordinates(**more: Any) -> Any:
     )  # fmt: skip
 
 
-class Shaking(Part):
+class StateGround(Part):
     """The ground of one limit state: by its parameters, or as ordinates of a spectrum."""
 
     ag: float | None = quantity("ground acceleration on rock", unit="g", symbol="a_g", default=None, gt=0, le=10)
@@ -98,7 +98,7 @@ class Mode(Part):
     xi1: float = quantity("damping ratio of the building: 0.05 for 5 %", gt=0, le=0.5)
 
 
-class Floor(Mode):
+class SiteFloor(Mode):
     """The floor of a building on which the structure stands; its own T1 and xi1 are those of SLV."""
 
     z: float = quantity("height of the floor above the foundation", unit="m", gt=0, le=1000)
@@ -122,7 +122,7 @@ class Floor(Mode):
 KAPPA = {"cantilever": 6.2, "spanning": 2.2}
 
 
-class Element(Part):
+class VibratingElement(Part):
     """An element that is free to vibrate before it rocks, of which the code estimates the period [C8.7.1.7]."""
 
     kind: Literal["cantilever", "spanning"] = Field(description="whether it is held at its foot or at both ends")
@@ -152,7 +152,7 @@ class Element(Part):
         L, t = self.size
         return self.kappa * (L / t) * L * sqrt(self.w / (self.E * STANDARD_GRAVITY))
 
-    def sized(self, mechanism: Mechanism) -> Element:
+    def sized(self, mechanism: Mechanism) -> VibratingElement:
         """Return the same with what its size lacks taken from a structure. Raises `InputError` if that has none."""
         sizes = {
             "L": (self.L, getattr(mechanism, "height", None)),
@@ -166,13 +166,13 @@ class Element(Part):
         return self.model_copy(update=found)
 
 
-class ItalianSite(Shaking, Site):
+class ItalianSite(StateGround, Site):
     """What a site file holds: the ground of one limit state (SLV), and of others; or the hazard of all of them."""
 
     FC: float = quantity("confidence factor, by which accelerations are divided", ge=1, le=2)
     q: float = quantity("behaviour factor of the linear method", default=2.0, ge=1, le=10)
-    SLC: Shaking | None = Field(None, description="the ground at collapse")
-    SLD: Shaking | None = Field(None, description="the ground at damage")
+    SLC: StateGround | None = Field(None, description="the ground at collapse")
+    SLD: StateGround | None = Field(None, description="the ground at damage")
     soil: Literal["A", "B", "C", "D", "E"] | None = Field(None, description="category of the soil")
     topography: Literal["T1", "T2", "T3", "T4"] = Field("T1", description="category of the topography")
     hazard: Annotated[list[Row], Field(min_length=2, max_length=MOST)] | None = Field(
@@ -180,21 +180,21 @@ class ItalianSite(Shaking, Site):
     )
     VN: float | None = quantity("nominal life", unit="years", default=None, gt=0, le=1000)
     CU: float | None = quantity("coefficient of use", default=None, gt=0, le=10)
-    floor: Floor | None = Field(None, description="the floor on which the structure stands; if omitted, the ground")
+    floor: SiteFloor | None = Field(None, description="the floor on which the structure stands; if omitted, the ground")
     T0: Period | None = quantity(
         "period of an element that vibrates freely before it rocks, such as a parapet", unit="s", default=None
     )
 
-    element: Element | None = Field(None, description="instead of T0: the element, from which T0 follows")
+    element: VibratingElement | None = Field(None, description="instead of T0: the element, from which T0 follows")
 
     @property
     def own_period(self) -> float | None:
         """T0 [s], as given or of the element."""
         return self.T0 if self.element is None else self.element.period
 
-    def shaking(self, state: str) -> Shaking | None:
+    def shaking(self, state: str) -> StateGround | None:
         """Return what the file says of the ground at a limit state: its own fields are those of SLV."""
-        found: Shaking | None = self if state == FIRST else getattr(self, state)
+        found: StateGround | None = self if state == FIRST else getattr(self, state)
         return found
 
     @classmethod
@@ -227,13 +227,13 @@ class ItalianSite(Shaking, Site):
         return given.get("hazard") is None
 
 
-def floor_at(site: ItalianSite, state: str) -> MovingFloor | None:
+def floor_at(site: ItalianSite, state: str) -> Floor | None:
     """Return the floor on which the structure stands, with its mode at a limit state; None on the ground."""
     floor = site.floor
     if floor is None:
         return None
     mode = floor.mode(state)
-    return MovingFloor(mode.T1, mode.xi1, floor.z / floor.H, 3 * floor.n / (2 * floor.n + 1))
+    return Floor(mode.T1, mode.xi1, floor.z / floor.H, 3 * floor.n / (2 * floor.n + 1))
 
 
 def of_structure(site: ItalianSite, mechanism: Mechanism) -> ItalianSite:

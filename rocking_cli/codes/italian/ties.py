@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
-from rocking_cli.codes.italian.displaced import Displaced
+from rocking_cli.codes.italian.displaced import DisplacedChain
 from rocking_cli.core import Mechanism
 from rocking_cli.core.hung.attached import Follow, Spot
 from rocking_cli.core.hung.elements import ConstantForce, Spring
@@ -80,7 +80,7 @@ def furthest(curve: ExactCurve, d: float) -> tuple[float, float]:
     drawn = curve.chain.mechanism.sketch().outlines
     own = {body.name: [body.outline] for body in curve.chain.mechanism.bodies() if body.outline}
     found = [(0.0, 1.0)]
-    for moved in Displaced(curve, curve.rotation(d)).blocks:
+    for moved in DisplacedChain(curve, curve.rotation(d)).blocks:
         lines = [line for name in moved.block.bodies for line in own.get(name) or drawn.get(name, ())]
         x = [complex(corner).real for line in lines for corner in line]
         if x and max(x) > min(x):

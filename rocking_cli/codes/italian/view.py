@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Any
 from rocking_cli import names
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian import words
-from rocking_cli.codes.italian.results import Dynamic, Method, RecordPeak, State, Verification, Verified
+from rocking_cli.codes.italian.results import (
+    Dynamic,
+    ItalianMethod,
+    ItalianVerification,
+    ItalianVerified,
+    LimitState,
+    RecordPeak,
+)
 from rocking_cli.codes.italian.ties import pulls
 from rocking_cli.studies.verification.working import in_plain
 from rocking_cli.views.verification import Showing, cited, columns
@@ -27,13 +34,13 @@ OF_SITE = [
 ]  # fmt: skip
 
 
-class ItalianShowing(Showing[Verification, Verified]):
+class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
     """How it is shown."""
 
     of_site, compared = OF_SITE, "displacement capacity to demand"
     notation = ": [formula] or §section"
 
-    def of_direction(self, found: Verification, each: Verified, where: str) -> Iterable[Table | str]:
+    def of_direction(self, found: ItalianVerification, each: ItalianVerified, where: str) -> Iterable[Table | str]:
         """Return the capacity curve, the methods, the verdict and why the methods differ."""
         yield _capacity(each, where)
         yield from _pulls(each)
@@ -46,15 +53,15 @@ class ItalianShowing(Showing[Verification, Verified]):
             yield _records(each.dynamic)
             yield from words.of_histories(each.dynamic, each.exact.confidence)
 
-    def data(self, found: Verification, each: Verified) -> dict[str, Any]:
+    def data(self, found: ItalianVerification, each: ItalianVerified) -> dict[str, Any]:
         """Return a direction as plain data."""
         return _data(each)
 
-    def data_of_all(self, found: Verification) -> dict[str, Any]:
+    def data_of_all(self, found: ItalianVerification) -> dict[str, Any]:
         """Return nothing more: the ground is in the workings."""
         return {}
 
-    def table(self, found: Verification) -> dict[str, Sequence[Any]]:
+    def table(self, found: ItalianVerification) -> dict[str, Sequence[Any]]:
         """Return a row for each direction and method."""
         return columns(
             ["direction", "method", "a_g [g]", "asked [g]", "zeta_E", "TR [years]", "governs"],
@@ -73,14 +80,14 @@ class ItalianShowing(Showing[Verification, Verified]):
             ],
         )
 
-    def draw(self, found: Verification) -> Figure:
+    def draw(self, found: ItalianVerification) -> Figure:
         """Draw the capacity curves."""
         from rocking_cli.codes.italian.curves import draw_verification
 
         return draw_verification(found)
 
 
-def _capacity(each: Verified, where: str) -> Table:
+def _capacity(each: ItalianVerified, where: str) -> Table:
     """The capacity curve, exactly and on the straight line."""
     clause = {line.symbol: cited(line) for line in each.workings}
     rows = [
@@ -107,7 +114,7 @@ def _capacity(each: Verified, where: str) -> Table:
     return Table(title, ["", "exact\ncurve", "straight\nline", "unit", "clause"], rows, numbers=(1, 2))
 
 
-def _methods(each: Verified) -> Table:
+def _methods(each: ItalianVerified) -> Table:
     """Table of the capacity by each method."""
     known = any(method.return_period is not None for method in each.methods.values())
     rows = []
@@ -151,7 +158,7 @@ def _peak(record: RecordPeak, found: Dynamic, confident: bool) -> str:
     return f"{d:.4g}{' past d0*' if d >= found.d0 else ''}"
 
 
-def _data(each: Verified) -> dict[str, Any]:
+def _data(each: ItalianVerified) -> dict[str, Any]:
     control = each.exact.control
     periods = _return_periods(each.methods)
     return {
@@ -172,13 +179,13 @@ def _data(each: Verified) -> dict[str, Any]:
     }
 
 
-def _state(each: Verified, name: str, at: State) -> dict[str, Any]:
+def _state(each: ItalianVerified, name: str, at: LimitState) -> dict[str, Any]:
     passes = each.passes(name)
     by = {"governs": each.governing[name] if passes is not None else None, "passes": passes}
     return {"d": at.d, "a": at.a, "T": at.T, "demand": at.demand, "ratio": at.ratio, **by}
 
 
-def _ties(each: Verified) -> dict[str, dict[str, float | None]]:
+def _ties(each: ItalianVerified) -> dict[str, dict[str, float | None]]:
     """Force [N], elongation [m] and strain of each tie, and of each force against the motion, at the limit states."""
     found: dict[str, dict[str, float | None]] = {}
     for key in ("force", "elongation", "strain"):
@@ -188,7 +195,7 @@ def _ties(each: Verified) -> dict[str, dict[str, float | None]]:
     return found
 
 
-def _pulls(each: Verified) -> list[Table]:
+def _pulls(each: ItalianVerified) -> list[Table]:
     """Table of the ties, and of the forces against the motion, at each limit state; none if there are none."""
     rows = [
         [pull.name, f"d_{state}", number(pull.force / 1e3), number(pull.elongation, 4),
@@ -200,7 +207,7 @@ def _pulls(each: Verified) -> list[Table]:
     return [Table(title, heads, rows, numbers=(2, 3, 4))] if rows else []
 
 
-def _return_periods(methods: Mapping[str, Method]) -> dict[str, dict[str, Any]]:
+def _return_periods(methods: Mapping[str, ItalianMethod]) -> dict[str, dict[str, Any]]:
     """Of each method, where the hazard is known."""
     known = {key: each for key, each in methods.items() if each.return_period is not None}
     return {key: {"years": each.return_period, "beyond": each.beyond} for key, each in known.items()}

@@ -8,10 +8,10 @@ from typing import Any
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum
-from rocking_cli.codes.italian.ground import Ground
+from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.hazard import LONGEST, SHORTEST, return_period
 from rocking_cli.codes.italian.remarks import TEXTS
-from rocking_cli.codes.italian.results import Method, State, Verified
+from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import FURTHER, RULES, STATES
 from rocking_cli.codes.italian.ties import STRETCHED, WIDE, carried, elastic, furthest, pulls
 from rocking_cli.core.hung.ties import Tie
@@ -34,7 +34,7 @@ def _named(states: Sequence[str]) -> str:
     return _told("and", one=", ".join(before), other=last) if before else last
 
 
-def of_site(ground: Ground, found: Collection[Verified]) -> list[str]:
+def of_site(ground: SiteGround, found: Collection[ItalianVerified]) -> list[str]:
     """Of the site and of both directions."""
     said: list[str] = [*_of_spectrum(ground), *_of_lives(ground)]
     periods = [state.T for each in found for state in each.states.values() if state.demand is not None]
@@ -53,7 +53,7 @@ def of_site(ground: Ground, found: Collection[Verified]) -> list[str]:
     return said
 
 
-def _of_spectrum(ground: Ground) -> list[str]:
+def _of_spectrum(ground: SiteGround) -> list[str]:
     spectrum = ground.spectrum("SLV")
     said: list[str] = []
     on_ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
@@ -69,7 +69,7 @@ def _of_spectrum(ground: Ground) -> list[str]:
     return said
 
 
-def _of_modes(ground: Ground) -> list[str]:
+def _of_modes(ground: SiteGround) -> list[str]:
     """Of a floor whose T1 and xi1 are the same at several limit states."""
     floor = ground.site.floor
     same = [state for state in FURTHER if floor is not None and getattr(floor, state) is None]
@@ -82,7 +82,7 @@ def _of_modes(ground: Ground) -> list[str]:
     return [_told("same_mode_further", **values, states=_named(given))] if given else []
 
 
-def _of_lives(ground: Ground) -> list[str]:
+def _of_lives(ground: SiteGround) -> list[str]:
     site = ground.site
     if ground.hazard is None or site.VN is None or site.CU is None:
         return []
@@ -95,7 +95,7 @@ def _of_lives(ground: Ground) -> list[str]:
     return said
 
 
-def of_direction(curve: ExactCurve, states: Mapping[str, State], ground: Ground) -> list[str]:
+def of_direction(curve: ExactCurve, states: Mapping[str, LimitState], ground: SiteGround) -> list[str]:
     """Of one direction."""
     said = [*_of_line(curve, states), *_of_ties(curve, states), *_of_break(curve, states), *_of_seat(curve, states)]
     said += [*_of_stretch(curve, states), *_of_letter(curve.chain, curve)]
@@ -107,7 +107,7 @@ def of_direction(curve: ExactCurve, states: Mapping[str, State], ground: Ground)
     return said
 
 
-def _of_line(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
+def _of_line(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[str]:
     d, a = curve.points()
     off = max(abs(curve.a0 * (1 - d / curve.d0) - a)) / curve.a0
     if off <= CURVED:
@@ -118,7 +118,7 @@ def _of_line(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
     return [_told("line", most=100 * float(off), there=100 * abs(there), side=side)]
 
 
-def _of_ties(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
+def _of_ties(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[str]:
     if not elastic(curve.chain.mechanism):
         return []
     said: list[str] = [_told("ties", largest=curve.largest, over=curve.largest / curve.a0)]
@@ -127,7 +127,7 @@ def _of_ties(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
     return said
 
 
-def _of_stretch(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
+def _of_stretch(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[str]:
     """Ties that would be far too long, forces that follow far, and blocks that go as far as they are thick."""
     said: dict[str, str] = {}
     for state, at in states.items():
@@ -153,7 +153,7 @@ def of_ties_at_rest(ties: Sequence[Tie]) -> str:
     return _told("at_rest", names=", ".join(tie.name for tie in ties))
 
 
-def _of_break(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
+def _of_break(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[str]:
     if curve.torn is None or not curve.lost_on_the_way:
         return []
     d = curve.displacement_at(curve.torn)
@@ -163,7 +163,7 @@ def _of_break(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
     return said
 
 
-def _of_seat(curve: ExactCurve, states: Mapping[str, State]) -> list[str]:
+def _of_seat(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[str]:
     seat = curve.seat
     limited = [f"d_{state}" for state, at in states.items() if seat is not None and at.d == seat.d]
     if seat is None or not limited:
@@ -182,7 +182,7 @@ def _of_letter(chain: Chain, curve: ExactCurve) -> list[str]:
     return said
 
 
-def of_control(chosen: Method, usual: Method, d0: float, usual_d0: float) -> str:
+def of_control(chosen: ItalianMethod, usual: ItalianMethod, d0: float, usual_d0: float) -> str:
     """What a chosen control point changes: d0* [m] and the nonlinear method, against the barycentre of P + Q."""
     change = d0 / usual_d0 - 1
     if abs(change) < ROUNDING:

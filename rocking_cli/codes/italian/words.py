@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rocking_cli.codes.italian.results import Dynamic, Verified
+from rocking_cli.codes.italian.results import Dynamic, ItalianVerified
 from rocking_cli.codes.italian.rules import OF_STATE
 from rocking_cli.dynamics.holding import NOT_CHECKED
 
@@ -12,7 +12,7 @@ SAME = 0.005  # of an a_g: methods that differ by less agree
 ORDINAL = {True: "With FC", False: "Without FC, as in `rocking respond`"}
 
 
-def verdict(found: Verified, first: str, where: str) -> str:
+def verdict(found: ItalianVerified, first: str, where: str) -> str:
     """State whether a direction passes at the first limit state, by what margin, and which method governs.
 
     `where` names the direction.
@@ -21,7 +21,7 @@ def verdict(found: Verified, first: str, where: str) -> str:
     return f"{where}: the site does not give {first}." if said is None else f"{where}, {said}"
 
 
-def _verdict_at(found: Verified, state: str) -> str | None:
+def _verdict_at(found: ItalianVerified, state: str) -> str | None:
     """State whether a direction passes at a limit state; None if the site does not give it."""
     damage, nonlinear = OF_STATE[state]
     at, counts = found.states[state], found.methods[found.governing[state]]
@@ -42,7 +42,7 @@ def _verdict_at(found: Verified, state: str) -> str | None:
     return f"{outcome} The nonlinear method governs: {held}. {capacity}"
 
 
-def differences(found: Verified, first: str) -> Iterator[str]:
+def differences(found: ItalianVerified, first: str) -> Iterator[str]:
     """Explain why the linear method and the straight line differ from the method and curve that govern."""
     linear, counts, at = found.methods["linear"].a_g, found.counts.a_g, found.states[first]
     if linear is None or counts is None:
@@ -72,7 +72,7 @@ def differences(found: Verified, first: str) -> Iterator[str]:
         )
 
 
-def beyond_first(found: Verified, first: str) -> Iterator[str]:
+def beyond_first(found: ItalianVerified, first: str) -> Iterator[str]:
     """State whether the direction passes at the other limit states that the site gives."""
     for name in found.states:
         said = _verdict_at(found, name) if name != first else None

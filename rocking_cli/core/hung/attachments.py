@@ -30,13 +30,13 @@ STRETCHED = 1e-9  # of the length of its path, or of a metre: what counts as str
 Loc = tuple[str | int, ...]
 
 
-class Refused(PydanticCustomError):
+class RefusedFields(PydanticCustomError):
     """Fields of a user that do not fit together, at `field` within `loc`; see `as_validation_error`.
 
     A validator may raise it, as `geometry_error`; no plugin is blamed for it.
     """
 
-    def __new__(cls, loc: Loc, field: str, reason: str) -> Refused:
+    def __new__(cls, loc: Loc, field: str, reason: str) -> RefusedFields:
         """Make it as pydantic knows such errors; braces in a message would be pydantic's."""
         return super().__new__(cls, "geometry", "{reason}", {"reason": reason, "field": (*loc, field)})
 
@@ -44,14 +44,14 @@ class Refused(PydanticCustomError):
         self.loc, self.field, self.reason = loc, field, reason
 
     @classmethod
-    def first_of(cls, error: ValidationError) -> Refused:
+    def first_of(cls, error: ValidationError) -> RefusedFields:
         """Return the first of the errors that another structure with the same fields has."""
         first = error.errors(include_url=False)[0]
         *loc, field = (*first["loc"], *first.get("ctx", {}).get("field", ())) or ("mechanism",)
         return cls(tuple(loc), str(field), first["msg"])
 
 
-def as_validation_error(refused: Sequence[Refused], title: str) -> ValidationError:
+def as_validation_error(refused: Sequence[RefusedFields], title: str) -> ValidationError:
     """What was refused, as errors of the fields it stands in."""
     return ValidationError.from_exception_data(
         title,
@@ -98,26 +98,26 @@ class Carrier:
         )
 
     def body(self, name: str | None, loc: Loc) -> str:
-        """Return the body that a load or tie refers to. Raises `Refused`."""
+        """Return the body that a load or tie refers to. Raises `RefusedFields`."""
         known = ", ".join(self.bodies)
         if name is None:
             if len(self.bodies) > 1:
-                raise Refused(loc, "body", f"is missing: say which body, of {known}")
+                raise RefusedFields(loc, "body", f"is missing: say which body, of {known}")
             return next(iter(self.bodies))
         if name not in self.bodies:
             guess = did_you_mean(name, list(self.bodies))
-            raise Refused(loc, "body", f"there is no body {name!r}: {guess or f'known: {known}'}")
+            raise RefusedFields(loc, "body", f"there is no body {name!r}: {guess or f'known: {known}'}")
         return name
 
     def spot(self, name: str | None, point: complex, loc: Loc, field: str) -> Spot:
-        """A point of a body. Raises `Refused` if it lies outside it."""
+        """A point of a body. Raises `RefusedFields` if it lies outside it."""
         body = self.carrying(name, point, loc)
         shapes = self.outlines.get(body, ())
         if shapes and not any(_holds(np.asarray(shape), point) for shape in shapes):
             corners = np.concatenate([np.asarray(shape) for shape in shapes])
             low, high = corners.real.min(), corners.real.max()
             bottom, top = corners.imag.min(), corners.imag.max()
-            raise Refused(
+            raise RefusedFields(
                 loc,
                 field,
                 f"[{point.real:g}, {point.imag:g}] lies outside {body}, whose corners are from x = {low:.4g} to "
@@ -126,7 +126,7 @@ class Carrier:
         return Spot(body, point)
 
     def carrying(self, name: str | None, point: complex, loc: Loc) -> str:
-        """Return the body, or the piece of it, that carries a point. Raises `Refused`."""
+        """Return the body, or the piece of it, that carries a point. Raises `RefusedFields`."""
         return self.body(name if name is None else self.piece(name, point), loc)
 
     def off(self, body: str, point: complex) -> float:
@@ -139,7 +139,7 @@ class Carrier:
         return min(_from_edges(shape, point) for shape in shapes) / size
 
     def foot(self, name: str | None, loc: Loc) -> Spot:
-        """The point of a body under its centroid at the height of its lowest corner. Raises `Refused`."""
+        """The point of a body under its centroid at the height of its lowest corner. Raises `RefusedFields`."""
         body = self.body(name, loc)
         centroid = self.bodies[body].centroid
         lowest = min((float(np.asarray(shape).imag.min()) for shape in self.outlines.get(body, ())), default=0.0)
@@ -155,7 +155,7 @@ def attach(
 ) -> Iterator[tuple[Loc, Attached]]:
     """What the equation of motion sees of loads and ties, each with its place among the fields.
 
-    Raises `Refused`, also of a name that is there already or is of `taken`.
+    Raises `RefusedFields`, also of a name that is there already or is of `taken`.
     """
     own, names = {*POINTS, *taken}, set[str]()
     for k, load in enumerate(loads):
@@ -169,15 +169,15 @@ def attach(
         spots = list(_spots(carrier, tie, loc))
         bodies = [spot.body for spot in spots if spot.body is not None]
         if not bodies:
-            raise Refused(loc, "from", "both ends are on the ground, so no motion stretches it")
+            raise RefusedFields(loc, "from", "both ends are on the ground, so no motion stretches it")
         yield loc, tie.element(spots, max(carrier.count(body, each=tie.each) for body in bodies))
 
 
 def interlocked(interlock: Interlock, carrier: Carrier, density: float | None, gravity: float) -> Attached:
-    """What the equation of motion sees of the walls that cross a structure. Raises `Refused`."""
+    """What the equation of motion sees of the walls that cross a structure. Raises `RefusedFields`."""
     loc, density = ("interlock",), interlock.density or density
     if density is None:
-        raise Refused(loc, "density", "is missing: the weight of the crossing walls is their friction")
+        raise RefusedFields(loc, "density", "is missing: the weight of the crossing walls is their friction")
     foot = carrier.foot(interlock.body, loc)
     carrier.spot(foot.body, foot.at + 1j * interlock.height, loc, "height")
     return interlock.attached(foot, density, gravity)
@@ -197,9 +197,9 @@ def far_off(carrier: Carrier, loads: Sequence[Load]) -> Iterator[str]:
 
 def _own_name(name: str, names: set[str], own: Collection[str], loc: Loc) -> None:
     if name in own:
-        raise Refused(loc, "name", f"{name!r} is a reserved name: choose another")
+        raise RefusedFields(loc, "name", f"{name!r} is a reserved name: choose another")
     if name in names:
-        raise Refused(loc, "name", f"{name!r} is already used: give each load and tie its own name")
+        raise RefusedFields(loc, "name", f"{name!r} is already used: give each load and tie its own name")
     names.add(name)
 
 
@@ -229,7 +229,7 @@ def check_stretched(
                 return
     if tie.stretched:
         sense = f" in {tie.stretched[0].only}" if tie.stretched[0].only else ""
-        raise Refused(
+        raise RefusedFields(
             loc, "name", f"nothing stretches {tie.name!r}{sense}: no motion of the structure changes its length"
         )
 

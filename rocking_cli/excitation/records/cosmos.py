@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import Doubt, GroundMotion, Origin
 from rocking_cli.excitation.records.layout import (
-    Block,
     Channel,
+    RecordBlock,
     choose,
     column_width,
     fixed_width,
@@ -119,7 +119,7 @@ def _headers(file: str, lines: Lines, start: int) -> _Headers:
         reals_line = index + 1
         line = lines[index]
         count = whole_number(file, reals_line, line, match[1], f"number of {kind} values", most=_HEADER_VALUES)
-        block = Block(reals_line, count, _width(file, reals_line, match[3]), reals_line)
+        block = RecordBlock(reals_line, count, _width(file, reals_line, match[3]), reals_line)
         reals, index, _ = fixed_width(file, lines, block, last=False)
     if index < len(lines) and (match := _COMMENTS.match(lines[index])):
         what = "number of comment lines"
@@ -149,7 +149,7 @@ def _history(file: str, lines: Lines, headers: _Headers, index: int, units: str 
             hint = "it must be such as 7000 acceleration pts, approx 70 secs, units=cm/sec2(04),Format=(8F10.5)"
         raise InputError(Problem(message, file, min(line_number, len(lines)), excerpt=line.strip()[:100], hint=hint))
     count = whole_number(file, line_number, line, match[1], "number of points", least=2)
-    block = Block(line_number, count, _width(file, line_number, match[5]), line_number)
+    block = RecordBlock(line_number, count, _width(file, line_number, match[5]), line_number)
     values, end, remarks = fixed_width(file, lines, block)
     if not match[2].lower().startswith("acc"):
         return match[2], end

@@ -9,8 +9,8 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import csmip_v1
 from rocking_cli.excitation.records.layout import (
-    Block,
     Channel,
+    RecordBlock,
     choose,
     column_width,
     fixed_width,
@@ -69,7 +69,7 @@ def read(
         own = number(file, index, line, data[3], "sample interval")
         form = _FORMAT.search(data[4])
         width = column_width(file, index, line, form[1]) if form else _WIDTH
-        block = Block(index, count, width, index)
+        block = RecordBlock(index, count, width, index)
         values, index, remarks = fixed_width(file, lines, block)
         if data[2].upper() == "ACCEL":
             spelling = _UNIT.search(data[4])

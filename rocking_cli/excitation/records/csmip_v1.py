@@ -9,8 +9,8 @@ from dataclasses import replace
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.layout import (
-    Block,
     Channel,
+    RecordBlock,
     choose,
     column_width,
     fixed_width,
@@ -82,7 +82,7 @@ def _channel(file: str, lines: Lines, start: int, units: str | None) -> tuple[Ch
     name = next((match[1] for line in head if (match := _CHANNEL.match(line.strip()))), "")
     index = start + _TEXT_LINES
     for size, width in (_INTEGERS, _REALS):
-        _, index, _ = fixed_width(file, lines, Block(index, size, width, start + 1), last=False)
+        _, index, _ = fixed_width(file, lines, RecordBlock(index, size, width, start + 1), last=False)
     line = lines[index] if index < len(lines) else ""
     for pattern in _EVENLY:
         if match := pattern.match(line):
@@ -112,7 +112,7 @@ def _evenly(
     stated, form = _STATED.search(match[4]), _FORMAT.search(match[4])
     unit = old_unit(file, line_number, stated[1] if stated else "", units)
     width = column_width(file, line_number, line, form[1]) if form else _VALUES
-    values, end, remarks = fixed_width(file, lines, Block(line_number, count, width, line_number))
+    values, end, remarks = fixed_width(file, lines, RecordBlock(line_number, count, width, line_number))
     return Channel(name, own, in_si(values, unit), unit, line_number, remarks=remarks), end
 
 
@@ -123,7 +123,7 @@ def _film(file: str, lines: Lines, start: int, index: int, name: str, units: str
     unit_line, spelling = _find(file, head, start, _UNITS, "unit (UNITS OF UNCOR ACCEL ARE SEC AND ...)")
     unit = old_unit(file, unit_line, spelling, units)
     count = whole_number(file, count_line, lines[count_line - 1], count_text, "number of points", least=2)
-    pairs, end, remarks = fixed_width(file, lines, Block(index, 2 * count, _PAIRS, count_line))
+    pairs, end, remarks = fixed_width(file, lines, RecordBlock(index, 2 * count, _PAIRS, count_line))
     own, values, points = straight_lines(file, pairs, f"lines {index + 1} to {end}")
     return Channel(name, own, in_si(values, unit), unit, points=points, remarks=remarks), end
 

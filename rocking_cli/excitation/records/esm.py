@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.excitation.records.layout import (
-    Block,
     Channel,
+    RecordBlock,
     choose,
     fixed_width,
     in_si,
@@ -62,7 +62,7 @@ def read(
     own = number(file, dt_line, lines[dt_line - 1], dt_text, "sampling interval")
     count_line, count_text = header["NDATA"]
     count = whole_number(file, count_line, lines[count_line - 1], count_text, "number of points", least=2)
-    values, _, remarks = fixed_width(file, lines, Block(start, count, None, count_line))
+    values, _, remarks = fixed_width(file, lines, RecordBlock(start, count, None, count_line))
     peak_line, peak = header.get("PGA_CM/S^2", (0, ""))
     remarks += peak_doubts(
         100 * in_si(values, unit), own, "cm/s2", peak_line, peak, header.get("TIME_PGA_S", (0, ""))[1]

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.excitation.records.layout import (
-    Block,
     Channel,
+    RecordBlock,
     choose,
     fixed_width,
     in_si,
@@ -89,9 +89,9 @@ def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[
             Problem(message, file, sizes_line + 1, hint="the file may have been edited: download it again")
         )
     end = start + _TEXT_LINES + _NUMBER_LINES
-    values, end, remarks = fixed_width(file, lines, Block(end, npts, _WIDTH, count_line), last=False)
+    values, end, remarks = fixed_width(file, lines, RecordBlock(end, npts, _WIDTH, count_line), last=False)
     for size in sizes[1:]:  # velocity and displacement
-        _, end, _ = fixed_width(file, lines, Block(end, size, _WIDTH, sizes_line + 1), last=False)
+        _, end, _ = fixed_width(file, lines, RecordBlock(end, size, _WIDTH, sizes_line + 1), last=False)
     if match := _PEAK.search(lines[unit_line - 1]):
         # Not its time: that does not count the taper which was put in front of the values.
         remarks += peak_doubts(values, own, unit, unit_line, match[1])

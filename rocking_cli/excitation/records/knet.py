@@ -10,8 +10,8 @@ import numpy as np
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.layout import (
-    Block,
     Channel,
+    RecordBlock,
     choose,
     fixed_width,
     in_si,
@@ -65,7 +65,7 @@ def read(
     # The format has no number of points: it is the rate times the duration.
     line = lines[length_line - 1]
     count = whole_number(file, length_line, line, f"{round(rate * length)}", "number of points", least=2)
-    values, _, remarks = fixed_width(file, lines, Block(_HEADER_LINES, count, _WIDTH, length_line, after=_AFTER))
+    values, _, remarks = fixed_width(file, lines, RecordBlock(_HEADER_LINES, count, _WIDTH, length_line, after=_AFTER))
     if not sensible(float(np.abs(values).max()) * (full / counts)):
         message = "the scale factor makes accelerations beyond all measure"
         raise InputError(Problem(message, file, scale_line, excerpt=lines[scale_line - 1].strip()[:100]))

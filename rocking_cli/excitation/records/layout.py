@@ -18,7 +18,7 @@ from rocking_cli.excitation.base import MOST_SAMPLES, NOT_SAID, STANDARD_GRAVITY
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.text import check_interval, numbers_in, sensible
 from rocking_cli.excitation.records.units import CHOICES, UNITS, canonical, resolve_unit
-from rocking_cli.excitation.records.widths import Rows, odd_digits, split_numbers
+from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, split_numbers
 from rocking_cli.patterns import regex
 
 # A row of numbers has no letters but those of exponents; asterisks are an overflow, for `numbers_in` to refuse.
@@ -32,7 +32,7 @@ _TOUCHING = "the rows do not keep to columns of {} characters, so that numbers t
 
 
 @dataclass(frozen=True)
-class Block:
+class RecordBlock:
     """Where a run of numbers is, and how many there must be.
 
     Parameters
@@ -122,7 +122,7 @@ def lines_of(text: str) -> Lines:
     return Lines(text, tabs=True)
 
 
-def fixed_width(file: str, lines: Lines, block: Block, *, last: bool = True) -> Numbers:
+def fixed_width(file: str, lines: Lines, block: RecordBlock, *, last: bool = True) -> Numbers:
     """Read numbers that stand in columns of a constant width, with or without blanks between them.
 
     A row that leaves its columns has lost a character, and its numbers with it. Where most rows do, an editor has taken
@@ -134,7 +134,7 @@ def fixed_width(file: str, lines: Lines, block: Block, *, last: bool = True) -> 
         The file, for the messages.
     lines : Lines
         All its lines.
-    block : Block
+    block : RecordBlock
         Where the numbers are, and how many.
     last : bool, optional
         Whether no other numbers may follow.
@@ -189,11 +189,11 @@ def fixed_width(file: str, lines: Lines, block: Block, *, last: bool = True) -> 
             )
         raise InputError(Problem(message, file=file, line=block.header_line, excerpt=excerpt or None, hint=hint))
     if block.width is None or leaving:
-        remarks += tuple(odd_digits(Rows(lines, block.start, split_numbers, index)))
+        remarks += tuple(odd_digits(PrintedRows(lines, block.start, split_numbers, index)))
     return Numbers(np.array(values), index, remarks)
 
 
-def _cells(row: str, block: Block) -> list[str] | None:
+def _cells(row: str, block: RecordBlock) -> list[str] | None:
     """The cells of a row; None if its numbers do not all end where their columns do."""
     if block.width is None:
         return [row]
@@ -205,7 +205,7 @@ def _cells(row: str, block: Block) -> list[str] | None:
     return None if any(cell.endswith(" ") or len(cell.split()) != 1 for cell in cells) else cells
 
 
-def _floats(file: str, line_number: int, row: str, cells: Sequence[str], block: Block) -> list[float]:
+def _floats(file: str, line_number: int, row: str, cells: Sequence[str], block: RecordBlock) -> list[float]:
     """Values of cells, NaN for those that are not set."""
     try:
         found = [float(cell.upper().replace("D", "E")) for cell in cells]
@@ -220,7 +220,7 @@ def _floats(file: str, line_number: int, row: str, cells: Sequence[str], block: 
     return found
 
 
-def _out_of_columns(file: str, lines: Lines, leaving: Sequence[int], rows: int, block: Block) -> Problem:
+def _out_of_columns(file: str, lines: Lines, leaving: Sequence[int], rows: int, block: RecordBlock) -> Problem:
     """Describe the first of a few rows that leave their columns."""
     more = f" (as in {len(leaving) - 1} more of {rows})" if len(leaving) > 1 else ""
     message = f"the numbers of this row do not end at their columns of {block.width} characters{more}"
@@ -228,7 +228,7 @@ def _out_of_columns(file: str, lines: Lines, leaving: Sequence[int], rows: int, 
     return Problem(message, file, leaving[0], excerpt=lines[leaving[0] - 1][:100], hint=hint)
 
 
-def _no_columns(leaving: Sequence[int], rows: int, block: Block) -> Doubt:
+def _no_columns(leaving: Sequence[int], rows: int, block: RecordBlock) -> Doubt:
     """Say that rows are read as free text."""
     text = (
         f"{len(leaving)} of its {rows} rows, from line {leaving[0]} on, do not keep to columns of {block.width} "

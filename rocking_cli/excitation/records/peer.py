@@ -18,7 +18,7 @@ from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import of_peer
 from rocking_cli.excitation.records.text import check_interval, numbers_in, only_channel, usable
 from rocking_cli.excitation.records.units import UNITS, resolve_unit
-from rocking_cli.excitation.records.widths import Rows, odd_digits, odd_row, split_numbers
+from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, odd_row, split_numbers
 from rocking_cli.patterns import regex
 
 TITLE = "PEER AT2"
@@ -34,7 +34,7 @@ _HEADER_LINES = 30  # where the header must have ended; four lines are usual
 
 
 @dataclass(frozen=True)
-class _Header:
+class _PeerHeader:
     """What the header states: number of points, interval [s], line numbers of both, index of the first data line."""
 
     npts: int
@@ -62,7 +62,7 @@ def read(
     unit = resolve_unit(file, list(enumerate(lines[: header.data], start=1)), units)
     check_interval(file, header.dt_line, header.dt, dt)
     values = _values(file, lines, header.data)
-    rows = Rows(lines, header.data, lambda line: split_numbers(line) if _plain(line) else [])
+    rows = PrintedRows(lines, header.data, lambda line: split_numbers(line) if _plain(line) else [])
     if (odd := odd_row(rows)) is not None:
         message = "the numbers of this row do not end at the columns of the other rows"
         hint = "a character was lost or added, so that its values are wrong: download the file again"
@@ -84,7 +84,7 @@ def _origin(lines: Sequence[str]) -> Origin:
     return of_peer(lines[1]) if len(lines) > 1 and _SIGNATURE.match(lines[0]) else NOT_SAID
 
 
-def _header(file: str, lines: Sequence[str]) -> _Header:
+def _header(file: str, lines: Sequence[str]) -> _PeerHeader:
     """Find the number of points and the interval, however many lines the header has."""
     npts: tuple[str, int] | None = None
     dt: tuple[str, int] | None = None
@@ -112,7 +112,7 @@ def _header(file: str, lines: Sequence[str]) -> _Header:
     data = max(npts[1], dt[1])
     while data < len(lines) and not _BEGINS_WITH_NUMBER.match(lines[data]):
         data += 1
-    return _Header(count, interval, npts[1], dt[1], data)
+    return _PeerHeader(count, interval, npts[1], dt[1], data)
 
 
 def _values(file: str, lines: Lines, data: int) -> NDArray[np.float64]:

@@ -30,7 +30,7 @@ _A = {"acceleration": "an acceleration", "velocity": "a velocity", "displacement
 
 
 @dataclass(frozen=True)
-class _Header:
+class _SacHeader:
     """Words of the header: interval [s], extremes, version, number of points, kind of file, of values, whether even."""
 
     delta: float
@@ -90,7 +90,7 @@ def read(
     return choose(file, TITLE, [found], channel, dt)
 
 
-def _extremes(header: _Header, samples: NDArray[np.float32]) -> tuple[Doubt, ...]:
+def _extremes(header: _SacHeader, samples: NDArray[np.float32]) -> tuple[Doubt, ...]:
     """Whether the smallest and the largest sample are those of the header, where it gives them."""
     if not samples.size or _UNSET in (header.least, header.most):
         return ()
@@ -105,11 +105,11 @@ def _extremes(header: _Header, samples: NDArray[np.float32]) -> tuple[Doubt, ...
     return (Doubt("header_peak", max(abs(least), abs(most)), text),)
 
 
-def _header(data: bytes) -> _Header | None:
+def _header(data: bytes) -> _SacHeader | None:
     """Read the words that matter, in whichever byte order gives a version there is; None if neither does."""
     if len(data) >= _HEADER:
         for order in "<>":
             words = struct.unpack_from(f"{order}fff292xi8xi20xii72xi", data)
             if words[3] in _VERSIONS:
-                return _Header(*words)
+                return _SacHeader(*words)
     return None

@@ -17,7 +17,7 @@ from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import of_info
 from rocking_cli.excitation.records.text import check_interval, only_channel, sensible
 from rocking_cli.excitation.records.units import resolve_unit
-from rocking_cli.excitation.records.widths import Rows, odd_digits
+from rocking_cli.excitation.records.widths import PrintedRows, odd_digits
 
 TITLE = "SimCenter JSON"
 SIGN = 'a JSON object with "accel_data"'
@@ -126,7 +126,7 @@ def _digits(text: str) -> tuple[Doubt, ...]:
         return ()
     lines = Lines(text[: match.end()])
     first = text.count("\n", 0, match.start(1))
-    return tuple(odd_digits(Rows(lines, first, lambda row: re.findall(r"[^\s,\[\]]+", row.rpartition("[")[2]))))
+    return tuple(odd_digits(PrintedRows(lines, first, lambda row: re.findall(r"[^\s,\[\]]+", row.rpartition("[")[2]))))
 
 
 def _is_number(value: object) -> bool:

@@ -10,8 +10,8 @@ import numpy as np
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.excitation.records.layout import (
-    Block,
     Channel,
+    RecordBlock,
     choose,
     fixed_width,
     in_si,
@@ -32,8 +32,8 @@ _UNCORRECTED = "1"
 _ACCELERATIONS = (_UNCORRECTED, "2")  # the corrected; then velocity, displacement and spectra
 _FASTEST = 1e6  # samples per second; what has no number of them has 1.7e38, or zero
 _TEXT_LINES = 11
-_INTEGERS = Block(_TEXT_LINES, 48, 10, 1)
-_REALS = Block(_TEXT_LINES + 6, 50, 15, 1, unset=1.7e38)
+_INTEGERS = RecordBlock(_TEXT_LINES, 48, 10, 1)
+_REALS = RecordBlock(_TEXT_LINES + 6, 50, 15, 1, unset=1.7e38)
 _DATA_WIDTH = 10
 _EVENT = regex(r" *(\d{4}) +(\d{1,2}) +(\d{1,2}) +(\d{4}) +(\S.*)")  # year, month, day, time, name
 _MOMENT, _LOCAL, _SURFACE = (regex(rf"{kind}= *([\d.]+)") for kind in ("Moment Mag", r"\bMl", r"\bMs"))
@@ -78,7 +78,7 @@ def read(
     ):
         message = f"the header says {comments} comment lines, but another number begins with |"
         raise InputError(Problem(message, file, comment_line, hint="the file may have been edited: download it again"))
-    block = Block(start + comments, count, _DATA_WIDTH, count_line)
+    block = RecordBlock(start + comments, count, _DATA_WIDTH, count_line)
     values, _, remarks = fixed_width(file, lines, block)
     extremes = [(time, peak) for time, peak in (reals[28:30], reals[30:32]) if not np.isnan(peak)]
     if extremes:

@@ -19,7 +19,7 @@ from rocking_cli.excitation.records.columns import MOST, Choice, Label, choose, 
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.sensor import Wanted, plural
 from rocking_cli.excitation.records.times import UnevenTimeError, even_interval, on_grid
-from rocking_cli.excitation.records.widths import Rows, unlike_the_others
+from rocking_cli.excitation.records.widths import PrintedRows, unlike_the_others
 from rocking_cli.patterns import regex
 
 TITLE = "delimited text"
@@ -116,7 +116,9 @@ def read(
         dt = own
     assert dt is not None  # none at all was refused above
     name = Path(file).name + (f" channel {choice.channel}" if choice.channel else "")
-    remarks = unlike_the_others(Rows(lines, start, lambda line: _clean(line).split(delimiter)[choice.column :][:1]))
+    remarks = unlike_the_others(
+        PrintedRows(lines, start, lambda line: _clean(line).split(delimiter)[choice.column :][:1])
+    )
     if uneven is not None:
         remarks = (*remarks, uneven)
     return GroundMotion(name, dt, values * size, unit, "text", remarks=remarks)

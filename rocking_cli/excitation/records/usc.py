@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.layout import (
-    Block,
     Channel,
+    RecordBlock,
     choose,
     fixed_width,
     in_si,
@@ -57,8 +57,8 @@ def read(
 
     start = next((index for index, line in enumerate(lines) if not re.search(r"[A-Za-z]", line)), len(lines))
     for size, width in ((_INTEGERS, 5), (_REALS, 10)):
-        _, start, _ = fixed_width(file, lines, Block(start, size, width, 1), last=False)
-    pairs, end, remarks = fixed_width(file, lines, Block(start, 2 * count, 7, count_line, margin=1))
+        _, start, _ = fixed_width(file, lines, RecordBlock(start, size, width, 1), last=False)
+    pairs, end, remarks = fixed_width(file, lines, RecordBlock(start, 2 * count, 7, count_line, margin=1))
     step, values, points = straight_lines(file, pairs, f"lines {start + 1} to {end}")
     acceleration = in_si(values, unit)
     if match := _DURATION.search(lines[count_line - 1]):

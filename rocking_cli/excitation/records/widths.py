@@ -27,7 +27,7 @@ Form = tuple[int | None, int | None, int | None]
 
 
 @dataclass(frozen=True)
-class Rows:
+class PrintedRows:
     """Printed numbers, to look at how they are printed.
 
     Parameters
@@ -80,7 +80,7 @@ def split_numbers(row: str) -> list[str]:
     return _GLUED.sub(" ", row).split()
 
 
-def odd_row(rows: Rows) -> tuple[int, str] | None:
+def odd_row(rows: PrintedRows) -> tuple[int, str] | None:
     """Line number and text of the first of a few rows that leave the columns in which the others stand.
 
     Columns are what numbers of different lengths, in the first place of a row and in the last, all end at; without
@@ -112,7 +112,7 @@ def odd_row(rows: Rows) -> tuple[int, str] | None:
     )
 
 
-def unlike_the_others(rows: Rows) -> tuple[Doubt, ...]:
+def unlike_the_others(rows: PrintedRows) -> tuple[Doubt, ...]:
     """What is doubtful about how the numbers of a free text are printed, one of them from each row."""
     found = odd_digits(rows)
     if not found and (odd := odd_row(rows)) is not None:
@@ -121,7 +121,7 @@ def unlike_the_others(rows: Rows) -> tuple[Doubt, ...]:
     return tuple(found)
 
 
-def odd_digits(rows: Rows) -> list[Doubt]:
+def odd_digits(rows: PrintedRows) -> list[Doubt]:
     """Whether a few numbers have fewer or more digits than all the others, which a program that pads them prints alike.
 
     A program that leaves zeros at the end away, or prints as many digits as a number needs, raises no doubt.
@@ -154,7 +154,7 @@ def odd_digits(rows: Rows) -> list[Doubt]:
     return [Doubt("digits", float(first), text)]
 
 
-def _unlike(rows: Rows, usual: Form) -> Iterator[tuple[int, str]]:
+def _unlike(rows: PrintedRows, usual: Form) -> Iterator[tuple[int, str]]:
     """Line and text of each number that is printed in another form."""
     for first, page in rows.pages():
         blanked = _blank_out("\n".join(page)).split("\n")

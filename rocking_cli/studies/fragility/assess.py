@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.studies.fragility.curves import (
-    Curve,
+    FragilityCurve,
     Observations,
     Surface,
     fit_capacities,
@@ -27,7 +27,7 @@ MOST_UNKNOWN = 0.02  # share of runs of which it is not known whether they excee
 
 
 @dataclass(frozen=True)
-class Outcomes:
+class UnknownRuns:
     """How many runs of a structure are of unknown outcome.
 
     Parameters
@@ -86,7 +86,7 @@ class Fragility(_FittedTwice):
         The limit state: a word, or a ratio of rotations.
     seen : Observations
         The runs; in incremental dynamic analysis all above the first that exceeds count as exceeding.
-    curve : Curve
+    curve : FragilityCurve
         The fit.
     rate : Rate or None
         How often it is exceeded a year, where the hazard is known.
@@ -103,7 +103,7 @@ class Fragility(_FittedTwice):
     limit: Limit
     measure: str
     seen: Observations
-    curve: Curve
+    curve: FragilityCurve
     rate: Rate | None
     left_out: int = 0
     unknown: int | None = 0
@@ -196,10 +196,10 @@ def fitted(
     return lines, planes
 
 
-def outcomes(found: Mapping[str, Tally]) -> list[Outcomes]:
+def outcomes(found: Mapping[str, Tally]) -> list[UnknownRuns]:
     """How many runs of each structure are of unknown outcome; of structures without runs nothing."""
     return [
-        Outcomes(name, int(tally.runs.sum()), tally.unknown_if_checked, tally.checked)
+        UnknownRuns(name, int(tally.runs.sum()), tally.unknown_if_checked, tally.checked)
         for name, tally in found.items()
         if tally.runs.any()
     ]
@@ -240,7 +240,7 @@ def _curve(
         curve = fit_curve(seen, confidence=confidence)
     elif parse_measure(measure).power == 0:
         why = f"{measure} is the same at every level, so that no record has a capacity in it"
-        curve = Curve("none", why, confidence, seen.runs, seen.exceedances, records=seen.records)
+        curve = FragilityCurve("none", why, confidence, seen.runs, seen.exceedances, records=seen.records)
     else:
         tried = np.unique(x[there]) if level is not None else None
         lower, upper, of = _capacities(tally, measure, limit, cells)

@@ -14,7 +14,16 @@ from rocking_cli.studies.fragility.likelihood import Integers, Link, Reals, tota
 from rocking_cli.studies.fragility.observed import Observations, few_records, one_of_each
 from rocking_cli.studies.fragility.surfaces import Surface, fit_surface
 
-__all__ = ["Curve", "Estimate", "Kind", "Observations", "Surface", "fit_capacities", "fit_curve", "fit_surface"]
+__all__ = [
+    "Estimate",
+    "FragilityCurve",
+    "Kind",
+    "Observations",
+    "Surface",
+    "fit_capacities",
+    "fit_curve",
+    "fit_surface",
+]
 
 Kind = Literal["lognormal", "logistic", "step", "none"]
 LINKS: dict[Kind, Link] = {"lognormal": "probit", "logistic": "logit"}
@@ -28,7 +37,7 @@ TINY = 1e-300  # stands for an intensity of zero, which has no logarithm
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class FragilityCurve:
     """A fragility curve, or the reason why there is none.
 
     Parameters
@@ -125,7 +134,7 @@ class Curve:
         return _design(self.kind, x.ravel())
 
 
-def fit_curve(observations: Observations, *, confidence: float = 0.95) -> Curve:
+def fit_curve(observations: Observations, *, confidence: float = 0.95) -> FragilityCurve:
     """Fit a fragility curve to runs at any intensities: a cloud, or stripes.
 
     Parameters
@@ -137,14 +146,14 @@ def fit_curve(observations: Observations, *, confidence: float = 0.95) -> Curve:
 
     Returns
     -------
-    Curve
+    FragilityCurve
         Lognormal, unless that is wrong: logistic if the lognormal does not increase, or is rejected at 5 % while
         logistic is likelier. Logistic is taken in the intensity, not in its logarithm: that would be within 0.01 of the
         lognormal and wrong where it is wrong. A step if all that exceed lie above all that do not: the likelihood
         then grows for ever with the slope. None if there is nothing to fit.
     """
     seen = observations
-    bare = Curve("none", "", confidence, seen.runs, seen.exceedances, records=seen.records)
+    bare = FragilityCurve("none", "", confidence, seen.runs, seen.exceedances, records=seen.records)
     if not 0 < bare.exceedances < bare.runs:
         return replace(bare, why=f"{'none' if not bare.exceedances else 'all'} of the {bare.runs} runs exceed")
     special = _step_or_none(bare, *seen.sides)
@@ -152,7 +161,7 @@ def fit_curve(observations: Observations, *, confidence: float = 0.95) -> Curve:
         return special
     if few := too_few(seen.counts, 2):
         return replace(bare, why=few)
-    curves: dict[Kind, Curve] = {}
+    curves: dict[Kind, FragilityCurve] = {}
     refused: dict[Kind, str] = {}
     for kind, link in LINKS.items():
         design = _design(kind, seen.x)
@@ -175,7 +184,7 @@ def fit_capacities(
     levels: Reals | None = None,
     confidence: float = 0.95,
     weight: Reals | None = None,
-) -> Curve:
+) -> FragilityCurve:
     """Fit a lognormal curve to the capacities of records: incremental dynamic analysis.
 
     Parameters
@@ -194,7 +203,7 @@ def fit_capacities(
 
     Returns
     -------
-    Curve
+    FragilityCurve
         Lognormal by maximum likelihood of the brackets; a step if one capacity agrees with all of them; or none.
 
     Raises
@@ -216,7 +225,7 @@ def fit_capacities(
     each = np.ones(lower.size) if weight is None else weight * lower.size / weight.sum()
     seen = Counts(cells // pairs.size, cells % pairs.size, totals(cell, each), weight is not None)
     above = np.isfinite(upper)
-    bare = Curve("none", "", confidence, lower.size, int(above.sum()), records=seen.records)
+    bare = FragilityCurve("none", "", confidence, lower.size, int(above.sum()), records=seen.records)
     if not bare.exceedances:
         return replace(bare, why=f"none of the {_capacities(bare)} exceeds at any level")
     if not (lower > 0).any():
@@ -238,7 +247,7 @@ def fit_capacities(
     return replace(curve, why=f"capacities are taken as lognormal; {_tested(curve)}")
 
 
-def _capacities(bare: Curve) -> str:
+def _capacities(bare: FragilityCurve) -> str:
     """What there is a capacity of."""
     return f"{bare.runs} ladders of {bare.records} records" if bare.runs > bare.records else f"{bare.runs} records"
 
@@ -247,7 +256,7 @@ def _design(kind: Kind, x: Reals) -> Reals:
     return np.column_stack([np.ones(x.size), x if kind == "logistic" else np.log(np.maximum(x, TINY))])
 
 
-def _step_or_none(bare: Curve, below: Reals, above: Reals) -> Curve | None:
+def _step_or_none(bare: FragilityCurve, below: Reals, above: Reals) -> FragilityCurve | None:
     """The curve where no likelihood has a maximum: what exceeds and what does not share at most one intensity."""
     if below.min() == above.max() == below.max() == above.min():
         return replace(bare, why=f"all runs have the intensity {above[0]:.4g}: other levels are needed")
@@ -273,7 +282,7 @@ def _step_or_none(bare: Curve, below: Reals, above: Reals) -> Curve | None:
     return replace(bare, kind="step", step=step, why=f"{why}: estimating the dispersion needs levels between them")
 
 
-def _choice(curves: dict[Kind, Curve]) -> tuple[Kind, str]:
+def _choice(curves: dict[Kind, FragilityCurve]) -> tuple[Kind, str]:
     """Which kind, and why."""
     lognormal, logistic = curves["lognormal"], curves.get("logistic")
     if _slope(lognormal) <= 0:
@@ -289,22 +298,22 @@ def _choice(curves: dict[Kind, Curve]) -> tuple[Kind, str]:
     return "logistic", f"{why}; {_tested(logistic)}"
 
 
-def _slope(curve: Curve) -> float:
+def _slope(curve: FragilityCurve) -> float:
     assert curve.fit is not None
     return float(curve.fit.coefficients[1])
 
 
-def _likelihood(curve: Curve) -> float:
+def _likelihood(curve: FragilityCurve) -> float:
     assert curve.fit is not None
     return curve.fit.log_likelihood
 
 
-def _rejected(curve: Curve) -> bool:
+def _rejected(curve: FragilityCurve) -> bool:
     goodness = curve.goodness
     return goodness is not None and goodness.p_value is not None and goodness.p_value < REJECTED
 
 
-def _tested(curve: Curve) -> str:
+def _tested(curve: FragilityCurve) -> str:
     """What the data say of a curve."""
     assert curve.goodness is not None and curve.fit is not None
     p = curve.goodness.p_value
@@ -319,7 +328,7 @@ def _tested(curve: Curve) -> str:
     return said
 
 
-def _why_open(curve: Curve) -> str:
+def _why_open(curve: FragilityCurve) -> str:
     """Why standard errors do not bound a slope: it may be none, or be steeper than they can tell."""
     from scipy.special import chdtrc
 

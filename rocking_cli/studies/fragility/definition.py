@@ -198,7 +198,7 @@ def _apart(one: float, other: float) -> bool:
     return other > one * (1 + SAME)
 
 
-class Hazard(Part):
+class HazardEntry(Part):
     """How often intensities are exceeded at the site."""
 
     measure: Measure = Field("PGA", description="of the intensities")
@@ -266,7 +266,7 @@ class Definition(Sampling, Common):
         [], description="pairs of intensities that surfaces are fitted over"
     )
     confidence: float = Field(0.95, gt=0.5, lt=1, description="of intervals and bands")
-    hazard: Hazard | None = Field(None, description="how often intensities are exceeded at the site")
+    hazard: HazardEntry | None = Field(None, description="how often intensities are exceeded at the site")
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:

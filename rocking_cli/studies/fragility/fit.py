@@ -11,9 +11,9 @@ import numpy as np
 
 from rocking_cli.studies.fragility.likelihood import (
     Brackets,
+    ExceedanceTerms,
     Integers,
     Link,
-    Outcomes,
     Reals,
     Terms,
     cumulative,
@@ -185,7 +185,7 @@ def fit_outcomes(link: Link, design: Reals, seen: Counts, exceeding: Reals, conf
     record = np.tile(seen.record, 2)
     there = number > 0
     told, term = np.unique(term[there], return_inverse=True)
-    terms = Outcomes(link, design[told % len(design)], told < len(design))
+    terms = ExceedanceTerms(link, design[told % len(design)], told < len(design))
     start, degrees = np.zeros(design.shape[1]), seen.records - 1.0 if seen.repeated else np.inf
     return _fitted(link, terms, Counts(record[there], term, number[there], seen.weighted), start, confidence, degrees)
 

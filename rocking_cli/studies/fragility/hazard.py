@@ -12,7 +12,7 @@ import numpy as np
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.records.text import numbers_in
-from rocking_cli.studies.fragility.curves import Curve
+from rocking_cli.studies.fragility.curves import FragilityCurve
 from rocking_cli.studies.fragility.likelihood import Reals
 from rocking_cli.studies.fragility.observed import SAME
 
@@ -153,12 +153,12 @@ class Rate:
         return -math.expm1(-LIFE * self.rate)
 
 
-def annual_rate(curve: Curve, hazard: HazardCurve) -> Rate:
+def annual_rate(curve: FragilityCurve, hazard: HazardCurve) -> Rate:
     """Convolve a fragility curve with a hazard curve.
 
     Parameters
     ----------
-    curve : Curve
+    curve : FragilityCurve
         Over the same measure of intensity, in the same unit.
     hazard : HazardCurve
         The site's.
@@ -229,7 +229,7 @@ def _beyond(hazard: HazardCurve, at: float) -> float:
     return first * float((hazard.intensity[0] / at) ** _first_slope(hazard)) - first
 
 
-def _below(curve: Curve, hazard: HazardCurve) -> float:
+def _below(curve: FragilityCurve, hazard: HazardCurve) -> float:
     """What intensities below the first point add, if the first power law goes on."""
     from scipy.special import log_ndtr, ndtr
 

@@ -54,7 +54,7 @@ class Terms(Protocol):
         ...
 
 
-class Outcomes:
+class ExceedanceTerms:
     """A run that exceeds, or one that does not, at each row of a design.
 
     Parameters

@@ -145,7 +145,7 @@ class Observations:
         cells = self.counts.term * self.records + self.counts.record  # growing
         return np.asarray(self.group[np.searchsorted(cells, place * self.records + who)])
 
-    def parts(self, confidence: float) -> Parts:
+    def parts(self, confidence: float) -> ObservedParts:
         """The part of the runs that exceeds, in each group.
 
         Parameters
@@ -155,7 +155,7 @@ class Observations:
 
         Returns
         -------
-        Parts
+        ObservedParts
 
         Notes
         -----
@@ -181,7 +181,7 @@ class Observations:
         middle = (part + z2 / 2) / (1 + z2)
         half = np.sqrt(z2 * (part * (1 - part) + z2 / 4)) / (1 + z2)
         alone = self.repeated & (records == 1)
-        return Parts(
+        return ObservedParts(
             np.bincount(group, self.x[self.counts.term] * number) / runs,
             part,
             np.where(alone, 0.0, np.clip(middle - half, 0.0, part)),
@@ -193,7 +193,7 @@ class Observations:
 
 
 @dataclass(frozen=True, eq=False)
-class Parts:
+class ObservedParts:
     """Observed parts that exceed, each an ndarray of one length, a place for each group of runs.
 
     Parameters

@@ -77,7 +77,7 @@ class Function:
 
 
 @dataclass(frozen=True)
-class Model:
+class OpenQuakeModel:
     """What is written for OpenQuake.
 
     Parameters
@@ -119,7 +119,7 @@ def intensity_type(measure: str) -> tuple[str, float] | None:
     return TYPES.get(measure)
 
 
-def chosen(curves: Sequence[Fragility]) -> Model:
+def chosen(curves: Sequence[Fragility]) -> OpenQuakeModel:
     """The curves that OpenQuake takes; of several selections that one file cannot hold together, the largest.
 
     Parameters
@@ -146,7 +146,7 @@ def chosen(curves: Sequence[Fragility]) -> Model:
         raise InputError("OpenQuake accepts none of the curves: " + "; ".join(left_out or ["the study has no curves"]))
     order = _by_severity(limits, next(iter(held.values())))
     functions = _functions(held, order)
-    return Model([limit_id(each) for each in order], functions, left_out, list(_doubts(functions)))
+    return OpenQuakeModel([limit_id(each) for each in order], functions, left_out, list(_doubts(functions)))
 
 
 def _why_not(found: Fragility) -> str:

@@ -103,7 +103,7 @@ class Ranking:
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class FittedLine:
     """A straight line through points, by least squares: intercept, slope, and the deviation of the points from it.
 
     `p_value` is that of Student's test of no slope, with two degrees of freedom less than points.
@@ -115,7 +115,7 @@ class Line:
     p_value: float
 
 
-def line(x: Reals, y: Reals) -> Line | None:
+def line(x: Reals, y: Reals) -> FittedLine | None:
     """Fit a straight line; None of fewer than three points, or of points above one another."""
     from scipy.special import stdtr
 
@@ -129,7 +129,7 @@ def line(x: Reals, y: Reals) -> Line | None:
     deviation = sqrt(float(rest @ rest) / free)
     error = deviation / sqrt(squares)
     p_value = 2 * float(stdtr(free, -abs(slope) / error)) if error > 0 else 0.0
-    return Line(float(y.mean()) - slope * float(x.mean()), slope, deviation, p_value)
+    return FittedLine(float(y.mean()) - slope * float(x.mean()), slope, deviation, p_value)
 
 
 def candidates(plan: Plan, definition: Definition) -> list[str]:

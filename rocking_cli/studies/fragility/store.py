@@ -108,7 +108,7 @@ Say = Callable[[str], None]
 
 
 @dataclass(frozen=True, eq=False)
-class Rows:
+class RunRows:
     """Finished runs, one a place, each an ndarray of one length.
 
     Parameters
@@ -162,9 +162,9 @@ class Rows:
         """How many could not be followed."""
         return int((self.outcome == FAILED).sum())
 
-    def select(self, which: NDArray[np.bool_]) -> Rows:
+    def select(self, which: NDArray[np.bool_]) -> RunRows:
         """Some of them."""
-        return Rows(**{name: getattr(self, name)[which] for name in self.columns})
+        return RunRows(**{name: getattr(self, name)[which] for name in self.columns})
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -180,12 +180,12 @@ class Rows:
         return np.array([crc32(data[k : k + row], salt) for k in range(0, len(data), row)], dtype=np.int64)
 
 
-COLUMNS = tuple(each.name for each in fields(Rows) if each.name != SLIDE)
+COLUMNS = tuple(each.name for each in fields(RunRows) if each.name != SLIDE)
 
 
 @dataclass(frozen=True, eq=False)
 class Endings:
-    """What fragility asks of finished runs, one a place: columns of `Rows`, and whether they uplift and slide.
+    """What fragility asks of finished runs, one a place: columns of `RunRows`, and whether they uplift and slide.
 
     The largest rotations, shape (n, 2), stand as a pair, positive and negative. `checked` is whether their joints were.
     """
@@ -672,13 +672,13 @@ class Store:
         done, failed = found.fetchone()
         return done, failed
 
-    def add(self, rows: Rows) -> None:
+    def add(self, rows: RunRows) -> None:
         """Add finished runs; about every second what has been added is made safe."""
         self._insert_runs(rows)
         if monotonic() - self._last > PATIENCE:
             self.commit()
 
-    def _insert_runs(self, rows: Rows) -> None:
+    def _insert_runs(self, rows: RunRows) -> None:
         columns = [*(getattr(rows, name).tolist() for name in self.columns), rows.checksums(self._salt).tolist()]
         marks = ", ".join("?" * len(columns))
         self._connection.executemany(f"INSERT INTO run VALUES ({marks})", zip(*columns, strict=True))
@@ -692,10 +692,10 @@ class Store:
         self._connection.execute("BEGIN IMMEDIATE")
         self._last = monotonic()
 
-    def runs(self, first: int, stop: int) -> Rows:
+    def runs(self, first: int, stop: int) -> RunRows:
         """The finished runs with numbers from `first` to before `stop`, without those that are damaged."""
         blocks = list(self._blocks(first, stop)) or [_rows([], self.columns)]
-        return Rows(**{name: np.concatenate([getattr(each, name) for each in blocks]) for name in self.columns})
+        return RunRows(**{name: np.concatenate([getattr(each, name) for each in blocks]) for name in self.columns})
 
     def endings(
         self, first: int, stop: int, counted: Callable[[int], None] = lambda numbers: None
@@ -728,11 +728,11 @@ class Store:
             yield Endings(whole[0], whole[1], table[2], table[3:5].T, happens[0], happens[1], bound, happens[2])
             counted(end - start)
 
-    def _blocks(self, first: int, stop: int) -> Iterator[Rows]:
+    def _blocks(self, first: int, stop: int) -> Iterator[RunRows]:
         for start in range(first, stop, READ):  # as Python's numbers they take ten times the memory
             yield self._read(start, min(start + READ, stop))[0]
 
-    def _read(self, first: int, stop: int) -> tuple[Rows, list[int]]:
+    def _read(self, first: int, stop: int) -> tuple[RunRows, list[int]]:
         """The sound runs with numbers from `first` to before `stop`, and the numbers of the damaged ones."""
         names = (*self.columns, "checksum") if self.checked else self.columns
         found = self._fetch(f"SELECT {', '.join(names)} FROM run WHERE id >= ? AND id < ?", first, stop)
@@ -768,12 +768,12 @@ def _columns(description: Mapping[str, Any], *, with_joints: bool) -> tuple[str,
     return (*usual, SLIDE) if SLIDING in description else usual
 
 
-def _rows(table: Any, names: tuple[str, ...]) -> Rows:
+def _rows(table: Any, names: tuple[str, ...]) -> RunRows:
     """Runs from a table of numbers, a column each."""
     columns: dict[str, Any] = dict(zip(names, np.array(table, dtype=np.float64).reshape(-1, len(names)).T, strict=True))
     for name in ("id", "outcome"):  # what is no whole number is no number of a run, and no outcome
         columns[name] = np.where(np.abs(columns[name]) < 2.0**53, columns[name], -2).astype(np.int64)
-    return Rows(**columns)
+    return RunRows(**columns)
 
 
 def _numbers(found: Sequence[tuple[Any, ...]], columns: int) -> tuple[Reals, list[int]]:

@@ -28,7 +28,7 @@ from rocking_cli.studies.fragility.definition import (
     SLIDING,
     Common,
     Definition,
-    Hazard,
+    HazardEntry,
     RecordEntry,
     Sampling,
     StructureEntry,
@@ -370,7 +370,7 @@ def _refuse_repeated(document: Document, field: str, names: Sequence[str]) -> No
 
 
 def _hazard(document: Document, folder: Path) -> HazardCurve | None:
-    given = usable_part(Hazard, document.data.get("hazard"))
+    given = usable_part(HazardEntry, document.data.get("hazard"))
     if given is None:
         return None
     if given.points is not None:

@@ -10,7 +10,7 @@ import numpy as np
 from rocking_cli import names
 from rocking_cli.studies.fragility.intensity import ALWAYS, label
 from rocking_cli.studies.fragility.plan import Plan
-from rocking_cli.studies.fragility.store import FAILED, SLIDE, STANDS, UNKNOWN, Rows, Store
+from rocking_cli.studies.fragility.store import FAILED, SLIDE, STANDS, UNKNOWN, RunRows, Store
 
 ROWS = 100_000  # runs of a block
 HEADINGS = {
@@ -43,7 +43,7 @@ def blocks(store: Store, plan: Plan, measures: Sequence[str] = ()) -> Iterator[M
             yield _columns(plan, rows, asked)
 
 
-def _columns(plan: Plan, rows: Rows, measures: Sequence[str]) -> dict[str, Sequence[object]]:
+def _columns(plan: Plan, rows: RunRows, measures: Sequence[str]) -> dict[str, Sequence[object]]:
     sample, record, _, level, polarity = plan.places(rows.id)
     trials, records = [plan.trials[k] for k in sample], [plan.records[k] for k in record]
     return {

@@ -20,7 +20,7 @@ from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.sources import KeptMotions
-from rocking_cli.studies.fragility.store import FAILED, UNKNOWN, Rows
+from rocking_cli.studies.fragility.store import FAILED, UNKNOWN, RunRows
 from rocking_cli.studies.fragility.study import Sample
 
 Integers = NDArray[np.int64]
@@ -33,7 +33,7 @@ MODELS = 16  # of a unit, at most: some 30 megabytes, of arches 120
 
 
 @dataclass(frozen=True, eq=False)
-class Unit:
+class WorkUnit:
     """Runs with their models and ground motions.
 
     Parameters
@@ -55,7 +55,7 @@ class Unit:
     checked: tuple[Mechanism, ...] = ()
 
 
-def carry_out(unit: Unit) -> Rows:
+def carry_out(unit: WorkUnit) -> RunRows:
     """Run a unit on one processor; the same to the last bit wherever and with whatever else it is run."""
     found = respond_many(unit.models, unit.motions, unit.runs, threads=1, only_peaks=True)
     slides = None
@@ -67,7 +67,7 @@ def carry_out(unit: Unit) -> Rows:
         return np.where(found.failed, np.nan, values)
 
     outcome = np.where(found.unknown, UNKNOWN, found.fell_to)
-    return Rows(
+    return RunRows(
         id=unit.id,
         scale=unit.runs.scale,
         eta=unit.runs.eta,
@@ -84,7 +84,7 @@ def carry_out(unit: Unit) -> Rows:
     )
 
 
-def _slide_times(unit: Unit, found: Outcomes) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+def _slide_times(unit: WorkUnit, found: Outcomes) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """When runs first slide, followed once more with their samples, and which cannot be followed to their rest."""
     runs = unit.runs
     times, lost = np.full(len(runs), np.nan), np.zeros(len(runs), dtype=bool)
@@ -114,7 +114,7 @@ def units(
     size: int,
     *,
     checked: bool = False,
-) -> Iterator[Unit]:
+) -> Iterator[WorkUnit]:
     """The runs that are still to do, in units made one at a time.
 
     Parameters
@@ -178,13 +178,13 @@ def unit_size(runs: int, workers: int) -> int:
     return min(max(ceil(runs / (SHARE * workers)), SMALLEST), LARGEST)
 
 
-def _unit(plan: Plan, runs: Integers, models: _Models, motions: KeptMotions, *, checked: bool) -> Unit:
+def _unit(plan: Plan, runs: Integers, models: _Models, motions: KeptMotions, *, checked: bool) -> WorkUnit:
     sample, record, eta, level, polarity = plan.places(runs)
     trials, model = np.unique(sample, return_inverse=True)
     records, motion = np.unique(record, return_inverse=True)
     given = np.array(plan.etas)[eta]
     drawn = np.array([models.samples[k].eta for k in trials])[model]
-    return Unit(
+    return WorkUnit(
         runs,
         Runs.of(
             model,

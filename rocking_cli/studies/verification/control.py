@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.hung.attachments import Carrier, Refused
+from rocking_cli.core.hung.attachments import Carrier, RefusedFields
 from rocking_cli.errors import InputError, Problem
 
 
@@ -22,6 +22,6 @@ def control_at(mechanism: Mechanism, x: float, y: float, body: str | None) -> Co
     carrier = Carrier.of(mechanism.bodies(), mechanism.sketch(), mechanism.alike(), mechanism.piece)
     try:
         spot = carrier.spot(body, complex(x, y), (), "control")
-    except Refused as error:
+    except RefusedFields as error:
         raise InputError(Problem(f"`control`: {error.reason}")) from None
     return Control(spot.at, spot.body)

@@ -12,14 +12,14 @@ from rocking_cli.studies.assessment import File, TitleBlock
 from rocking_cli.studies.verification.check import code_of
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.studies.verification.site_file import SiteFile
-from rocking_cli.views.sheet.document import Grid, Item, Listing, Part, Sentence, Sheet
+from rocking_cli.views.sheet.document import Grid, Item, Listing, Sentence, Sheet, SheetPart
 from rocking_cli.views.sheet.language import DIGITS, Language
 
 MOST = 200  # lines of a file that are printed
 
 
 @dataclass(frozen=True)
-class Made:
+class SheetSources:
     """What a sheet was made from.
 
     Parameters
@@ -53,7 +53,7 @@ class SheetOfCode:
 
     texts: Mapping[str, Mapping[str, str]]
     spelled: Mapping[str, str]
-    parts: Callable[[Language, Any, Any], Iterable[Part]]
+    parts: Callable[[Language, Any, Any], Iterable[SheetPart]]
 
     def language(self, key: str) -> Language:
         """A language with the texts of the code. Raises `InputError` if there are none."""
@@ -76,7 +76,7 @@ def sheet_of(site: SiteFile) -> SheetOfCode:
     return found
 
 
-def sheet(found: Verification, site: SiteFile, language: Language, title: TitleBlock, made: Made) -> Sheet:
+def sheet(found: Verification, site: SiteFile, language: Language, title: TitleBlock, made: SheetSources) -> Sheet:
     """The sheet of a verification, in a language.
 
     Parameters
@@ -89,7 +89,7 @@ def sheet(found: Verification, site: SiteFile, language: Language, title: TitleB
         In which it is told.
     title : TitleBlock
         For whom, by whom, when and by which command.
-    made : Made
+    made : SheetSources
         Files and versions.
 
     Raises
@@ -115,14 +115,14 @@ def _subtitle(say: Language, found: Verification) -> str:
     return say.say("subtitle", structure=say.mechanism(mechanism.mechanism, mechanism.title))
 
 
-def _reading(say: Language, found: Verification) -> Part:
+def _reading(say: Language, found: Verification) -> SheetPart:
     has_mass = found.mechanism.has_mass
     said = [say.say("reading_digits", digits=DIGITS, force="kN" if has_mass else "N/kg")]
     said += [say.say("reading_marks"), *([] if has_mass else [say.say("per_kilogram")])]
-    return Part("reading", say.say("reading"), [*map(Sentence, said)])
+    return SheetPart("reading", say.say("reading"), [*map(Sentence, said)])
 
 
-def _inputs(say: Language, found: Verification, title: TitleBlock, made: Made) -> Part:
+def _inputs(say: Language, found: Verification, title: TitleBlock, made: SheetSources) -> SheetPart:
     files = [("structure_file", made.structure), ("site_file", made.site)]
     rows = [[say.say(kind), file.name, file.checksum] for kind, file in files]
     for name, file in made.records.items():
@@ -136,9 +136,9 @@ def _inputs(say: Language, found: Verification, title: TitleBlock, made: Made) -
         Grid(say.say("versions"), [say.say("package"), say.say("version")], versions),
         Sentence(say.say("source", source=found.mechanism.source)),
     ]
-    texts = [Part(kind, say.say(kind), list(_text(say, file))) for kind, file in
+    texts = [SheetPart(kind, say.say(kind), list(_text(say, file))) for kind, file in
              (("structure_text", made.structure), ("site_text", made.site))]  # fmt: skip
-    return Part("inputs", say.say("inputs"), items, texts)
+    return SheetPart("inputs", say.say("inputs"), items, texts)
 
 
 def _text(say: Language, file: File) -> Iterator[Item]:

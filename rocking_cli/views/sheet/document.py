@@ -53,7 +53,7 @@ Item = Sentence | Grid | Steps | Drawing | Listing
 
 
 @dataclass(frozen=True)
-class Part:
+class SheetPart:
     """A section, or a part of one.
 
     Parameters
@@ -63,17 +63,17 @@ class Part:
     heading : str
     items : sequence
         What is in it.
-    parts : sequence of Part
+    parts : sequence of SheetPart
         And below it.
     """
 
     key: str
     heading: str
     items: Sequence[Item]
-    parts: Sequence[Part] = ()
+    parts: Sequence[SheetPart] = ()
 
 
-def workings(parts: Iterable[Part]) -> Iterator[Working]:
+def workings(parts: Iterable[SheetPart]) -> Iterator[Working]:
     """The steps of parts in plain characters, each with the heading under which it stands."""
     for part in parts:
         for item in part.items:
@@ -92,7 +92,7 @@ class Sheet:
     heading, subtitle : str
     about : mapping of str to str
         Project, place, author, date, ...
-    parts : sequence of Part
+    parts : sequence of SheetPart
     logo : str, optional
         The address of a picture that holds the picture itself.
     """
@@ -101,5 +101,5 @@ class Sheet:
     heading: str
     subtitle: str
     about: Mapping[str, str]
-    parts: Sequence[Part]
+    parts: Sequence[SheetPart]
     logo: str | None = None

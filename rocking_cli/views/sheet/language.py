@@ -18,7 +18,7 @@ DIGITS = 6  # significant: recomputed from printed numbers, a result agrees to f
 ABSENT = "–"
 
 
-class Table(NamedTuple):
+class LanguageTexts(NamedTuple):
     """The texts of a language, its months, what it calls mechanisms and says of them, and the words of pictures."""
 
     texts: Mapping[str, str]
@@ -29,7 +29,7 @@ class Table(NamedTuple):
 
 
 TABLES = {
-    key: Table(each.TEXTS, each.MONTHS, each.MECHANISMS, each.CAUTIONS, each.PICTURES)
+    key: LanguageTexts(each.TEXTS, each.MONTHS, each.MECHANISMS, each.CAUTIONS, each.PICTURES)
     for key, each in (("en", texts_en), ("it", texts_it))
 }
 

@@ -4,32 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rocking_cli.codes.italian.ground import Ground
-from rocking_cli.codes.italian.results import Verification, Verified
+from rocking_cli.codes.italian.ground import SiteGround
+from rocking_cli.codes.italian.results import ItalianVerification, ItalianVerified
 from rocking_cli.codes.italian.rules import RULES
 from rocking_cli.codes.italian.sheet import dynamic, site, summary, texts_en, texts_it
 from rocking_cli.codes.italian.sheet.steps import of_direction
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.views.sheet.build import SheetOfCode
-from rocking_cli.views.sheet.document import Drawing, Part
+from rocking_cli.views.sheet.document import Drawing, SheetPart
 from rocking_cli.views.sheet.language import Language
 
 
-def parts(say: Language, found: Verification, given: ItalianSite) -> Iterator[Part]:
+def parts(say: Language, found: ItalianVerification, given: ItalianSite) -> Iterator[SheetPart]:
     """Summary, drawing, site, and each direction that has numbers of its own."""
-    shown, ground = _shown(say, found), Ground(of_structure(given, found.mechanism))
+    shown, ground = _shown(say, found), SiteGround(of_structure(given, found.mechanism))
     yield summary.part(say, found, shown)
-    yield Part("drawing", say.say("drawing"), [Drawing(say.say("drawing_label", name=found.mechanism.name))])
+    yield SheetPart("drawing", say.say("drawing"), [Drawing(say.say("drawing_label", name=found.mechanism.name))])
     yield site.part(say, ground)
     for where, each in shown.items():
         key = each.direction.label
         below = list(of_direction(say, ground, each))
         if each.dynamic is not None:
             below.append(dynamic.part(say, each, each.dynamic, key))
-        yield Part(key, where, [], below)
+        yield SheetPart(key, where, [], below)
 
 
-def _shown(say: Language, found: Verification) -> Mapping[str, Verified]:
+def _shown(say: Language, found: ItalianVerification) -> Mapping[str, ItalianVerified]:
     """The directions that differ, by what they are called."""
     if len(found.distinct) < len(found.directions):
         return {say.say("both"): found.distinct[0]}

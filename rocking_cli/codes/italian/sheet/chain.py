@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
-from rocking_cli.codes.italian.displaced import Displaced, Moved
+from rocking_cli.codes.italian.displaced import DisplacedChain, Moved
 from rocking_cli.core.hung.attached import PointMass
 from rocking_cli.studies.verification.working import Working
-from rocking_cli.views.sheet.document import Grid, Item, Part, Steps
+from rocking_cli.views.sheet.document import Grid, Item, SheetPart, Steps
 from rocking_cli.views.sheet.language import Language
 
 ROUNDING = 1e-12  # of the size of a thing: what is smaller is none
@@ -50,10 +50,10 @@ class Scale:
         return 0.0 if abs(value) < ROUNDING * self.length else value
 
 
-def part(say: Language, curve: ExactCurve, key: str) -> Part:
+def part(say: Language, curve: ExactCurve, key: str) -> SheetPart:
     """The chain at rest, to alpha0, e* and M*."""
     chain = curve.chain
-    scale, rest = Scale.of(chain), Displaced(curve, 0.0)
+    scale, rest = Scale.of(chain), DisplacedChain(curve, 0.0)
     items: list[Item] = [
         _weights(say, chain, scale),
         Steps(list(_of_blocks(say, chain, scale))),
@@ -61,7 +61,7 @@ def part(say: Language, curve: ExactCurve, key: str) -> Part:
         *held(say, rest, scale),
         Steps(list(_sums(say, chain, rest, scale))),
     ]
-    return Part(f"{key}-chain", say.say("chain"), items)
+    return SheetPart(f"{key}-chain", say.say("chain"), items)
 
 
 def _weights(say: Language, chain: Chain, scale: Scale) -> Grid:
@@ -101,7 +101,7 @@ def _of_blocks(say: Language, chain: Chain, scale: Scale) -> Iterator[Working]:
             yield say.step(F.GP, scale.near(block.x_of_P), names, P=carried, x=places)
 
 
-def at_work(say: Language, position: Displaced, scale: Scale) -> Grid:
+def at_work(say: Language, position: DisplacedChain, scale: Scale) -> Grid:
     """How each block goes on there: its centre of rotation, barycentres and virtual displacements."""
     rows = []
     for k, each in enumerate(position.blocks, 1):
@@ -122,7 +122,7 @@ def _virtual(each: Moved, scale: Scale) -> tuple[float, float]:
     return scale.near(each.dx), scale.near(each.dy)
 
 
-def _x_of_P(position: Displaced, each: Moved, scale: Scale) -> float:
+def _x_of_P(position: DisplacedChain, each: Moved, scale: Scale) -> float:
     """Where the barycentre of what a block carries is sideways [m]; that of P + Q where it carries nothing."""
     if each.centre is None or not each.block.P:
         return scale.near(each.at.real)
@@ -133,7 +133,7 @@ def _xy(z: complex) -> tuple[float, float]:
     return z.real, z.imag
 
 
-def held(say: Language, position: Displaced, scale: Scale) -> list[Item]:
+def held(say: Language, position: DisplacedChain, scale: Scale) -> list[Item]:
     """What forces and ties do there, if there are any."""
     if not position.held:
         return []
@@ -148,13 +148,13 @@ def held(say: Language, position: Displaced, scale: Scale) -> list[Item]:
     return [Grid(say.say("held"), heads, rows, (1, 2, 3))]
 
 
-def _printed(position: Displaced, scale: Scale, total: float, kind: str) -> float:
+def _printed(position: DisplacedChain, scale: Scale, total: float, kind: str) -> float:
     """A sum over the weights P or PQ of the blocks as it is printed: without rounding about zero."""
     value, most = scale.weight(total), sum(abs(getattr(each.block, kind)) for each in position.blocks)
     return 0.0 if abs(value) < NONE * scale.weight(most) * scale.length else value
 
 
-def multiplier(say: Language, position: Displaced, scale: Scale, symbol: str) -> Iterator[Working]:
+def multiplier(say: Language, position: DisplacedChain, scale: Scale, symbol: str) -> Iterator[Working]:
     """Steps to alpha at a position."""
     unit, blocks = {"unit": scale.unit}, position.blocks
     over = {F.PY.text: _printed(position, scale, position.lifted, "P")}
@@ -178,7 +178,7 @@ def multiplier(say: Language, position: Displaced, scale: Scale, symbol: str) ->
     yield say.step(F.ALPHA, value, names, V=[*over.values()], B=[*under.values()])
 
 
-def _sums(say: Language, chain: Chain, rest: Displaced, scale: Scale) -> Iterator[Working]:
+def _sums(say: Language, chain: Chain, rest: DisplacedChain, scale: Scale) -> Iterator[Working]:
     yield from multiplier(say, rest, scale, "α_[0]")
     names, inertial = {"unit": scale.unit}, [scale.weight(each.block.PQ) for each in rest.blocks]
     first, total, second = (scale.weight(value) for value in (chain.first, chain.inertial, chain.second))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rocking_cli.codes.italian.results import Dynamic, RecordPeak, Verified
-from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence
+from rocking_cli.codes.italian.results import Dynamic, ItalianVerified, RecordPeak
+from rocking_cli.views.sheet.document import Grid, Item, Sentence, SheetPart
 from rocking_cli.views.sheet.language import Language
 
 
-def part(say: Language, each: Verified, found: Dynamic, key: str) -> Part:
+def part(say: Language, each: ItalianVerified, found: Dynamic, key: str) -> SheetPart:
     """The dynamic method in a direction."""
     rows = [
         [record.name, *(_peak(say, record, found.d0, confident=confident) for confident in (True, False))]
@@ -28,7 +28,7 @@ def part(say: Language, each: Verified, found: Dynamic, key: str) -> Part:
     count = len(found.records)
     if count < found.enough:
         items.append(Sentence(say.say("one" if count == 1 else "few", count=count, enough=found.enough)))
-    return Part(f"{key}-dynamic", say.say("dynamic"), items)
+    return SheetPart(f"{key}-dynamic", say.say("dynamic"), items)
 
 
 def _peak(say: Language, record: RecordPeak, d0: float, *, confident: bool) -> str:

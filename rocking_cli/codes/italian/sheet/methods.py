@@ -6,15 +6,15 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from rocking_cli.codes.italian import formulas as F
-from rocking_cli.codes.italian.demand import DAMPING, FloorSpectrum, GroundSpectrum, Spectrum
-from rocking_cli.codes.italian.ground import Ground
-from rocking_cli.codes.italian.results import Method, Verified
+from rocking_cli.codes.italian.demand import DAMPING, DemandSpectrum, FloorSpectrum, GroundSpectrum
+from rocking_cli.codes.italian.ground import SiteGround
+from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified
 from rocking_cli.codes.italian.rules import OF_STATE, RULES, Rule
 from rocking_cli.codes.italian.sheet import spectra
 from rocking_cli.codes.italian.sheet.site import hazard_at, is_close
 from rocking_cli.codes.italian.sheet.states import LINE
 from rocking_cli.studies.verification.working import Working
-from rocking_cli.views.sheet.document import Item, Part, Sentence, Steps
+from rocking_cli.views.sheet.document import Item, Sentence, SheetPart, Steps
 from rocking_cli.views.sheet.language import Language
 
 STATE = {key: state for state, pair in OF_STATE.items() for key in pair} | {"SLD": "SLD"}
@@ -32,7 +32,7 @@ def _kind(key: str) -> str:
 
 
 @dataclass(frozen=True)
-class Asked:
+class MethodComparison:
     """What a method compares.
 
     Parameters
@@ -59,37 +59,39 @@ class Methods:
     """The methods of a direction, and the language they are told in."""
 
     say: Language
-    ground: Ground
-    found: Verified
+    ground: SiteGround
+    found: ItalianVerified
 
-    def parts(self, key: str) -> Iterator[Part]:
+    def parts(self, key: str) -> Iterator[SheetPart]:
         """A part for each method whose limit state the site gives."""
         for name, method in self.found.methods.items():
             if method.a_g is None:
                 continue
             if name == "linear":
                 heading = self.say.say("linear_at", state=self.ground.state_of_activation)
-                yield Part(f"{key}-{name}", heading, list(self._linear(method)))
+                yield SheetPart(f"{key}-{name}", heading, list(self._linear(method)))
                 continue
             heading = title(self.say, name)
-            yield Part(f"{key}-{name}", heading, list(self._items(name, method, self._asked(name, "", line=False))))
+            yield SheetPart(
+                f"{key}-{name}", heading, list(self._items(name, method, self._asked(name, "", line=False)))
+            )
             if name in RULE:
                 line = self.found.straight_methods[name]
                 asked = self._asked(name, f",{LINE}", line=True)
                 items = list(self._items(name, line, asked, f",{LINE}"))
-                yield Part(f"{key}-{name}-line", f"{heading}, {self.say.say('and_line')}", items)
+                yield SheetPart(f"{key}-{name}-line", f"{heading}, {self.say.say('and_line')}", items)
 
-    def _asked(self, name: str, more: str, *, line: bool) -> Asked:
+    def _asked(self, name: str, more: str, *, line: bool) -> MethodComparison:
         if name in RULE:
             rule: Rule = RULE[name]
             s, states = rule.state, self.found.straight_states if line else self.found.states
             at = spectra.At(f"T_[{s}{more}]", states[s].T, rule.damping)
-            return Asked(s, f"d_[{s}]", states[s].d, f"S_[De](T_[{s}{more}])", at)
+            return MethodComparison(s, f"d_[{s}]", states[s].d, f"S_[De](T_[{s}{more}])", at)
         return self._activation(STATE[name])
 
-    def _activation(self, state: str) -> Asked:
+    def _activation(self, state: str) -> MethodComparison:
         """The onset of rocking, by the ground of a limit state."""
-        return Asked(state, "a_[0]^[*]", self.found.a0, self._peak())
+        return MethodComparison(state, "a_[0]^[*]", self.found.a0, self._peak())
 
     def _peak(self) -> str:
         on_floor = self.ground.site.floor is not None
@@ -97,13 +99,13 @@ class Methods:
             return "S_[eZ](T_[0])" if on_floor else "S_[e](T_[0])"
         return "S_[Z]" if on_floor else "a_[g] S"
 
-    def _demand(self, spectrum: Spectrum, asked: Asked) -> float:
+    def _demand(self, spectrum: DemandSpectrum, asked: MethodComparison) -> float:
         if asked.at is not None:
             return spectrum.displacement(asked.at.T, asked.at.damping)
         T0 = self.ground.site.own_period
         return spectrum.peak if T0 is None else spectrum.acceleration(T0, DAMPING)
 
-    def _items(self, name: str, method: Method, asked: Asked, more: str = "") -> Iterator[Item]:
+    def _items(self, name: str, method: ItalianMethod, asked: MethodComparison, more: str = "") -> Iterator[Item]:
         """Yield the capacity a_g, its check, zeta_E, and the return period."""
         spectrum = self.ground.spectrum(asked.state)
         assert spectrum is not None and method.a_g is not None  # its state is given
@@ -113,11 +115,11 @@ class Methods:
         yield Steps([self._zeta(method, names)])
         yield from self._lasts(method, asked, more)
 
-    def _zeta(self, method: Method, names: Mapping[str, str]) -> Working:
+    def _zeta(self, method: ItalianMethod, names: Mapping[str, str]) -> Working:
         return self.say.step(F.ZETA, method.zeta or 0.0, names, a=method.a_g, b=method.demand)
 
     def _solved(
-        self, names: Mapping[str, str], spectrum: Spectrum, asked: Asked, a_g: float, clause: str
+        self, names: Mapping[str, str], spectrum: DemandSpectrum, asked: MethodComparison, a_g: float, clause: str
     ) -> Iterator[Item]:
         """Yield the a_g at which a demand equals a capacity, and its check if it was found by iteration."""
         say, own, found = self.say, self._demand(spectrum, asked), {**names, "capacity": asked.name}
@@ -130,7 +132,7 @@ class Methods:
         yield Sentence(say.say("check", state=asked.state))
         yield Steps(list(self._checked(spectrum.with_ag(a_g), asked)))
 
-    def _linear(self, method: Method) -> Iterator[Item]:
+    def _linear(self, method: ItalianMethod) -> Iterator[Item]:
         """Yield q times the a_g at which rocking starts at SLD, and its zeta_E and return period at SLV."""
         say, ground, q = self.say, self.ground, self.ground.site.q
         assert method.a_g is not None  # SLV is always given
@@ -145,9 +147,9 @@ class Methods:
         linear = say.step(by_code, method.a_g, q=q, a=start)
         names = {"symbol": "a_[g,linear]", "asked": "a_[g,SLV]", "state": "SLV", "more": ""}
         yield Steps([linear, self._zeta(method, names)])
-        yield from self._lasts(method, Asked("SLV", "a_[g,linear]", method.a_g, "a_[g]"), "")
+        yield from self._lasts(method, MethodComparison("SLV", "a_[g,linear]", method.a_g, "a_[g]"), "")
 
-    def _checked(self, spectrum: Spectrum, asked: Asked) -> Iterator[Working]:
+    def _checked(self, spectrum: DemandSpectrum, asked: MethodComparison) -> Iterator[Working]:
         """Yield the steps to the demand under another ground, to be checked against the capacity."""
         say = self.say
         ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
@@ -160,7 +162,7 @@ class Methods:
         elif self.ground.site.own_period is not None:
             yield from spectra.at_own_period(say, spectrum, self.ground.site.own_period, DAMPING)
 
-    def _lasts(self, method: Method, asked: Asked, more: str) -> Iterator[Item]:
+    def _lasts(self, method: ItalianMethod, asked: MethodComparison, more: str) -> Iterator[Item]:
         """Yield the capacity as a return period, and its check."""
         say, TR, hazard = self.say, method.return_period, self.ground.hazard
         if TR is None or hazard is None:

@@ -7,7 +7,7 @@ from math import log
 
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.demand import DAMPING, FloorSpectrum, GroundSpectrum
-from rocking_cli.codes.italian.ground import Ground
+from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.hazard import (
     LONGEST,
     PROBABILITY,
@@ -21,10 +21,10 @@ from rocking_cli.codes.italian.hazard import (
 )
 from rocking_cli.codes.italian.rules import FIRST, FURTHER, RULES, STATES
 from rocking_cli.codes.italian.sheet import spectra
-from rocking_cli.codes.italian.site import SIZES, Element, Shaking
+from rocking_cli.codes.italian.site import SIZES, StateGround, VibratingElement
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.verification.working import Working
-from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence, Steps
+from rocking_cli.views.sheet.document import Grid, Item, Sentence, SheetPart, Steps
 from rocking_cli.views.sheet.language import Language
 
 SYMBOLS = {"ag": ("a_[g]", "g"), "F0": ("F_[0]", ""), "TC": ("T_[C]", "s"), "S": ("S", "")}
@@ -32,13 +32,13 @@ OTHERS = {"VN": ("V_[N]", "years"), "CU": ("C_[U]", ""), "T0": ("T_[0]", "s")}
 OF_FLOOR = {"z": ("z", "m"), "H": ("H", "m"), "n": ("n", "")}
 
 
-def part(say: Language, ground: Ground) -> Part:
+def part(say: Language, ground: SiteGround) -> SheetPart:
     """What the site does, a part for each limit state that it gives."""
     states = [each for each in STATES if ground.spectrum(each) is not None]
-    return Part("site", say.say("site"), [_given(say, ground)], [_of_state(say, ground, each) for each in states])
+    return SheetPart("site", say.say("site"), [_given(say, ground)], [_of_state(say, ground, each) for each in states])
 
 
-def given(say: Language, ground: Ground) -> Iterator[Working]:
+def given(say: Language, ground: SiteGround) -> Iterator[Working]:
     """What the file says that has a place in the code."""
     site = ground.site
     yield say.step(F.FC, site.FC)
@@ -51,7 +51,7 @@ def given(say: Language, ground: Ground) -> Iterator[Working]:
             yield say.step(F.XI1, mode.xi1, {"state": state})
 
 
-def _given(say: Language, ground: Ground) -> Grid:
+def _given(say: Language, ground: SiteGround) -> Grid:
     """What the file says, beside tables."""
     site = ground.site
     FC, q, *modes = ([each.symbol, each.meaning, say.number(each.value), each.unit] for each in given(say, ground))
@@ -73,7 +73,7 @@ def _given(say: Language, ground: Ground) -> Grid:
     return Grid(say.say("given"), heads, [*rows, *modes], (2,))
 
 
-def _sizes(say: Language, state: str, given: Shaking | None) -> Iterator[list[str]]:
+def _sizes(say: Language, state: str, given: StateGround | None) -> Iterator[list[str]]:
     if given is not None and given.spectrum is not None:
         yield ["a_[g]", say.say("given_ordinate", state=state), say.number(given.spectrum[0][1]), "g"]
     if given is None or given.ag is None:
@@ -83,7 +83,7 @@ def _sizes(say: Language, state: str, given: Shaking | None) -> Iterator[list[st
         yield [symbol, say.say(f"given_{key}", state=state), say.number(getattr(given, key)), unit]
 
 
-def _of_state(say: Language, ground: Ground, state: str) -> Part:
+def _of_state(say: Language, ground: SiteGround, state: str) -> SheetPart:
     spectrum = ground.spectrum(state)
     assert spectrum is not None  # else it is not shown
     rows = [*_of_life(say, ground, state), *spectra.peaks(say, spectrum, state)]
@@ -92,16 +92,16 @@ def _of_state(say: Language, ground: Ground, state: str) -> Part:
     if T0 is not None:
         items += [Steps([_own_period(say, site.element)])] if (site := ground.site).element is not None else []
         items += [Sentence(say.say("free")), Steps(list(spectra.at_own_period(say, spectrum, T0, DAMPING)))]
-    return Part(f"site-{state}", say.say("ground_at", state=state), items)
+    return SheetPart(f"site-{state}", say.say("ground_at", state=state), items)
 
 
-def _own_period(say: Language, one: Element) -> Working:
+def _own_period(say: Language, one: VibratingElement) -> Working:
     """The period of an element that is free to vibrate."""
     L, t = one.size
     return say.step(F.OWN_PERIOD, one.period, kappa=one.kappa, L=L, t=t, w=one.w, E=one.E, g=STANDARD_GRAVITY)
 
 
-def _of_life(say: Language, ground: Ground, state: str) -> Iterator[Working]:
+def _of_life(say: Language, ground: SiteGround, state: str) -> Iterator[Working]:
     """The return period of a limit state, and the ground at it."""
     site, TR, hazard = ground.site, ground.return_period(state), ground.hazard
     if hazard is None or TR is None or site.VN is None or site.CU is None:
@@ -146,7 +146,7 @@ def _on_soil(say: Language, hazard: Hazard, spectrum: GroundSpectrum, TC_star: f
     yield say.step(F.TC, spectrum.TC, C=C_C, T=TC_star)
 
 
-def amplifications(say: Language, ground: Ground) -> Iterator[Working]:
+def amplifications(say: Language, ground: SiteGround) -> Iterator[Working]:
     """A of a floor at each limit state that the site gives."""
     damping = {rule.state: rule.damping for rule in RULES}
     for state in STATES:

@@ -13,9 +13,9 @@ from rocking_cli.codes.italian.demand import (
     BELOW,
     GROUND,
     LONG,
+    DemandSpectrum,
     FloorSpectrum,
     GroundSpectrum,
-    Spectrum,
     TableSpectrum,
     correction,
 )
@@ -41,7 +41,7 @@ def corrected(say: Language, at: At) -> Working:
     return say.step(F.ETA, correction(at.damping), {"xi": at.xi}, xi=100 * at.damping)
 
 
-def peaks(say: Language, spectrum: Spectrum, state: str) -> Iterator[Working]:
+def peaks(say: Language, spectrum: DemandSpectrum, state: str) -> Iterator[Working]:
     """What the ground does at once: corners of its spectrum, its peak, and that of the floor."""
     ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
     if isinstance(ground, GroundSpectrum):
@@ -101,7 +101,7 @@ def _of_table(say: Language, spectrum: TableSpectrum, at: At) -> Iterator[Workin
     yield say.step(F.S_E_TABLE, spectrum.acceleration(at.T, at.damping), name, a=at5, by=by, g=G)
 
 
-def displacement(say: Language, spectrum: Spectrum, at: At) -> Iterator[Working]:
+def displacement(say: Language, spectrum: DemandSpectrum, at: At) -> Iterator[Working]:
     """S_De at a period, with all that leads there."""
     yield corrected(say, at)
     if isinstance(spectrum, FloorSpectrum):
@@ -110,7 +110,7 @@ def displacement(say: Language, spectrum: Spectrum, at: At) -> Iterator[Working]
         yield from _undisturbed(say, spectrum, at, f"S_[De]({at.name})")
 
 
-def _undisturbed(say: Language, spectrum: Spectrum, at: At, symbol: str) -> Iterator[Working]:
+def _undisturbed(say: Language, spectrum: DemandSpectrum, at: At, symbol: str) -> Iterator[Working]:
     """The displacement of the ground at a period, under a symbol."""
     value, formula, by = spectrum.displacement(at.T, at.damping), F.S_DE, at
     if isinstance(spectrum, TableSpectrum):
@@ -155,7 +155,7 @@ def _of_floor(say: Language, floor: FloorSpectrum, at: At) -> Iterator[Working]:
     yield say.step(F.S_DE_FLOOR, value, {"at": at.name, "bounds": shown}, d=bounds)
 
 
-def at_own_period(say: Language, spectrum: Spectrum, T0: float, damping: float) -> Iterator[Working]:
+def at_own_period(say: Language, spectrum: DemandSpectrum, T0: float, damping: float) -> Iterator[Working]:
     """S_e, or S_eZ, at the period of an element that vibrates freely."""
     at = At("T_[0]", T0, damping)
     yield corrected(say, at)

@@ -9,9 +9,9 @@ import numpy as np
 
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.capacity import ExactCurve, StraightCurve
-from rocking_cli.codes.italian.displaced import Displaced
-from rocking_cli.codes.italian.ground import Ground
-from rocking_cli.codes.italian.results import State, Verified
+from rocking_cli.codes.italian.displaced import DisplacedChain
+from rocking_cli.codes.italian.ground import SiteGround
+from rocking_cli.codes.italian.results import ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import RULES, Rule
 from rocking_cli.codes.italian.sheet import chain as chains
 from rocking_cli.codes.italian.sheet import spectra
@@ -19,7 +19,7 @@ from rocking_cli.codes.italian.sheet.chain import Scale
 from rocking_cli.codes.italian.ties import pulls
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.studies.verification.working import Working
-from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence, Steps
+from rocking_cli.views.sheet.document import Grid, Item, Sentence, SheetPart, Steps
 from rocking_cli.views.sheet.language import Language
 
 LINE = "lin"  # in subscripts: on the straight line
@@ -30,8 +30,8 @@ class Writer:
     """A direction at a site, and the language it is told in."""
 
     say: Language
-    ground: Ground
-    found: Verified
+    ground: SiteGround
+    found: ItalianVerified
 
     @property
     def curve(self) -> ExactCurve:
@@ -43,24 +43,24 @@ class Writer:
         """What weights are printed in."""
         return Scale.of(self.curve.chain)
 
-    def parts(self, key: str) -> Iterator[Part]:
+    def parts(self, key: str) -> Iterator[SheetPart]:
         """The chain, the curve's ends, and each limit state."""
         say = self.say
         yield chains.part(say, self.curve, key)
-        yield Part(f"{key}-curve", say.say("curve"), list(self._ends()))
+        yield SheetPart(f"{key}-curve", say.say("curve"), list(self._ends()))
         for rule in RULES:
             items = list(self._state(rule))
-            yield Part(f"{key}-{rule.state}", say.say("state", state=rule.state), items)
+            yield SheetPart(f"{key}-{rule.state}", say.say("state", state=rule.state), items)
             line = list(self._on_line(rule))
             heading = say.say("state_line", state=rule.state)
-            yield Part(f"{key}-{rule.state}-line", heading, [Sentence(say.say("line_is")), Steps(line)])
+            yield SheetPart(f"{key}-{rule.state}-line", heading, [Sentence(say.say("line_is")), Steps(line)])
 
     def _ends(self) -> Iterator[Item]:
         """a0* and d0*."""
         say, curve = self.say, self.curve
         a0 = say.step(F.A0, curve.a0, **self._accelerated(curve.chain.alpha0))
         yield Steps([a0, self._control()])
-        end = Displaced(curve, curve.end)
+        end = DisplacedChain(curve, curve.end)
         yield Steps([say.step(F.PHI_0, curve.end)])
         yield chains.at_work(say, end, self.scale)
         yield from chains.held(say, end, self.scale)
@@ -80,12 +80,12 @@ class Writer:
         if control.body is None:
             return say.step(F.X_C, dx, first=scale.weight(chain.first), PQ=scale.weight(chain.inertial))
         names = {"body": control.body, "x": say.number(control.at.real), "y": say.number(control.at.imag)}
-        own = next(each for each in Displaced(self.curve, 0.0).blocks if control.body in each.block.bodies)
+        own = next(each for each in DisplacedChain(self.curve, 0.0).blocks if control.body in each.block.bodies)
         if own.centre is None:
             return say.step(F.X_C_STRAIGHT, dx, names, x=own.dx)
         return say.step(F.X_C_TURNS, dx, names, turns=own.turns, y=control.at.imag, O=scale.near(own.centre.imag))
 
-    def _moved(self, position: Displaced, names: Mapping[str, str]) -> Iterator[Working]:
+    def _moved(self, position: DisplacedChain, names: Mapping[str, str]) -> Iterator[Working]:
         """d_C and d at a position."""
         say, curve, scale = self.say, self.curve, self.scale
         chain, control = curve.chain, curve.control
@@ -109,7 +109,7 @@ class Writer:
         yield Steps([self._allowed(rule, at)])
         broken = rule.at_breaks and self.curve.broken is not None and at.d == self.curve.broken
         phi = self.curve.torn if broken and self.curve.torn is not None else self.curve.rotation(at.d)
-        position = Displaced(self.curve, phi)
+        position = DisplacedChain(self.curve, phi)
         yield Steps([say.step(F.PHI, phi, names)])
         yield chains.at_work(say, position, self.scale)
         yield from chains.held(say, position, self.scale)
@@ -120,7 +120,7 @@ class Writer:
         rows.append(say.step(F.A_THERE, here, names, **self._accelerated(position.alpha)))
         yield Steps([*rows, *self._period_and_demand(rule, at, s, here)])
 
-    def _ties(self, rule: Rule, at: State) -> Iterator[Item]:
+    def _ties(self, rule: Rule, at: LimitState) -> Iterator[Item]:
         """Yield the force and elongation of ties, and of forces against the motion."""
         say = self.say
         rows = [
@@ -132,7 +132,7 @@ class Writer:
             heads = [say.say("tie"), "N [kN]", "ΔL [m]", "ΔL/L [%]"]
             yield Grid(say.say("ties_at", state=rule.state), heads, rows, (1, 2, 3))
 
-    def _allowed(self, rule: Rule, at: State) -> Working:
+    def _allowed(self, rule: Rule, at: LimitState) -> Working:
         """The displacement that a limit state allows."""
         curve = self.curve
         ends = {"t": curve.broken if rule.at_breaks else None, "a": curve.seat.d if curve.seat is not None else None}
@@ -141,7 +141,7 @@ class Writer:
         formula = F.ALLOWED_LEAST if known else F.ALLOWED
         return self.say.step(formula, at.d, names, share=rule.share, d0=curve.d0, d=[*known.values()])
 
-    def _period_and_demand(self, rule: Rule, at: State, name: str, a: float) -> Iterator[Working]:
+    def _period_and_demand(self, rule: Rule, at: LimitState, name: str, a: float) -> Iterator[Working]:
         """T, S_De there and the ratio; `a` is a* of the curve that `name` is on [m/s2]."""
         say, s, T0 = self.say, rule.state, self.ground.site.own_period
         names = {"state": s, "on": name, "a": f"a^[*]_[{name}]" if T0 is None else f"a_[{name}]"}

@@ -5,31 +5,31 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from rocking_cli.codes.italian.ground import Ground
-from rocking_cli.codes.italian.results import Verified
+from rocking_cli.codes.italian.ground import SiteGround
+from rocking_cli.codes.italian.results import ItalianVerified
 from rocking_cli.codes.italian.sheet import site, texts_en
 from rocking_cli.codes.italian.sheet.methods import Methods
 from rocking_cli.codes.italian.sheet.states import Writer
 from rocking_cli.studies.verification.working import Working
-from rocking_cli.views.sheet.document import Part, workings
+from rocking_cli.views.sheet.document import SheetPart, workings
 from rocking_cli.views.sheet.language import Language
 
 ENGLISH = Language("en", texts_en.TEXTS)
 
 
-def of_direction(say: Language, ground: Ground, found: Verified) -> Iterator[Part]:
+def of_direction(say: Language, ground: SiteGround, found: ItalianVerified) -> Iterator[SheetPart]:
     """The parts of a direction: chain, curve, limit states, methods."""
     key = found.direction.label
     yield from Writer(say, ground, found).parts(key)
     yield from Methods(say, ground, found).parts(key)
 
 
-def workings_of_direction(ground: Ground, found: Verified) -> list[Working]:
+def workings_of_direction(ground: SiteGround, found: ItalianVerified) -> list[Working]:
     """The steps of a direction."""
     return list(workings(of_direction(ENGLISH, ground, found)))
 
 
-def workings_of_site(ground: Ground) -> list[Working]:
+def workings_of_site(ground: SiteGround) -> list[Working]:
     """What the site file says, and the steps to the ground at each limit state, with the amplification by a floor."""
     whole = site.part(ENGLISH, ground)
     found = [each.in_plain(whole.heading) for each in site.given(ENGLISH, ground)]

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rocking_cli.codes.italian.results import Verification, Verified
+from rocking_cli.codes.italian.results import ItalianVerification, ItalianVerified
 from rocking_cli.codes.italian.rules import OF_STATE
 from rocking_cli.codes.italian.sheet.methods import title
-from rocking_cli.views.sheet.document import Grid, Item, Part, Sentence
+from rocking_cli.views.sheet.document import Grid, Item, Sentence, SheetPart
 from rocking_cli.views.sheet.language import Language, plain
 
 
-def part(say: Language, found: Verification, shown: Mapping[str, Verified]) -> Part:
+def part(say: Language, found: ItalianVerification, shown: Mapping[str, ItalianVerified]) -> SheetPart:
     """The summary."""
     items: list[Item] = [verdict(say, found.first, where, each) for where, each in shown.items()]
     for where, each in shown.items():
@@ -27,10 +27,12 @@ def part(say: Language, found: Verification, shown: Mapping[str, Verified]) -> P
         said.append(say.say("caution", text=say.caution(found.mechanism.mechanism, caution)))
     if own := found.mechanism.own_caution():
         said.append(say.say("caution", text=plain(own)))
-    return Part("summary", say.say("summary"), items, [Part("remarks", say.say("remarks"), [*map(Sentence, said)])])
+    return SheetPart(
+        "summary", say.say("summary"), items, [SheetPart("remarks", say.say("remarks"), [*map(Sentence, said)])]
+    )
 
 
-def verdict(say: Language, first: str, where: str, each: Verified) -> Sentence:
+def verdict(say: Language, first: str, where: str, each: ItalianVerified) -> Sentence:
     """The answer of a direction."""
     at, counts, passes = each.states[first], each.counts, each.passes(first)
     if passes is None or at.demand is None or at.ratio is None or counts.a_g is None or counts.demand is None:
@@ -47,7 +49,7 @@ def verdict(say: Language, first: str, where: str, each: Verified) -> Sentence:
     return Sentence(text, answers=True, fails=not passes)
 
 
-def _starts_later(say: Language, first: str, where: str, each: Verified) -> Iterator[Item]:
+def _starts_later(say: Language, first: str, where: str, each: ItalianVerified) -> Iterator[Item]:
     """The other limit states at which the damage method governs: their ratio of displacements does not decide."""
     for state in each.states:
         (damage, nonlinear), counts = OF_STATE[state], each.methods[each.governing[state]]
@@ -58,7 +60,7 @@ def _starts_later(say: Language, first: str, where: str, each: Verified) -> Iter
             yield Sentence(say.say(key, where=where, state=state, zeta=counts.zeta, why="@").replace("@", why))
 
 
-def _which(say: Language, found: Verification) -> Iterator[Item]:
+def _which(say: Language, found: ItalianVerification) -> Iterator[Item]:
     """Which direction governs."""
     least = found.governs
     ratio, rest = (found.compared(each) for each in (least, least.opposite))
@@ -66,7 +68,7 @@ def _which(say: Language, found: Verification) -> Iterator[Item]:
         yield Sentence(say.say("which", least=say.say(f"short_{least.label}"), ratio=ratio, rest=rest))
 
 
-def _states(say: Language, where: str, each: Verified) -> Grid:
+def _states(say: Language, where: str, each: ItalianVerified) -> Grid:
     rows = []
     for state, at in each.states.items():
         known = at.ratio is not None
@@ -81,7 +83,7 @@ def _states(say: Language, where: str, each: Verified) -> Grid:
     return Grid(say.say("states", where=where), [*heads, say.say("outcome")], rows, (1, 2, 3, 4))
 
 
-def _methods(say: Language, where: str, each: Verified) -> Grid:
+def _methods(say: Language, where: str, each: ItalianVerified) -> Grid:
     known = any(method.return_period is not None for method in each.methods.values())
     rows = []
     for key, method in each.methods.items():

@@ -7,22 +7,22 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from mechanisms import _faces as faces
-from mechanisms._members import Member
+from mechanisms._linkage_sides import PlacedSide
 from mechanisms._polygons import distance, inside, size_of
-from mechanisms._sides import Held
+from mechanisms._shapes import Member
 from rocking_cli.core import Direction, Outline, Pin, RigidMotion
 
 BESIDE = 1e-2  # of the width and height of a body: how far beside it a joint may be drawn
 CLOSES = 1e-9  # of the fastest point: how fast a face may close by rounding
 
 
-def face_at(members: Mapping[str, Member], bodies: Sequence[str], at: complex) -> faces.Face | None:
+def face_at(members: Mapping[str, Member], bodies: Sequence[str], at: complex) -> faces.BearingFace | None:
     """The face on which bodies bear on one another, or one on the ground; None where their shapes do not say."""
     shapes: list[Sequence[Outline]] = [members[name].outlines for name in bodies]
     return faces.under(shapes[0], at) if len(shapes) == 1 else faces.between(shapes[0], shapes[1], at)
 
 
-def beside(members: Mapping[str, Member], held: Held) -> tuple[str, str] | None:
+def beside(members: Mapping[str, Member], held: PlacedSide) -> tuple[str, str] | None:
     """A joint that is beside a body which it joins, where the shape of that is known, and what is wrong with it."""
     for joint in held.joints:
         at = np.array([joint.at])
@@ -37,7 +37,9 @@ def beside(members: Mapping[str, Member], held: Held) -> tuple[str, str] | None:
     return None
 
 
-def closing(members: Mapping[str, Member], held: Held, motions: Mapping[str, RigidMotion]) -> tuple[str, str] | None:
+def closing(
+    members: Mapping[str, Member], held: PlacedSide, motions: Mapping[str, RigidMotion]
+) -> tuple[str, str] | None:
     """A joint whose face closes as it begins to rock, and what is wrong with it."""
     fastest = max(
         float(abs(motions[name].carry(z)[1][0])) for name, each in members.items()

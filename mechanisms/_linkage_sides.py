@@ -59,7 +59,7 @@ class Connection(Described):
         return self.model_copy(update={"at": [factor * each for each in self.at]})
 
 
-class Side(Described):
+class LinkageSide(Described):
     """One direction of rocking: the body whose rotation is phi, and the joints."""
 
     lead: Name = Field(description="the body whose rotation phi is")
@@ -69,13 +69,13 @@ class Side(Described):
         default=None, gt=0, le=180,
     )  # fmt: skip
 
-    def enlarged(self, factor: float) -> Side:
+    def enlarged(self, factor: float) -> LinkageSide:
         """The same side of a structure of another size."""
         return self.model_copy(update={"joints": {key: each.enlarged(factor) for key, each in self.joints.items()}})
 
 
 @dataclass(frozen=True)
-class Held:
+class PlacedSide:
     """A side with all of its points known.
 
     Parameters
@@ -99,7 +99,7 @@ class Held:
     end: float | None
 
     @classmethod
-    def of(cls, side: Side) -> Held:
+    def of(cls, side: LinkageSide) -> PlacedSide:
         """A side of which every joint says where it is by numbers."""
         joints: list[Pin | Guide] = []
         fixed: list[tuple[str, str]] = []
@@ -120,7 +120,7 @@ class Held:
         return cls(side.lead, joints, fixed, ground, end)
 
 
-def mirrored(side: Side, middle: float, images: Mapping[str, str]) -> Side:
+def mirrored(side: LinkageSide, middle: float, images: Mapping[str, str]) -> LinkageSide:
     """The joints of the other direction: about a vertical line, of the images of its bodies."""
 
     def image(point: Sequence[float]) -> list[float]:

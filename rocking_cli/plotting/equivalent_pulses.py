@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.plotting import style
-from rocking_cli.studies.equivalent import EquivalentResponses
+from rocking_cli.studies.equivalent_pulses import EquivalentResponses
 
 FALLING = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a cross
 FREE = 8.0  # p t shown after the pulse

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 
-class Parts:
+class JoinedNames:
     """Names, some of which are joined to one."""
 
     def __init__(self, names: Sequence[str | int | None]) -> None:

@@ -79,7 +79,7 @@ def _found(mechanism: Mechanism, directions: Sequence[Direction]) -> list[list[s
     return rows
 
 
-class Side(NamedTuple):
+class EquivalentSide(NamedTuple):
     """A direction of rocking: its moments, and the block that is equivalent to it if one is."""
 
     direction: Direction
@@ -88,7 +88,7 @@ class Side(NamedTuple):
     eta: float
 
 
-def sides_of(structure: Structure) -> list[Side]:
+def sides_of(structure: Structure) -> list[EquivalentSide]:
     """The directions that a structure can rock in."""
     sides = []
     for direction in structure.mechanism.directions:
@@ -97,7 +97,7 @@ def sides_of(structure: Structure) -> list[Side]:
         block = structure.equivalence[direction] if structure.why_no_block is None else None
         if block is None and statics.why_no_block is None:  # the other direction has none
             block = one_block(structure.mechanism, direction, statics)
-        sides.append(Side(direction, statics, block, structure.etas[k]))
+        sides.append(EquivalentSide(direction, statics, block, structure.etas[k]))
     return sides
 
 
@@ -108,7 +108,7 @@ def is_symmetric(structure: Structure) -> bool:
     return alike(*structure.statics) and isclose(*structure.etas, rel_tol=AGREEMENT)
 
 
-def without(side: Side) -> dict[str, float]:
+def without(side: EquivalentSide) -> dict[str, float]:
     """What there is of the parameters where no block is equivalent; NaN for the rest."""
     known = {"lambda": side.statics.lambda_, "eta": side.eta}
     if side.statics.phi_cr is not None:
@@ -116,7 +116,7 @@ def without(side: Side) -> dict[str, float]:
     return {each.key: known.get(each.key, float("nan")) for each in PARAMETERS}
 
 
-def _data(side: Side) -> dict[str, Any]:
+def _data(side: EquivalentSide) -> dict[str, Any]:
     """The parameters of a direction; null where there is no block."""
     found: dict[str, Any] = values(side.block) if side.block is not None else without(side)
     advice = preferred_kappa(side.block) if side.block is not None else None
@@ -130,12 +130,12 @@ def _data(side: Side) -> dict[str, Any]:
     }
 
 
-def _extras(mechanism: Mechanism, side: Side) -> dict[str, float]:
+def _extras(mechanism: Mechanism, side: EquivalentSide) -> dict[str, float]:
     """What the mechanism found beside the parameters."""
     return {each.key: each.value for each in mechanism.found(side.direction)}
 
 
-def sentence(side: Side) -> str:
+def sentence(side: EquivalentSide) -> str:
     """Which kappa to prefer in a direction; where no block is equivalent, why, and what it does instead."""
     if side.block is not None:
         return f"critical rotation {degrees(side.block.phi_cr):.4g} deg. {preferred_kappa(side.block).why}"

@@ -29,7 +29,7 @@ EXACT = 1e-6  # of it: how far one may reach into another by rounding
 ARC = 24  # sides of a rounded corner as it is drawn
 
 
-class Part(Described):
+class BodyPart(Described):
     """A plate of a body, or an opening in one."""
 
     polygon: list[Vertex] = quantity(
@@ -56,7 +56,7 @@ class Part(Described):
         """Its corners, x + iy [m]."""
         return np.array([complex(*vertex) for vertex in self.polygon])
 
-    def enlarged(self, factor: float) -> Part:
+    def enlarged(self, factor: float) -> BodyPart:
         """The same part of a body of another size."""
         moved = [[factor * each for each in vertex] for vertex in self.polygon]
         depth = None if self.depth is None else factor * self.depth
@@ -83,7 +83,7 @@ class Plate:
         return [(sign, _weighed(z, self.per_area)) for sign, z in [(1, self.corners), *((-1, z) for z in self.holes)]]
 
 
-def plates(parts: Sequence[Part], per_area: Sequence[float]) -> list[Plate]:
+def plates(parts: Sequence[BodyPart], per_area: Sequence[float]) -> list[Plate]:
     """The parts of a body, each with the openings in it. Raises the error of a field where they do not fit together."""
     solids = [k for k, part in enumerate(parts) if not part.opening]
     openings = [k for k, part in enumerate(parts) if part.opening]

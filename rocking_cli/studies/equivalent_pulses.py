@@ -32,7 +32,7 @@ NEAR, FAR = 0.05, 0.2  # spread over the linear peak up to which structures are 
 
 
 @dataclass(frozen=True, eq=False)
-class Member:
+class PulsedStructure:
     """One structure under its own pulse.
 
     Parameters
@@ -74,7 +74,7 @@ class EquivalentResponses:
 
     Parameters
     ----------
-    members : tuple of Member
+    members : tuple of PulsedStructure
         The structures; the pulse was given for the first.
     a, omega : float
         Dimensionless amplitude and frequency of every pulse [paper, Eq. 40].
@@ -92,7 +92,7 @@ class EquivalentResponses:
         p t of the samples: the same for all.
     """
 
-    members: tuple[Member, ...]
+    members: tuple[PulsedStructure, ...]
     a: float
     omega: float
     kappa: Literal[1, 2]
@@ -232,12 +232,12 @@ def _member(
     polarity: int,
     scaling: ModelName,
     eta: float | None,
-) -> Member:
+) -> PulsedStructure:
     block = _equivalence(mechanism)[direction]
     own = replace(pulse, amplitude=a * mechanism.gravity * uplift(block, scaling), period=2 * pi / (omega * block.p))
     shaken = Structure(mechanism if eta is None else with_restitution(mechanism, eta))
     history = engine_of(shaken).follow(shaken, own.sampled().scaled(polarity), tail=_tail(own, block.p))
-    return Member(
+    return PulsedStructure(
         _name(mechanism), mechanism.mechanism, block, own, block.eta if eta is None else eta, block.eta, history,
         mechanism.own_caution(),
     )  # fmt: skip

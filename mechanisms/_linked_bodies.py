@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from mechanisms._members import Member
+from mechanisms._shapes import Member
 from rocking_cli.core import Body, Direction, LinkageMotion, Mechanism, Reals, RigidMotion, geometry_error, rotation
 
 
-class Membered(Mechanism):
+class LinkedBodies(Mechanism):
     """A mechanism of bodies that are given one by one."""
 
     @property

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.names import UNKNOWN
-from rocking_cli.studies.equivalent import EquivalentResponses
+from rocking_cli.studies.equivalent_pulses import EquivalentResponses
 from rocking_cli.views.response import known_data
 from rocking_cli.views.view import Table, View
 

@@ -10,7 +10,7 @@ from typing import Any, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from mechanisms._parts import Part, plates, united
+from mechanisms._plates import BodyPart, plates, united
 from mechanisms._polygons import area_of, fault_of
 from rocking_cli.core import Body, Outline, Vertex, disc, geometry_error, point, polygon, quantity
 from rocking_cli.core.fields import Described
@@ -48,7 +48,7 @@ class Shape(Described):
         "corners [x, y] in order around it", unit="m", example=[[0.0, 0.0], [1.0, 0.0], [1.0, 3.0], [0.0, 3.0]],
         default=None, min_length=3, max_length=10_000,
     )  # fmt: skip
-    parts: list[Part] | None = quantity(
+    parts: list[BodyPart] | None = quantity(
         "plates that make it, each {polygon, density, depth}, or an opening in one: {polygon, opening: true}",
         unit="m", default=None, min_length=1, max_length=100,
     )  # fmt: skip
@@ -124,7 +124,7 @@ class Shape(Described):
         return whole, [plate.outline for plate in found]
 
     @property
-    def _solids(self) -> list[Part]:
+    def _solids(self) -> list[BodyPart]:
         return [part for part in self.parts or [] if not part.opening]
 
     def _is_weighed(self, own: Sequence[float | None]) -> bool:
