@@ -117,7 +117,7 @@ def respond_each(
 
 
 def _known(outcome: Outcomes) -> NDArray[np.float64]:
-    """Whether motions overturn a structure, 1 or 0; NaN where the outcome is unknown."""
+    """Return whether motions overturn a structure, as 1 or 0; NaN if the outcome is unknown."""
     return np.where(outcome.unknown, np.nan, outcome.overturned)
 
 

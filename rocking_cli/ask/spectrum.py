@@ -94,6 +94,6 @@ def spectrum(
 
 
 def _check_count(name: str, count: int, least: int = 1) -> None:
-    """Refuse a number of values of which there are too few. Raises `InputError`."""
+    """Raise `InputError` if a number of values is not a whole number, or too small."""
     if not isinstance(count, int) or count < least:
         raise InputError(Problem(f"must be a whole number of at least {least}, got {count!r}", field=name))

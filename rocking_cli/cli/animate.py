@@ -175,7 +175,7 @@ class _Camera:
 
 
 def _write(out: Path, film: Film, title: str, speed: float | None, fps: float) -> dict[str, float | int | None]:
-    """Write the page or the GIF; how fast it shows the motion, and the number of frames of a GIF."""
+    """Write the page or the GIF; return the playback speed, and the number of frames of a GIF."""
     from rocking_cli.io.files import write_whole
 
     frames = None
@@ -193,7 +193,7 @@ def _write(out: Path, film: Film, title: str, speed: float | None, fps: float) -
 
 
 def _write_gif(out: Path, film: Film, title: str, speed: float, fps: float) -> int:
-    """Write the GIF; its number of frames."""
+    """Write the GIF, and return its number of frames."""
     import numpy as np
 
     from rocking_cli.io.files import write_whole

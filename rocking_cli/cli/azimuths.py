@@ -23,7 +23,7 @@ COMMANDLINE = ParameterSource.COMMANDLINE
 
 
 def check(asked: GroundMotions, history: HistoryOptions, count: int, *, impacts: bool, contact: bool) -> None:
-    """Refuse options that apply to a single direction."""
+    """Raise if options are given that apply to a single direction."""
     if count != 1 or asked.pulses:
         raise click.UsageError("--azimuth all takes a single pair of components: give one --record FILE.")
     if asked.polarity != "1":

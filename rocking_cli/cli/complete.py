@@ -1,4 +1,4 @@
-"""Completion of values on a command line, besides commands and options; plugins are listed and never loaded."""
+"""Shell completion of values on a command line; plugins are listed and never loaded."""
 
 from __future__ import annotations
 

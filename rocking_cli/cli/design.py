@@ -139,7 +139,7 @@ def command(
 
 
 def _warn_of_sizes(structure: Structure, field: str, span: tuple[float, float]) -> None:
-    """Warn where a range looks as if it were given in another unit."""
+    """Warn if a range looks as if it were given in another unit."""
     from rocking_cli.core.size import doubtful_size
     from rocking_cli.errors import RockingError
 

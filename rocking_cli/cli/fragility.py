@@ -25,7 +25,7 @@ NAMED = 10  # bad records or samples named one by one
 
 @dataclass(frozen=True)
 class Running:
-    """Computer and store of the runs."""
+    """Options of the runs: processors or cluster, and the store."""
 
     jobs: int | None
     scheduler: str | None
@@ -39,7 +39,7 @@ class Running:
             )
 
     def workers(self) -> AbstractContextManager[Workers]:
-        """Return what carries out the runs."""
+        """Return the workers that simulate the runs: a cluster, or threads of this machine."""
         from rocking_cli.studies.fragility import workers
 
         return workers.cluster(self.scheduler) if self.scheduler is not None else workers.threads(self.jobs)
@@ -137,7 +137,7 @@ def _check(study: Study, *, as_json: bool) -> bool:
 
 
 def _bring_up_to_date(study: Study, place: Path, running: Running, *, rank_measures: bool) -> None:
-    """Run what the store does not hold; to restart, run all and keep the old store under another name."""
+    """Simulate the runs that the store lacks; on a restart simulate all, and keep the old store."""
     from rocking_cli.cli import waiting
     from rocking_cli.studies.fragility.campaign import prepare, run, steps
     from rocking_cli.studies.fragility.store import Store

@@ -70,7 +70,7 @@ class ReadingOptions:
 
     @property
     def reading(self) -> Reading:
-        """Options for reading a record, in one direction."""
+        """Options for reading a record; not for a pair of components that is rotated into all directions."""
         if self.all_azimuths:
             raise click.UsageError("--azimuth all works with `rocking respond` only: give one angle here.")
         return self.towards(self.azimuth or 0.0)
@@ -203,7 +203,7 @@ class Near:
 
     @property
     def around(self) -> Neighbourhood:
-        """How the neighbours are drawn."""
+        """Number of the neighbours, and how they are drawn."""
         from rocking_cli.studies.neighbours import Neighbourhood
 
         return Neighbourhood(

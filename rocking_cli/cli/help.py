@@ -95,6 +95,6 @@ class Command(click.Command):
 
 
 class Context(click.Context):
-    """The context of a command, with these texts of help."""
+    """Context of a command that formats its help with `HelpFormatter`."""
 
     formatter_class = HelpFormatter

@@ -33,7 +33,7 @@ MOST_PGA, MOST_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and too lo
 def factor(
     motion: GroundMotion, measured: Measures, scale: float | None, target_pga: float | None, target_pgv: float | None
 ) -> float:
-    """Return the factor on a motion as read that the options give, without the polarity.
+    """Return the factor on a motion as read, from the options for scaling; the polarity is not included.
 
     Parameters
     ----------

@@ -36,28 +36,29 @@ IMPORTED = ("ClassVar", "CodeContract", "MechanismContract", "Self", "Sequence",
 
 @dataclass(frozen=True)
 class PluginKind:
-    """What a package can be for.
+    """Kind of plugin that a package is written for: a mechanism or a code.
 
     Parameters
     ----------
     word : str
-        What it is called.
+        Name of the kind.
     folder : str
-        Where its files are, in the data of this package.
+        Folder of its template files, in the data of this package.
     placeholder : str
-        The name in them: my_mechanism, MyMechanism, my-mechanism and "my mechanism" become the name that is given.
+        Name in the template files: my_mechanism, MyMechanism, my-mechanism and "my mechanism" are replaced by the given
+        name.
     files : mapping of str to str
-        What each file is, by its name there.
+        Description of each template file, by its name.
     examples : mapping of str to str
-        The same of the files that are made by the program.
+        Description of each file that the program generates, by its name.
     made : callable
-        Returns the content of these for a class and its name.
+        Returns the content of the generated files, for a class and its name.
     commands : callable
-        Returns the commands with which to try it.
+        Returns the commands with which to try the plugin.
     file : str
-        In which files its name stands.
+        Kind of files in which users write its name.
     example : str
-        A name that it could have.
+        An example of a valid name.
     """
 
     word: str
@@ -72,7 +73,7 @@ class PluginKind:
 
     @property
     def module(self) -> str:
-        """The file of the class."""
+        """File name of the module with the class."""
         return f"rocking_{self.placeholder}.py"
 
     def named(self, text: str, name: str) -> str:

@@ -145,12 +145,12 @@ curve_plots: Decorator = click.option(
 
 
 class Renamed(Command):
-    """Command some of whose options had other names, which still work, with a note on the new one.
+    """Command with options that had other names, which still work, with a note on the new name.
 
     Parameters
     ----------
     renamed : mapping of str to str
-        The option of today by the old name, such as `{"--periods": "--period"}`.
+        The current option by its old name, such as `{"--periods": "--period"}`.
     """
 
     def __init__(self, *args: Any, renamed: Mapping[str, str], **more: Any) -> None:
@@ -318,7 +318,7 @@ reading: Decorator = in_order(
 
 
 def polarity(*choices: str, default: str = "1") -> Decorator:
-    """Declare the `polarity` of a motion, one of these; the text of a command says what becomes of both."""
+    """Declare the option `polarity` of a motion, with these choices; the help of a command explains `both`."""
     return click.option(
         "--polarity",
         type=click.Choice(choices),

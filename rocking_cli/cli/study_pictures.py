@@ -67,7 +67,7 @@ def draw_all(
 
 
 def _save(folder: Path, drawn: Mapping[str, Figure]) -> None:
-    """Write pictures by their names."""
+    """Write figures to a folder, by their file names."""
     from rocking_cli.cli.pictures import save
 
     with terminal.progress(len(drawn), "pictures") as advance:

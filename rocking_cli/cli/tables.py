@@ -61,7 +61,7 @@ def drawn(gap: int, lines: Sequence[Sequence[str]], numbers: Collection[int], ru
     numbers : collection of int
         Indices of columns to align to the right.
     rule : str
-        What the line under the headings is made of.
+        Character of the line under the headings.
     """
     widths = [max(_widest(line[k]) for line in lines) for k in range(len(lines[0]))]
 

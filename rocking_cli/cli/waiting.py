@@ -16,14 +16,14 @@ _SAID: set[str] = set()
 
 @contextmanager
 def blocks(file: str | None) -> Iterator[None]:
-    """Show that blocks are analysed."""
+    """Show a spinner while blocks are analysed."""
     count = _count_of_blocks(file)
     with terminal.working(f"analysing {count} polygons" if count else "finding the weakest mechanism"):
         yield
 
 
 def say_what_blocks_take(file: str | None) -> None:
-    """Say before it starts what the analysis of many blocks will take."""
+    """Print a note, before it starts, on the time that the analysis of many blocks will take."""
     count = _count_of_blocks(file)
     if count < MANY or str(file) in _SAID:
         return

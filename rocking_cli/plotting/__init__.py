@@ -1,4 +1,4 @@
-"""Pictures, as matplotlib figures; never pyplot, which holds state."""
+"""Plots, as matplotlib figures; pyplot is never used, as it holds state."""
 
 import sys
 

@@ -1,7 +1,7 @@
-"""A structure moving under a ground motion, the traces below: as an animated GIF, and as a page.
+"""Animation of a structure under a ground motion, with time histories below: as GIF, and as an HTML page.
 
-Of a GIF what stands still is drawn once; only the structure and the cursor are drawn again for each frame, by the
-renderer of matplotlib itself, which smooths them.
+In a GIF, what stands still is drawn once. Only the structure and the cursor are drawn again for each frame, by
+matplotlib's renderer, which smooths them.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ HOLD = 1.5  # s that the last frame stays
 
 
 def frame_time(fps: float) -> float:
-    """How long a frame is shown [s]: a GIF counts in hundredths, and many programs show none for less than two."""
+    """Return the duration of a frame [s]: a multiple of 0.01 s, and at least 0.02 s, as many programs require."""
     return max(2, round(100 / fps)) / 100
 
 
@@ -60,13 +60,13 @@ def write_gif(
     Parameters
     ----------
     stream : binary file
-        Where to.
+        Stream to write to.
     film : Film
-        What is shown.
+        The motion to show.
     title : str
         Heading.
     times : ndarray, shape (frames,)
-        When each frame is [s].
+        Time of each frame [s].
     fps : float
         Frames a second; see `frame_time`.
     advance : callable
@@ -93,7 +93,7 @@ def _frames(stage: _Stage, film: Film, times: Reals, advance: Callable[[int], No
 
 @cache
 def _palette() -> Image.Image:
-    """The colours of a GIF: those of the style, and shades to white and to ink. Few colours make small files."""
+    """Return the colours of a GIF: those of the style, and shades of them. Few colours make small files."""
     colours = {to_rgb("white"), to_rgb(style.INK)}
     drawn = (style.RESTING, style.EARTH, style.CURSOR, style.INK, style.FAINT, style.TIE["color"])
     for each in (*style.BODIES, *drawn):
@@ -108,7 +108,7 @@ def _palette() -> Image.Image:
 
 
 class _Stage:
-    """What stands still, and where on it things move [pixels]."""
+    """The still background of an animation, and the positions at which moving things are drawn [pixels]."""
 
     def __init__(self, film: Film, title: str, start: float, end: float) -> None:
         self._film = film
@@ -158,7 +158,7 @@ class _Stage:
         self._digits = 5 if any(film.history.ends_at_limit) else 2
 
     def frame(self, time: float, rotation: float, ratio: float) -> Image.Image:
-        """One frame, in colours."""
+        """Return one frame, in colours."""
         pixels = np.asarray(self._renderer.buffer_rgba())
         pixels[..., :3] = self._still
         pixels[..., 3] = 255
@@ -183,7 +183,7 @@ class _Stage:
         return frame
 
     def _draw_structure(self, rotation: float) -> list[tuple[str, complex]]:
-        """Draw parts and hinges; the letters of these, and where they are [pixels]."""
+        """Draw parts and hinges; return the letters of the hinges and their positions [pixels]."""
         picture = self._film.picture.grouped
         outlines, pins = picture.placed(rotation)
         direction = picture.side(rotation)
@@ -216,7 +216,7 @@ class _Stage:
         return pen
 
     def _draw_ties(self, shown: hung.Symbols, *, behind: bool) -> None:
-        """Draw ties and what holds them: those that the structure may move over, or the others."""
+        """Draw ties and their anchorages: those that the structure may cover, or the others."""
         for line, loose, of_bed in shown.lines:
             if of_bed is behind:
                 pen = self._pen(style.TIE["color"], style.TIE["linewidth"])
@@ -247,7 +247,7 @@ class _Stage:
         self._renderer.draw_path(pen, Path(corners, closed=True), IdentityTransform(), to_rgb(colour))
 
     def _pixels(self, z: NDArray[np.complex128]) -> NDArray[np.float64]:
-        """Where points are, from the lower left corner, shape (n, 2)."""
+        """Return points in pixels from the lower left corner, shape (n, 2)."""
         away = (z - self._origin) * self._scale
         return np.stack([away.real, away.imag], axis=-1)
 
@@ -282,30 +282,30 @@ def _draw_traces(upper: Axes, lower: Axes, film: Film, start: float, end: float)
 
 
 def ratio_trace(film: Film) -> tuple[Reals, Reals]:
-    """Times [s] and phi/phi_cr of the history, as many as can be seen."""
+    """Return times [s] and phi/phi_cr of a history, thinned to what is visible."""
     ratio = film.history.ratio[np.isfinite(film.history.ratio)]
     shown = visible(ratio)
     return film.history.time[shown], ratio[shown]
 
 
 def ground_trace(motion: GroundMotion) -> tuple[Reals, Reals]:
-    """Times [s] and accelerations [g] of a ground motion, as many as can be seen."""
+    """Return times [s] and accelerations [g] of a ground motion, thinned to what is visible."""
     motion = motion.kept
     shown = visible(motion.acceleration)
     return shown.astype(np.float64) * motion.dt, motion.acceleration[shown] / STANDARD_GRAVITY
 
 
 def animation_page(film: Film, title: str, speed: float = 1.0) -> str:
-    """A page of its own in which the structure moves: HTML with all that it needs, and no network.
+    """Return an HTML page in which the structure moves; it needs no other file and no network.
 
     Parameters
     ----------
     film : Film
-        What is shown.
+        The motion to show.
     title : str
         Heading.
     speed : float
-        Seconds of motion a second, to begin with.
+        Initial speed: seconds of motion per second.
     """
     model = film.history.model
     data = moving(

@@ -1,4 +1,4 @@
-"""Peak rotations over all directions of a structure's plane: a polar picture."""
+"""Polar plot of the peak rotations over all directions of a structure's plane."""
 
 from __future__ import annotations
 
@@ -17,17 +17,16 @@ LONGEST = 32  # characters of a name
 
 
 def draw_azimuths(found: AzimuthResponses, title: str, over: str) -> Figure:
-    """Draw the largest rotation in each direction.
+    """Plot the peak rotation in each direction.
 
     Parameters
     ----------
     found : AzimuthResponses
-        What is drawn: a closed curve for each model, crosses outside where it overturns, circles where its outcome is
-        unknown.
+        The responses: a closed curve for each model, crosses outside for overturning, circles for an unknown outcome.
     title : str
         Heading.
     over : str
-        What rotations are over, as `style.over` gives it.
+        Label of the normalised rotation, from `style.over`.
 
     Returns
     -------

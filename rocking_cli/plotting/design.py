@@ -1,4 +1,4 @@
-"""Where a requirement holds: the metric against the field that varies, and the required level."""
+"""Plot of a design: the metric against the field that varies, and the required level."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def draw_design(found: Design) -> Figure:
 
 
 def _height(found: Design) -> float:
-    """Where the answer is drawn: at the level, or where the metric is if it jumps over it."""
+    """Return the height at which the answer is drawn: the level, or the metric if it jumps past the level."""
     assert found.value is not None
     finite = np.isfinite(found.metric)
     if not finite.any():
@@ -67,7 +67,7 @@ def _height(found: Design) -> float:
 
 
 def _unknown(found: Design) -> NDArray[np.bool_]:
-    """Whether some neighbours at each value are of unknown outcome."""
+    """Return a mask of the values at which some neighbours have an unknown outcome."""
     return np.array([near is not None and bool(near.unknown) for near in found.behind], dtype=bool)
 
 

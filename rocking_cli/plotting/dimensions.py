@@ -1,4 +1,4 @@
-"""Lengths and angles written on a structure: outside of it where they measure its edge, else where they are."""
+"""Lengths and angles on the drawing of a structure: outside it if they measure its edge, otherwise in place."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Rows = dict[str, list[list[Length]]]
 
 
 def in_rows(lengths: Sequence[Length], low: complex, high: complex) -> tuple[Rows, list[Length]]:
-    """Lengths outside of the box of a structure, and those that are drawn where they are."""
+    """Return the lengths to draw in rows outside the box of a structure, and those to draw in place."""
     rows: Rows = {side: [] for side in SIDES}
     inside = []
     for each in lengths:
@@ -47,7 +47,7 @@ def in_rows(lengths: Sequence[Length], low: complex, high: complex) -> tuple[Row
 
 
 def room(rows: Rows, low: complex, high: complex) -> tuple[float, float, float, float]:
-    """What is needed on each side of a structure from `low` to `high` [inches]."""
+    """Return the space for dimensions left, right, below and above a structure from `low` to `high` [inches]."""
     left, right, below, above = (FIRST + ROW * len(rows[side]) + 0.06 if rows[side] else BARE for side in SIDES)
     wide, tall = (high - low).real, (high - low).imag
     if tall > wide:  # what is written inside of it may have no room there
@@ -88,7 +88,7 @@ def draw_outside(axes: Axes, rows: Rows, panel: Panel, low: complex, high: compl
 
 
 def _beside(out: complex, middle: complex, half: float, size: complex) -> list[LabelPlace]:
-    """Places for words of a size that a dimension line, `half` long to either side, is too short for [inches]."""
+    """Return places for a label next to a dimension line that is too short for it, of half-length `half` [inches]."""
     upright = out.imag == 0
     along, turned = (1j, 90.0) if upright else (1 + 0j, 0.0)
     slack = 0.5 * size.real + half + 0.06
@@ -107,7 +107,7 @@ def _beside(out: complex, middle: complex, half: float, size: complex) -> list[L
 
 
 def draw_inside(axes: Axes, lengths: Sequence[Length], angles: Sequence[Angle], panel: Panel, labels: Labels) -> None:
-    """Draw lengths between their points, and angles at their apexes, and write beside them what they are."""
+    """Draw and label lengths between their points, and angles at their apexes."""
     for each in lengths:
         _arrow(axes, each.start, each.end)
         labels.keep_off([each.start, each.end])
@@ -128,7 +128,7 @@ def _write_angle(angle: Angle, radius: float, towards: complex, labels: Labels) 
 
 
 def _draw_arc(axes: Axes, angle: Angle, panel: Panel, labels: Labels) -> tuple[float, complex]:
-    """Draw an angle; the radius of its arc [inches], and in which direction its middle lies."""
+    """Draw an angle; return the radius of its arc [inches], and the direction of its middle."""
     arms = angle.start - angle.apex, angle.end - angle.apex
     radius = min(ARC / panel.scale, 0.7 * abs(arms[1]))
     turn = float(np.angle(arms[1] / arms[0]))

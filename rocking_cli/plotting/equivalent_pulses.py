@@ -1,4 +1,4 @@
-"""Structures under equivalent pulses: the pulses in their own units, the responses over one another."""
+"""Plot of structures under equivalent pulses: the pulses in their units above, the responses together below."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FREE = 8.0  # p t shown after the pulse
 
 
 def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
-    """Draw pulses above, responses below.
+    """Plot pulses above, responses below.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
 
 
 def _spaced(tau: Any, k: int) -> tuple[int, int]:
-    """Marks a quarter of a unit of p t apart for each curve, so that they do not hide one another."""
+    """Return first index and spacing of the marks of curve `k`, so that marks of different curves do not overlap."""
     per_unit = max(1, round(1 / float(tau[1] - tau[0]))) if len(tau) > 1 else 1
     return (1 + k * per_unit // 3) % max(1, len(tau)), 2 * per_unit
 

@@ -1,4 +1,4 @@
-"""Fragility curves with what was observed, incremental dynamic analyses, and fragility over two intensities."""
+"""Plots of fragility curves with observations, of incremental dynamic analyses, and of fragility surfaces."""
 
 from __future__ import annotations
 
@@ -43,18 +43,18 @@ CROWDED = 15  # levels of shaking from which on not every one is counted out
 
 @dataclass(frozen=True, eq=False)
 class LabelledCurve:
-    """One curve of a picture, or a band between two.
+    """One curve of a plot, or a band between two curves.
 
     Parameters
     ----------
     name : str
         The limit state, or the structure.
     curve : FragilityCurve
-        What was fitted.
+        The fitted curve.
     observations : Observations
         The runs.
     lower : LabelledCurve, optional
-        The lower edge of a band, of the same runs: those of unknown outcome exceed in this one and not in that.
+        The lower edge of a band: undecided runs count as exceeding in `curve`, and as not exceeding in `lower`.
     share : float
         Share of the runs that are of unknown outcome.
     """
@@ -79,7 +79,7 @@ class LabelledCurve:
 
 
 def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figure:
-    """Draw curves with their bands, and the observed parts that exceed with intervals that count records.
+    """Plot curves with their bands, and the observed shares that exceed, with confidence intervals.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
 
 
 def _remarks(drawn: Sequence[LabelledCurve]) -> list[str]:
-    """What to be careful about in a picture, each thing once."""
+    """Return the warnings about the curves of a plot, each once."""
     drawn = [edge for each in drawn for edge in each.edges]
     unbounded = dict.fromkeys(each.name for each in drawn if each.curve.unbounded)
     steps = dict.fromkeys(each.name for each in drawn if each.curve.step is not None)
@@ -156,15 +156,15 @@ def _remarks(drawn: Sequence[LabelledCurve]) -> list[str]:
 
 
 def _lines(text: str) -> str:
-    """A text in lines that are no wider than a picture."""
+    """Break a text into lines that fit the width of a plot."""
     whole = style.plain(text).replace(" %", "\u00a0%")  # a number and its sign stay together
     return "\n".join(wrap(whole, WIDEST_LINE, subsequent_indent="    "))
 
 
 def _draw_observed(axes: Axes, each: LabelledCurve, look: dict[str, Any], *, alone: bool) -> None:
-    """Mark the part that exceeds in each group, at the mean intensity, with its interval; faint beside others.
+    """Mark the observed share of each group at the mean intensity, with its interval; faint next to other curves.
 
-    Of a band both edges are marked, and the interval is that of both.
+    For a band, both edges are marked, and the interval covers both.
     """
     seen, least = (edge.observations.parts(each.curve.confidence) for edge in (each, each.lower or each))
     some = slice(None, None, _every(seen.x.size, alone=alone))
@@ -186,12 +186,12 @@ def _draw_observed(axes: Axes, each: LabelledCurve, look: dict[str, Any], *, alo
 
 
 def _every(groups: int, *, alone: bool) -> int:
-    """Of so many groups in a picture each is marked, or only every second, third, ..."""
+    """Return the step at which groups are marked: each group, or only every second, third, ..."""
     return -(-groups // MARKS[alone])
 
 
 def _draw_curve(axes: Axes, each: LabelledCurve, look: dict[str, Any], fine: Reals, *, filled: bool) -> None:
-    """Draw a curve over its band, filled or as its two edges; of a step the interval in which it lies."""
+    """Draw a curve over its band, filled or as two edges; for a step, the interval in which it lies."""
     curve = each.curve
     if curve.kind == "none":
         return
@@ -212,7 +212,7 @@ def _draw_curve(axes: Axes, each: LabelledCurve, look: dict[str, Any], fine: Rea
 def _draw_band(
     axes: Axes, each: LabelledCurve, look: dict[str, Any], fine: Reals, hatch: str, *, filled: bool
 ) -> None:  # fmt: skip
-    """Hatch what lies between two curves, with the confidence of both; where there is none, up to 1 or down to 0."""
+    """Hatch the area between two curves, with the confidence limits of both; to 1 or 0 if one does not exist."""
     steps = [edge.curve.step.value for edge in each.edges if edge.curve.step is not None]
     fine = np.sort(np.concatenate([fine, *([np.nextafter(at, 0), np.nextafter(at, np.inf)] for at in steps)]))
     values: list[Reals] = []
@@ -239,7 +239,7 @@ def _draw_band(
 
 
 def _named(each: LabelledCurve, look: dict[str, Any]) -> list[tuple[LabelledCurve, dict[str, Any]]]:
-    """The entries of a curve, or of both edges of a band, with their looks."""
+    """Return the legend entries of a curve, or of both edges of a band, with their styles."""
     if each.lower is None:
         return [(each, look)]
     upper, lower = (replace(edge, name=f"{each.name}, {word}") for edge, word in zip(each.edges, EDGES, strict=True))
@@ -247,7 +247,7 @@ def _named(each: LabelledCurve, look: dict[str, Any]) -> list[tuple[LabelledCurv
 
 
 def _key(each: LabelledCurve, look: dict[str, Any]) -> Line2D:
-    """The entry of a curve in the legend, with its numbers."""
+    """Return the legend entry of a curve, with its numbers."""
     curve = each.curve
     said: str = curve.kind
     if curve.kind == "none":
@@ -264,14 +264,14 @@ def _key(each: LabelledCurve, look: dict[str, Any]) -> Line2D:
 
 
 def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
-    """Draw the peak rotation of each record over the intensity, and what parts of the records stay below.
+    """Plot the peak rotation of each record against the intensity, with quantiles over the records.
 
     Parameters
     ----------
     intensity : ndarray, shape (m,)
         Levels of shaking, ascending.
     peaks : ndarray, shape (n, m)
-        Peak phi/phi_cr of each record at each level; NaN where it overturns, infinite where the outcome is unknown.
+        Peak phi/phi_cr of each record at each level; NaN for overturning, infinite for an unknown outcome.
     label : str
         The measure of intensity, with its unit in brackets.
     title : str
@@ -280,8 +280,8 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Overturning has a band of its own above the rotations, with the number of records at each level; so has an
-        unknown outcome, which ranks below overturning.
+        Runs that overturn are shown in a band above the rotations, with their number at each level; so are unknown
+        outcomes, which rank below overturning.
     """
     figure = style.new_figure(4.6)
     axes = figure.subplots()
@@ -334,12 +334,12 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
 
 
 def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figure:
-    """Draw runs in the plane of two intensities, with contours of the probability of exceedance.
+    """Plot runs in the plane of two intensities, with contours of the probability of exceedance.
 
     Parameters
     ----------
     found : Bivariate
-        The runs, and what was fitted.
+        The runs, and the fitted surface.
     labels : tuple of str
         The two measures, with their units in brackets.
     title : str
@@ -348,8 +348,8 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
     Returns
     -------
     matplotlib.figure.Figure
-        Of many runs an even share is drawn. If many are of unknown outcome, grey contours are those of the surface in
-        which these do not exceed.
+        Of many runs, only every n-th is drawn. If many are of unknown outcome, grey contours show the surface in which
+        these count as not exceeding.
     """
     figure = style.new_figure(4.9)
     axes = figure.subplots()
@@ -408,7 +408,7 @@ def _contours(axes: Axes, surface: Surface, across: Reals, up: Reals, color: str
 
 
 def _label_places(drawn: QuadContourSet, across: Reals, up: Reals) -> list[tuple[float, float]]:
-    """Where contours are named: each at another part of its way through the middle of the plane, clear of its edges."""
+    """Return the positions of contour labels, each at another part of its contour and clear of the plot's edges."""
     places = []
     for k, path in enumerate(drawn.get_paths()):
         line = np.asarray(path.vertices, np.float64)
@@ -422,7 +422,7 @@ def _label_places(drawn: QuadContourSet, across: Reals, up: Reals) -> list[tuple
 
 
 def _some(found: Bivariate, number: Integers, every: int) -> tuple[Reals, Reals]:
-    """Where some runs are, one of so many."""
+    """Return the two intensities of every n-th of some runs, n being `every`."""
     there = np.flatnonzero(number)[::every]
     return found.x1[there], found.x2[there]
 

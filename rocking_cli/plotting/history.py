@@ -1,4 +1,4 @@
-"""The response of a structure: the record above, the rotations below."""
+"""Plot of the response of a structure: the record above, the rotations below."""
 
 from __future__ import annotations
 
@@ -45,16 +45,16 @@ def draw_history(
     contacts: Sequence[ContactDemand] = (),
     watched: Watched | None = None,
 ) -> Figure:
-    """Draw histories over time.
+    """Plot histories against time.
 
-    Where the outcome is unknown, panels are hatched, and nothing else is drawn there, as no model is a result.
+    After the time until which the outcome is known, panels are hatched and no curve is drawn, as no model is valid.
 
     Parameters
     ----------
     histories : mapping of str to History
         One curve each: signed rotation over the critical rotation of its direction, impacts marked.
     motion : GroundMotion, optional
-        Drawn above, in g.
+        The ground motion, plotted above in g.
     title : str
         Heading.
     reversed_histories : mapping of str to History, optional
@@ -62,12 +62,14 @@ def draw_history(
     pulse : PulseFit and mapping of str to History, optional
         The pulse in the motion, drawn bold over it, and the responses to it alone, in a panel of their own.
     uplift : (float, float), optional
-        The ground acceleration that lifts the structure to the positive and to the negative direction [standard
-        gravity], drawn over the motion where nothing lifts it.
+        The ground accelerations that uplift the structure in the positive and in the negative direction [standard
+        gravity], drawn over the motion if the structure does not uplift.
     contacts : sequence of ContactDemand
-        Of the nonlinear history under the motion, and under the reversed one: the friction required, in a panel below.
+        Contact checks of the nonlinear history under the motion, and under the reversed one: the friction required is
+        plotted in a panel below.
     watched : Watched, optional
-        With it the forces of ties are drawn below each response, and the side walls of what rocks to one side only.
+        Points and ties: with it, the forces of ties are plotted below each response, and the side walls of one-sided
+        structures are marked.
 
     Returns
     -------
@@ -118,7 +120,7 @@ def draw_history(
 
 
 def _draw_uplift(axes: Axes, uplift: tuple[float, float]) -> None:
-    """Mark what the ground would have to reach: a push to the left lifts to the right, which is positive."""
+    """Mark the ground accelerations of uplift: ground motion to the left uplifts to the right (positive)."""
     positive, negative = uplift
     for level in (-positive, negative):
         axes.axhline(level, color=style.FAINT, linewidth=style.CURVE, linestyle=":")
@@ -127,7 +129,7 @@ def _draw_uplift(axes: Axes, uplift: tuple[float, float]) -> None:
 
 
 def _hatch_unknown(axes: Axes, until: float, end: float) -> None:
-    """Hatch what is after the time until which the outcome is known [s], up to the end of the panel."""
+    """Hatch the panel from the time until which the outcome is known [s] to its end."""
     if not isfinite(until):
         return
     axes.axvspan(until, end, zorder=0.5, **style.UNKNOWN)
@@ -139,7 +141,7 @@ def _hatch_unknown(axes: Axes, until: float, end: float) -> None:
 
 
 def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit | None) -> None:
-    """Draw what there is of the record up to the end of the picture [s], and the pulse over it."""
+    """Draw the record up to the end of the plot [s], and the pulse over it."""
     motion = motion.kept
     ground = motion.acceleration[: int(min(end, motion.duration) / motion.dt) + 2] / STANDARD_GRAVITY
     shown = visible(ground)
@@ -211,7 +213,7 @@ def _draw_contacts(axes: Axes, contacts: Sequence[ContactDemand]) -> None:
 
 
 def _draw_wall(axes: Axes, free: Direction, tall: float) -> None:
-    """Hatch the side that it leans on, and leave little room there."""
+    """Hatch the side of a side wall, and leave little room there."""
     edge = -0.1 * free * tall
     axes.axhspan(min(0.0, edge), max(0.0, edge), facecolor="none", edgecolor=style.EARTH, hatch="////", linewidth=0)
     axes.axhline(0.0, color=style.EARTH, linewidth=style.BOLD)
@@ -224,7 +226,7 @@ def _draw_wall(axes: Axes, free: Direction, tall: float) -> None:
 
 
 def _draw_forces(axes: Axes, histories: Mapping[ModelName, History], watched: Watched) -> None:
-    """The forces of the ties over time in one history, that of the nonlinear model if there is one."""
+    """Draw the forces of the ties against time in one history, the nonlinear one if there is one."""
     model: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
     run = histories[model]
     forces = {name.removesuffix(FORCE): values / 1000 for name, values in watched.columns(run.phi) if FORCE in name}

@@ -1,4 +1,4 @@
-"""Loads and ties of a structure, in symbols of one size on paper: weights, forces, and ties as lines and springs."""
+"""Symbols of loads and ties in drawings, of one size on paper: weights, forces, and ties as lines and springs."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ OUTLINE: Points = np.array(
 
 
 class Symbols(NamedTuple):
-    """The loads and ties of a structure at one rotation [m].
+    """Symbols of the loads and ties of a structure at one rotation [m].
 
     Parameters
     ----------
     lines : list of (ndarray of complex, bool, bool)
-        The ties, whether each is slack, and whether it is of a bed, which the structure may move over.
+        The lines of ties; whether the tie is slack; whether it is a bed of springs, which the structure may cover.
     anchors : list of (complex, bool)
-        Where the ground holds them, and whether that is of a bed.
+        Anchorages on the ground, and whether they belong to a bed.
     weights : list of ndarray of complex
         Outlines of masses.
     forces : list of (complex, complex)
-        From where to where the arrows go.
+        Tail and tip of each arrow.
     """
 
     lines: list[tuple[Points, bool, bool]]
@@ -74,7 +74,7 @@ def symbols(picture: Picture, rotation: float, scale: float) -> Symbols:
 
 
 def draw_hung(axes: Axes, picture: Picture, rotation: float, panel: Panel, labels: Labels) -> None:
-    """Draw the loads and ties of a structure, and keep words off them."""
+    """Draw the loads and ties of a structure, and reserve their space against labels."""
     shown = symbols(picture, rotation, panel.scale)
     for line, loose, behind in shown.lines:
         dashes, order = style.SLACK if loose else "-", BEHIND if behind else 4.5
@@ -102,7 +102,7 @@ def draw_hung(axes: Axes, picture: Picture, rotation: float, panel: Panel, label
 
 
 def name_hung(picture: Picture, panel: Panel, labels: Labels) -> None:
-    """Write at rest what loads and ties are called, and how large the loads are."""
+    """Write the names of loads and ties at rest, with the size of the loads."""
     look: dict[str, Any] = {"fontsize": style.TICK, "zorder": 7}
     places, ties, _ = picture.hung(0.0, SYMBOL / panel.scale)
     for load, place in zip(picture.loads, places.tolist(), strict=True):
@@ -130,7 +130,7 @@ def name_hung(picture: Picture, panel: Panel, labels: Labels) -> None:
 
 
 def beside(picture: Picture) -> tuple[float, float, float, float]:
-    """What springs along a face take of the room to the left, right, below and above of a structure [inches]."""
+    """Return the space that springs along a face take left, right, below and above a structure [inches]."""
     left = right = below = above = 0.0
     for tie in picture.ties:
         for away in (SYMBOL * end.lead for end in tie.ground if abs(end.lead) > 1):
@@ -140,7 +140,7 @@ def beside(picture: Picture) -> tuple[float, float, float, float]:
 
 
 def margins(picture: Picture) -> tuple[float, float, float, float]:
-    """What arrows need to the left, right, below and above of where they act [inches]."""
+    """Return the space that arrows need left, right, below and above their points [inches]."""
     left = right = below = above = 0.0
     for force in (load.acting(first=first) for load in picture.loads for first in (True, False)):
         if force:
@@ -151,12 +151,12 @@ def margins(picture: Picture) -> tuple[float, float, float, float]:
 
 
 def _tail(force: complex, place: complex, scale: float) -> complex:
-    """Where the arrow of a force begins: its point is where it acts."""
+    """Return the tail of the arrow of a force, whose tip is at the point of action [m]."""
     return place - force / abs(force) * ARROW / scale
 
 
 def _drawn(start: complex, end: complex, kind: str, scale: float) -> Points:
-    """The line of a piece."""
+    """Return the line of a piece of a tie."""
     long = abs(end - start)
     if kind == "line" or long == 0:
         return np.array([start, end])
@@ -169,7 +169,7 @@ def _drawn(start: complex, end: complex, kind: str, scale: float) -> Points:
 
 
 def _fitted(name: str, more: str = "") -> tuple[str, complex]:
-    """A name as far as there is room for it, and its size [inches]."""
+    """Return a name, shortened to the available width, and its size [inches]."""
     text = style.plain(style.fitted(name, LONGEST, style.TICK)) + more
     return text, style.size_of(text, style.TICK)
 

@@ -1,4 +1,4 @@
-"""Where the words of a drawing go: beside what they name, off the lines, and within their panel."""
+"""Placement of labels in a drawing: next to what they name, off the lines, and within their panel."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SUBSCRIPTS = str.maketrans("₀₁₂₃₄₅₆₇₈₉₊₋", "0123456789+-
 
 
 def mathematics(each: Length | Angle) -> str:
-    """Symbol, number and unit with the subscript as a subscript; what is no symbol stays a word."""
+    """Return symbol, number and unit of a dimension as mathematics with subscripts; other words stay as they are."""
     number = style.plain(each.text.removeprefix(each.symbol))
     match = re.fullmatch(r"(\d*[^\W\d_]'?)(?:_(\w+)|([₀-₉₊₋]+))?", each.symbol)
     if match is None:
@@ -40,7 +40,7 @@ def mathematics(each: Length | Angle) -> str:
 
 @dataclass(frozen=True)
 class LabelPlace:
-    """Where words could go: their middle [inches], how far they are turned [degrees], and what is against it."""
+    """A candidate position of a label: its middle [inches], its angle [degrees], and its cost."""
 
     middle: complex
     turned: float
@@ -48,7 +48,7 @@ class LabelPlace:
 
 
 class Labels:
-    """The words of one panel, each where it covers least of all that is drawn there."""
+    """The labels of one panel, each placed where it covers least of the drawing."""
 
     def __init__(self, axes: Axes, panel: Panel) -> None:
         self._axes, self._scale = axes, panel.scale
@@ -58,7 +58,7 @@ class Labels:
         self._costs: list[NDArray[np.float64]] = []
 
     def keep_off(self, z: Iterable[complex] | Points, cost: float = LINE) -> None:
-        """Take note of a line through points [m], or of a single one."""
+        """Reserve the space of a line through points [m], or of a single point, against labels."""
         ends = np.asarray(z if isinstance(z, np.ndarray) else list(z), np.complex128) * self._scale
         reach = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(ends)))])
         count = min(int(reach[-1] / STEP) + 1 + (reach[-1] > 0), MOST)
@@ -70,7 +70,7 @@ class Labels:
         self._costs.append(np.full(points.size, cost))
 
     def write(self, text: str, places: Iterable[LabelPlace], **look: Any) -> None:
-        """Write words at the best of some places."""
+        """Write a label at the best of several places."""
         points, costs = np.concatenate([[], *self._points]), np.concatenate([[], *self._costs])
         size = style.size_of(text, float(look["fontsize"]), str(look.get("fontweight", "normal")))
         places = list(places)
@@ -96,7 +96,7 @@ class Labels:
         self.put(text, best, size, **look)
 
     def put(self, text: str, place: LabelPlace, size: complex | None = None, **look: Any) -> None:
-        """Write words at a place, for others to keep off."""
+        """Write a label at a place, and reserve its space against other labels."""
         size = style.size_of(text, float(look["fontsize"])) if size is None else size
         at = place.middle / self._scale
         self._axes.annotate(
@@ -109,7 +109,7 @@ class Labels:
         self._note((place.middle + turn * (across[:, None] + 1j * up)).ravel(), WORD)
 
     def along(self, start: complex, end: complex, size: complex) -> Iterator[LabelPlace]:
-        """Places beside a line [m] for words of a size: along it where they fit, else to its sides."""
+        """Yield places for a label next to a line [m]: along it if the label fits, otherwise at its sides."""
         start, end = start * self._scale, end * self._scale
         length = abs(end - start)
         unit = (end - start) / length if length > 0 else 1 + 0j
@@ -133,7 +133,7 @@ class Labels:
     def around(
         self, apex: complex, towards: complex, radius: float, size: complex, turning: float = 4.0
     ) -> Iterator[LabelPlace]:
-        """Places around a point [m] for words of a size, beyond a radius [inches], best in one direction."""
+        """Yield places for a label around a point [m], beyond a radius [inches], best in one direction."""
         apex *= self._scale
         for turn in np.linspace(-np.pi, np.pi, 25)[1:]:
             way = towards / abs(towards) * np.exp(1j * turn)

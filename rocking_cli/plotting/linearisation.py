@@ -1,4 +1,4 @@
-"""The error of the equivalent block: free period over amplitude, overturning time over acceleration."""
+"""Plot of the error of the equivalent block: free period against amplitude, overturning time against acceleration."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TALLEST = 0.5  # error shown at most, either way
 
 
 def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearisation], title: str) -> Figure:
-    """Draw the errors of the equivalent block, a row of panels for each direction.
+    """Plot the errors of the equivalent block, a row of panels for each direction.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How close motions are to overturning a structure: the share that overturns over the factor on each."""
+"""Plot of margins: the share of neighbours that overturns against the scale factor on each motion."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ TICKS = (0.2, 0.5, 1, 2, 5)
 
 
 def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
-    """Draw the shares of overturning over the factor on one or more motions; a star marks each motion itself.
+    """Plot the shares of overturning against the factor on one or more motions; a star marks a factor of 1.
 
-    A hatched band goes from the share that overturns to that which overturns or is of unknown outcome.
+    A hatched band goes from the share that overturns to the share that overturns or is of unknown outcome.
 
     Parameters
     ----------
     margins : mapping of str to Margin
-        By the name of the motion.
+        The margins, by the name of the motion.
     title : str
         Heading.
     """

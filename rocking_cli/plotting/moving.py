@@ -1,4 +1,4 @@
-"""What a page with a moving structure is made of: the data that `motionView` of data/motion.js reads."""
+"""Data of an HTML page with a moving structure, as read by `motionView` of data/motion.js."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ NAMES: Mapping[ModelName, str] = {
 
 
 def asset(name: str) -> str:
-    """The text of a file of the package that a page is made of."""
+    """Return the text of a data file of the package that is part of a page."""
     return files("rocking_cli").joinpath("data", name).read_text(encoding="utf-8")
 
 
 def as_script(data: Mapping[str, Any]) -> str:
-    """JSON to stand in a script element: a name in it must not end the element."""
+    """Return JSON that is safe inside a script element: no text in it can end the element."""
     text = json_text(data, compact=True)
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
@@ -46,20 +46,20 @@ def as_script(data: Mapping[str, Any]) -> str:
 def moving(
     film: Film, charts: Sequence[Mapping[str, Any]], *, label: str, speed: float, moment: float
 ) -> dict[str, Any]:
-    """Everything that one moving structure on a page needs.
+    """Return all data that a moving structure on a page needs.
 
     Parameters
     ----------
     film : Film
-        What moves.
+        The motion to show.
     charts : sequence of mapping
-        See `ratio_chart` and `ground_chart`.
+        Charts below the structure, see `ratio_chart` and `ground_chart`.
     label : str
-        What the drawing shows, for those who cannot see it.
+        Description of the drawing, for screen readers.
     speed : float
-        Seconds of motion a second, to begin with.
+        Initial speed: seconds of motion per second.
     moment : float
-        What is shown first [s].
+        Time that is shown first [s].
     """
     picture = film.picture.grouped
     return {
@@ -78,9 +78,9 @@ def moving(
 
 
 def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS) -> dict[str, Any]:
-    """The rotation over the critical one, or over the kinematic limit if there is none, against time.
+    """Return a chart of the rotation over the critical one (or the kinematic limit) against time.
 
-    There is a curve for each model, of some two samples for each bin, up to where the outcome is known.
+    There is a curve for each model, with some two samples in each bin, until the time to which the outcome is known.
     """
     series, reach, until = [], 0.0, known_until(histories)
     first = next(iter(histories.values()))
@@ -103,7 +103,7 @@ def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS) -> dic
 
 
 def ground_chart(motion: GroundMotion, fits: Sequence[PulseFit], bins: int = BINS) -> dict[str, Any]:
-    """The ground acceleration over time [g], and the pulses in it."""
+    """Return a chart of the ground acceleration [g] against time, with the pulses in it."""
     motion = motion.kept
     ground = motion.acceleration / STANDARD_GRAVITY
     shown = visible(ground, bins)
@@ -121,5 +121,5 @@ def _series(name: str, look: str, x: Reals, y: Reals) -> dict[str, Any]:
 
 
 def _short(values: Reals, digits: int) -> list[float]:
-    """Digits enough for what is shown, and little text."""
+    """Round values to as many digits as are visible, to keep the text short."""
     return [float(f"{value:.{digits}g}") for value in values.tolist()]

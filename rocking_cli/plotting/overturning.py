@@ -1,4 +1,4 @@
-"""The plane of pulses, by what they do; and the least pulses that overturn several structures."""
+"""Plots of overturning maps, and of the least pulses that overturn several structures."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ PEAKS = (0.1, 0.25, 0.5, 0.75)  # phi/phi_cr of the contour lines
 def draw_map(
     found: OverturningMap, title: str, *, dimensionless: bool, marks: Sequence[tuple[str, float, float]] = ()
 ) -> Figure:
-    """Draw a map, with contours of the peak and the boundaries that are known in closed form.
+    """Plot a map, with contours of the peak and the boundaries that are known in closed form.
 
     Parameters
     ----------
@@ -35,9 +35,9 @@ def draw_map(
     title : str
         Heading.
     dimensionless : bool
-        Over omega and a, or over the period [s] and the amplitude [g].
+        Whether to plot against omega and a, or against the period [s] and the amplitude [g].
     marks : sequence of (str, float, float)
-        Pulses to mark: what to call each, and where it is on the axes.
+        Pulses to mark: name and coordinates on the axes.
     """
     figure = style.new_figure(6.0)
     axes = figure.subplots()
@@ -90,7 +90,7 @@ def _hatch(axes: Axes, across: Reals, up: Reals, unknown: NDArray[np.bool_]) -> 
 
 
 def _draw_peaks(axes: Axes, across: Reals, up: Reals, peaks: Reals) -> list[Line2D]:
-    """Draw the longest contour of each level: the many short ones are islands beside overturning, of a point or two."""
+    """Draw the longest contour of each level; the many short ones are islands of a point or two near overturning."""
     if not (peaks > PEAKS[0]).any():
         return []
     traced = axes.contour(across, up, np.ma.masked_invalid(peaks), levels=PEAKS, linewidths=0)
@@ -111,7 +111,7 @@ def _draw_peaks(axes: Axes, across: Reals, up: Reals, peaks: Reals) -> list[Line
 
 
 def _kinds(found: OverturningMap) -> NDArray[np.int64]:
-    """For each point the place of its fill."""
+    """Return for each point the index of its fill colour."""
     kinds = found.regions + (found.regions >= Region.WITHOUT_IMPACT)
     return np.where((found.regions == Region.AFTER_IMPACT) & (found.outcome.impact_count > 1), 3, kinds)
 
@@ -140,9 +140,9 @@ def _draw_boundaries(axes: Axes, found: OverturningMap, *, dimensionless: bool) 
 
 
 def draw_comparison(found: Comparison, title: str) -> Figure:
-    """Draw the least amplitude that overturns each structure over the period of the pulse.
+    """Plot the least amplitude that overturns each structure against the period of the pulse.
 
-    If outcomes are unknown below it, a hatched band goes down to the least amplitude of unknown outcome.
+    If outcomes are unknown below this amplitude, a hatched band goes down to the least amplitude of unknown outcome.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
 
 
 def _draw_doubt(axes: Axes, found: Comparison, k: int) -> None:
-    """Hatch between which amplitudes a structure begins to overturn, if unknown outcomes leave that open."""
+    """Hatch the amplitudes between which a structure starts to overturn, if unknown outcomes leave this open."""
     if not found.doubtful[k].any():
         return
     look = style.distinct(k)

@@ -1,4 +1,4 @@
-"""Panels that show parts of the plane to scale: how large they can be, and where on the page they stand."""
+"""Layout of panels that show parts of the plane to scale: their size, and their position on the page."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ STACKED = 1.4  # how much larger a structure must become for its panels to stand
 
 @dataclass
 class Panel:
-    """A box of the plane [m], and what is needed around it: left, right, below, above [inches].
+    """A box of the plane [m], and the space around it: left, right, below, above [inches].
 
-    `scale` [inches a metre] and `corner`, its lower left one [inches], are found by `lay_out`.
+    `lay_out` sets `scale` [inches per metre] and `corner`, the lower left one [inches].
     """
 
     low: complex
@@ -35,22 +35,22 @@ class Panel:
 
     @property
     def room(self) -> complex:
-        """Width and height of what is around it [inches]."""
+        """Width and height of the space around the box, both sides together [inches]."""
         left, right, below, above = self.around
         return complex(left + right, below + above)
 
     @property
     def inches(self) -> complex:
-        """Width and height on the page."""
+        """Width and height of the panel on the page [inches]."""
         return self.plane * self.scale + self.room
 
     @property
     def depth(self) -> float:
-        """From its lower edge up to the level y = 0 [inches]."""
+        """Distance from the lower edge of the panel up to the level y = 0 [inches]."""
         return self.around[2] - self.low.imag * self.scale
 
     def axes(self, figure: Figure) -> Axes:
-        """Axes without a frame where the panel is, in m."""
+        """Return axes without a frame at the position of the panel, in m."""
         width, height = figure.get_size_inches()
         x, y, size = self.corner.real, self.corner.imag, self.inches
         axes = figure.add_axes((x / width, y / height, size.real / width, size.imag / height))
@@ -69,14 +69,14 @@ def lay_out(panels: Sequence[Panel], middle: Panel, head: float, foot: float) ->
     panels : sequence of Panel
         From left to right. Their scale, corner and room to the sides are set.
     middle : Panel
-        One of them.
+        The panel that may be placed above the others.
     head, foot : float
-        What each needs above and below itself [inches].
+        Space that each panel needs above and below itself [inches].
 
     Returns
     -------
     float
-        The height of all [inches]; corners count from its lower edge.
+        Total height [inches]; corners are measured from the lower edge.
     """
     together, apart = _largest(panels), _largest([middle])
     if apart < STACKED * together:
@@ -87,7 +87,7 @@ def lay_out(panels: Sequence[Panel], middle: Panel, head: float, foot: float) ->
 
 
 def _largest(panels: Sequence[Panel]) -> float:
-    """The scale at which they fit side by side."""
+    """Return the largest scale at which panels fit side by side [inches per metre]."""
     width = style.WIDTH - GAP * (len(panels) + 1) - sum(each.room.real for each in panels)
     return min(
         width / sum(each.plane.real for each in panels),
@@ -96,7 +96,7 @@ def _largest(panels: Sequence[Panel]) -> float:
 
 
 def _row(panels: Sequence[Panel], scale: float, base: float) -> float:
-    """Place panels of one height side by side above `base`, the level y = 0 of all in line; the height they reach."""
+    """Place panels at one scale side by side above `base`, with their levels y = 0 in line; return the top [inches]."""
     for each in panels:
         each.scale = scale
     spare = style.WIDTH - GAP * (len(panels) + 1) - sum(each.inches.real for each in panels)

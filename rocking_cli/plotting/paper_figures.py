@@ -1,4 +1,4 @@
-"""Figures of panels with families of curves, told apart in grey by dash and darkness."""
+"""Plots of the paper's figures: panels with families of curves that differ also in grey, by dash and darkness."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LEGEND = 0.3  # inches of a legend above all panels
 
 
 def draw_paper_figure(paper: PaperFigure) -> Figure:
-    """Draw a figure of the paper with its caption below.
+    """Plot a figure of the paper with its caption below.
 
     Parameters
     ----------
@@ -91,10 +91,10 @@ def draw_paper_figure(paper: PaperFigure) -> Figure:
 
 
 def _values(panel: PaperPanel) -> Reals:
-    """Every finite value of a panel."""
+    """Return all finite values of a panel."""
     return np.concatenate([curve.y[np.isfinite(curve.y)] for curve in panel.curves])
 
 
 def _is_ratio(panel: PaperPanel) -> bool:
-    """Whether it shows times of the block over those of the structure."""
+    """Return whether a panel shows ratios of the block's times to the structure's."""
     return panel.ylabel.startswith(("$T", "$t"))

@@ -1,4 +1,4 @@
-"""A ground motion before and after its corrections: acceleration, velocity, displacement and spectra."""
+"""Plot of a ground motion before and after its corrections: acceleration, velocity, displacement and spectra."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ AFTER = {"color": style.INK, "linewidth": style.MEDIUM}
 
 
 def draw_before_and_after(before: GroundMotion, after: GroundMotion, shift: float) -> Figure:
-    """Draw a motion as read and as corrected.
+    """Plot a motion as read and as corrected.
 
     Parameters
     ----------
     before, after : GroundMotion
         The motion as read, grey, and as it is used, dark.
     shift : float
-        When the corrected motion begins, on the time axis of what was read [s].
+        Start of the corrected motion on the time axis of the motion as read [s].
 
     Returns
     -------
@@ -60,7 +60,7 @@ def _draw(axes: Axes, motion: GroundMotion, values: NDArray[np.float64], shift: 
 
 
 def _set_height(axes: Axes, old: NDArray[np.float64], new: NDArray[np.float64]) -> None:
-    """Show all that is used, and of what was taken out as much as leaves that legible."""
+    """Set the height so that the corrected curve is shown whole, and the curve as read as far as both stay legible."""
     most, all_ = float(np.abs(new).max()), float(np.abs(old).max())
     top = max(min(all_, WITHIN * most), most) * 1.05 or 1.0
     axes.set_ylim(-top, top)

@@ -1,4 +1,4 @@
-"""A ground motion with the pulse in it: bold over the thin record, in acceleration and in velocity."""
+"""Plot of a ground motion with its pulse, bold over the thin record, in acceleration and in velocity."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ POINTS = 2000  # of a pulse
 
 
 def draw_pulses(motion: GroundMotion, fits: Sequence[PulseFit], end: float) -> Figure:
-    """Draw a record, and over it the pulses.
+    """Plot a record with the pulses over it.
 
     Parameters
     ----------
     motion : GroundMotion
-        The record that they were fitted to.
+        The record to which the pulses were fitted.
     fits : sequence of PulseFit
         At most three; each is drawn in both panels, whatever it was fitted in.
     end : float
-        Up to when the record is shown [s], or longer where a pulse needs it.
+        Time up to which the record is shown [s]; later if a pulse ends later.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""How far a structure rocks over the intensity, as quantiles, and what share of the runs has none."""
+"""Plot of the quantiles of a structure's peak rotation against intensity, and of the shares of runs without any."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ FALLEN = "#c46a1b"  # light enough for its line, and darker in grey than those t
 
 
 def draw_quantiles(found: Quantiles, label: str) -> Figure:
-    """Draw the quantiles of the peak rotation, and below them the shares that do not uplift, rock, and overturn.
+    """Plot the quantiles of the peak rotation, and below them the shares that do not uplift, rock, and overturn.
 
     The share of unknown outcome is hatched.
 
     Parameters
     ----------
     found : Quantiles
-        Of one structure over one measure.
+        The quantiles of one structure over one measure.
     label : str
         The measure, with its unit in brackets.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Marked, over a shade: of the runs that rock and stand. Black: of all runs; such a line ends in the band of
-        overturning, or of unknown outcome.
+        Lines with marks, over a shade: runs that rock without overturning. Black lines: all runs; they end in the band
+        of overturning, or of unknown outcome.
     """
     figure = style.new_figure(5.2)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1.3))
@@ -59,7 +59,7 @@ def draw_quantiles(found: Quantiles, label: str) -> Figure:
 
 
 def _peaks(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
-    """The quantiles of those that rock and stand, and of all."""
+    """Draw the quantiles of the runs that rock without overturning, and of all; return the legend entries."""
     rocking, every = (np.array([getattr(each, of) for each in found.groups]).T for of in ("rocking", "every"))
     largest = np.concatenate([rocking[np.isfinite(rocking)], every[np.isfinite(every)], [0.0]]).max()
     falls = bool(np.isinf(every).any())
@@ -91,7 +91,7 @@ def _peaks(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
 
 
 def _shares(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
-    """The shares of the runs, one over the other."""
+    """Draw the shares of the runs, stacked; return the legend entries."""
     runs = np.array([each.runs for each in found.groups])
     still, unknown, fallen = (
         np.array([getattr(each, of) for each in found.groups]) / runs for of in ("no_uplift", "unknown", "overturned")

@@ -1,4 +1,4 @@
-"""Ranking of intensity measures: their efficiency, and the trends of their residuals."""
+"""Plot of a ranking of intensity measures: their efficiency, and the trends of their residuals."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def draw_ranking(ranking: Ranking) -> Figure:
     Parameters
     ----------
     ranking : Ranking
-        What to draw; with one measure at least.
+        The ranking, with at least one measure.
 
     Returns
     -------

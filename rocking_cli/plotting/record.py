@@ -1,4 +1,4 @@
-"""A ground motion: acceleration, velocity, displacement and the build-up of its Arias intensity."""
+"""Plot of a ground motion: acceleration, velocity, displacement and the build-up of its Arias intensity."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from rocking_cli.plotting.thinning import visible
 
 
 def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
-    """Draw a ground motion over time.
+    """Plot a ground motion against time.
 
     Parameters
     ----------
     motion : GroundMotion
-        What is drawn, as scaled.
+        The scaled motion.
     measures : Measures
         Its measures: the peaks are written on the curves, the significant duration is shaded.
 
@@ -57,7 +57,7 @@ def _draw_curve(axes: Axes, motion: GroundMotion, values: NDArray[np.float64], l
 
 
 def _draw_build_up(axes: Axes, motion: GroundMotion, measures: Measures) -> None:
-    """Draw the Husid plot, with 5 and 95 % marked where there is any motion."""
+    """Draw the Husid plot, with 5 and 95 % marked unless the motion is zero."""
     axes.set_ylabel("Arias intensity [%]", fontsize=style.LABEL)
     axes.set_ylim(-15.0, 105.0)  # room for a word below 5 %
     if measures.t_5 is None or measures.t_95 is None:

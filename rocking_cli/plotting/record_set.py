@@ -1,4 +1,4 @@
-"""A set of records against its target: the spectra, their mean, and the limits on it."""
+"""Plot of a set of records against its target: the spectra, their mean, and the limits on it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Response spectra of ground motions: pseudo-acceleration, pseudo-velocity and displacement over the period."""
+"""Plot of response spectra: pseudo-acceleration, pseudo-velocity and displacement against the period."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ QUANTITIES = (("sa", "Sa, pseudo [g]"), ("sv", "Sv, pseudo [m/s]"), ("sd", "Sd [
 
 
 def draw_response_spectra(spectra: Mapping[str, ResponseSpectrum]) -> Figure:
-    """Draw the spectra of motions, all of one damping, by their names.
+    """Plot the spectra of motions, all of one damping ratio.
 
     Parameters
     ----------
     spectra : mapping of str to ResponseSpectrum
-        What to draw.
+        The spectra, by the name of the motion.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Rocking spectra: the peak rotation over the size, and the share of the motions that overturn."""
+"""Plot of rocking spectra: the peak rotation against the size, and the share of the motions that overturn."""
 
 from __future__ import annotations
 
@@ -28,16 +28,17 @@ ROW = 0.06  # height of the row of marks where a curve overturns, or is unknown,
 
 
 def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title: str) -> Figure:
-    """Draw spectra over 2 pi/p, the structures as given marked; of several motions below the share that overturns.
+    """Plot spectra against 2 pi/p, with given structures marked; for several motions also the share that overturns.
 
-    Open symbols above the peaks are of unknown outcome; below, a hatched band goes up to the share with these.
+    Open symbols above the peaks mark unknown outcomes; in the panel of shares, a hatched band includes them.
 
     Parameters
     ----------
     spectra : sequence of Spectrum
         What to draw, all under the same motions.
     fractiles : sequence of float
-        Of several motions, 0.5 among them; the outermost bound the shade around the median of one or two curves.
+        Fractiles over several motions, 0.5 among them; the outermost bound the shade around the median of one or two
+        curves.
     title : str
         Heading.
     """
@@ -87,7 +88,7 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
 
 
 def _top(spectra: Sequence[Spectrum], q: float) -> float:
-    """The peak up to which the scale goes: past those that are drawn, and to 1 where something overturns."""
+    """Return the peak at which the scale ends: above those drawn, and at least 1 if a motion overturns."""
     drawn = [each.fractile(q) for each in spectra]
     if len(spectra) == 1:
         drawn.append(spectra[0].peak_ratio.ravel())
@@ -98,7 +99,7 @@ def _top(spectra: Sequence[Spectrum], q: float) -> float:
 
 
 def _within(each: Spectrum) -> Reals:
-    """Return the sizes to join by lines: a structure as given beyond the requested sizes stands alone."""
+    """Return 1 for sizes to join by lines, NaN for a given structure outside the requested range."""
     inside = np.ones(each.scales.size)
     if each.given in (0, each.scales.size - 1):
         inside[each.given] = np.nan
@@ -106,7 +107,7 @@ def _within(each: Spectrum) -> Reals:
 
 
 def _draw_spread(axes: Axes, each: Spectrum, k: int, bounds: tuple[float, float], top: float, *, every: bool) -> None:
-    """Shade between two fractiles, up to the top where the upper one overturns; `every` motion too, faintly."""
+    """Shade between two fractiles, up to the top if the upper one overturns; with `every`, each motion faintly."""
     lower, upper = (np.minimum(each.fractile(q), top) * _within(each) for q in bounds)
     colour = style.distinct(k)["color"]
     axes.fill_between(each.periods, lower, upper, color=colour, alpha=0.15, linewidth=0)
@@ -136,7 +137,7 @@ def _draw_line(
     beyond: Reals | float = np.nan,
     doubtful: NDArray[np.bool_] | bool = False,
 ) -> None:
-    """Draw a curve and the structure as given on it; where it is infinite a mark each at the heights `beyond`.
+    """Draw a curve with the given structure on it; infinite values become marks at the heights `beyond`.
 
     Marks of unknown outcomes are open.
     """
@@ -160,7 +161,7 @@ def _draw_line(
 
 
 def _scale_peaks(axes: Axes, top: float, rows: Sequence[bool]) -> None:
-    """Scale the upper panel: peaks, above them a row for each curve where it overturns, then where it is unknown."""
+    """Scale the upper panel: peaks, above them a row for overturning of each curve, then for unknown outcomes."""
     ticks = [tick for tick in MaxNLocator(6).tick_values(0.0, top) if 0 <= tick <= top]
     labels = [f"{tick:g}" for tick in ticks]
     middle, roof = (top * (1 + ROW * count) for count in (sum(rows), len(rows)))
@@ -177,12 +178,12 @@ def _scale_peaks(axes: Axes, top: float, rows: Sequence[bool]) -> None:
 
 
 def _log_ticks(axis: Axis, ratio: float) -> None:
-    """Ticks in plain numbers on a logarithmic axis over this ratio of its ends."""
+    """Set ticks in plain numbers on a logarithmic axis whose ends have this ratio."""
     style.plain_numbers(axis, (1.0, 2.0, 5.0) if ratio > SHORT else (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0))
 
 
 def _second_axis(axes: Axes, spectra: Sequence[Spectrum]) -> None:
-    """Above, the scale of the structure if there is only one, or R of the blocks if there are only these."""
+    """Add an upper axis: the scale of the structure if there is only one, or R of the blocks if all are blocks."""
     own = [each for each in spectra if each.shape.slenderness is None]
     if len(own) > 1:
         return
@@ -197,7 +198,7 @@ def _second_axis(axes: Axes, spectra: Sequence[Spectrum]) -> None:
 
 
 def _between(x: Reals, y: Reals, power: float) -> Callable[[Reals], Reals]:
-    """y of x between points of a curve, straight in logarithms; beyond them as this power of x."""
+    """Return a function y(x) between points of a curve, linear in logarithms; a power of x beyond them."""
     known = np.log(x)
 
     def at(values: Reals) -> Reals:

@@ -1,4 +1,4 @@
-"""A structure at rest and displaced, to scale, so that its mechanism and dimensions can be checked by eye."""
+"""Drawing of a structure at rest and displaced, to scale, so that mechanism and dimensions can be checked by eye."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
 def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> Figure:
     """Draw a structure displaced in the negative direction, at rest with its dimensions, and in the positive direction.
 
-    One that rocks to one side only is displaced to that side alone.
+    A structure that rocks to one side only is displaced to that side alone.
 
     Parameters
     ----------
@@ -52,8 +52,8 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
     title : str
         Heading.
     ratio : float, optional
-        Rotation of the displaced structure over the critical one, or over the kinematic limit if there is none;
-        without it, what can be seen well.
+        Rotation of the displaced structure over the critical one, or over the kinematic limit if there is none; by
+        default a rotation that is well visible.
 
     Returns
     -------
@@ -125,7 +125,7 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
 
 
 def draw_at_rest(axes: Axes, picture: Picture, title: str) -> None:
-    """Draw a structure at rest into axes of its own, in proportion, without measures."""
+    """Draw a structure at rest into given axes, in proportion, without dimensions."""
     low, high = picture.extent[0], picture.extent[1]
     axes.set_axis_off()
     axes.set_aspect("equal")
@@ -140,7 +140,7 @@ def draw_at_rest(axes: Axes, picture: Picture, title: str) -> None:
 
 
 def _box_at_rest(picture: Picture) -> tuple[complex, complex]:
-    """The box of the structure and of all that is measured [m]."""
+    """Return the box around the structure and all its dimensions [m]."""
     measured = [z for each in picture.sketch.lengths for z in (each.start, each.end)]
     measured += [each.apex for each in picture.sketch.angles]
     return box_around([np.array([*picture.extent, *measured])])
@@ -165,7 +165,7 @@ def _displaced_panel(picture: Picture, rotation: float) -> Panel:
 
 
 def _head(picture: Picture, direction: Direction, ratio: float) -> str:
-    """What a displaced panel shows."""
+    """Return the title of a displaced panel: direction and rotation."""
     if picture.start is not None:
         return f"{direction.label}\nas it starts"
     phi = ratio * picture.reference[direction]
@@ -175,12 +175,12 @@ def _head(picture: Picture, direction: Direction, ratio: float) -> str:
 
 
 def _is_at_rest(picture: Picture, each: Length | Angle | Line | Forces | DrawnHinge) -> bool:
-    """Whether it is shown at rest: what belongs to both directions, or to the first."""
+    """Return whether an item is drawn at rest: it belongs to both directions, or to the first."""
     return each.direction in (None, picture.directions[0])
 
 
 def _words(picture: Picture, direction: Direction) -> str:
-    """The lengths and angles of a direction, where the two differ."""
+    """Return the lengths and angles of a direction as text, if the two directions differ."""
     every: list[Length | Angle] = [*picture.sketch.lengths, *picture.sketch.angles]
     if not picture.mechanism.rocks_both_ways or not any(each.direction is Direction.NEGATIVE for each in every):
         return ""
@@ -202,7 +202,7 @@ def _of(thing: Line | Forces) -> str:
 
 
 def _at_rest(picture: Picture) -> list[DrawnHinge]:
-    """Hinges to mark at rest: of a linkage those of the positive direction, else all."""
+    """Return the pins to mark at rest: for a linkage those of the first direction, otherwise all."""
     first = [pin for pin in picture.pins if _is_at_rest(picture, pin)]
     if picture.sketch.hinges and len(first) > 1:
         return first
@@ -210,13 +210,13 @@ def _at_rest(picture: Picture) -> list[DrawnHinge]:
 
 
 def colour(picture: Picture, k: int, direction: Direction) -> str:
-    """The colour of a part while it rocks in a direction: that of its link."""
+    """Return the colour of a part while it rocks in a direction: that of its link."""
     shade = picture.shades[direction][k]
     return style.RESTING if shade is None else style.BODIES[shade]
 
 
 def weight(picture: Picture, scale: float) -> float:
-    """The weight of the lines around parts [pt] at a scale [inches per m]: of many blocks a share of their size."""
+    """Return the width of the lines around parts [pt] at a scale [inches per m]; thinner for many small blocks."""
     if sum(len(part.outlines) for part in picture.parts) <= MANY:
         return style.MEDIUM
     return min(style.MEDIUM, max(style.HAIR, INKED * _smaller_side(picture) * scale * POINT))
@@ -245,7 +245,7 @@ def _draw_outline_at_rest(axes: Axes, picture: Picture, line: float) -> None:
 
 
 def _patches(part: DrawnPart, polygons: Sequence[Points], **look: Any) -> list[Patch]:
-    """The outlines of a part, the first at the back; those of many blocks, which do not overlap, as one path."""
+    """Return the outlines of a part, the first at the back; those of many blocks as one path."""
     if not part.mass:
         return [Polygon(_xy(each), closed=True, **look) for each in polygons]
     paths = [Path(_xy(np.append(each, each[:1])), closed=True) for each in polygons]
@@ -253,7 +253,7 @@ def _patches(part: DrawnPart, polygons: Sequence[Points], **look: Any) -> list[P
 
 
 def _labels(axes: Axes, picture: Picture, panel: Panel, rotation: float) -> Labels:
-    """The words of a panel, which keep off the structure's edges and centroids, and off the ground."""
+    """Return the labels of a panel, which keep off edges and centroids of the structure, and off the ground."""
     labels = Labels(axes, panel)
     outlines, _ = picture.placed(rotation)
     for part, polygons in zip(picture.parts, outlines, strict=True):
@@ -270,7 +270,7 @@ def _labels(axes: Axes, picture: Picture, panel: Panel, rotation: float) -> Labe
 def _draw_pins(
     axes: Axes, picture: Picture, rotation: float, pins: Sequence[DrawnHinge], panel: Panel, labels: Labels
 ) -> Sequence[DrawnHinge]:
-    """Mark hinges and pivots, those of one link joined by a line where all have a letter."""
+    """Mark hinges and pivots; those of one link are joined by a line if all have a letter."""
     if not pins:
         return pins
     _, every = picture.placed(rotation)
@@ -299,7 +299,7 @@ def _draw_pins(
 
 
 def _draw_letters(picture: Picture, rotation: float, pins: Sequence[DrawnHinge], labels: Labels) -> None:
-    """Name the hinges, each where its letter is outside of the structure if there is room."""
+    """Write the letters of the hinges, outside of the structure if there is room."""
     _, every = picture.placed(rotation)
     middle = (picture.extent[0] + picture.extent[1]) / 2
     look: dict[str, Any] = {"fontsize": style.LABEL, "fontweight": "bold", "color": style.INK, "zorder": 7}
@@ -322,7 +322,7 @@ def _draw_lines(axes: Axes, picture: Picture, labels: Labels) -> None:
 
 
 def _draw_forces(axes: Axes, picture: Picture, scale: float) -> None:
-    """Draw forces in joints as strokes along them, the heavier the larger they are."""
+    """Draw forces in joints as strokes along them, thicker for larger forces."""
     for each in picture.sketch.forces:
         if _is_at_rest(picture, each):
             force = np.asarray(each.forces)
@@ -336,7 +336,7 @@ def _draw_forces(axes: Axes, picture: Picture, scale: float) -> None:
 
 
 def _smaller_side(picture: Picture) -> float:
-    """The smaller side of its outlines, the median of all [m]."""
+    """Return the median, over all outlines, of the smaller side of an outline [m]."""
     outlines = [each for part in picture.parts for each in part.outlines]
     return float(np.median([min(np.ptp(each.real), np.ptp(each.imag)) for each in outlines]))
 
@@ -350,7 +350,7 @@ def draw_ground(axes: Axes, picture: Picture, panel: Panel) -> None:
 
 
 def _hatches(line: Points, panel: Panel) -> Points:
-    """The hatches under a line of the ground, shape (n, 2): from where to where."""
+    """Return start and end of the hatches under a line of the ground, shape (n, 2) [m]."""
     ticks: list[Points] = []
     for start, end in pairwise(line):
         along = (end - start) / abs(end - start)
@@ -361,7 +361,7 @@ def _hatches(line: Points, panel: Panel) -> Points:
 
 
 def draw_scale(axes: Axes, panel: Panel) -> None:
-    """A bar of a round length under the panel."""
+    """Draw a scale bar of a round length under the panel."""
     longest = LONGEST_BAR / panel.scale
     unit = 10.0 ** floor(log10(longest))
     length = next(times * unit for times in (5, 2, 1) if times * unit <= longest)

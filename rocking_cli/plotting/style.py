@@ -1,4 +1,4 @@
-"""One style for every picture: legible in print, in grey, and to colour-blind readers."""
+"""Common style of plots: legible in print, in grey, and to colour-blind readers."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ _MARKS = ("o", "s", "^", "D", "v", "P")
 
 
 def distinct(k: int) -> dict[str, Any]:
-    """The look of the curve number k of several."""
+    """Return the style of curve number k of several."""
     return {
         "color": _HUES[k % len(_HUES)],
         "linestyle": _DASHES[k % len(_DASHES)],
@@ -96,18 +96,18 @@ def distinct(k: int) -> dict[str, Any]:
 
 
 def family(k: int) -> dict[str, Any]:
-    """The look of the curve number k of a family of five at most, in panels too small for marks."""
+    """Return the style of curve number k of a family of at most five, without marks, for small panels."""
     dashes = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
     return {"color": ("#111111", "#1f77b4", "#e08a00", "#7b4ea3", "#4a8f3c")[k], "linestyle": dashes[k]}
 
 
 def new_figure(height: float) -> Figure:
-    """An empty figure of the common width; `height` in inches."""
+    """Return an empty figure of the common width; `height` in inches."""
     return Figure(figsize=(WIDTH, height), dpi=DPI, layout="constrained")
 
 
 def size_of(text: str, points: float, weight: str = "normal") -> complex:
-    """Width and height of words of a size of type [inches]; mathematics stands between dollars, a dollar is escaped."""
+    """Return width and height of a text [inches]; mathematics is between dollars, other dollars are escaped."""
     text = printable(text)  # as it will be written
     math = text.count("$") > text.count(r"\$")
     with catch_warnings():
@@ -124,7 +124,7 @@ def _measure() -> Any:
 
 
 def fitted(text: str, width: float = WIDTH - 0.3, points: float = TITLE) -> str:
-    """As many words of a text as there is room for [inches], without mathematics."""
+    """Shorten a text, without mathematics, to the words that fit a width [inches]."""
     for most in range(LONGEST, 10, -5):
         short = shorten(text, most, placeholder=" ...")
         if size_of(plain(short), points).real <= width:
@@ -133,32 +133,32 @@ def fitted(text: str, width: float = WIDTH - 0.3, points: float = TITLE) -> str:
 
 
 def heading(axes: Axes, text: str) -> None:
-    """The title of a picture, above its first panel; a $ in a name is a $."""
+    """Write the title of a plot above its first panel; dollars in names are plain characters."""
     axes.set_title(fitted(text, WIDTH - MARGIN), loc="left", fontsize=TITLE, color=INK, parse_math=False)
 
 
 def over(ends_at_limit: tuple[bool, bool], *, math: bool = False) -> str:
-    """The symbol of a rotation over what it is compared with, by whether each direction has no critical rotation."""
+    """Return the label of a normalised rotation, by whether each direction has no critical rotation."""
     found = "φ/limit" if all(ends_at_limit) else "φ/φcr or limit" if any(ends_at_limit) else "φ/φcr"
     return found.replace("φcr", r"$\phi_{cr}$").replace("φ", r"$\phi$") if math else found
 
 
 def plain(text: str) -> str:
-    """A text of others as a label that has mathematics elsewhere: a $ in a name is a $."""
+    """Escape dollars in a text, so that they are not read as mathematics."""
     return text.replace("$", r"\$")
 
 
 def save(figure: Figure, stream: IO[Any], **options: Any) -> None:
-    """Write a figure, whatever characters its texts hold: those that an SVG cannot hold are spelled out.
+    """Write a figure; characters that an SVG file cannot hold are spelled out.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
-        What to write.
+        The figure to write.
     stream : file
-        Where to.
+        Stream to write to.
     **options
-        Of `Figure.savefig`.
+        Options of `Figure.savefig`.
     """
     for each in figure.findobj(Text):
         if isinstance(each, Text) and each.get_text() != printable(each.get_text()):
@@ -169,7 +169,7 @@ def save(figure: Figure, stream: IO[Any], **options: Any) -> None:
 
 
 def note(axes: Axes, text: str, height: float = 0.96) -> None:
-    """A remark at the right edge of a panel, at this fraction of its height, legible over curves."""
+    """Write a remark at the right edge of a panel, at a fraction of its height, legible over curves."""
     axes.annotate(
         text,
         (1.0, height),
@@ -183,20 +183,20 @@ def note(axes: Axes, text: str, height: float = 0.96) -> None:
 
 
 def make_room(axes: Axes, share: float = 0.2) -> None:
-    """Raise the upper end of a panel by a share of its height, so that a note is on no peak."""
+    """Raise the upper end of a panel by a share of its height, so that a note does not cover peaks."""
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + share * (high - low))
 
 
 def plain_numbers(axis: Axis, subs: Sequence[float] = (1.0, 2.0, 5.0)) -> None:
-    """Plain numbers along a logarithmic axis, at these multiples of the powers of ten."""
+    """Set plain numbers along a logarithmic axis, at given multiples of the powers of ten."""
     axis.set_major_locator(LogLocator(subs=subs))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
 
 
 def tidy(axes: Axes) -> None:
-    """Common look of axes."""
+    """Apply the common style to axes."""
     axes.grid(True, color=GRID, linewidth=THIN)
     axes.set_axisbelow(True)
     axes.tick_params(labelsize=TICK, colors=INK)

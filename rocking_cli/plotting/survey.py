@@ -1,4 +1,4 @@
-"""Many structures: the uplift acceleration of each against its frequency parameter, and its outcome."""
+"""Plot of many structures: the uplift acceleration of each against its frequency parameter, and its outcome."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MARKS: dict[str, dict[str, Any]] = {
 
 
 def draw_survey(found: Survey, title: str) -> Figure:
-    """Draw the structures that a block is equivalent to, with the ranks of the most vulnerable.
+    """Plot the structures that have an equivalent block, with the ranks of the most vulnerable.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def draw_survey(found: Survey, title: str) -> Figure:
 
 
 def _groups(found: Survey) -> dict[str, NDArray[np.bool_]]:
-    """The structures by what becomes of them, the worst drawn last."""
+    """Return masks of the structures by outcome, the worst drawn last."""
     if not found.motions:
         return {"structure": np.ones(len(found.rows), dtype=bool)}
     falls = np.array([each.under is not None and each.under.overturned > 0 for each in found.rows])

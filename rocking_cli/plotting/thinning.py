@@ -1,4 +1,4 @@
-"""Curves of millions of samples: draw those that can be seen."""
+"""Thinning of curves with millions of samples to those that are visible."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ BINS = 4000  # across a picture: more than its pixels, so that nothing visible i
 
 
 def visible(values: NDArray[np.float64], bins: int = BINS) -> NDArray[np.intp]:
-    """Indexes of the samples to draw: all of a short curve, the lowest and highest of each of many bins of a long one.
+    """Return the indices of the samples to draw: all of a short curve, lowest and highest of each bin of a long one.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
         Finite values at even times.
     bins : int
-        How many.
+        Number of bins.
 
     Returns
     -------
     ndarray of int
-        Ascending; the first and last sample and the extremes are among them.
+        Increasing indices, including the first and the last sample and the extremes.
     """
     size = values.size // bins
     if size <= 2:

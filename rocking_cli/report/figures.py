@@ -1,4 +1,4 @@
-"""The still pictures of a report: matplotlib figures as SVG that stands in a page."""
+"""The plots of a report: matplotlib figures as SVG inside a page."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ STILL = 'aria-hidden="true" focusable="false" style="stroke-linejoin: round; str
 
 
 def inline_svg(figure: Figure, prefix: str) -> str:
-    """A figure as an svg element without a heading of its own file.
+    """Return a figure as an svg element to put inside an HTML page.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
-        What to show.
+        The figure.
     prefix : str
-        Put before every identifier, so that those of several pictures on a page differ.
+        Prefix of every identifier, so that those of several figures on a page differ.
     """
     stream = StringIO()
     with rc_context({"svg.fonttype": "none", "svg.hashsalt": prefix}):  # text stays text

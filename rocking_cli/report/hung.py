@@ -17,7 +17,7 @@ Rows = list[list[str]]
 
 
 class HungTables(NamedTuple):
-    """Tables and a sentence.
+    """Tables and sentences on the loads and ties of a structure.
 
     Parameters
     ----------
@@ -26,9 +26,9 @@ class HungTables(NamedTuple):
     forces : list of rows
         Name, body, place [m], force to the right and up [kN].
     ties : list of rows
-        Name, where from and to, sense, stiffness [kN/m], prestress [kN].
+        Name, start and end, sense, stiffness [kN/m], prestress [kN].
     moved : list of rows
-        Motion, point, how far sideways and up [mm].
+        Motion, point, horizontal and vertical displacement [mm].
     strained : list of rows
         Motion, tie, largest force [kN] and elongation [mm].
     said : list of str
@@ -71,12 +71,12 @@ def hung_on(content: Assessment) -> HungTables | None:
 
 
 def _until(moved: Movements) -> str:
-    """Until when the values are the largest, after the name of a motion; empty if they are so throughout."""
+    """Return a note after the name of a motion on until when peaks hold; empty if they hold throughout."""
     return "" if isnan(moved.known_to) else f", up to {moved.known_to:.4g} s"
 
 
 def _worse(watched: Watched, result: MotionResult) -> Movements:
-    """Return the largest values over the polarities that were analysed, by the nonlinear model."""
+    """Return the peaks over the polarities that were simulated, by the nonlinear model."""
     return largest([watched.peaks(runs["nonlinear"]) for runs in result.runs.values()])
 
 

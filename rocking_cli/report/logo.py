@@ -15,7 +15,7 @@ KINDS = {"image/png": b"\x89PNG\r\n\x1a\n", "image/jpeg": b"\xff\xd8\xff"}  # an
 
 
 def _check_whole(data: bytes, kind: str, path: Path) -> None:
-    """Refuse a picture that no browser can show. Raises `InputError`."""
+    """Raise `InputError` if a picture is damaged, so that no browser can show it."""
     from xml.etree.ElementTree import fromstring
 
     from PIL import Image
@@ -33,17 +33,17 @@ def _check_whole(data: bytes, kind: str, path: Path) -> None:
 
 
 def embedded(path: Path) -> str:
-    """The address of a picture that holds the picture itself.
+    """Return a picture as a data URL.
 
     Parameters
     ----------
     path : Path
-        A PNG, JPEG or SVG file; what it is, is seen from its content.
+        A PNG, JPEG or SVG file; the type is recognised from the content.
 
     Raises
     ------
     InputError
-        If it cannot be read, is too large, or is none of these.
+        If the file cannot be read, is too large, or is of another type.
     """
     data = read_bytes(path, "logo", LARGEST)
     kind = next((kind for kind, begin in KINDS.items() if data.startswith(begin)), None)

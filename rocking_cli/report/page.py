@@ -1,4 +1,4 @@
-"""A report as one page: HTML that needs nothing else, and no network."""
+"""A report as a single HTML page that needs no other file and no network."""
 
 from __future__ import annotations
 
@@ -51,14 +51,14 @@ Rows = list[list[str]]
 
 
 def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
-    """The page.
+    """Return the page of a report.
 
     Parameters
     ----------
     content : Assessment
-        What it says; every text in it is escaped.
+        Content of the report; every text in it is escaped.
     verified : VerifiedReport, optional
-        A verification that is part of it.
+        A verification to include in the report.
     """
     environment = Environment(
         loader=PackageLoader("rocking_cli", "report/templates"), autoescape=True, undefined=StrictUndefined,
@@ -118,12 +118,12 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
 
 
 def symbols(text: str) -> Markup:
-    """A text of our own as HTML: what follows an underscore after a symbol is its subscript."""
+    """Return a text of this package as HTML, with an underscore after a symbol turned into a subscript."""
     return Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text))))
 
 
 def _greek(text: str) -> str:
-    """A text of our own that spells symbols, with the symbols themselves."""
+    """Return a text of this package with the names of symbols replaced by the symbols."""
     return re.sub("|".join(GREEK), lambda word: GREEK[word[0]], text)
 
 
@@ -132,7 +132,7 @@ def _still(figure: Figure, prefix: str) -> Markup:
 
 
 def _over(content: Assessment) -> str:
-    """The symbol of a rotation over what it is compared with."""
+    """Return the label of a normalised rotation."""
     free = [side.phi_cr is None for side in content.structure.statics]
     return style.over((free[0], free[1])).replace("φcr", "φ_cr")
 
@@ -157,7 +157,7 @@ def _directions(content: Assessment) -> list[str]:
 
 
 def _shown(content: Assessment) -> list[EquivalentSide]:
-    """The directions that have values of their own."""
+    """Return the directions to show; one if both have the same values."""
     sides = sides_of(content.structure)
     return sides[:1] if is_symmetric(content.structure) else sides
 

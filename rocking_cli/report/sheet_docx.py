@@ -1,4 +1,4 @@
-"""A calculation sheet as a document for word processors, by python-docx."""
+"""A calculation sheet as a document for word processors, made with python-docx."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ PICTURES = ("data:image/png;", "data:image/jpeg;")
 
 
 def check_package() -> None:
-    """Refuse where python-docx is missing: `InputError` with what to install."""
+    """Raise `InputError` if python-docx is not installed."""
     try:
         import docx  # noqa: F401
     except ImportError:
@@ -38,14 +38,14 @@ def check_package() -> None:
 
 
 def render(sheet: Sheet, mechanism: Mechanism) -> bytes:
-    """The document.
+    """Return the document of a calculation sheet.
 
     Parameters
     ----------
     sheet : Sheet
-        What it says.
+        The sheet.
     mechanism : Mechanism
-        What to draw.
+        The mechanism to draw.
 
     Raises
     ------
@@ -72,7 +72,7 @@ class _Writer:
         self.steps = count(1)
 
     def write(self) -> None:
-        """Head and all sections."""
+        """Write heading and all sections."""
         self._page()
         sheet = self.sheet
         if sheet.logo:
@@ -152,7 +152,7 @@ class _Writer:
         self.document.add_picture(stream, width=Cm(WIDTH))
 
     def _steps(self, rows: Sequence[Working]) -> None:
-        """A row a step: number, what it is, formula with numbers, result, clause."""
+        """Write a row for each step: number, meaning, formula with numbers, result, clause."""
         from docx.shared import Cm
 
         say = self.sheet.language
@@ -183,7 +183,7 @@ class _Writer:
 
     @staticmethod
     def _keep_whole(row: Any) -> None:
-        """A row that no page end cuts."""
+        """Keep a row from breaking across pages."""
         from docx.oxml import OxmlElement
 
         row._tr.get_or_add_trPr().append(OxmlElement("w:cantSplit"))
@@ -195,7 +195,7 @@ class _Writer:
         self._text(paragraph, text, bold=bold, size=SMALL)
 
     def _text(self, paragraph: Paragraph, text: str, *, bold: bool = False, size: float | None = None) -> None:
-        """A text with its sub- and superscripts; what XML cannot hold is spelled out."""
+        """Write a text with its sub- and superscripts; characters that XML cannot hold are spelled out."""
         from docx.shared import Pt
 
         for piece in runs(text):

@@ -1,4 +1,4 @@
-"""A calculation sheet as one page: HTML that needs nothing else, and no network."""
+"""A calculation sheet as a single HTML page that needs no other file and no network."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ MARKS = {"print": "", "transcription": "*", "code": "†", "ours": "‡", "plain
 
 
 def render(sheet: Sheet, mechanism: Mechanism) -> str:
-    """The page.
+    """Return the page of a calculation sheet.
 
     Parameters
     ----------
     sheet : Sheet
-        What it says; every text in it is escaped.
+        The sheet; every text in it is escaped.
     mechanism : Mechanism
-        What to draw.
+        The mechanism to draw.
     """
     page = (
         _environment()
@@ -43,7 +43,7 @@ def render(sheet: Sheet, mechanism: Mechanism) -> str:
 
 
 def parts(sheet: Sheet, mechanism: Mechanism, level: int = 2) -> Markup:
-    """The sections alone, from a level of headings on, such as for a report."""
+    """Return the sections of a sheet alone as HTML, with headings from a given level, such as for a report."""
     template = _environment().get_template("sheet_parts.html")
     has_drawing = any(isinstance(item, Drawing) for each in sheet.parts for item in each.items)
     steps = count(1)
@@ -55,7 +55,7 @@ def parts(sheet: Sheet, mechanism: Mechanism, level: int = 2) -> Markup:
 
 
 def figure_of(sheet: Sheet, mechanism: Mechanism) -> Figure:
-    """The picture of the structure, in the language of a sheet."""
+    """Return the drawing of the structure, in the language of a sheet."""
     title = f"{mechanism.name}: {sheet.language.mechanism(mechanism.mechanism, mechanism.title)}"
     return translate(draw_structure(picture(mechanism), title), sheet.language)
 
@@ -65,7 +65,7 @@ def _drawing(sheet: Sheet, mechanism: Mechanism) -> Markup:
 
 
 def formula(text: str) -> Markup:
-    """A text with its sub- and superscripts as HTML."""
+    """Return a text with its sub- and superscripts as HTML."""
     return Markup("").join(
         Markup(f"<{run.place}>{escape(run.text)}</{run.place}>") if run.place else escape(run.text)
         for run in runs(text)

@@ -1,4 +1,4 @@
-"""A survey as one page: a table that sorts itself, HTML that needs nothing else, and no network."""
+"""A survey as a single HTML page with a sortable table; it needs no other file and no network."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ SYMBOLS = {"lambda": "λ", "phi_cr": "φ_cr", "kappa2": "κ₂", "eta": "η"}
 
 
 def render(found: Survey, source: str, about: Sequence[str]) -> str:
-    """The page.
+    """Return the page of a survey.
 
     Parameters
     ----------
     found : Survey
-        What it says; every text in it is escaped.
+        The survey; every text in it is escaped.
     source : str
-        What the structures were read from.
+        Source of the structures.
     about : sequence of str
-        What else stands at its head: when it was written, by which command.
+        Further lines of the heading: date and command.
     """
     environment = Environment(
         loader=PackageLoader("rocking_cli", "report/templates"), autoescape=True, undefined=StrictUndefined,

@@ -1,4 +1,4 @@
-"""The picture of a structure in the language of a sheet: its few words, and its decimal marks."""
+"""Translation of the words and decimal marks in the drawing of a structure."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from rocking_cli.views.sheet.language import Language
 
 
 def translate(figure: Figure, language: Language) -> Figure:
-    """The same figure with its texts in a language.
+    """Translate the texts of a figure to a language, and return the figure.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
-        As it is drawn, in English.
+        The figure with English texts.
     language : Language
         The language.
     """

@@ -13,14 +13,14 @@ OWN = frozenset({"drawing", "structure_text"})
 
 @dataclass(frozen=True, eq=False)
 class VerifiedReport:
-    """A verification, and its calculation sheet."""
+    """A verification and its calculation sheet, for a report."""
 
     found: Verification
     sheet: Sheet
 
     @property
     def within(self) -> Sheet:
-        """The sheet without what the report has anyway, its addresses apart from those of the report."""
+        """The sheet without parts that the report has already, with anchors distinct from the report's."""
         return replace(self.sheet, parts=[_apart(each) for each in self.sheet.parts if each.key not in OWN])
 
 

@@ -1,1 +1,1 @@
-"""Questions asked of many histories or of a mechanism over a range; they know nothing of terminals."""
+"""Studies: each computes one result, from many histories or from a mechanism over a range; none prints anything."""

@@ -1,4 +1,4 @@
-"""One structure under any number of ground motions: all that a report says of it, computed."""
+"""The assessment of one structure under any number of ground motions: all results that a report shows."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ PACKAGES = ("numpy", "scipy", "matplotlib")
 
 @dataclass(frozen=True)
 class File:
-    """An input as the user gave it: its name, what is in it, and the name by which its content can be checked."""
+    """An input file as the user gave it: its name and its content, with a checksum of the content."""
 
     name: str
     content: bytes
@@ -66,16 +66,16 @@ class File:
 
 @dataclass(frozen=True)
 class TitleBlock:
-    """What stands beside the answer: for whom, by whom and how it was made.
+    """Heading of a report: the project, its place and author, and how and when the report was made.
 
     Parameters
     ----------
     command, date : str
-        What wrote it, and when.
+        The command that wrote the report, and the date.
     project, place, author : str, optional
-        As the reader knows them.
+        As the user gave them.
     logo : str, optional
-        The address of a picture to show at the head.
+        Address of a picture to show in the heading.
     """
 
     command: str
@@ -87,43 +87,43 @@ class TitleBlock:
 
     @property
     def known(self) -> dict[str, str]:
-        """What was given of project, place and author."""
+        """The given ones of project, place and author, by name."""
         given = {"project": self.project, "place": self.place, "author": self.author}
         return {name: text for name, text in given.items() if text}
 
 
 @dataclass(frozen=True, eq=False)
 class MotionResult:
-    """A ground motion and what it does.
+    """A ground motion and the response of the structure to it.
 
     Parameters
     ----------
     given : Scaled
         The motion as read, or the sampled pulse, and the factor on it.
     file : File or None
-        Where it was read; None for a pulse.
+        File of the record; None for a pulse.
     measured : Measures
-        Of the motion as scaled, on the floor if there is one.
+        Intensity measures of the scaled motion, on the floor if the structure stands on one.
     doubts : tuple of Doubt
-        About the motion as read.
+        Doubtful properties of the motion as read.
     runs : mapping of int to mapping of str to History
-        The histories of each model under each polarity looked at.
+        The histories of each model under each polarity that was simulated.
     polarity : int
-        The one that governs.
+        The polarity that governs.
     governs : str
-        A sentence on that; empty if one polarity was looked at.
+        A sentence that says which polarity governs; empty if only one was simulated.
     neighbours : mapping of int to Neighbours
-        What became of the neighbours of the motion under each polarity, by the nonlinear model.
+        Outcomes of the neighbours of the motion under each polarity, by the nonlinear model.
     margin : Margin
-        How far the motion is from lifting and overturning the structure.
+        The scale factors at which the motion uplifts and overturns the structure.
     fits : tuple of PulseFit
-        The pulses in it, the best first; of a pulse itself.
+        The pulses fitted to the motion, the best first; a motion that is a pulse has this pulse alone.
     alone : float or None
-        What the best pulse alone does: the peak ratio, NaN if it overturns; None if there is no pulse.
+        Peak ratio under the best pulse alone, NaN if the structure overturns; None if no pulse was fitted.
     contacts : mapping of int to ContactDemand
-        What the nonlinear history asks of the contacts, under each polarity.
+        Check of the contacts in the nonlinear history, under each polarity.
     alone_unknown : bool
-        Whether the outcome under that pulse is unknown: the ratio is then that up to where it is known.
+        Whether the outcome under the best pulse is unknown: `alone` is then the peak ratio while it is known.
     """
 
     given: Scaled
@@ -142,26 +142,26 @@ class MotionResult:
 
     @property
     def motion(self) -> GroundMotion:
-        """The motion as it governs: scaled, and reversed if that is the worse."""
+        """The scaled motion in the polarity that governs."""
         return self.scaled(self.polarity)
 
     def scaled(self, polarity: int) -> GroundMotion:
-        """The motion as scaled, under the name it was given."""
+        """Return the scaled motion in one polarity, under the name of the motion as given."""
         return replace(self.given.motion.scaled(polarity * self.given.factor), name=self.given.motion.name)
 
     @property
     def pga_of_ground(self) -> float:
-        """Peak acceleration of the ground as scaled [standard gravity], below the floor if there is one."""
+        """Peak acceleration of the scaled ground motion, below the floor if there is one [standard gravity]."""
         return abs(self.given.factor) * self.given.motion.of_ground.pga_g
 
     @property
     def scaled_much(self) -> bool:
-        """Whether the motion was made larger than any like it has been recorded."""
+        """Whether the scale factor exceeds `LARGE` in size, for which a report has a caution."""
         return abs(self.given.factor) > LARGE
 
     @property
     def close(self) -> bool:
-        """Whether a small change of the motion or the model could give the other outcome, if this one is known."""
+        """Whether the outcome is known, and a small change of the motion or of the model could give another outcome."""
         best = self.histories["nonlinear"]
         if best.unknown:
             return False
@@ -173,7 +173,7 @@ class MotionResult:
 
     @property
     def unknown(self) -> bool:
-        """Whether the outcome is unknown under the polarity that governs, and overturns it under none."""
+        """Whether the outcome in the governing polarity is unknown; no polarity overturns the structure then."""
         return self.histories["nonlinear"].unknown
 
     @property
@@ -184,7 +184,7 @@ class MotionResult:
 
 @dataclass(frozen=True, eq=False)
 class PulseMap:
-    """What pulses of one shape do, with the places of the ground motions on it.
+    """Overturning map of one pulse shape, with the pulses of the ground motions marked on it.
 
     Parameters
     ----------
@@ -200,28 +200,28 @@ class PulseMap:
 
 @dataclass(frozen=True, eq=False)
 class Assessment:
-    """Everything a report says.
+    """All results that a report shows.
 
     Parameters
     ----------
     structure : Structure
         The structure.
     file : File
-        Where it was read.
+        The file of the structure.
     picture : Picture
-        What it looks like.
+        The drawing of the structure.
     curves, asked : tuple of Linearisation
-        The error of the equivalent block over its range, and at the amplitudes given in numbers; empty if it has none.
+        Error of the equivalent block over the whole range, and at the amplitudes of the table; empty if there is none.
     trust : str
-        What that means, or why there is none.
+        A sentence on this error, or on why it does not exist.
     results : tuple of MotionResult
-        What each ground motion does.
+        The response to each ground motion.
     maps : tuple of PulseMap
-        One for each shape of pulse; empty if no history can be computed, or no block is equivalent.
+        One map for each pulse shape; empty if no history can be computed or there is no equivalent block.
     title : TitleBlock
-        For whom, by whom and how it was made.
+        The heading of the report.
     versions : mapping of str to str
-        Of the software.
+        Versions of the software, by package.
     """
 
     structure: Structure
@@ -237,17 +237,17 @@ class Assessment:
 
     @property
     def mechanism(self) -> Mechanism:
-        """The structure."""
+        """The mechanism of the structure."""
         return self.structure.mechanism
 
     @property
     def has_block(self) -> bool:
-        """Whether a single block is equivalent to it."""
+        """Whether the structure has an equivalent block."""
         return self.structure.why_no_block is None
 
     @property
     def name(self) -> str:
-        """What the structure is called."""
+        """Name of the structure."""
         return self.structure.name
 
 
@@ -261,29 +261,29 @@ def gather(
     around: Neighbourhood | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Assessment:
-    """Compute everything a report says.
+    """Compute all results that a report shows.
 
     Parameters
     ----------
     structure : Structure
         The structure.
     file : File
-        Where it was read.
+        The file of the structure.
     given : sequence of Scaled
         The ground motions; may be empty.
     polarities : sequence of int
-        Of 1 and -1: those of the motions to look at.
+        The polarities to simulate: 1, -1 or both.
     title : TitleBlock
-        For whom, by whom and how it is made.
+        The heading of the report.
     around : Neighbourhood, optional
-        How to draw the neighbours of a motion, at least one.
+        How to draw the neighbours of each motion; at least one neighbour.
     progress : callable, optional
-        Called with the number of steps done since the last call, of `steps(given)`.
+        Called with the number of steps done since the last call; `steps(given)` is their total.
 
     Raises
     ------
     RockingError
-        Whatever the studies raise.
+        Any error that the studies raise.
     """
     done = progress or (lambda count: None)
     mechanism = structure.mechanism
@@ -310,7 +310,7 @@ def gather(
 
 
 def _error_of_block(structure: Structure) -> tuple[Sequence[Linearisation], Sequence[Linearisation], str]:
-    """The error of the equivalent block over its range and at some places, and what it means."""
+    """Return the error of the equivalent block over its range and at some amplitudes, and a verdict on it."""
     if structure.why_no_block is not None:
         why = structure.why_no_block.removeprefix(f"{structure.name}: ")
         return [], [], f"No equivalent block exists here, so there is no error to report: {why}."
@@ -324,7 +324,7 @@ def _error_of_block(structure: Structure) -> tuple[Sequence[Linearisation], Sequ
 
 
 def versions(mechanism: Mechanism) -> dict[str, str]:
-    """Of this package, of what a mechanism comes from, and of what it is computed with."""
+    """Return the versions of this package, of the mechanism's package, of Python and of the packages for computing."""
     return {
         "rocking-cli": version("rocking-cli"),
         f"mechanism {mechanism.mechanism}": _plugin(mechanism),
@@ -335,7 +335,7 @@ def versions(mechanism: Mechanism) -> dict[str, str]:
 
 
 def steps(given: Sequence[Scaled]) -> int:
-    """How many steps `gather` takes."""
+    """Return the number of steps of which `gather` reports the progress."""
     return len(given) + 2
 
 
@@ -375,12 +375,12 @@ def _result(structure: Structure, given: Scaled, polarities: Sequence[int], arou
 
 
 def file_of_motion(given: Scaled) -> File | None:
-    """Where a ground motion was read; None of a pulse."""
+    """Return the file of a ground motion; None for a pulse."""
     return None if given.file is None else File(name_of(str(given.file)), original(str(given.file)))
 
 
 def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:
-    """The pulses in a motion as scaled, the best first: none in one too short or too quiet for any."""
+    """Return the pulses fitted to a scaled motion, the best first; none if it is too short or too weak to be fitted."""
     if given.pulse is not None:
         pulse = replace(given.pulse, amplitude=given.pulse.amplitude * abs(given.factor))
         return (PulseFit(pulse, 0.0, 1 if given.factor > 0 else -1, "acceleration", 1.0),)
@@ -392,7 +392,7 @@ def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:
 
 
 def _alone(structure: Structure, fit: PulseFit, polarities: Sequence[int]) -> tuple[float, bool]:
-    """The largest peak ratio under a pulse, NaN if it overturns, and whether the outcome is unknown."""
+    """Return the largest peak ratio under a pulse alone, NaN if the structure overturns, and whether it is unknown."""
     if structure.why_no_block or structure.refuses("sizes"):  # nothing measures a pulse here
         alone, engine = fit.pulse.sampled(), engine_of(structure)
         runs = [engine.follow(structure, alone.scaled(polarity * fit.sign)) for polarity in polarities]
@@ -412,7 +412,7 @@ def _shape(pulse: Pulse) -> Pulse:
 
 
 def _maps(structure: Structure, results: Sequence[MotionResult]) -> list[PulseMap]:
-    """A map for each shape among the best pulses; of the sine if there is none."""
+    """Compute a map for each shape among the best pulses of the motions; for the sine if no motion has a pulse."""
     if structure.why_no_block or structure.refuses("sizes") or min(structure.etas) <= 0:
         return []  # nothing measures a pulse here, or no history can be computed
     marks: dict[Pulse, list[tuple[str, PulseFit]]] = {}
@@ -433,7 +433,7 @@ def _map(structure: Structure, shape: Pulse, marks: Sequence[tuple[str, PulseFit
 
 
 def _axes(structure: PulsedModel, pulses: Sequence[Pulse]) -> tuple[tuple[float, float], float]:
-    """Periods [s] and the largest a, so that all pulses are on the map."""
+    """Return the range of periods [s] and the largest dimensionless amplitude a of a map that shows all pulses."""
     usual = [2 * pi / (omega * structure.p) for omega in OMEGAS]
     periods = [*usual, *(each.period / BEYOND for each in pulses), *(each.period * BEYOND for each in pulses)]
     strongest = max([TALLEST, *(BEYOND * each.amplitude / structure.unit for each in pulses)])
@@ -441,10 +441,10 @@ def _axes(structure: PulsedModel, pulses: Sequence[Pulse]) -> tuple[tuple[float,
 
 
 def amplitude_in_g(fit: PulseFit) -> float:
-    """a_p of a fitted pulse [standard gravity]."""
+    """Return the amplitude a_p of a fitted pulse [standard gravity]."""
     return fit.pulse.amplitude / STANDARD_GRAVITY
 
 
 def share(found: OverturningMap) -> float:
-    """The part of a map that overturns."""
+    """Return the share of the area of a map in which the structure overturns."""
     return sum(found.shares[region] for region in (Region.AFTER_IMPACT, Region.WITHOUT_IMPACT))

@@ -1,4 +1,4 @@
-"""What a pair of components does to a structure in every direction in which its plane may lie."""
+"""The response of a structure to a pair of horizontal components, in every direction of the structure's plane."""
 
 from __future__ import annotations
 
@@ -23,20 +23,21 @@ STEP = 2  # degrees
 
 @dataclass(frozen=True, eq=False)
 class AzimuthResponses:
-    """The responses of a structure to a pair of components, in all directions.
+    """Responses of a structure to a pair of horizontal components, in all directions.
 
     Parameters
     ----------
     names : (str, str)
-        The component at 0 degrees, and that at 90.
+        Names of the components at 0 and at 90 degrees.
     scale : float
-        Factor on both.
+        Scale factor on both components.
     azimuths : ndarray, shape (n,)
-        Of the structure's plane, from the first component to the second [deg]: with all of them both polarities are.
+        Directions of the structure's plane, counted from the first component towards the second [deg]; as they go all
+        around, both polarities are among them.
     pga : ndarray, shape (n,)
-        Peak acceleration in that direction, as scaled [standard gravity].
+        Peak ground acceleration in each direction, after scaling [standard gravity].
     outcomes : mapping of str to Outcome
-        Of each model, an array over the azimuths.
+        The outcomes under each model, as arrays over the azimuths.
     checked : bool
         Whether the joints of the structure are known; if not, no outcome of the nonlinear model is said to be unknown.
     """
@@ -58,18 +59,18 @@ def all_around(
     release: float | None = None,
     rtol: float = RTOL,
 ) -> AzimuthResponses:
-    """Turn a pair of components into all directions, and follow a structure in each.
+    """Turn a pair of components into all directions, and simulate a structure in each.
 
     Parameters
     ----------
     structure : Structure
         The structure.
     models : sequence of str
-        Those to follow.
+        Names of the models to simulate.
     pair : (GroundMotion, GroundMotion)
         The components at 0 and at 90 degrees, corrected alike.
     scale : float
-        Factor on both.
+        Scale factor on both components.
     release : float, optional
         Start at rest from this fraction of phi_cr.
     rtol : float
@@ -102,7 +103,7 @@ def all_around(
 
 
 def sectors(azimuths: Reals, flags: NDArray[np.bool_]) -> list[tuple[float, float]]:
-    """The first and the last azimuth of each row of neighbours on the circle that are flagged."""
+    """Return the first and the last azimuth [deg] of each run of consecutive flagged azimuths on the circle."""
     if flags.all():
         return [(float(azimuths[0]), float(azimuths[-1]))]
     begins = np.flatnonzero(flags & ~np.roll(flags, 1))

@@ -33,9 +33,10 @@ class Boundary:
     name : str
         `uplift`, `without_impact`, `after_one_impact` or `impact_at_end`.
     title : str
-        What it separates.
+        The outcomes that the boundary separates, in words.
     level : callable
-        Of omega and a, arrays of one shape: zero on the boundary, positive above it, NaN where it does not hold.
+        Function of omega and a, arrays of one shape: zero on the boundary, positive above it, NaN where it is not
+        valid.
     """
 
     name: str
@@ -44,7 +45,7 @@ class Boundary:
 
 
 def uplift_level(omega: Reals, a: Reals) -> Reals:
-    """Positive where a pulse lifts the block."""
+    """Return a - 1, which is positive where a pulse uplifts the block."""
     level: Reals = a - 1 + 0 * omega
     return level
 
@@ -53,7 +54,7 @@ UPLIFT = Boundary("uplift", "uplift, a = 1", uplift_level)
 
 
 def boundaries(shape: Pulse, eta: float) -> list[Boundary]:
-    """The boundaries of the linear block that are known for a shape; for any shape, uplift.
+    """Return the boundaries of the linear block that are known for a pulse shape; uplift is known for every shape.
 
     Parameters
     ----------
@@ -89,9 +90,9 @@ def boundaries(shape: Pulse, eta: float) -> list[Boundary]:
 
 
 class _End:
-    """The motion at the end of a pulse, as if there were no impact before.
+    """Motion of the linear block at the end of a pulse, ignoring impacts before it.
 
-    Called with omega and a, it gives y in units of exp(tau_e), y z, and x; NaN where the block does not lift.
+    Called with omega and a, it returns y in units of exp(tau_e), y z, and x; NaN where the block does not uplift.
     """
 
     def __init__(self, shape: Pulse) -> None:

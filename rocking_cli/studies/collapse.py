@@ -9,7 +9,7 @@ from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 
 
 def collapses(mechanism: Mechanism) -> Mapping[Direction, CollapseMechanism]:
-    """The weakest mechanism in each direction in which a structure can rock.
+    """Return the weakest mechanism of a structure in each direction in which it can rock.
 
     Parameters
     ----------
@@ -19,9 +19,9 @@ def collapses(mechanism: Mechanism) -> Mapping[Direction, CollapseMechanism]:
     Raises
     ------
     InputError
-        If its mechanism is given, so that there is none to find.
+        If the mechanism of the structure is given, so that none is searched for.
     MechanismError
-        If it has none.
+        If the structure has no mechanism in any direction.
     """
     found: dict[Direction, CollapseMechanism] = {}
     for direction in mechanism.directions:

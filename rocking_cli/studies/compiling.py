@@ -1,4 +1,4 @@
-"""Compiling the kernels ahead of what needs them: the smallest motion that each can follow, of no structure."""
+"""Compile the kernels in advance, by simulating the shortest motion that each kernel accepts."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ CALLED = {HISTORIES: "histories", PULSES: "exact_pulses"}
 
 @dataclass(frozen=True)
 class Compiled:
-    """A kernel that can be used without delay from now on.
+    """A kernel that has been compiled or loaded, and can be used without delay.
 
     Parameters
     ----------
     kernel : str
-        Which: `HISTORIES` or `PULSES`.
+        The kernel: `HISTORIES` or `PULSES`.
     before : bool
         Whether it was compiled before.
     seconds : float
-        How long compiling it took, or loading it [s].
+        Time taken to compile or load the kernel [s].
     """
 
     kernel: str
@@ -32,7 +32,7 @@ class Compiled:
 
 
 def compile_kernel(kernel: str) -> Compiled:
-    """Compile a kernel, or load what was compiled before."""
+    """Compile a kernel, or load it if it was compiled before, and return how long this took."""
     before, began = ways.is_ready(kernel), monotonic()
     ways.prepare(kernel)
     if kernel == HISTORIES:

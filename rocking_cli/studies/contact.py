@@ -1,7 +1,7 @@
-"""Whether a history holds: the friction that its contacts need, and whether they last.
+"""Whether a history is valid: the friction that its contacts require, and whether they open or crush.
 
-The equations of motion take for granted that no joint slides, opens or crushes. The forces at the joints show where
-that is so: at every sample while the structure rocks, at its first uplift and on both sides of every impact.
+The equations of motion assume that no joint slides, opens or crushes. The forces at the joints show at which moments
+this is true: at every sample while the structure rocks, at its first uplift and on both sides of every impact.
 """
 
 from __future__ import annotations
@@ -33,16 +33,16 @@ DEMAND, PULL, USED = range(3)
 
 @dataclass(frozen=True)
 class CrushingDemand:
-    """The largest force normal to a contact over what the contact bears.
+    """The largest ratio of the normal force at a contact to the strength of the contact.
 
     Parameters
     ----------
     used : float
-        N over the strength; above 1 it crushes.
+        Normal force over strength; above 1 the contact crushes.
     joint : str
-        Where.
+        Name of the joint.
     time : float
-        When [s].
+        Time of this force [s].
     """
 
     used: float
@@ -52,55 +52,57 @@ class CrushingDemand:
 
 @dataclass(frozen=True, eq=False)
 class ContactDemand:
-    """What a history asks of its contacts; NaN where there is nothing to say, such as of a structure at rest.
+    """Forces and friction that a history requires of the contacts; NaN if undefined, as for a structure at rest.
 
     Parameters
     ----------
     friction_needed : float
         The largest |T|/N of any joint while the structure rocks, where N is above 1 % of its value as rocking starts.
     joint : str
-        Which joint; empty where the joints are not known, and all are sums over the whole.
+        The joint that requires it; empty if the joints are not known, so that forces are sums over the whole structure.
     time : float
-        When [s].
+        Time of this requirement [s].
     duration : float
-        The longest time on end for which it needs more than `friction` [s]; without that, for which, around its peak,
-        it needs more than 90 % of `friction_needed`.
+        The longest continuous time for which more than `friction` is required [s]; if `friction` is not given, the time
+        around the peak for which more than 90 % of `friction_needed` is required.
     base_shear : float
         The largest horizontal force of the ground on the structure while it rocks, in either sense [N], per unit mass
-        of a structure without masses; of guides that hold it sideways nothing. What rests counts as ground.
+        if the structure has no masses. Forces of guides that hold the structure sideways are left out; bodies that do
+        not move count as ground.
     least_normal : float
         The smallest N of any joint, or of all where `whole` or `shared`, while it rocks [N], per unit mass of a
         structure without masses.
     impact_friction : float
         The largest |dP_x|/dP_y of any impact; NaN where it does not follow, see `rocking_cli.core.reactions.impulses`.
     lost : float
-        When first a joint would have to pull, an impact to throw one apart, or nothing to weigh [s]; NaN: never.
+        The first time at which a joint would have to pull, an impact would throw a joint apart, or no weight is left on
+        the joints [s]; NaN: never.
     lost_joint : str
-        Which.
+        The joint at which this happens.
     whole : bool
-        Whether the joints are not known: then there are sums over the whole structure, on level ground.
+        Whether the joints are not known: forces are then sums over the whole structure, on level ground.
     shared : bool
-        Whether statics alone does not say what each joint bears: then friction is an estimate by least squares, and
-        normal forces are sums over the whole.
+        Whether statics alone does not determine the force on each joint: friction is then an estimate by least squares,
+        and normal forces are sums over the whole structure.
     friction : float or None
-        What there is.
+        Coefficient of friction available; None if it is not given.
     slides : float
-        When first more is needed than there is [s]; NaN: never.
+        The first time at which more friction is required than available [s]; NaN: never.
     slides_joint : str
-        Where.
+        The joint at which this happens.
     crushing : CrushingDemand or None
-        Of a structure whose strength is given.
+        Use of the strength of the contacts; None if no strength is given.
     times, demand : ndarray, shape (n,)
-        The friction needed over time; 0 at rest. At an impact there are two values at one time.
+        Times [s], and the coefficient of friction required then; 0 at rest. An impact has two values at one time.
     opens : float or None
-        When first a joint that the mechanism keeps closed would have opened [s]; NaN: never at the moments that were
-        looked at; None: not known, as of all structures that did not search for their mechanism.
+        The first time at which a joint that the mechanism keeps closed would open [s]; NaN: at none of the times that
+        were checked; None: not known, as for all structures that did not search for their mechanism.
     opens_joint : str
-        Which.
+        The joint that would open.
     followed : bool
-        Whether the history says itself how far joints open and slide, and until when it is known.
+        Whether the history itself records how far joints open and slide, and until when its outcome is known.
     known_to : float
-        That moment [s]; NaN if all of the history is known, or it does not say so.
+        The time until which the history is known [s]; NaN if all of it is known, or if this was not recorded.
     """
 
     friction_needed: float
@@ -132,20 +134,20 @@ class ContactDemand:
 
     @property
     def holds(self) -> bool:
-        """Whether the history holds as far as is known: no joint opens, slides or crushes."""
+        """Whether, as far as is known, no joint opens, slides or crushes during the history."""
         crushes = self.crushing is not None and self.crushing.used > 1
         stays = self.opens is None or bool(np.isnan(self.opens))
         return bool(np.isnan(self.lost) and np.isnan(self.slides)) and stays and not crushes
 
     @property
     def stands(self) -> bool:
-        """Whether the history is a result to its end: joints hold, or open and slide by no more than they may."""
+        """Whether the whole history is valid: no joint opens or slides, or only by as much as is permitted."""
         return bool(np.isnan(self.known_to)) and (self.followed or self.holds)
 
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """The check of any history of a structure.
+    """Check of the contacts in histories of a structure.
 
     Parameters
     ----------
@@ -156,12 +158,12 @@ class Contacts:
     mechanism: Mechanism
 
     def check(self, history: History, motion: GroundMotion | None) -> ContactDemand:
-        """Hold a history against what its contacts can do.
+        """Check the forces of a history against what its contacts can transmit.
 
         Parameters
         ----------
         history : History
-            Of the nonlinear model.
+            A history of the nonlinear model.
         motion : GroundMotion or None
             The ground motion it is the response to.
         """
@@ -198,7 +200,7 @@ class Contacts:
 
     @cached_property
     def _rest(self) -> Mapping[Direction, Collection[str]]:
-        """The bodies that do not move in a direction."""
+        """Names of the bodies that do not move in each direction."""
         return {
             direction: {name for name, number in parts(self.mechanism, direction).items() if not number}
             for direction in self.mechanism.directions
@@ -208,7 +210,7 @@ class Contacts:
         return reactions(self.mechanism, direction, states.phi[part], states.rate[part], states.ground[part])
 
     def _worst(self, direction: Direction, found: Reactions) -> tuple[Reals, Places]:
-        """The three quantities of some states, each of the joint where it is largest, and the places of these."""
+        """Return the three quantities of some states, each at the joint where it is largest, and these joints."""
         rest = self._at_uplift[direction]
         bears = np.maximum(BEARS * rest.normal, 0.0)
         normal = np.where(np.abs(found.force) > IDLE * np.abs(rest.force).max(), found.normal, np.nan)
@@ -263,7 +265,7 @@ class Contacts:
         )
 
     def _lost(self, history: History, states: _States, pull: Reals, joint: Places) -> tuple[float, str]:
-        """When contact is first lost, and where: at a joint that has to pull, or at an impact that throws one apart."""
+        """Return the first time at which contact is lost [s], by a pull or an impact, and the joint that loses it."""
         moments: list[tuple[float, str]] = []
         pulls = np.flatnonzero(pull >= 0)
         if pulls.size:
@@ -289,7 +291,7 @@ class Contacts:
 
     @cached_property
     def _at_uplift(self) -> Mapping[Direction, Reactions]:
-        """What each joint bears as rocking starts."""
+        """Forces at each joint as rocking starts, by direction."""
         return {direction: at_uplift(self.mechanism, direction) for direction in self.mechanism.directions}
 
     @cached_property
@@ -297,7 +299,7 @@ class Contacts:
         return {direction: impulses(self.mechanism, direction) for direction in self.mechanism.directions}
 
     def _capacity(self, found: Reactions) -> Reals:
-        """What each joint bears at most [N], shape (k, 1); NaN where it is not given."""
+        """Return the strength of each joint [N], shape (k, 1); NaN if it is not given."""
         strength, depth = self.mechanism.strength, self.mechanism.depth
         if not isinstance(strength, Strength) or depth is None or found.is_whole or found.shared:
             return np.full((len(found.joints), 1), np.nan)
@@ -307,7 +309,7 @@ class Contacts:
 
 
 class _States(NamedTuple):
-    """Moments of a history in their order, each an ndarray of shape (n,)."""
+    """Moments of a history in order of time, each field an ndarray of shape (n,)."""
 
     time: Reals
     sign: Reals  # of the direction
@@ -318,7 +320,7 @@ class _States(NamedTuple):
 
 
 def _samples(mechanism: Mechanism, history: History, motion: GroundMotion | None) -> _States:
-    """The samples of a history until it overturns."""
+    """Return the samples of a history until it overturns."""
     end = history.overturning_time if history.overturned else np.inf
     kept = np.isfinite(history.phi) & (history.time <= end)
     time, phi, rate = history.time[kept], history.phi[kept], history.rate[kept]
@@ -330,7 +332,7 @@ def _samples(mechanism: Mechanism, history: History, motion: GroundMotion | None
 
 
 def _states(mechanism: Mechanism, history: History, motion: GroundMotion | None) -> _States:
-    """The samples of a history until it overturns, its first uplift, and both sides of its impacts."""
+    """Return the samples of a history until it overturns, its first uplift, and both sides of its impacts."""
     end = history.overturning_time if history.overturned else np.inf
     samples = _samples(mechanism, history, motion)
     impact = history.impacts[history.impacts[:, 0] <= end]
@@ -355,7 +357,7 @@ def _states(mechanism: Mechanism, history: History, motion: GroundMotion | None)
 
 
 def _base(found: Reactions, rest: Collection[str] = ()) -> Reals:
-    """The horizontal force of the ground and of bodies that rest on it, without what guides hold, shape (n,)."""
+    """Return the horizontal force on the structure of the ground and of bodies at rest, without guides, shape (n,)."""
     total = np.zeros(found.force.shape[1])
     for joint, force in zip(found.joints, found.force.real, strict=True):
         moves = [name not in rest for name in joint.bodies]
@@ -367,7 +369,7 @@ def _base(found: Reactions, rest: Collection[str] = ()) -> Reals:
 
 
 def _ground(time: Reals, motion: GroundMotion | None) -> NDArray[np.complex128]:
-    """u_g'' + i v_g'' at any times [m/s2]: straight between samples, zero after the last."""
+    """Return the ground acceleration u_g'' + i v_g'' at any times [m/s2]: linear between samples, zero after them."""
     if motion is None:
         return np.zeros(time.size, np.complex128)
     u = np.interp(time, motion.time, motion.acceleration, right=0.0)
@@ -377,7 +379,7 @@ def _ground(time: Reals, motion: GroundMotion | None) -> NDArray[np.complex128]:
 
 
 def _stretches(time: Reals, value: Reals, level: float) -> tuple[Reals, Reals]:
-    """When a value, straight between its samples, comes to be above a level, and when it ends to be."""
+    """Return the times at which a value, linear between its samples, rises above a level, and falls below it."""
     above = value > level
     starts = np.flatnonzero(above & ~np.concatenate([[False], above[:-1]]))
     ends = np.flatnonzero(above & ~np.concatenate([above[1:], [False]]))
@@ -392,12 +394,12 @@ def _stretches(time: Reals, value: Reals, level: float) -> tuple[Reals, Reals]:
 
 
 def _ended(history: History) -> dict[Direction, float]:
-    """The directions that impacts end, and when the first of each does [s]."""
+    """Return the time of the first impact that ends motion in each direction [s], for the directions that have one."""
     signs = history.impacts[:, 1]
     return {each: float(history.impacts[signs == each, 0][0]) for each in Direction if (signs == each).any()}
 
 
 def _ratio(found: Reactions) -> float:
-    """The largest |T|/N of joints that an impact presses together."""
+    """Return the largest |T|/N of the joints that an impact presses together."""
     pressed = found.normal > IDLE * np.abs(found.force).max()
     return float((np.abs(found.shear[pressed]) / found.normal[pressed]).max(initial=0.0))

@@ -1,4 +1,4 @@
-"""For which values of one of its numbers a structure meets a requirement: the least thickness, the largest load."""
+"""Values of one field of a structure for which it meets a requirement: the least thickness, the largest load."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ _AIM = re.compile(r"\s*([A-Za-z]\w*)\s*(<=|>=|<|>)\s*(\S.*?)\s*")
 
 @dataclass(frozen=True)
 class Aim:
-    """A requirement.
+    """A requirement on a metric, such as `lambda >= 0.2`.
 
     Parameters
     ----------
     metric : Metric
-        What is held.
+        The quantity that the requirement limits.
     op : str
         One of `<`, `<=`, `>`, `>=`.
     level : float
-        Against what, in the unit of the metric.
+        The limit, in the unit of the metric.
     """
 
     metric: Metric
@@ -50,7 +50,7 @@ class Aim:
 
     @classmethod
     def parse(cls, text: str) -> Aim:
-        """A requirement as it is written, such as `lambda >= 0.2`. Raises `InputError` if it is none."""
+        """Read a requirement such as `lambda >= 0.2`. Raises `InputError` if the text is not one."""
         found = _AIM.fullmatch(text)
         if found is None:
             hint = "write METRIC OP NUMBER, such as `lambda >= 0.2`, with <, <=, > or >="
@@ -67,12 +67,12 @@ class Aim:
         return self.op[0] == ">"
 
     def holds(self, value: float) -> bool:
-        """Whether a value of the metric meets it; NaN does not."""
+        """Return whether a value of the metric meets the requirement; NaN does not."""
         return OPERATORS[self.op](value, self.level)
 
 
 def _number(text: str, unit: str) -> float:
-    """A number, per cent of a pure one, or a quantity, in a unit."""
+    """Read a number or a quantity in a unit; a number without a unit may be given in per cent."""
     plain = text.removesuffix("%").strip()
     try:
         if (parts := split(plain)) is not None and not parts[1] and (plain == text.strip() or not unit):
@@ -88,14 +88,14 @@ def _number(text: str, unit: str) -> float:
 
 @dataclass(frozen=True)
 class Span:
-    """A field and the range over which it varies, as written.
+    """A field and the range over which it varies, as the user wrote them.
 
     Parameters
     ----------
     field : str
-        With dots for what is inside.
+        Name of the field, with dots for a field inside another one.
     low, high : str
-        Numbers or quantities.
+        Both ends of the range: numbers or quantities with a unit.
     """
 
     field: str
@@ -104,7 +104,7 @@ class Span:
 
     @classmethod
     def parse(cls, text: str) -> Span:
-        """As it is written, `width=0.2m:0.8m`. Raises `InputError` if it is no range of a field."""
+        """Read a text such as `width=0.2m:0.8m`. Raises `InputError` if it is not a range of a field."""
         name, equals, values = text.partition("=")
         ends = values.split(":")
         if not equals or not name.strip() or len(ends) != 2 or not all(each.strip() for each in ends):
@@ -113,7 +113,7 @@ class Span:
         return cls(name.strip(), ends[0].strip(), ends[1].strip())
 
     def in_unit(self, unit: str) -> tuple[float, float]:
-        """Both ends as numbers. Raises `InputError` if they are none, or do not grow."""
+        """Return both ends as numbers. Raises `InputError` if they are not numbers, or are not increasing."""
         low, high = _number(self.low, unit), _number(self.high, unit)
         if not low < high:
             hint = "give the smaller value first"
@@ -123,14 +123,14 @@ class Span:
 
 @dataclass(frozen=True)
 class NotBuilt:
-    """A part of the range in which the structure has no value of the metric.
+    """A part of the range in which the metric does not exist.
 
     Parameters
     ----------
     low, high : float
-        The first and the last of the values tried in it.
+        The first and the last of the values tried in this part.
     reason : str
-        Why, at the first.
+        Why the metric does not exist at the first of them.
     """
 
     low: float
@@ -140,35 +140,35 @@ class NotBuilt:
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """Where a requirement is met.
+    """The values of a field at which a requirement is met.
 
     Parameters
     ----------
     structure : str
-        What it is called.
+        Name of the structure.
     field, unit : str
-        What varies, and its unit.
+        The field that varies, and its unit.
     aim : Aim
         The requirement.
     given : float or None
-        What the structure itself has.
+        Value of the field in the structure as given.
     values, metric : ndarray, shape (n,)
-        The scan: values at equal steps, and the metric there; NaN where there is none.
+        The scan: values of the field at equal steps, and the metric there; NaN where it does not exist.
     holds : sequence of (float, float)
-        The ranges in which it is met, as far as the scan sees.
+        The ranges in which the requirement is met, as far as the scan can tell.
     monotone : bool
-        Whether the metric never turns over the scan, so that there is one range at most.
+        Whether the metric is monotonic over the scan, so that there is at most one range.
     value : float or None
-        The edge of the range that reaches an end of the scan: the least value from which on it is met, or the largest
-        up to which it is. None if it is met nowhere, or everywhere, or at neither end.
+        The edge of the range that reaches an end of the scan: the least value from which the requirement is met, or the
+        largest up to which it is met. None if it is met nowhere, everywhere, or at neither end.
     not_built : sequence of NotBuilt
-        Where there is no such structure.
+        The parts of the scan in which the metric does not exist.
     behind : sequence of (Neighbours or None)
         The neighbours of the motion that governs at each value; None of a metric that needs no motions.
     caution : str
-        What to bear in mind with the lambda of the structure as given; empty if nothing.
+        A caution about the lambda of the structure as given; empty if there is none.
     taken_otherwise : sequence of str
-        Sentences on what the code takes otherwise than the structure gives it, at either end of the scan.
+        Sentences on the values for which the code uses others than the structure gives, at either end of the scan.
     """
 
     structure: str
@@ -194,17 +194,17 @@ class Design:
 
     @property
     def everywhere(self) -> bool:
-        """Whether it is met at every value of the scan."""
+        """Whether the requirement is met at every value of the scan."""
         return bool(self.met.all())
 
     @property
     def met(self) -> NDArray[np.bool_]:
-        """Whether it is met at each value of the scan."""
+        """Whether the requirement is met at each value of the scan."""
         return np.array([self.aim.holds(each) for each in self.metric.tolist()])
 
     @property
     def is_least(self) -> bool:
-        """Whether `value` is the least from which on it is met; else it is the largest up to which it is."""
+        """Whether `value` is the least that meets the requirement; otherwise it is the largest that does."""
         return bool(self.met[-1])
 
 
@@ -295,7 +295,7 @@ def design(
 
 
 def _check_site(metric: Metric, excitation: Excitation | None) -> None:
-    """Raise `InputError` if a metric of a site cannot be had: there is no site, or it is for another code."""
+    """Raise `InputError` if a metric that requires a site has none, or if the site is for another code."""
     if excitation is None or excitation.site is None:
         hint = "give the file of a site: `rocking new site` prints one"
         raise InputError(Problem(f"{metric.name} requires a site", field="`site`", hint=hint))
@@ -308,7 +308,7 @@ def _check_site(metric: Metric, excitation: Excitation | None) -> None:
 def _taken_otherwise(
     structure: Structure, field: str, span: tuple[float, float], aim: Aim, excitation: Excitation | None
 ) -> Sequence[str]:
-    """What a code takes otherwise than the structure gives it at the ends of the range, each sentence once."""
+    """Return, each once, the sentences on values that the code replaces by its own, at both ends of the range."""
     if not aim.metric.sited or excitation is None or excitation.site is None:
         return []
     said: dict[str, None] = {}
@@ -338,7 +338,7 @@ def _at(
 
 
 def _is_monotone(metric: Reals) -> bool:
-    """Whether a metric never turns; with a gap in which it has no value nobody knows."""
+    """Return whether a metric is monotonic over the scan; a gap without values counts as not monotonic."""
     there = np.flatnonzero(~np.isnan(metric))
     if there.size and there[-1] - there[0] + 1 > there.size:
         return False
@@ -351,7 +351,7 @@ def _is_monotone(metric: Reals) -> bool:
 
 
 def _ranges(values: Reals, met: Sequence[bool], edge: Callable[[int, int], float]) -> list[tuple[float, float]]:
-    """The runs of values at which it is met, each up to its edges."""
+    """Return the ranges of consecutive values at which the requirement is met, each extended to its edges."""
     ranges = []
     for k, here in enumerate(met):
         if not here or (k and met[k - 1]):
@@ -364,9 +364,9 @@ def _ranges(values: Reals, met: Sequence[bool], edge: Callable[[int, int], float
 
 
 def _edge(at: Callable[[float], float], aim: Aim, inside: float, outside: float) -> float:
-    """The value between one that meets an aim and one that does not, from which on it is met.
+    """Return the edge between a value that meets a requirement and one that does not.
 
-    The metric there may be infinite, but is a number.
+    The metric may be infinite at both values, but not NaN.
     """
     from scipy.optimize import brentq
 
@@ -384,7 +384,7 @@ def _edge(at: Callable[[float], float], aim: Aim, inside: float, outside: float)
 
 
 def _last_that_holds(at: Callable[[float], float], aim: Aim, inside: float, outside: float, closest: float) -> float:
-    """The same of what moves by steps, or is not there outside: the last value, by halving, at which it is met."""
+    """Return by bisection the last value that meets a requirement, if the metric is a step function or NaN outside."""
     while abs(outside - inside) > closest:
         middle = (inside + outside) / 2
         if middle in (inside, outside):
@@ -394,7 +394,7 @@ def _last_that_holds(at: Callable[[float], float], aim: Aim, inside: float, outs
 
 
 def _not_built(values: Reals, reasons: dict[int, str]) -> list[NotBuilt]:
-    """Runs of values that have no metric, each with the reason of its first."""
+    """Return the ranges of consecutive values that have no metric, each with the reason at its first value."""
     found: list[NotBuilt] = []
     for k in sorted(reasons):
         if k - 1 in reasons and found:

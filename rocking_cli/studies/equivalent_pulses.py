@@ -33,24 +33,24 @@ NEAR, FAR = 0.05, 0.2  # spread over the linear peak up to which structures are 
 
 @dataclass(frozen=True, eq=False)
 class PulsedStructure:
-    """One structure under its own pulse.
+    """One structure under its own pulse, among structures that are compared.
 
     Parameters
     ----------
     name, mechanism : str
-        What it is.
+        Names of the structure and of its mechanism.
     block : EquivalentBlock
-        Of the direction that the pulse lifts first.
+        Equivalent block of the direction in which the pulse first uplifts the structure.
     pulse : Pulse
-        Its own pulse.
+        The pulse of this structure.
     eta : float
         Restitution of the impact that ends the first motion, as used.
     own_eta : float
-        The structure's own.
+        Restitution of the structure itself.
     history : History
-        Its nonlinear response.
+        Nonlinear time history under this pulse.
     caution : str
-        What to bear in mind with its lambda; empty if nothing.
+        A caution about the lambda of the structure; empty if there is none.
     """
 
     name: str
@@ -64,13 +64,13 @@ class PulsedStructure:
 
     @property
     def amplitude(self) -> float:
-        """Of its pulse [standard gravity]."""
+        """Amplitude of the structure's pulse [standard gravity]."""
         return self.pulse.amplitude / STANDARD_GRAVITY
 
 
 @dataclass(frozen=True, eq=False)
 class EquivalentResponses:
-    """Structures, each under the pulse that has the same a and omega for it.
+    """Responses of structures to pulses of the same dimensionless amplitude a and frequency omega.
 
     Parameters
     ----------
@@ -79,17 +79,17 @@ class EquivalentResponses:
     a, omega : float
         Dimensionless amplitude and frequency of every pulse [paper, Eq. 40].
     kappa : {1, 2}
-        The scaling: which uplift acceleration a is over.
+        The scaling: the uplift acceleration by which a is divided, 1: lambda_lin, 2: lambda.
     polarity : int
         1, or -1 for reversed pulses.
     direction : Direction
-        The direction that the pulse lifts first.
+        The direction in which the pulse first uplifts the structures.
     alone : Outcome
-        What becomes of the linear block that all share: exactly, where the pulse has an exact answer.
+        Outcome of the linear block that all structures share; exact if the pulse has an exact solution.
     linear : History
-        The motion of that block, under the first structure's pulse.
+        Time history of the linear block under the first structure's pulse.
     tau : ndarray
-        p t of the samples: the same for all.
+        Dimensionless time p t of the samples, the same for all structures.
     """
 
     members: tuple[PulsedStructure, ...]
@@ -104,13 +104,13 @@ class EquivalentResponses:
 
     @property
     def spread(self) -> float:
-        """Largest minus smallest phi/phi_cr; NaN if any structure overturns or has an unknown outcome."""
+        """Largest minus smallest peak phi/phi_cr; NaN if any structure overturns or has an unknown outcome."""
         peaks = [nan if each.history.unknown else each.history.peak_ratio for each in self.members]
         return float(np.ptp(peaks))
 
     @property
     def relative_spread(self) -> float:
-        """The spread over the linear peak; NaN if there is no spread, or the linear block overturns or stays down."""
+        """The spread over the peak of the linear block; NaN without a spread, or if this peak is not positive."""
         return self.spread / self.alone.peak_ratio if self.alone.peak_ratio > 0 else nan
 
     @property
@@ -121,11 +121,11 @@ class EquivalentResponses:
 
     @property
     def pulse_end(self) -> float:
-        """p t at the end of every pulse."""
+        """Dimensionless time p t at the end of every pulse."""
         return self.members[0].block.p * self.members[0].pulse.duration
 
     def turned(self, history: History) -> Reals:
-        """phi/phi_cr of a history, positive in the direction that the pulse lifts first."""
+        """Return phi/phi_cr of a history, positive in the direction in which the pulse uplifts first."""
         return int(self.direction) * history.ratio
 
 
@@ -137,7 +137,7 @@ def equivalent(
     kappa: Literal[1, 2] = 2,
     eta: float | Literal["first", "own"] = "first",
 ) -> EquivalentResponses:
-    """Shake structures with pulses of the same a and omega, each measured by its own block.
+    """Simulate structures under pulses of the same a and omega, each scaled by the structure's own equivalent block.
 
     Parameters
     ----------
@@ -150,12 +150,12 @@ def equivalent(
     kappa : {1, 2}
         Whether a is over lambda_lin or over lambda.
     eta : float, "first" or "own"
-        Restitution of all impacts: a number, that of the first structure, or each its own.
+        Restitution of all impacts: a number, the value of the first structure, or each structure's own value.
 
     Raises
     ------
     InputError
-        If a restitution cannot be used, or a structure rocks to one side only, as no block that all could share does.
+        If a restitution cannot be used, or a structure rocks to one side only, which the linear block does not.
     """
     for each in mechanisms:
         if not each.rocks_both_ways:
@@ -201,7 +201,7 @@ def _equivalence(mechanism: Mechanism) -> Equivalence:
 def _lifted_first(
     equivalence: Equivalence, pulse: Pulse, ground: GroundMotion, polarity: int, gravity: float
 ) -> Direction:
-    """The direction that the pulse lifts first; if none, the one that a stronger pulse would."""
+    """Return the direction in which the pulse uplifts first; if it uplifts in none, the one of a stronger pulse."""
     lifts = {d: -d * ground.acceleration > equivalence[d].lambda_ * gravity for d in Direction}
     lifted = [d for d in Direction if lifts[d].any()]
     return min(lifted, key=lambda d: int(lifts[d].argmax())) if lifted else weakest(equivalence, pulse, (polarity,))

@@ -1,4 +1,4 @@
-"""A history as the motion of a picture: which rotation to show when."""
+"""A time history as an animation: the rotation to show at each time."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ VIEWS = 25  # rotations at which the box around the motion is found
 
 @dataclass(frozen=True)
 class Film:
-    """The motion of a structure under a ground motion, to be shown.
+    """Motion of a structure under a ground motion, for an animation.
 
     Parameters
     ----------
     picture : Picture
-        What moves.
+        Drawing of the structure.
     history : History
-        How it moves.
+        Time history of the structure.
     motion : GroundMotion
-        Under what.
+        The ground motion.
     """
 
     picture: Picture
@@ -42,12 +42,12 @@ class Film:
 
     @cached_property
     def _moving(self) -> int:
-        """Samples of the history that have a rotation: all, or those before it overturns or is unknown."""
+        """Number of samples with a rotation: all, or those before the structure overturns or the outcome is unknown."""
         return int(np.isfinite(self.history.phi).sum())
 
     @property
     def end(self) -> float:
-        """When there is nothing more to see [s]."""
+        """Time at which the animation ends [s]."""
         last = float(self.history.time[self._moving - 1])
         if self.history.overturned or self.history.unknown or isnan(self.history.uplift_time):
             return last
@@ -55,29 +55,29 @@ class Film:
 
     @property
     def start(self) -> float:
-        """When there begins to be something to see [s]."""
+        """Time at which the animation starts, shortly before the first uplift [s]."""
         first = self.history.uplift_time
         return 0.0 if isnan(first) else max(0.0, first - BEFORE)
 
     @property
     def ending(self) -> str:
-        """Why it ends before the motion does, as a note; empty if the outcome is known."""
+        """A note on why the animation ends before the ground motion does; empty if the outcome is known."""
         if not self.history.unknown:
             return ""
         return f"The film ends at {self.history.known_to:.4g} s, up to which the outcome is known."
 
     @property
     def verdict(self) -> str:
-        """What happens, in words."""
+        """The outcome, in words."""
         return verdict({self.history.model: self.history})
 
     def rotation(self, time: Reals) -> Reals:
-        """Signed rotation at these times, shape (n,) [rad]; after its end the last that was followed."""
+        """Return the signed rotation at some times, shape (n,) [rad]; after the end the last rotation simulated."""
         moving = slice(0, self._moving)
         return np.interp(time, self.history.time[moving], self.history.phi[moving])
 
     def ratio(self, rotation: Reals) -> Reals:
-        """Signed rotations, shape (n,) [rad], over the critical rotation of their direction, or the kinematic limit."""
+        """Divide signed rotations [rad], shape (n,), by the critical rotation or kinematic limit of their side."""
         over = self.picture.reference
         first = over[self.picture.directions[0]]
         sides = over.get(Direction.NEGATIVE, first), over.get(Direction.POSITIVE, first)
@@ -85,7 +85,7 @@ class Film:
 
     @cached_property
     def box(self) -> tuple[complex, complex]:
-        """Lower left and upper right corner of all that the structure passes through [m]."""
+        """Lower left and upper right corner of the area that the structure covers during its motion [m]."""
         phi = self.history.phi[: self._moving]
         views = np.linspace(float(phi.min()), float(phi.max()), VIEWS)
         outlines = [each for turn in views for part in self.picture.placed(float(turn))[0] for each in part]
@@ -93,7 +93,7 @@ class Film:
         return box_around([np.array([*self.picture.reach, *hung]), *outlines])
 
     def as_dict(self, step: float) -> Mapping[str, Any]:
-        """What a page needs beside the picture: the rotation [rad] every `step` [s] from 0, and when it ends [s]."""
+        """Return the data of an animation on a page: rotations [rad] every `step` [s], times [s] and words."""
         time = np.arange(0.0, self.end + step, step)
         return {
             "step": step,

@@ -1,4 +1,4 @@
-"""What is attached to a structure, for drawing: loads, ties as pieces between points, and supporting side walls."""
+"""Attachments of a structure as they are drawn: loads, ties as pieces between points, and side walls."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ TONNE = 1000.0  # kg from which a mass is given in t
 
 
 class End(NamedTuple):
-    """An end of a piece of a tie: a point of a part, or of the ground (None), at rest [m].
+    """An end of a piece of a tie: a point of a part, or of the ground (part None), at rest [m].
 
-    `lead` is how far from there a symbol begins, in lengths of a symbol; it turns with the part.
+    `lead` is the distance from the point to the start of a symbol, in lengths of the symbol; it turns with the part.
     """
 
     part: int | None
@@ -33,7 +33,7 @@ class End(NamedTuple):
 
 
 class TiePiece(NamedTuple):
-    """A piece of a tie: a line, a line with a spring in it, or all of it a spring."""
+    """A piece of a tie: a plain line, a line with a spring in it, or a spring symbol alone."""
 
     start: End
     end: End
@@ -47,17 +47,17 @@ class Carried:
     Parameters
     ----------
     name, text : str
-        What it is called, and how large it is.
+        Name of the load, and its size in words.
     part : int
-        What carries it.
+        Index of the part that carries the load.
     point : complex
-        Where, at rest [m].
+        The point at which it acts, at rest [m].
     mass : float or None
-        [kg]; None of a force.
+        Mass [kg]; None for a force.
     force : complex or None
-        [N], to the right and up, in the first direction that the structure can rock in; None of a mass.
+        Force [N], x to the right, y up, as it acts in the first direction of rocking; None for a mass.
     friction : bool
-        Whether it is against the motion in either direction.
+        Whether the force opposes the motion in both directions.
     """
 
     name: str
@@ -69,7 +69,7 @@ class Carried:
     friction: bool = False
 
     def acting(self, *, first: bool) -> complex:
-        """The force while it rocks in the first direction or in the other [N]; 0 of a mass."""
+        """Return the force while the structure rocks in its first direction or in the other [N]; 0 for a mass."""
         force = self.force or 0j
         return force if first or not self.friction else complex(-force.real, force.imag)
 
@@ -81,11 +81,11 @@ class Strand:
     Parameters
     ----------
     name : str
-        What it is called.
+        Name of the tie.
     pieces : tuple of TiePiece
-        From end to end; of a bed, some of its springs.
+        The pieces from end to end; for a bed of springs, some of the springs.
     thing : Element
-        What it does.
+        The element with its force.
     """
 
     name: str
@@ -94,17 +94,17 @@ class Strand:
 
     @property
     def is_bed(self) -> bool:
-        """Whether it is a row of springs along a face."""
+        """Whether the tie is a row of springs along a face."""
         return isinstance(self.thing, SpringBed)
 
     @property
     def only(self) -> str | None:
-        """The one sense in which it can act; None if it acts in both."""
+        """The one sense in which the tie can act, tension or compression; None if it acts in both."""
         return self.thing.only if isinstance(self.thing, Stretched) else None
 
     @property
     def ground(self) -> list[End]:
-        """Where it is held by the ground."""
+        """The ends of the tie that are on the ground."""
         return [end for piece in self.pieces for end in (piece.start, piece.end) if end.part is None]
 
     def slack(self, mechanism: Mechanism, phi: NDArray[np.float64], direction: Direction) -> NDArray[np.bool_]:
@@ -118,7 +118,7 @@ class Strand:
 
 
 def carried(mechanism: Mechanism, copies: Copies) -> Iterator[Carried]:
-    """The loads of a structure; one that each of several bodies has, on each of them."""
+    """Yield the loads of a structure; a load that each of several equal bodies has, once for each body."""
     each = _each(mechanism)
     for load in mechanism.attached:
         if not isinstance(load, PointMass | ConstantForce):
@@ -136,7 +136,7 @@ def carried(mechanism: Mechanism, copies: Copies) -> Iterator[Carried]:
 
 
 def strands(mechanism: Mechanism, copies: Copies, centroids: Sequence[complex]) -> Iterator[Strand]:
-    """The ties of a structure; one that each of several bodies has, on each of them."""
+    """Yield the ties of a structure; a tie that each of several equal bodies has, once for each body."""
     each = _each(mechanism)
     for tie in mechanism.hung.ties:
         first = next(spot.body for part in tie.stretched for spot in part.spots if spot.body is not None)
@@ -150,9 +150,9 @@ def strands(mechanism: Mechanism, copies: Copies, centroids: Sequence[complex]) 
 
 
 def walls(mechanism: Mechanism, low: complex, high: complex) -> tuple[Points, ...]:
-    """The side wall between two corners of a structure that rocks to one side only.
+    """Return the side wall of a structure that rocks to one side only, between two corners of its box [m].
 
-    It is on the right of someone who walks along the line.
+    The wall is on the right of someone who walks along the line. Empty if the structure rocks to both sides.
     """
     if mechanism.rocks_both_ways:
         return ()

@@ -1,4 +1,4 @@
-"""What is installed on this machine, and what of it works."""
+"""The installation: packages, plugins and compiled kernels on this machine, and which of them work."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ class Plugin:
     Parameters
     ----------
     name, package : str
-        Its own, and the distribution and version that it comes from.
+        Name of the plugin, and the distribution and version that it comes from.
     broken : str or None
-        Why it cannot be used.
+        Why the plugin cannot be used; None if it can.
     """
 
     name: str
@@ -47,27 +47,27 @@ class Plugin:
 
 @dataclass(frozen=True)
 class Installation:
-    """What `rocking` is made of here.
+    """The parts of `rocking` as installed on this machine.
 
     Parameters
     ----------
     version, python, platform : str
-        Of this package, the interpreter and the machine.
+        Versions of this package and of the interpreter, and the platform.
     libraries : mapping of str to str or None
-        Version of every package that is needed; None where it is missing.
+        Version of every required package; None if it is missing.
     extras : mapping of str to mapping
-        For each extra of the package, those packages likewise.
+        For each extra of this package, the versions of its packages in the same way.
     plugins : mapping of str to tuple of Plugin
-        Under `mechanisms`, `records`, `pulses`, `measures` and `codes`; under `laws` and `engines` if any are
-        installed beside those of this program.
+        Plugins by kind: `mechanisms`, `records`, `pulses`, `measures` and `codes`; `laws` and `engines` only if other
+        packages provide some.
     cache : str
         The folder of the compiled kernels.
     unwritable : str or None
-        Why it cannot be written to.
+        Why the folder cannot be written to; None if it can.
     compiled : mapping of str to bool
         Whether each kernel is compiled already, by the names of `compiling.CALLED`.
     processors, threads : int
-        Of the machine, and those that this process may use.
+        Number of processors of the machine, and of threads that this process may use.
     """
 
     version: str
@@ -84,7 +84,7 @@ class Installation:
 
 
 def examine() -> Installation:
-    """Look at what is installed; nothing that is broken raises."""
+    """Return what is installed; a broken package or plugin is noted and raises no error."""
     libraries, extras = _packages()
     return Installation(
         version(OURS),
@@ -109,7 +109,7 @@ def examine() -> Installation:
 
 
 def _packages() -> tuple[dict[str, str | None], dict[str, dict[str, str | None]]]:
-    """The packages that this one needs, and those of each of its extras, with their versions."""
+    """Return the versions of the packages that this one requires, and of those of each of its extras."""
     needed: dict[str, str | None] = {}
     extras: dict[str, dict[str, str | None]] = {}
     for line in requires(OURS) or []:

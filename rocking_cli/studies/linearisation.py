@@ -1,9 +1,9 @@
-"""How far the equivalent block is from the mechanism it stands for: the paper's three measures, for any structure.
+"""Errors of the equivalent block against its mechanism: the paper's three measures, for any structure.
 
 Free rocking period (Eq. 24), uplift acceleration, and overturning time under a constant acceleration (Eq. 25), each as
 the ratio of the equivalent block's value to the mechanism's. The mechanism's times are integrals of its energy
-equation, in the variable in which the equivalent block's own integrand is constant: what is left to integrate is
-smooth, up to phi_cr and down to the uplift acceleration, and Gauss's rule converges fast on it.
+equation, in the variable in which the equivalent block's own integrand is constant. The remaining integrand is smooth
+up to phi_cr and down to the uplift acceleration, so that Gauss's rule converges fast.
 """
 
 from __future__ import annotations
@@ -31,26 +31,28 @@ LARGEST = 1e6  # acceleration over that at uplift
 
 @dataclass(frozen=True, eq=False)
 class Linearisation:
-    """The equivalent block over the mechanism in one direction; a ratio of 1 is no error.
+    """Ratios of the equivalent block's values to the mechanism's in one direction; a ratio of 1 is no error.
 
     Parameters
     ----------
     direction : Direction
-        Of rocking.
+        Direction of rocking.
     block : EquivalentBlock
-        Its equivalent block.
+        The equivalent block of this direction.
     amplitude : ndarray, shape (n,)
-        phi/phi_cr of the free motion.
+        Amplitude phi/phi_cr of the free motion.
     period, period_ratio : ndarray, shape (n,)
-        Period of the mechanism [s], four times its quarter in this direction, and the block's over it [Eq. 24].
+        Period of the mechanism [s], four times its quarter in this direction, and the ratio of the block's period to it
+        [Eq. 24].
     uplift_ratio1, uplift_ratio2 : float
-        Uplift acceleration with kappa1 and kappa2 over the mechanism's; the second is 1.
+        Uplift acceleration of the block with kappa1 and kappa2 over the mechanism's; the second ratio is 1.
     acceleration : ndarray, shape (m,)
         Constant acceleration over the uplift acceleration of the mechanism, a/lambda.
     overturning : ndarray, shape (m,)
         Time from rest to phi_cr [s].
     overturning_ratio1, overturning_ratio2 : ndarray, shape (m,)
-        The block's time with kappa1 and kappa2 over it [Eq. 25]; infinite where the block does not uplift.
+        Overturning time of the block with kappa1 and kappa2 over `overturning` [Eq. 25]; infinite if it does not
+        uplift.
     """
 
     direction: Direction
@@ -67,14 +69,14 @@ class Linearisation:
 
 
 def why_no_amplitude(ratio: float) -> str:
-    """Why a number is no amplitude phi/phi_cr of a free motion that can be followed; empty if it is one."""
+    """Return why a number cannot be an amplitude phi/phi_cr of a free motion; empty if it can."""
     if 0 < ratio < 1 and not CLOSEST <= ratio <= 1 - CLOSEST:
         return f"an amplitude must stay {CLOSEST:g} of phi_cr away from 0 and 1, where rounding hides it; got {ratio:g}"
     return "" if 0 < ratio < 1 else f"an amplitude must be a fraction of phi_cr between 0 and 1, got {ratio:g}"
 
 
 def why_no_acceleration(times: float) -> str:
-    """Why a number is no constant acceleration over that at uplift that can be followed; empty if it is one."""
+    """Return why a number cannot be a constant acceleration over the uplift acceleration; empty if it can."""
     if not (times > 1 and np.isfinite(times)):
         return f"an acceleration must be above 1 times that of uplift to move anything, got {times:g}"
     if not 1 + CLOSEST <= times <= LARGEST:
@@ -97,13 +99,13 @@ def linearisation(
     mechanism : Mechanism
         The structure.
     direction : Direction
-        Of rocking.
+        Direction of rocking.
     amplitude : array of float
         phi/phi_cr of free motions, in (0, 1).
     acceleration : array of float
         Constant accelerations over the uplift acceleration, above 1.
     equivalence : Equivalence, optional
-        Its equivalent blocks, where they are known already.
+        The equivalent blocks of the structure, if they are known already.
 
     Returns
     -------
@@ -162,16 +164,17 @@ def compare(
 
 
 def velocity_ratios(block: EquivalentBlock, gravity: float) -> tuple[float, float]:
-    """The velocity step that just overturns the equivalent block with kappa1 and kappa2, over the structure's own.
+    """Return the velocity step that just overturns the block with kappa1 and kappa2, over that of the structure.
 
-    A step v gives q.. = p^2 (q - phi_cr) the rate p^2 kappa v/g, and p phi_cr just overturns: v = g lambda/p.
+    In q.. = p^2 (q - phi_cr), a velocity step v of the ground gives the rate p^2 kappa v/g, and a rate p phi_cr just
+    overturns: v = g lambda/p.
     """
     own = gravity / (block.p * block.v_imp) if block.v_imp else np.nan  # of what overturns by itself, all but
     return own * block.lambda_lin, own * block.lambda_
 
 
 def free_period(mechanism: Mechanism, direction: Direction, amplitude: Reals) -> Reals:
-    """Period of free rocking without losses [s]: four times the quarter from an amplitude to rest at phi = 0.
+    """Return the period of free rocking without losses [s]: four times the quarter from an amplitude to phi = 0.
 
     Parameters
     ----------
@@ -204,18 +207,18 @@ def free_period(mechanism: Mechanism, direction: Direction, amplitude: Reals) ->
 def overturning_time(
     mechanism: Mechanism, direction: Direction, acceleration: Reals, lambda_: float | None = None
 ) -> Reals:  # fmt: skip
-    """Time from rest to phi_cr under a constant acceleration [s].
+    """Return the time from rest to phi_cr under a constant acceleration [s].
 
     Parameters
     ----------
     mechanism : Mechanism
         The structure.
     direction : Direction
-        Of rocking.
+        Direction of rocking.
     acceleration : ndarray, shape (m,)
-        Over the uplift acceleration, above 1.
+        Constant accelerations over the uplift acceleration, above 1.
     lambda_ : float, optional
-        The uplift acceleration over g, where it is known already.
+        The uplift acceleration over g, if it is known already.
 
     Returns
     -------
@@ -224,7 +227,7 @@ def overturning_time(
     Raises
     ------
     SolverError
-        If the mechanism does not reach phi_cr under it.
+        If the mechanism does not reach phi_cr under an acceleration.
     """
     critical = mechanism.critical_rotation(direction)
     excess = acceleration[:, None] - 1
@@ -247,7 +250,7 @@ def overturning_time(
 
 
 def _mean(mechanism: Mechanism, direction: Direction, low: Reals, high: Reals, push: Reals | float) -> Reals:
-    """Mean of V'/g - push B between two rotations, without the cancellation of a difference of potentials."""
+    """Return the mean of V'/g - push B between two rotations, without cancellation between potentials."""
     x, weight = np.polynomial.legendre.leggauss(INNER if mechanism.smooth else ROUGH[2])
     phi = low[..., None] + (high - low)[..., None] * (1 + x) / 2
     at = mechanism.coefficients(phi.ravel(), direction)
@@ -257,12 +260,12 @@ def _mean(mechanism: Mechanism, direction: Direction, low: Reals, high: Reals, p
 
 
 def _inertia(mechanism: Mechanism, direction: Direction, phi: Reals) -> Reals:
-    """I at rotations of any shape."""
+    """Return the inertia coefficient I at rotations of any shape."""
     return mechanism.coefficients(phi.ravel(), direction).I.reshape(phi.shape)
 
 
 def _integral(integrand: Callable[[Reals], Reals], until: Reals, *, smooth: bool) -> Reals:
-    """Integrals of f(u) from 0 to each `until`, by Gauss's rule with more and more nodes."""
+    """Integrate f(u) from 0 to each `until`, by Gauss's rule with an increasing number of nodes."""
     before = np.full_like(until, np.nan)
     precision, most, _ = (PRECISION, MOST, INNER) if smooth else ROUGH
     nodes = FEWEST

@@ -1,7 +1,7 @@
-"""How much stronger or weaker a ground motion would have to be to lift a structure, and to overturn it.
+"""The margin of a ground motion: scale factors at which it uplifts a structure, and at which it overturns it.
 
-Overturning comes and goes as the factor on a motion increases, so there is no least factor that a computation could
-find and another would confirm. Instead, the share of neighbouring motions that overturn is computed at each factor.
+Overturning comes and goes as the factor on a motion increases, so that no least factor would be the same in two
+computations. Instead, the share of neighbouring motions that overturn is computed at each factor.
 """
 
 from __future__ import annotations
@@ -27,22 +27,22 @@ FACTORS: Reals = np.geomspace(0.2, 5.0, 60)
 
 @dataclass(frozen=True, eq=False)
 class Margin:
-    """The share of overturning over the factor on a ground motion.
+    """The share of neighbours that overturn, as a function of the scale factor on a ground motion.
 
     Parameters
     ----------
     around : Neighbourhood
         How the neighbours of each factor were drawn.
     uplift : float or None
-        The least factor that lifts the structure, exact (its vertical component apart); None if none does.
+        The least factor that uplifts the structure, exact except for the vertical component; None if none does.
     factors : ndarray, shape (n,)
-        Ascending; 1, the motion itself, is one of them.
+        Scale factors, increasing; 1, the motion itself, is one of them.
     overturned : ndarray, shape (n,)
-        The share of the neighbours of each that overturns; of two polarities that of the worse.
+        The share of the neighbours at each factor that overturns; of two polarities, the larger.
     unknown : ndarray, shape (n,)
-        The share of unknown outcome beside it: at most both together overturn, under the worse polarity.
+        The additional share of unknown outcome: at most the sum of both overturns, under the worse polarity.
     checked : bool
-        Whether the joints of the structure are known; if not, nothing is said to be unknown.
+        Whether the joints of the structure are known; if not, no outcome is unknown.
     """
 
     around: Neighbourhood
@@ -54,43 +54,43 @@ class Margin:
 
     @property
     def at_most(self) -> Reals:
-        """The share that overturns if all of unknown outcome do, shape (n,)."""
+        """The share that overturns if all neighbours of unknown outcome do, shape (n,)."""
         return self.overturned + self.unknown
 
     @property
     def itself(self) -> float:
-        """The share next to the motion itself, at a factor of 1."""
+        """The share of neighbours that overturns at a factor of 1."""
         return float(self.overturned[np.searchsorted(self.factors, 1.0)])
 
     @property
     def itself_at_most(self) -> float:
-        """The share next to the motion itself that overturns if all of unknown outcome do."""
+        """The share that overturns at a factor of 1 if all neighbours of unknown outcome do."""
         return float(self.at_most[np.searchsorted(self.factors, 1.0)])
 
     def first(self, level: float) -> float | None:
-        """The least of the factors at which this share overturns; None if there is none."""
+        """Return the least factor at which at least a share `level` overturns; None if there is none."""
         return self._first(self.overturned >= level)
 
     def possible(self, level: float) -> float | None:
-        """The least of the factors at which this share overturns or is of unknown outcome; None if there is none."""
+        """Return the least factor at which a share `level` overturns or is unknown; None if there is none."""
         return self._first(self.at_most >= level)
 
     def _first(self, reached: NDArray[np.bool_]) -> float | None:
         return float(self.factors[reached.argmax()]) if reached.any() else None
 
     def last_below(self, level: float) -> float | None:
-        """The largest of the factors at which a smaller share overturns; None if there is none."""
+        """Return the largest factor at which less than a share `level` overturns; None if there is none."""
         return self._last(self.overturned < level)
 
     def last_possible_below(self, level: float) -> float | None:
-        """The largest of the factors at which a smaller share overturns or is of unknown outcome; None without one."""
+        """Return the largest factor at which less than a share `level` overturns or is unknown; None without one."""
         return self._last(self.at_most < level)
 
     def _last(self, below: NDArray[np.bool_]) -> float | None:
         return float(self.factors[np.flatnonzero(below)[-1]]) if below.any() else None
 
     def islands(self, level: float) -> list[tuple[float, float]]:
-        """The runs of neighbouring factors at which this share overturns: the first and the last of each."""
+        """Return the first and last factor of each range in which at least a share `level` overturns."""
         edges = np.diff(np.concatenate([[False], self.overturned >= level, [False]]).astype(np.int8))
         starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
         return [(float(self.factors[i]), float(self.factors[j])) for i, j in zip(starts, ends, strict=True)]
@@ -106,30 +106,30 @@ def margin(
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Margin:
-    """Find the share of overturning over the factor on a motion.
+    """Compute the share of overturning as a function of the factor on a motion.
 
     Parameters
     ----------
     model : Model
-        Of the structure; the nonlinear one is the structure itself.
+        A model of the structure; the nonlinear one is the structure itself.
     motion : GroundMotion
-        What shakes it at a factor of 1.
+        The ground motion at a factor of 1.
     polarities : sequence of int
-        Of 1 and -1; with both, the worse counts.
+        The polarities, 1, -1 or both; of both, the worse governs.
     around : Neighbourhood, optional
         How to draw the neighbours of each factor.
     factors : ndarray, shape (n,)
-        On the motion, positive and ascending; 1 is added.
+        Factors on the motion, positive and increasing; 1 is added.
     threads : int, optional
-        How many at a time; without it, one for each processor.
+        Number of threads; by default one for each processor.
     progress : callable, optional
-        Called with the number of histories done since the last call, of factors (with 1) times neighbours times
-        polarities.
+        Called with the number of histories done since the last call; their total is the product of the numbers of
+        factors (with 1), neighbours and polarities.
 
     Raises
     ------
     InputError
-        If there are to be no neighbours, or the factors are not as they must be.
+        If the number of neighbours is 0, or the factors are not positive and increasing.
     SolverError
         If a motion cannot be followed.
     """
@@ -162,14 +162,14 @@ def margin(
 
 
 def in_words(found: Margin, pga: float) -> str:
-    """What a margin says, in a sentence or two.
+    """Describe a margin in a sentence or two.
 
     Parameters
     ----------
     found : Margin
-        At least one factor.
+        The margin, with at least one factor.
     pga : float
-        Of the motion itself, at a factor of 1 [standard gravity].
+        Peak ground acceleration at a factor of 1 [standard gravity].
     """
 
     def at(factor: float, what: str = "") -> str:
@@ -208,7 +208,7 @@ def in_words(found: Margin, pga: float) -> str:
 
 
 def _doubt(found: Margin, at: Callable[..., str]) -> str:
-    """A sentence on the factors from which outcomes are unknown; empty if all are known."""
+    """Return a sentence on the factors from which outcomes are unknown; empty if all are known."""
     if not found.unknown.any():
         return ""
     first = float(found.factors[(found.unknown > 0).argmax()])

@@ -1,4 +1,4 @@
-"""What a structure can be designed for: numbers by name, in one table."""
+"""Metrics: the quantities, by name, for which a structure can be designed."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ from rocking_cli.text import cut, did_you_mean
 
 @dataclass(frozen=True)
 class Excitation:
-    """What shakes a structure.
+    """The ground motions and the site for which metrics are computed.
 
     Parameters
     ----------
     motions : sequence of GroundMotion
-        As scaled; the worst counts.
+        The scaled motions; the worst governs.
     polarities : sequence of int
-        Of 1 and -1; the worse counts.
+        The polarities, 1, -1 or both; the worse governs.
     around : Neighbourhood
         How the neighbours of each motion are drawn.
     site : SiteFile, optional
-        Where it stands, for what a code asks.
+        The site of the structure, for metrics of a code.
     """
 
     motions: Sequence[GroundMotion]
@@ -42,7 +42,7 @@ class Excitation:
     site: SiteFile | None = None
 
     def each(self, structure: Structure) -> list[Neighbours]:
-        """The neighbours of every motion, both ways where a structure and the polarities differ."""
+        """Return the neighbours of every motion, in both polarities if requested and if their effects differ."""
         model = structure.model("nonlinear")
         signs = self.polarities[:1] if model.symmetric else self.polarities
         return [neighbours(model, motion.scaled(sign), self.around) for motion in self.motions for sign in signs]
@@ -50,26 +50,26 @@ class Excitation:
 
 @dataclass(frozen=True)
 class Metric:
-    """A number of a structure.
+    """A quantity of a structure that can be limited.
 
     Parameters
     ----------
     name : str
-        As users write it.
+        Name of the metric, as users write it.
     unit : str
         Its unit; empty for a pure number.
     meaning : str
-        What it is, in a few words.
+        Meaning of the metric, in a few words.
     of_structure : callable, optional
-        Gives it for a structure and what shakes it; NaN where there is none, and infinity beyond all numbers. Raises
-        `InputError` or `MechanismError` where the structure has none.
+        Returns the metric of a structure under a `Shaking`; NaN if it does not exist, and infinity if it is unlimited.
+        Raises `InputError` or `MechanismError` if the structure has none.
     of_neighbours : callable, optional
-        Gives it for the neighbours of a motion instead: a share of histories, or a fractile, which moves by steps. An
-        unknown outcome counts as overturning in it.
+        Returns the metric of the neighbours of a motion instead: a share of histories, or a fractile, which are step
+        functions. An unknown outcome counts as overturning.
     sited : bool
-        Whether it needs a site.
+        Whether the metric needs a site.
     codes : sequence of str
-        The codes of practice that have it; empty where it needs none.
+        The codes of practice that have this metric; empty if it needs none.
     """
 
     name: str
@@ -82,7 +82,7 @@ class Metric:
 
     @property
     def shaken(self) -> bool:
-        """Whether it needs ground motions."""
+        """Whether the metric needs ground motions."""
         return self.of_neighbours is not None
 
     def value(self, structure: Structure, excitation: Excitation | None) -> float:
@@ -119,7 +119,7 @@ def _ratio(structure: Structure, excitation: Excitation | None) -> float:
 
 
 def taken_otherwise(structure: Structure, site: SiteFile) -> Sequence[str]:
-    """Return what a verification takes otherwise than the structure gives it, such as ties by their force at rest."""
+    """Return sentences on values for which a code uses others than the structure gives, such as forces of ties."""
     return verify(structure, site).taken_otherwise
 
 
@@ -141,7 +141,7 @@ METRICS: Mapping[str, Metric] = {
 
 
 def _of_codes(name: str) -> Metric | None:
-    """A metric that codes of practice have among their `numbers`; None if none has it."""
+    """Return the metric of a name that codes of practice have among their `numbers`; None if none has it."""
     own: dict[str, Number] = {}
     for key in codes():
         try:
@@ -170,12 +170,12 @@ def _of_codes(name: str) -> Metric | None:
 
 
 def _blamed(code: str, name: str) -> AbstractContextManager[None]:
-    """Turn errors of a number of a code into those of its plugin."""
+    """Turn errors in a number of a code into errors of the code's plugin."""
     return blame(f"the code {code} failed in its number {name}", type(codes()[code]).__module__)
 
 
 def known_metrics() -> list[str]:
-    """The names of all metrics, those of the installed codes after the others."""
+    """Return the names of all metrics, with those of the installed codes last."""
     found = dict.fromkeys(METRICS)
     for key in codes():
         try:
@@ -186,7 +186,7 @@ def known_metrics() -> list[str]:
 
 
 def metric(name: str) -> Metric:
-    """A metric by its name. Raises `InputError` if there is none."""
+    """Return the metric of a name. Raises `InputError` if there is none."""
     found = METRICS.get(name) or _of_codes(name)
     if found is None:
         hint = did_you_mean(name, known_metrics())

@@ -1,4 +1,4 @@
-"""How strong one ground motion is by any measures, those relative to a structure among them."""
+"""Intensity of one ground motion by several measures, including measures relative to a structure."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rocking_cli.structure import Structure
 
 
 def reference_of(structure: Structure) -> Reference:
-    """What measures relative to a structure refer to: the direction that uplifts first."""
+    """Return the reference values of measures relative to a structure, in the direction that uplifts first."""
     gravity = structure.mechanism.gravity
     if structure.why_no_block is not None:
         return Reference(nan, min(side.lambda_ for side in structure.statics), gravity)
@@ -23,21 +23,21 @@ def reference_of(structure: Structure) -> Reference:
 def intensities(
     motion: GroundMotion, measures: Sequence[Measure], structure: Reference | None = None
 ) -> dict[Measure, float]:  # fmt: skip
-    """Measures of a ground motion.
+    """Compute intensity measures of a ground motion.
 
     Parameters
     ----------
     motion : GroundMotion
-        As it shakes: scaled.
+        The scaled motion.
     measures : sequence of Measure
-        The requested ones.
+        The measures to compute.
     structure : Reference, optional
-        What relative ones refer to.
+        Reference values of relative measures.
 
     Returns
     -------
     dict of Measure to float
-        NaN of those that the motion or the structure has not.
+        Value of each measure; NaN if the motion or the structure has none.
 
     Raises
     ------

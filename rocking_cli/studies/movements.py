@@ -1,4 +1,4 @@
-"""What an engineer uses of a history: how far named points move, what ties bear, how fast an impact is."""
+"""Results of a history for design: displacements of named points, forces of ties, and velocities of impacts."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LEVEL = 1e-9  # of the height of a structure: corners that are so much lower are
 
 @dataclass(frozen=True)
 class PointPeak:
-    """How far a point moves at most, in either sense: to the side and up [m]; NaN if the structure overturns."""
+    """Peak horizontal and vertical displacement of a point [m], absolute values; NaN if the structure overturns."""
 
     name: str
     at: complex
@@ -35,9 +35,9 @@ class PointPeak:
 
 @dataclass(frozen=True)
 class TiePeak:
-    """The force [N] and the elongation [m] of a tie where they are largest, with their signs; tension is positive.
+    """Peak force [N] and peak elongation [m] of a tie, with their signs; tension is positive.
 
-    Of a tie that acts in one sense only, the elongation is the largest in this sense.
+    If a tie acts in one sense only, the elongation is the largest in this sense.
     """
 
     name: str
@@ -47,18 +47,18 @@ class TiePeak:
 
 @dataclass(frozen=True)
 class Movements:
-    """What a history means for the things on a structure.
+    """Peak movements in a history: of points, of ties, and at impacts.
 
     Parameters
     ----------
     points : sequence of PointPeak
-        The top, and where loads and ties are.
+        The top, and the points of loads and ties.
     ties : sequence of TiePeak
-        In the order of the file; of several that move alike, one.
+        The ties in the order of the file; of several with equal movement, one.
     impact_velocity : float
-        The largest velocity at which a foot lands [m/s]; 0 without an impact, NaN where the feet are not known.
+        The largest velocity with which a foot lands [m/s]; 0 without an impact, NaN if the feet are not known.
     known_to : float
-        Until when the history is known [s], and these values are the largest; NaN if all of it is.
+        Time until which the history is known, and for which these peaks hold [s]; NaN if all of it is known.
     """
 
     points: Sequence[PointPeak]
@@ -69,7 +69,7 @@ class Movements:
 
 @dataclass(frozen=True)
 class Watched:
-    """The points and ties of a structure whose movement is of use.
+    """The points and ties of a structure whose movement is reported.
 
     Parameters
     ----------
@@ -81,12 +81,12 @@ class Watched:
 
     @cached_property
     def points(self) -> Mapping[str, Spot]:
-        """The top, and where loads and ties are, by their names."""
+        """The top, and the points of loads and ties, by name."""
         return dict([top(self.mechanism), *_where_it_bends(self.mechanism), *_hung(self.mechanism)])
 
     @cached_property
     def ties(self) -> Sequence[Element]:
-        """In the order of the file."""
+        """The ties, in the order of the file."""
         return self.mechanism.hung.ties
 
     @cached_property
@@ -94,10 +94,10 @@ class Watched:
         return {direction: self.mechanism.limit(direction) for direction in self.mechanism.directions}
 
     def peaks(self, history: History) -> Movements:
-        """The largest values of a history, also between its samples: a place depends on the rotation alone.
+        """Return the peaks of a history, also between samples, as displacements depend on the rotation alone.
 
-        Points of one that overturns have no peak, nor of a linear one that goes further than the mechanism can. What
-        ties bear then is that up to where it is certain to overturn, and the impacts are those before.
+        If the history overturns, or a linear one exceeds the kinematic limit, points have no peak. Forces of ties and
+        impacts are then those until overturning is certain.
         """
         reached = {
             direction: history.peak_positive if direction > 0 else history.peak_negative
@@ -119,7 +119,7 @@ class Watched:
         )
 
     def is_torn_apart(self, history: History) -> bool:
-        """Whether courses of crossing walls slide by more than their overlap, beyond which they hold nothing."""
+        """Return whether courses of crossing walls slide by more than their overlap, so that they hold nothing."""
         interlock = self.mechanism.interlock
         if interlock is None:
             return False
@@ -127,9 +127,9 @@ class Watched:
         return not moved <= interlock.overlap  # of one that overturns it is not a number
 
     def columns(self, phi: Reals) -> Iterator[tuple[str, Reals]]:
-        """Displacements of the points [m], elongations [m] and forces [N] of the ties, over signed rotations (n,).
+        """Yield displacements of points [m], elongations [m] and forces [N] of ties, at signed rotations (n,).
 
-        NaN where there is no rotation, and beyond the kinematic limit, to which a linear model does not keep.
+        Values are NaN without a rotation, and beyond the kinematic limit, which linear models may exceed.
         """
         for name, spot in self.points.items():
             moved = self._signed(phi, partial(self._displacement, spot))
@@ -141,7 +141,7 @@ class Watched:
             yield f"{tie.name} force [N]", both.imag
 
     def _before(self, history: History, direction: Direction) -> float:
-        """The largest rotation of a history in a direction before it overturns, by its samples."""
+        """Return the largest sampled rotation of a history in a direction before it overturns [rad]."""
         end = history.overturning_time if history.overturned else np.inf
         turned = direction * history.phi[np.isfinite(history.phi) & (history.time <= end)]
         return float(np.clip(turned, 0.0, np.nextafter(self._limits[direction], 0.0)).max(initial=0.0))
@@ -185,7 +185,7 @@ class Watched:
 
 
 def largest(every: Sequence[Movements]) -> Movements:
-    """The largest values of several histories of a structure, and until when all are known; NaN where one has none."""
+    """Return the peaks over several histories of a structure, and until when all are known; NaN if one is NaN."""
     points = [
         replace(each[0], horizontal=_most(p.horizontal for p in each), vertical=_most(p.vertical for p in each))
         for each in zip(*(moved.points for moved in every), strict=True)
@@ -208,15 +208,16 @@ def _way(phi: float) -> Reals:
 
 
 def _strained(mechanism: Mechanism, tie: Element, phi: Reals, direction: Direction) -> NDArray[np.complex128]:
-    """Elongation + i force of a tie."""
+    """Return elongation [m] + i force [N] of a tie at rotations."""
     e, _, _ = tie.elongation(mechanism.followed(phi, direction))
     return np.asarray(e + 1j * tie.force(e))
 
 
 def _landing(mechanism: Mechanism, direction: Direction) -> float:
-    """The velocity over the rate at which the feet land that the other direction turns about [m]; NaN if unknown.
+    """Return the largest velocity, per unit rate of rotation, of the feet that land [m]; NaN if unknown.
 
-    Unknown, too, where these do not move: what turns about the ground in one direction may rest in the other.
+    The feet are those about which the structure turns in the other direction. Also NaN if they do not move: a body that
+    turns about the ground in one direction may rest in the other.
     """
     hinges = mechanism.sketch().hinges.get(direction.opposite, ())
     feet = [Spot(hinge.bodies[0], hinge.point) for hinge in hinges if len(hinge.bodies) == 1 and not hinge.slide]
@@ -228,7 +229,7 @@ def _landing(mechanism: Mechanism, direction: Direction) -> float:
 
 
 def top(mechanism: Mechanism) -> tuple[str, Spot]:
-    """The middle of the highest corners of the highest body; its centroid, called so, where no shape is known."""
+    """Return the midpoint of the highest corners of the highest body; its centroid, so named, if no shape is known."""
     sketch = mechanism.sketch()
     corners = {}
     for body in mechanism.bodies():
@@ -243,7 +244,7 @@ def top(mechanism: Mechanism) -> tuple[str, Spot]:
 
 
 def _where_it_bends(mechanism: Mechanism) -> Iterator[tuple[str, Spot]]:
-    """The hinges of a structure whose top is held sideways: there it moves most."""
+    """Yield the hinges of a structure whose top is held sideways: there it moves most."""
     if is_held(mechanism):
         for joint in mechanism.joints(mechanism.directions[0]):
             if len(joint.bodies) == 2:
@@ -251,7 +252,7 @@ def _where_it_bends(mechanism: Mechanism) -> Iterator[tuple[str, Spot]]:
 
 
 def is_held(mechanism: Mechanism) -> bool:
-    """Whether the top of a structure is held sideways, so that it moves most at a hinge below."""
+    """Return whether the top of a structure is held sideways, so that it moves most at a hinge below."""
     return any(joint.is_guide for joint in mechanism.joints(mechanism.directions[0]))
 
 

@@ -1,7 +1,7 @@
-"""What becomes of the motions next to one: rocking near overturning is fractal, and a single history one sample of it.
+"""Neighbours of a ground motion: rocking near overturning is fractal, so that one history is only one sample.
 
-Two nearly identical boulders on one shake table fell together in 88 of 100 tests only. So a history is judged by the
-company it keeps: the same motion a little stronger or weaker, with a little more or less restitution.
+Two nearly identical boulders on one shake table overturned together in only 88 of 100 tests. So a history is judged
+together with its neighbours: the same motion a little stronger or weaker, with a little more or less restitution.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ TINY = 1e-300  # instead of 0, which has no normal number
 
 
 class Draws(NamedTuple):
-    """What distinguishes neighbours from the nominal structure and motion, one of each a neighbour."""
+    """Amplitude factor, slenderness factor and restitution of neighbours, with an entry for each neighbour."""
 
     amplitude: Reals  # factor on the motion
     slender: Reals  # factor on the slenderness as far as it is due to the weight; at zero and below it has overturned
@@ -45,18 +45,18 @@ class Draws(NamedTuple):
 
 @dataclass(frozen=True)
 class Neighbourhood:
-    """How many neighbours a motion has, and how they are drawn.
+    """Number of neighbours of a motion, and the distributions from which they are drawn.
 
     Parameters
     ----------
     count : int
-        How many; 0 for none.
+        Number of neighbours; 0 for none.
     amplitude : float
         Standard deviation of ln amplitude of the motion.
     restitution : float, optional
-        Standard deviation of the coefficient of restitution; without it that of the structure.
+        Standard deviation of the coefficient of restitution; by default that of the structure.
     slenderness : float, optional
-        Standard deviation of ln slenderness; without it that of the structure.
+        Standard deviation of ln slenderness; by default that of the structure.
 
     Raises
     ------
@@ -65,9 +65,9 @@ class Neighbourhood:
 
     Notes
     -----
-    Amplitude and slenderness are lognormal, and the restitution normal, drawn again where it is above the value with
-    which an impact keeps all energy: clipped there, a third of all neighbours would never lose any. With these numbers
-    the shares that are stated agree with those observed in shake-table tests of two boulders, see docs/validation.md.
+    Amplitude and slenderness are lognormal, and the restitution normal, truncated at the value with which an impact
+    keeps all energy: clipped there, a third of all neighbours would never lose any. With these deviations, computed
+    shares agree with those observed in shake-table tests of two boulders, see docs/validation.md.
     """
 
     count: int = 200
@@ -84,7 +84,7 @@ class Neighbourhood:
                 raise InputError(Problem(f"must be from 0 to below 1, got {value:g}", field=f"{field}_deviation"))
 
     def of(self, model: Model) -> Neighbourhood:
-        """Return the same neighbours with the deviations of a structure where none are given."""
+        """Return these neighbours with the standard deviations of a structure where none are given."""
         restitution, slenderness = model.scatter
         return replace(
             self,
@@ -94,7 +94,7 @@ class Neighbourhood:
 
     @property
     def words(self) -> str:
-        """How the neighbours are drawn, after a noun."""
+        """The standard deviations of the neighbours, in words."""
         given = [f"{percent(self.amplitude)} of amplitude"]
         given += [f"{percent(self.slenderness)} of slenderness"] if self.slenderness is not None else []
         given += [f"{self.restitution:g} of restitution"] if self.restitution is not None else []
@@ -118,19 +118,19 @@ class Neighbourhood:
         )
 
     def _uniform(self) -> tuple[Reals, Reals, Reals]:
-        """Three uniform numbers of each neighbour: a Latin hypercube, which has less scatter than independent ones."""
+        """Return three uniform numbers for each neighbour: a Latin hypercube, with less scatter than random ones."""
         random = np.random.default_rng(SEED)
         one, other, third = (np.arange(self.count) + random.random((3, self.count))) / max(self.count, 1)
         return one, random.permutation(other), random.permutation(third)
 
 
 def _normal(uniform: Reals) -> Reals:
-    """Standard normal numbers from uniform ones."""
+    """Convert uniform numbers to standard normal ones."""
     return np.array([NORMAL.inv_cdf(max(u, TINY)) for u in uniform.tolist()])
 
 
 def _below(uniform: Reals, mean: float, deviation: float, most: float) -> Reals:
-    """Normal numbers about a mean, none above `most`, nor below the least restitution."""
+    """Convert uniform numbers to normal ones that are at most `most` and at least the least restitution."""
     if deviation == 0:
         return np.full(uniform.size, mean)
     share = NORMAL.cdf((most - mean) / deviation)
@@ -139,28 +139,28 @@ def _below(uniform: Reals, mean: float, deviation: float, most: float) -> Reals:
 
 @dataclass(frozen=True)
 class Neighbours:
-    """What became of the neighbours of a motion.
+    """Outcomes of the neighbours of a motion.
 
     Parameters
     ----------
     around : Neighbourhood
-        How they were drawn.
+        How the neighbours were drawn.
     model : str
-        Which model followed them.
+        The model that was simulated.
     overturned : float
         The share that overturns.
     peak_ratio : tuple of float
-        The peak rotation over the critical one that 16, 50 and 84 % of them do not exceed; infinite where that many
-        overturn, or are of unknown outcome.
+        Peak rotation over the critical one that 16, 50 and 84 % of them do not exceed; infinite if it belongs to a
+        neighbour that overturns or has an unknown outcome.
     as_itself : float
         The share that has the outcome of the motion itself: overturned, not overturned, or unknown.
     lifted : bool
-        Whether any of them could lift the structure.
+        Whether any of them could uplift the structure.
     over : str
-        What the peaks are over: "phi_cr", or "of the limit" where a direction has no critical rotation.
+        Reference of the peaks: "phi_cr", or "of the limit" if a direction has no critical rotation.
     unknown : float or None
-        The share of unknown outcome, as joints open or slide that the model keeps closed; None if the joints are not
-        known, so that nothing was checked.
+        The share of unknown outcome, because joints open or slide that the model keeps closed; None if the joints are
+        not known, so that nothing was checked.
     """
 
     around: Neighbourhood
@@ -174,17 +174,17 @@ class Neighbours:
 
     @property
     def sensitive(self) -> bool:
-        """Whether the answer of the history itself owes something to chance."""
+        """Whether so many neighbours have another outcome that the outcome of the motion itself is partly chance."""
         return self.as_itself < AGREEMENT
 
     @property
     def half_overturn(self) -> bool:
-        """Whether more than half overturn for certain, so that there is no median peak."""
+        """Whether more than half are known to overturn, so that there is no median peak."""
         return self.overturned > 0.5
 
     @property
     def at_most(self) -> float:
-        """The share that overturns if all of unknown outcome do."""
+        """The share that overturns if all neighbours of unknown outcome do."""
         return self.overturned + (self.unknown or 0.0)
 
     def __str__(self) -> str:
@@ -213,16 +213,16 @@ def neighbours(
     rtol: float = RTOL,
     threads: int | None = None,
 ) -> Neighbours:
-    """Follow the neighbours of a motion.
+    """Simulate the neighbours of a motion.
 
     Parameters
     ----------
     model : Model
-        Of the structure; the nonlinear one is the structure itself.
+        A model of the structure; the nonlinear one is the structure itself.
     motion : GroundMotion or None
-        As in the history, scaled and reversed; None for a release alone.
+        The motion as in the history, scaled and reversed; None for a release alone.
     around : Neighbourhood, optional
-        How to draw them.
+        How to draw the neighbours.
     release : float, optional
         Start at rest, tilted by this fraction of the critical rotation.
     release_is_angle : bool
@@ -233,7 +233,7 @@ def neighbours(
     Raises
     ------
     InputError
-        If there are to be none.
+        If the number of neighbours is 0.
     SolverError
         If one of them cannot be followed.
     """
@@ -269,7 +269,7 @@ def neighbours(
 
 
 class Severity(NamedTuple):
-    """What motions are compared by, in this order: an unknown outcome counts as overturning."""
+    """Severity of a motion, compared field by field in this order; an unknown outcome counts as overturning."""
 
     share: float  # of neighbours that overturn or are of unknown outcome; 0 without neighbours
     median: float  # of their peaks over the critical rotation, infinite where they overturn; 0 without neighbours
@@ -278,7 +278,7 @@ class Severity(NamedTuple):
 
 
 def severity(history: History, near: Neighbours | None = None) -> Severity:
-    """Return what a motion is compared with others by."""
+    """Return the severity of a motion, for comparison with other motions."""
     itself = np.inf if history.overturned or history.unknown else history.peak_ratio
     if near is None:
         return Severity(0.0, 0.0, itself, float(history.overturned))
@@ -286,14 +286,14 @@ def severity(history: History, near: Neighbours | None = None) -> Severity:
 
 
 def governing(severities: Mapping[str, Severity], over: str = "phi_cr") -> str:
-    """A sentence on the motion that is the worst, if one is.
+    """Return a sentence on which motion governs, if one does.
 
     Parameters
     ----------
     severities : mapping of str to Severity
-        That of each motion by its name, at least one.
+        The severity of each motion by its name; at least one.
     over : str
-        What peaks are over.
+        Reference of the peaks.
     """
     worst = max(severities.values())
     if not any(worst):
@@ -328,7 +328,7 @@ def follow(
     release: Reals | float | None = None,
     **how: object,
 ) -> Outcomes:
-    """Follow neighbours of a motion to their final peaks.
+    """Simulate neighbours of a motion until their final peaks are known.
 
     Parameters
     ----------
@@ -337,7 +337,7 @@ def follow(
     draws : Draws
         The neighbours.
     scale : float or ndarray, shape (n,)
-        Factor on the motion of each, beside its own.
+        Factor on the motion of each neighbour, in addition to its drawn amplitude.
     polarity : int
         1, or -1 to reverse the motion.
     release : float or ndarray, shape (n,), optional
@@ -374,13 +374,13 @@ def follow(
 
 
 def can_lift(model: Model, motion: GroundMotion, factor: float) -> bool:
-    """Whether so many times a motion may lift a structure; with a vertical component it always may."""
+    """Return whether a motion times a factor may uplift a structure; always True with a vertical component."""
     least = least_uplift(model, motion)
     return motion.vertical is not None or (least is not None and factor >= least)
 
 
 def least_uplift(model: Model, motion: GroundMotion) -> float | None:
-    """The least positive factor on a motion that lifts a structure, its vertical component apart; None if none does."""
+    """Return the least positive factor on a motion that uplifts a structure (vertical component ignored), or None."""
     pushes = (
         (-s * motion.acceleration).max() / (model.gravity * lam)
         for s, lam in zip(Direction, model.lambda_, strict=True)

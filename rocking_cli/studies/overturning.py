@@ -1,4 +1,4 @@
-"""What pulses of every amplitude and period do to a structure: a map, and the least amplitude that overturns."""
+"""The response to pulses of every amplitude and period: a map of outcomes, and the least amplitude that overturns."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ LARGEST = 1e6  # a or omega, and 1/omega: slower pulses would be followed for ev
 
 
 class Region(IntEnum):
-    """What a pulse does."""
+    """Outcome of a structure under a pulse."""
 
     NO_UPLIFT = 0
     ROCKS = 1
@@ -41,7 +41,7 @@ class Region(IntEnum):
 
     @property
     def label(self) -> str:
-        """In words."""
+        """The outcome in words."""
         return (
             names.NO_UPLIFT,
             names.ROCKS,
@@ -56,22 +56,22 @@ FALLS = Region.AFTER_IMPACT, Region.WITHOUT_IMPACT
 
 @dataclass(frozen=True, eq=False)
 class OverturningMap:
-    """What a plane of pulses does to a structure: rows of one amplitude, columns of one period.
+    """Outcomes of a structure in a plane of pulses: rows of one amplitude, columns of one period.
 
     Parameters
     ----------
     structure : PulsedModel
-        What is shaken.
+        The model of the structure.
     shape : Pulse
         The shape of the pulses.
     polarities : tuple of int
-        Of 1 and -1; with both, the worse counts.
+        The polarities, 1, -1 or both; of both, the worse governs.
     omega : ndarray, shape (n,)
-        omega_g/p of the columns.
+        Dimensionless frequency omega_g/p of each column.
     a : ndarray, shape (m,)
-        a_g/(g lambda) of the rows.
+        Dimensionless amplitude a_g/(g lambda) of each row.
     outcome : Outcome
-        What becomes of it at each point, of shape (m, n).
+        The outcomes at each point, shape (m, n).
     """
 
     structure: PulsedModel
@@ -83,35 +83,35 @@ class OverturningMap:
 
     @property
     def periods(self) -> Reals:
-        """Periods of the columns [s]; for the dimensionless block, p times them."""
+        """Pulse periods of the columns [s]; for the dimensionless block, p times the period."""
         return self.structure.period(self.omega)
 
     @property
     def accelerations(self) -> Reals:
-        """Amplitudes of the rows [standard gravity]."""
+        """Pulse amplitudes of the rows [standard gravity]."""
         return self.a * self.structure.unit / STANDARD_GRAVITY
 
     @property
     def regions(self) -> Integers:
-        """The `Region` of each point, shape (m, n)."""
+        """The `Region` of each point, as integers, shape (m, n)."""
         stays = np.where(self.outcome.peak_ratio > 0, Region.ROCKS, Region.NO_UPLIFT)
         falls = np.where(self.outcome.impact_count == 0, Region.WITHOUT_IMPACT, Region.AFTER_IMPACT)
         return np.where(self.outcome.overturned, falls, np.where(self.outcome.unknown, Region.UNKNOWN, stays))
 
     @property
     def shares(self) -> dict[Region, float]:
-        """The part of the points in each region; together 1."""
+        """The share of the points in each region; the shares add up to 1."""
         counts = np.bincount(self.regions.ravel(), minlength=len(Region))
         return {region: float(counts[region] / self.regions.size) for region in Region}
 
     def least(self, *regions: Region) -> Reals:
-        """The least a of the rows in one of these regions, for each column; NaN if there is none."""
+        """Return the least a of a point in some regions, for each column; NaN if there is none."""
         found = np.isin(self.regions, regions)
         return np.where(found.any(axis=0), self.a[found.argmax(axis=0)], np.nan)
 
     @property
     def safe_again(self) -> Reals:
-        """The largest a known not to overturn above one that does, for each column; NaN if there is none."""
+        """The largest a that is known not to overturn above one that does, for each column; NaN if there is none."""
         falls = self.outcome.overturned
         above = np.maximum.accumulate(falls, axis=0) & ~falls & ~self.outcome.unknown
         last = len(self.a) - 1 - above[::-1].argmax(axis=0)
@@ -119,7 +119,7 @@ class OverturningMap:
 
     @property
     def boundaries(self) -> list[Boundary]:
-        """The boundaries known in closed form: uplift, and for a symmetric linear model what its pulse has."""
+        """Boundaries known in closed form: uplift, and further ones of the pulse for a symmetric linear model."""
         if self.structure.model.is_linear and self.structure.symmetric:
             return boundaries(self.shape, self.structure.eta)
         return [UPLIFT]
@@ -134,20 +134,20 @@ def overturning_map(
     polarities: Sequence[int] = (1,),
     progress: Progress | None = None,
 ) -> OverturningMap:
-    """Shake a structure with pulses of every omega and a.
+    """Simulate a structure under pulses of every combination of omega and a.
 
     Parameters
     ----------
     structure : PulsedModel
-        What is shaken; see `linear_block` and `pulsed_model`.
+        The model of the structure; see `linear_block` and `pulsed_model`.
     shape : Pulse
         The shape of the pulses; see `parse_shape`.
     omega, a : ndarray
-        Dimensionless frequencies and amplitudes [paper, Eq. 40], a ascending.
+        Dimensionless frequencies and amplitudes [paper, Eq. 40], a increasing.
     polarities : sequence of int
-        Of 1 and -1; with both, the worse counts.
+        The polarities, 1, -1 or both; of both, the worse governs.
     progress : callable, optional
-        Called with the number of histories done since the last call, of `count_histories(...)`.
+        Called with the number of histories done since the last call; `count_histories(...)` is their total.
 
     Raises
     ------
@@ -171,13 +171,13 @@ def overturning_map(
 
 
 def usual_periods(structures: Sequence[PulsedModel]) -> tuple[float, float]:
-    """Of pulses, from the shortest at the largest p to the longest at the smallest [s]."""
+    """Return the default range of pulse periods for some structures [s]."""
     p = [each.p for each in structures]
     return _round(2 * pi / (OMEGAS[1] * max(p))), _round(2 * pi / (SLOWEST * min(p)))
 
 
 def usual_amplitudes(structures: Sequence[PulsedModel]) -> tuple[float, float]:
-    """Of pulses, from below uplift to far above that of the strongest [standard gravity]."""
+    """Return the default range of pulse amplitudes, from below uplift to far above it [standard gravity]."""
     unit = max(each.unit for each in structures) / STANDARD_GRAVITY
     return _round(AMPLITUDES[0] * unit), _round(AMPLITUDES[1] * unit)
 
@@ -187,7 +187,7 @@ def _round(value: float) -> float:
 
 
 def _check_range(structure: PulsedModel, periods: Reals, a: float) -> None:
-    """Refuse pulses beyond all sense."""
+    """Raise `InputError` if pulses are beyond the range of omega or of a that can be computed."""
     low, high = (structure.period(np.array(omega)).item() for omega in (LARGEST, 1 / LARGEST))
     if not (low <= periods.min() and periods.max() <= high):
         raise InputError(
@@ -201,22 +201,23 @@ def _check_range(structure: PulsedModel, periods: Reals, a: float) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """The least pulse that overturns each of several structures.
+    """The least pulse amplitude that overturns each of several structures, at each period.
 
     Parameters
     ----------
     structures : tuple of PulsedModel
-        What is shaken.
+        The models of the structures.
     shape : Pulse
         The shape of the pulses.
     polarities : tuple of int
-        Of 1 and -1; with both, either may overturn.
+        The polarities, 1, -1 or both; of both, either may overturn.
     periods : ndarray, shape (n,)
-        [s].
+        Periods of the pulses [s].
     least : ndarray, shape (k, n)
         The least amplitude known to overturn each structure [standard gravity]; NaN if there is none up to `top`.
     possible : ndarray, shape (k, n)
-        The least amplitude that overturns it or whose outcome is unknown; `least` where no smaller one is unknown.
+        The least amplitude that overturns each structure or has an unknown outcome; equal to `least` if none is unknown
+        below.
     top : float
         The largest amplitude tried [standard gravity].
     """
@@ -231,13 +232,13 @@ class Comparison:
 
     @property
     def doubtful(self) -> NDArray[np.bool_]:
-        """Whether the least amplitude that overturns a structure is known only from `possible` on, shape (k, n)."""
+        """Whether outcomes are unknown between `possible` and `least`, so that `least` is not certain, shape (k, n)."""
         doubtful: NDArray[np.bool_] = np.isfinite(self.possible) & ~(self.possible >= self.least)
         return doubtful
 
     @property
     def firsts(self) -> NDArray[np.bool_]:
-        """Whether a structure is known to overturn first at a period, shape (k, n); several that are equal all do."""
+        """Whether a structure is known to overturn first at a period, shape (k, n); several if they are equal."""
         least, possible = (np.where(np.isnan(each), np.inf, each) for each in (self.least, self.possible))
         lowest = [np.delete(possible, k, axis=0).min(axis=0, initial=np.inf) for k in range(len(least))]
         first: NDArray[np.bool_] = np.isfinite(least) & (least <= np.array(lowest) * (1 + TIE))
@@ -245,7 +246,7 @@ class Comparison:
 
     @property
     def undecided(self) -> NDArray[np.bool_]:
-        """Whether it is unknown at a period which structure overturns first, or whether any does, shape (n,)."""
+        """Whether it is unknown which structure overturns first at a period, or whether any does, shape (n,)."""
         may, known = np.isfinite(self.possible), self.firsts
         return np.array([each.any() and not sure.any() for each, sure in zip(may.T, known.T, strict=True)], np.bool_)
 
@@ -264,24 +265,24 @@ def compare(
     Parameters
     ----------
     structures : sequence of PulsedModel
-        What is shaken.
+        The models of the structures.
     shape : Pulse
         The shape of the pulses.
     periods : ndarray
-        [s].
+        Periods of the pulses [s].
     top : float
         The largest amplitude to try [standard gravity].
     polarities : sequence of int
-        Of 1 and -1.
+        The polarities: 1, -1 or both.
     progress : callable, optional
-        Called with the number of histories done since the last call, of `count_histories(...)`.
+        Called with the number of histories done since the last call; `count_scans(...)` estimates their total.
 
     Notes
     -----
-    Amplitudes from uplift to the largest are tried, at equal ratios of a - 1; then as many just below the least that
-    overturns, until nothing lower is found; the interval that is left is halved. An island of overturning narrower
-    than a step, 0.7 % of a - 1, may be missed. If joints may open, the same is done below the amplitude found for the
-    least that overturns or is of unknown outcome.
+    The search tries amplitudes from uplift to the largest at equal ratios of a - 1, then as many just below the least
+    that overturns, until it finds no lower one; it then bisects the remaining interval. An island of overturning
+    narrower than a step, 0.7 % of a - 1, may be missed. If joints may open, the same is done below the amplitude found
+    for the least that overturns or is of unknown outcome.
     """
     for each in structures:
         _check_range(each, periods, top * STANDARD_GRAVITY / each.unit)
@@ -298,7 +299,7 @@ def _least(
     polarities: Sequence[int],
     progress: Progress | None,
 ) -> tuple[Reals, Reals]:
-    """Return the least amplitude that overturns a structure, and that which does or may, for each period [m/s2]."""
+    """Return for each period the least amplitude known to overturn, and the least that may overturn [m/s2]."""
     beyond = np.full(periods.size, top * STANDARD_GRAVITY / structure.unit - 1)  # a - 1 up to which to look
     search = _OverturningSearch(structure, shape, periods, polarities, progress)
     least = search.least(beyond, np.full(periods.size, np.nan), _overturns)
@@ -328,9 +329,9 @@ class _OverturningSearch:
     progress: Progress | None
 
     def least(self, beyond: Reals, high: Reals, counts: Callable[[Outcomes], NDArray[np.bool_]]) -> Reals:
-        """Return the least a - 1 of an outcome that counts, for each period; NaN if there is none.
+        """Return for each period the least a - 1 whose outcome the function `counts` accepts; NaN if there is none.
 
-        It is sought up to `beyond`; `high` is an a - 1 that is known to count, equal to `beyond`, or NaN.
+        The search goes up to `beyond`; `high` is an a - 1 that is known to be accepted, equal to `beyond`, or NaN.
         """
         beyond, high, low = beyond.copy(), high.copy(), np.zeros(self.periods.size)
         left = np.flatnonzero(beyond > 0)
@@ -357,7 +358,7 @@ class _OverturningSearch:
         return high
 
     def _shaken(self, periods: Reals, above: Reals, *, report: bool = False) -> Outcomes:
-        """Shake the structure with pulses of these periods and a - 1."""
+        """Simulate the structure under pulses of given periods [s] and a - 1."""
         return outcomes(
             self.structure,
             self.shape,
@@ -369,11 +370,11 @@ class _OverturningSearch:
 
 
 def count_histories(structures: Sequence[PulsedModel], pulses: int, polarities: Sequence[int]) -> int:
-    """How many histories `pulses` pulses on each structure take."""
+    """Return the number of histories that a number of pulses on each structure takes."""
     return pulses * sum(1 if each.symmetric else len(polarities) for each in structures)
 
 
 def count_scans(structures: Sequence[PulsedModel], periods: int, polarities: Sequence[int]) -> int:
-    """How many histories `compare` takes in most cases: two scans of each period for each search."""
+    """Estimate the number of histories that `compare` takes: two scans of each period for each search."""
     scans = SCAN * PASSES * periods
     return sum(count_histories([each], scans * (1 + each.may_open), polarities) for each in structures)

@@ -1,7 +1,7 @@
-"""The figures of the paper that measure the equivalence, computed anew: 3, 5 to 8, and 10 to 13.
+"""The paper's figures on the equivalence, computed from scratch: 3, 5 to 8, and 10 to 13.
 
-The scan has lost the pictures, and with them the ranges of some geometries. What is chosen here to show what the text
-says they show is stated in the caption.
+The scan of the paper has lost its pictures, and with them the ranges of some geometries. Values chosen here to show
+what the text says are stated in the caption.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ class PaperCurve:
     Parameters
     ----------
     label : str
-        What tells it from the others of the panel.
+        Label that distinguishes the curve from others in the panel.
     x, y : ndarray
-        Its points.
+        Coordinates of the points.
     thin : bool
-        Whether it is drawn as a background to the others.
+        Whether the curve is drawn thin, as a background to the others.
     """
 
     label: str
@@ -57,9 +57,9 @@ class PaperPanel:
     Parameters
     ----------
     title, xlabel, ylabel : str
-        Words at the axes; labels may hold mathematics between dollars.
+        Title and axis labels; labels may hold mathematics between dollars.
     curves : list of PaperCurve
-        What is drawn.
+        The curves.
     log : bool
         Whether x is logarithmic.
     """
@@ -78,13 +78,13 @@ class PaperFigure:
     Parameters
     ----------
     number : int
-        Its number there.
+        Number of the figure in the paper.
     title, caption : str
-        What it shows, and what of it is our choice.
+        What the figure shows, and which values were chosen here.
     panels : list of list of PaperPanel
-        By rows.
+        The panels, by rows.
     structures : mapping of str to Mechanism, optional
-        What they are of, drawn above by their names.
+        The structures, by name, drawn above the panels.
     """
 
     number: int
@@ -94,7 +94,7 @@ class PaperFigure:
     structures: Mapping[str, Mechanism] = field(default_factory=dict)
 
     def rows(self) -> Iterator[list[str]]:
-        """The data as a table: a header, then a line for each point."""
+        """Yield the data as a table: a header, then a line for each point."""
         yield ["panel", "curve", "x", "y", "x is", "y is"]
         for panel in (each for row in self.panels for each in row):
             for curve in panel.curves:
@@ -118,7 +118,7 @@ def paper_figure(number: int) -> PaperFigure:
 
 
 def wall_errors() -> PaperFigure:
-    """Figure 3."""
+    """Compute Figure 3, the errors of the equivalent block of a wall."""
     period = PaperPanel("free rocking period", OVER_AMPLITUDE, "$T_{r,block}/T_{r,wall}$")
     over = [_overturning(f"overturning time, $\\kappa_{k}$", "wall") for k in (1, 2)]
     for alpha in SLENDERNESS:
@@ -139,7 +139,7 @@ def wall_errors() -> PaperFigure:
 
 @dataclass(frozen=True)
 class _FrameShape:
-    """A family of asymmetric frames: what the left column leaves open, in multiples of its height 2H."""
+    """A family of asymmetric frames: slenderness of the left column, spacing and beam over its height 2H."""
 
     name: str
     slenderness: float
@@ -147,7 +147,7 @@ class _FrameShape:
     beam: float
 
     def frame(self, ratio: float) -> Mechanism:
-        """The frame with H1/H = ratio; its size changes nothing that is shown."""
+        """Return the frame with H1/H = ratio; its size has no effect on the dimensionless results."""
         left = 8.0
         return make(
             "asymmetric_frame",
@@ -172,7 +172,7 @@ FRAMES = (
 
 
 def frame_parameters() -> PaperFigure:
-    """Figure 5."""
+    """Compute Figure 5, the parameters of the equivalent block of the asymmetric frame."""
     ratios = np.linspace(1.0, 1.5, 21)
     names = (
         ("critical rotation", r"$\phi_{cr}/\alpha$"),
@@ -201,7 +201,7 @@ def frame_parameters() -> PaperFigure:
 
 
 def frame_errors(number: int) -> PaperFigure:
-    """Figures 6 (free period), 7 and 8 (overturning time with kappa1 and kappa2)."""
+    """Compute Figure 6 (free period), 7 or 8 (overturning time with kappa1 and kappa2)."""
     title, make, x, pick = _measure(number - 6, "frame")
     rows = []
     for direction in Direction:
@@ -218,7 +218,7 @@ def frame_errors(number: int) -> PaperFigure:
 
 
 def arch_parameters() -> PaperFigure:
-    """Figure 10."""
+    """Compute Figure 10, the parameters of the equivalent block of the arch."""
     angles = np.linspace(90.0, 170.0, 33)
     names = (
         ("critical rotation", r"$\phi_{cr}$ [rad]"),
@@ -250,7 +250,7 @@ def arch_parameters() -> PaperFigure:
 
 
 def arch_errors(number: int) -> PaperFigure:
-    """Figures 11 (free period), 12 and 13 (overturning time with kappa1 and kappa2)."""
+    """Compute Figure 11 (free period), 12 or 13 (overturning time with kappa1 and kappa2)."""
     title, make, x, pick = _measure(number - 11, "arch")
     panels = []
     for thickness in (0.12, 0.14, 0.16, 0.20):
@@ -271,7 +271,7 @@ def arch_errors(number: int) -> PaperFigure:
 def _measure(
     which: int, structure: str
 ) -> tuple[str, Callable[[str], PaperPanel], Reals, Callable[[Mechanism, Direction], Reals]]:
-    """Title, an empty panel, x, and y of a structure for one of the three measures of error."""
+    """Return the title, a function for an empty panel, x, and a function for y, of one of the three errors."""
     if which == 0:
         ylabel = f"$T_{{r,block}}/T_{{r,{structure}}}$"
         return (
@@ -295,13 +295,13 @@ def _overturning(title: str, structure: str) -> PaperPanel:
 
 
 def make(name: str, **values: Any) -> Mechanism:
-    """A mechanism of the registry by name, with its fields."""
+    """Build an installed mechanism from its name and its fields."""
     mechanism: Mechanism = Registry()[name](**values)
     return mechanism
 
 
 def _arch(thickness: float, angle: float) -> Mechanism | None:
-    """An arch of radius 10 m, or None if it does not stand or does not collapse on four hinges."""
+    """Return an arch of radius 10 m, or None if it does not stand or does not collapse on four hinges."""
     try:
         arch = make("arch", radius=10.0, thickness=10.0 * thickness, inclusion_angle_deg=angle)
         equivalent_block(arch)

@@ -1,4 +1,4 @@
-"""The paper's illustrative examples, computed anew: Figures 14 and 15."""
+"""The paper's illustrative examples, computed from scratch: Figures 14 and 15."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SHOWN = 12.0  # of p t, in Figure 15
 
 
 def record_response(motion: GroundMotion) -> PaperFigure:
-    """Figure 14: an asymmetric frame under a record, and under the sine pulse in it alone.
+    """Compute Figure 14: an asymmetric frame under a record, and under the sine pulse fitted to it alone.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def _followed(label: str, run: History, scale: float = 1.0) -> PaperCurve:
 
 
 def structures() -> dict[str, Mechanism]:
-    """The structures of Figure 15, all with one restitution; their geometry is ours."""
+    """Return the structures of Figure 15, all with one restitution; their dimensions are chosen here."""
     alpha = 0.2
     return {
         "block": make("block", width=2 * sin(alpha), height=2 * cos(alpha), restitution=ETA),
@@ -87,7 +87,7 @@ def structures() -> dict[str, Mechanism]:
 
 
 def equivalent_vulnerability() -> PaperFigure:
-    """Figure 15: four structures under the pulses to which they are equivalently vulnerable."""
+    """Compute Figure 15: four structures under the pulses to which they are equivalently vulnerable."""
     pulses = PaperPanel("the pulse of each", "time [s]", r"$\ddot u_g$ [g]")
     responses = PaperPanel("response", "$p\\,t$", OVER)
     for name, structure in structures().items():

@@ -1,6 +1,6 @@
-"""What a picture of a structure shows, as plain data: its parts, their hinges, and where they are at any rotation.
+"""Drawing of a structure as plain data: its parts, their hinges, and their positions at any rotation.
 
-Whoever draws it, on paper or on a page that moves, only has to place the parts.
+A program that draws it, on paper or as an animation, only has to place the parts.
 """
 
 from __future__ import annotations
@@ -52,24 +52,24 @@ ASSUMED = (
 
 @dataclass(frozen=True)
 class DrawnPart:
-    """A body as it is drawn, or one of several alike that a body stands for.
+    """A body as it is drawn; or one of the equal copies for which a body stands.
 
     Parameters
     ----------
     name : str
         Name of the body.
     body : int
-        Its place among the bodies.
+        Index of the body.
     centroid : complex
-        At rest [m].
+        Centroid at rest [m].
     outlines : tuple of ndarray of complex
         Closed polygons at rest [m].
     assumed : bool
         Whether the outline is only that of a disc of the same mass and inertia.
     shift : complex
-        How far it is from the body it is a copy of [m].
+        Position relative to the body of which it is a copy [m].
     mass : float
-        Of the blocks that are drawn as one: see `Picture.grouped` [kg].
+        Mass of the blocks that are drawn as one part, see `Picture.grouped` [kg].
     """
 
     name: str
@@ -83,7 +83,7 @@ class DrawnPart:
 
 @dataclass(frozen=True)
 class DrawnHinge:
-    """A hinge of one direction as it is drawn: where it rests [m], and the part that carries it."""
+    """A hinge of one direction as it is drawn: its position at rest [m], and the index of the part that carries it."""
 
     letter: str
     point: complex
@@ -94,12 +94,12 @@ class DrawnHinge:
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """How mechanisms start that have no rocking model: the bodies move straight on, over a phi from 0 to 1.
+    """Initial motion of mechanisms without a rocking model: bodies move straight on, with phi from 0 to 1.
 
     Parameters
     ----------
     centroids : mapping of str to complex
-        Those of all bodies, in their order [m].
+        Centroids of all bodies, in their order [m].
     found : mapping of Direction to CollapseMechanism
         The mechanisms.
     """
@@ -108,7 +108,7 @@ class Start:
     found: Mapping[Direction, CollapseMechanism]
 
     def motion(self, phi: Reals, direction: Direction) -> list[RigidMotion]:
-        """The motion of each body, of which the fastest go as far as can be seen."""
+        """Return the motion of each body, scaled so that the fastest bodies move visibly."""
         mechanism = self.found[direction]
         rates = {
             name: rate for group, rate in zip(mechanism.groups, mechanism.velocities, strict=True) for name in group
@@ -134,22 +134,22 @@ class Picture:
     mechanism : Mechanism
         The structure.
     parts : tuple of DrawnPart
-        What is drawn, the first at the back.
+        The parts, the first at the back.
     pins : tuple of DrawnHinge
         The hinges and pivots of both directions.
     phi_cr, limit : mapping of Direction to float
-        Critical rotation, None where there is none, and the furthest that can be drawn [rad], of the directions that it
-        can rock in.
+        Critical rotation (None if it does not exist), and largest rotation that can be drawn [rad], of each direction
+        in which the structure can rock.
     ground : tuple of ndarray of complex
-        Lines with the ground on the right of someone who walks along them [m].
+        Lines of the ground, which is on the right of someone who walks along them [m].
     sketch : Sketch
         Lengths, angles, lines and notes.
     loads : tuple of Carried
-        Masses and forces on it.
+        Masses and forces on the structure.
     ties : tuple of Strand
-        What ties it.
+        The ties.
     start : Start or None
-        How it starts, if it has no model: then that is its motion.
+        Initial motion of a structure without a rocking model; None for others.
     """
 
     mechanism: Mechanism
@@ -164,47 +164,47 @@ class Picture:
     start: Start | None = None
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
-        """The motion of each body."""
+        """Return the motion of each body at rotations in a direction."""
         return self.mechanism.motion(phi, direction) if self.start is None else self.start.motion(phi, direction)
 
     @property
     def directions(self) -> Sequence[Direction]:
-        """The directions it can rock in."""
+        """The directions in which the structure can rock."""
         return list(self.limit)
 
     @property
     def reference(self) -> Mapping[Direction, float]:
-        """What rotations are compared with [rad]: the critical one, the limit where there is none."""
+        """Reference rotation of each direction [rad]: the critical one, or the limit if there is none."""
         return {side: self.limit[side] / FURTHEST if phi is None else phi for side, phi in self.phi_cr.items()}
 
     @property
     def usual(self) -> Mapping[Direction, float]:
-        """How far it is shown displaced, over the reference, if nobody asks: a stocky body lies before phi_cr."""
+        """Default displacement over the reference: 1, or less for a body that lies flat before phi_cr."""
         if self.start is not None:
             return dict.fromkeys(self.directions, 1.0)
         there = min((self.limit[side] / phi for side, phi in self.phi_cr.items() if phi is not None), default=1.0)
         return {side: SEEN if phi is None else min(1.0, there) for side, phi in self.phi_cr.items()}
 
     def side(self, rotation: float) -> Direction:
-        """The direction of a signed rotation; at rest, the first that it can rock in."""
+        """Return the direction of a signed rotation; at rest, the first direction in which the structure can rock."""
         if rotation == 0:
             return self.directions[0]
         return Direction.NEGATIVE if rotation < 0 else Direction.POSITIVE
 
     def at(self, rotation: Reals) -> tuple[Points, Reals]:
-        """Where the parts are at signed rotations.
+        """Return the positions of the parts at signed rotations.
 
         Parameters
         ----------
         rotation : ndarray, shape (n,)
-            [rad], positive clockwise; beyond the limit it stops there.
+            Rotations [rad], positive clockwise; those beyond the limit are set to the limit.
 
         Returns
         -------
         centroids : ndarray of complex, shape (parts, n)
-            Where their centroids are [m].
+            Positions of the centroids [m].
         psi : ndarray, shape (parts, n)
-            By how much they have turned [rad, anticlockwise].
+            Rotations of the parts [rad], positive anticlockwise.
         """
         centroids = np.empty((len(self.parts), rotation.size), np.complex128)
         psi = np.empty(centroids.shape)
@@ -218,7 +218,7 @@ class Picture:
         return centroids, psi
 
     def marks(self, rotation: float) -> Points:
-        """Where centroids are marked at one signed rotation [m]: of each part, or of each link of many blocks."""
+        """Return the marked centroids at one signed rotation [m]: of each part, or of each link of many blocks."""
         centroids = self.at(np.array([rotation]))[0][:, 0]
         mass = np.array([part.mass for part in self.parts])
         if not mass.any():
@@ -229,29 +229,29 @@ class Picture:
         return np.array([np.average(centroids[here], weights=mass[here]) for here in own if here.any()])
 
     def placed(self, rotation: float) -> tuple[list[list[Points]], Points]:
-        """The outlines of every part and the pins, shape (pins,), at one signed rotation [m]; see `at`."""
+        """Return the outlines of every part, and the pins, shape (pins,), at one signed rotation [m]; see `at`."""
         carry = self._carry(rotation)
         outlines = [[carry(k, each) for each in part.outlines] for k, part in enumerate(self.parts)]
         return outlines, np.array([complex(carry(pin.part, np.array(pin.point))) for pin in self.pins])
 
     def hung(self, rotation: float, symbol: float) -> tuple[Points, list[list[tuple[complex, complex]]], list[bool]]:
-        """Return what is attached to the structure, at one signed rotation.
+        """Return the loads and ties of the structure at one signed rotation.
 
         Parameters
         ----------
         rotation : float
-            [rad].
+            The signed rotation [rad].
         symbol : float
             Length of the symbol of a spring whose ends are together at rest [m].
 
         Returns
         -------
         loads : ndarray of complex, shape (loads,)
-            Where the loads act [m].
+            Points at which the loads act [m].
         ties : list of list of (complex, complex)
             The ends of the pieces of each tie [m].
         slack : list of bool
-            Which of the ties are out of play.
+            Whether each tie is slack.
         """
         carry = self._carry(rotation)
 
@@ -264,12 +264,12 @@ class Picture:
         return loads, ties, [bool(row[0]) for row in self._slack(np.array([rotation]))]
 
     def held(self, rotation: float) -> list[complex]:
-        """Return the points of all that is attached, at one signed rotation [m]; symbols, sized on paper, left out."""
+        """Return the points of all loads and ties at one signed rotation [m], without symbols."""
         loads, ties, _ = self.hung(rotation, 0.0)
         return [*loads.tolist(), *(end for tie in ties for piece in tie for end in piece)]
 
     def _carry(self, rotation: float) -> Callable[[int, Points], Points]:
-        """What takes points of a part to where they are at one signed rotation."""
+        """Return a function that moves points of a part to their positions at one signed rotation."""
         centroids, psi = (values[:, 0] for values in self.at(np.array([rotation])))
 
         def carry(part: int, points: Points) -> Points:
@@ -279,7 +279,7 @@ class Picture:
         return carry
 
     def _slack(self, rotation: Reals) -> list[NDArray[np.bool_]]:
-        """Where each tie is out of play, over signed rotations, shape (n,)."""
+        """Return for each tie a mask of the signed rotations at which it is slack, shape (n,)."""
         rows = []
         for tie in self.ties:
             row = np.zeros(rotation.shape, bool)
@@ -291,7 +291,7 @@ class Picture:
 
     @cached_property
     def links(self) -> Mapping[Direction, Mapping[str, int | None]]:
-        """The link of a direction that each body belongs to, counted along its hinges; None of what stays at rest."""
+        """For each direction, the link of each body, counted along the hinges; None for a body at rest."""
         return {direction: self._links(direction) for direction in self.directions}
 
     def _links(self, direction: Direction) -> Mapping[str, int | None]:
@@ -316,7 +316,7 @@ class Picture:
 
     @cached_property
     def shades(self) -> Mapping[Direction, tuple[int | None, ...]]:
-        """A shade of each part, another one than of what it hinges with if there are enough; None of what rests."""
+        """For each direction, a shade of each part, different from its neighbours'; None for a part at rest."""
         return {direction: self._shades(direction) for direction in self.directions}
 
     def _shades(self, direction: Direction) -> tuple[int | None, ...]:
@@ -335,7 +335,7 @@ class Picture:
 
     @cached_property
     def grouped(self) -> Picture:
-        """The same with parts that move as one as one part, if there are many: with one centroid, and its outlines."""
+        """Copy of the drawing with parts that move together joined into one part, if there are many parts."""
         if len(self.parts) <= MANY:
             return self
         masses = {body.name: body.mass for body in self.mechanism.weighed()}
@@ -370,7 +370,7 @@ class Picture:
         )
 
     def chains(self, pins: Sequence[DrawnHinge]) -> list[list[int]]:
-        """Pins of one direction that are joined by links, by their places: in their order first, then what is left."""
+        """Return chains of pins that are joined by links, as indices: pins in their order first, then the others."""
         held = [self._links_at(pin) for pin in pins]
         found: list[list[int]] = []
         for k in range(1, len(pins)):
@@ -385,7 +385,7 @@ class Picture:
         return found
 
     def _links_at(self, pin: DrawnHinge) -> set[int]:
-        """The links that move and have a hinge in common."""
+        """Return the moving links that meet in a pin."""
         hinges = self.sketch.hinges.get(pin.direction, ())
         here = [hinge.bodies for hinge in hinges if (hinge.letter, hinge.point) == (pin.letter, pin.point)]
         names = {name for bodies in here for name in bodies}
@@ -394,7 +394,7 @@ class Picture:
 
     @property
     def furthest(self) -> float:
-        """How far it can be displaced in either direction, over the reference."""
+        """The largest displacement that can be drawn in both directions, over the reference."""
         return min(self.limit[direction] / phi for direction, phi in self.reference.items())
 
     @cached_property
@@ -404,13 +404,13 @@ class Picture:
 
     @cached_property
     def reach(self) -> tuple[complex, complex]:
-        """Lower left and upper right corner of the structure and of all that is attached to it, at rest [m]."""
+        """Lower left and upper right corner of the structure with its loads and ties, at rest [m]."""
         ends = [end.point for tie in self.ties for piece in tie.pieces for end in (piece.start, piece.end)]
         return box_around([np.array([*self.extent, *ends, *(each.point for each in self.loads)])])
 
     @cached_property
     def walls(self) -> tuple[Points, ...]:
-        """What a structure leans on that rocks to one side only, as the ground is given."""
+        """Side walls behind a structure that rocks to one side only, as lines like those of the ground [m]."""
         return walls(self.mechanism, *self.extent)
 
     @property
@@ -418,10 +418,10 @@ class Picture:
         return np.array([*(part.centroid for part in self.parts), *(pin.point for pin in self.pins)])
 
     def as_dict(self) -> dict[str, Any]:
-        """All of it in numbers and words, for a page: points are [x, y] in m, angles in rad.
+        """Return the whole drawing as plain data, for a page: points are [x, y] in m, angles in rad.
 
-        A part is placed by `x`, `y` (of its centroid) and `psi` (anticlockwise) over `rotation`, straight between
-        its values; its outlines, and what it carries, are about its centroid. A `part` of null is the ground.
+        `x`, `y` (of its centroid) and `psi` (anticlockwise) place a part at each `rotation`, with linear interpolation;
+        its outlines and the points that it carries are relative to its centroid. A `part` of null is the ground.
         """
         ends = [np.linspace(0.0, self.limit.get(direction, 0.0), NODES + 1) for direction in Direction]
         rotation = np.unique(np.concatenate([-ends[1][:0:-1], ends[0]]) + 0.0)
@@ -500,22 +500,22 @@ class Picture:
         }
 
     def _end(self, end: End) -> dict[str, Any]:
-        """A point that a part carries, about its centroid, or the ground, in m, and where a symbol begins from it."""
+        """Return an end of a tie as plain data: part, point relative to its centroid [m], and offset of the symbol."""
         about = 0j if end.part is None else self.parts[end.part].centroid
         point, lead = _pairs([end.point - about, end.lead])
         return {"part": end.part, "point": point, "lead": lead}
 
 
 def picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism] | None = None) -> Picture:
-    """What a picture of a structure shows.
+    """Build the drawing of a structure.
 
     Parameters
     ----------
     mechanism : Mechanism
-        Any plugin. What its `sketch` leaves out is found: outlines from mass and inertia, pivots and hinges from the
-        motion, the ground from the pivots.
+        Any mechanism. Whatever its `sketch` leaves out is derived: outlines from mass and inertia, pivots and hinges
+        from the motion, the ground from the pivots.
     found : mapping of Direction to CollapseMechanism, optional
-        The mechanisms that it was found to have. If one of them has no rocking model, it is shown how they start.
+        The mechanisms that a search found. If one of them has no rocking model, the drawing shows their initial motion.
 
     Raises
     ------
@@ -532,7 +532,7 @@ def picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism] |
 
 
 def box_around(outlines: Sequence[Points]) -> tuple[complex, complex]:
-    """Lower left and upper right corner of the box around points [m]."""
+    """Return the lower left and upper right corner of the box around points [m]."""
     z = np.concatenate([np.ravel(each) for each in outlines])
     return complex(z.real.min(), z.imag.min()), complex(z.real.max(), z.imag.max())
 
@@ -599,7 +599,7 @@ def _outlines(body: Body, sketch: Sketch) -> Sequence[Outline]:
 
 
 def _pins(hinge: Hinge, direction: Direction, parts: Sequence[DrawnPart]) -> list[DrawnHinge]:
-    """The hinge on its first body, or on each copy of it, of which the first has the letter."""
+    """Return the pins of a hinge: on its first body, or on each copy of this body; only the first has the letter."""
     carriers = [k for k, part in enumerate(parts) if part.name == hinge.bodies[0]]
     return [
         DrawnHinge(hinge.letter if k == carriers[0] else "", hinge.point + parts[k].shift, k, direction, hinge.slide)
@@ -608,7 +608,7 @@ def _pins(hinge: Hinge, direction: Direction, parts: Sequence[DrawnPart]) -> lis
 
 
 def _found(bodies: Sequence[Body], motions: Sequence[RigidMotion]) -> list[Hinge]:
-    """Points about which a body turns all the time: against the ground, or against another body."""
+    """Return the points about which a body always turns, against the ground or against another body, as hinges."""
     centroids = [body.centroid for body in bodies]
     size = max(abs(one - other) for one in centroids for other in [*centroids, 0j]) or 1.0
     hinges: list[Hinge] = []
@@ -638,7 +638,7 @@ def _found(bodies: Sequence[Body], motions: Sequence[RigidMotion]) -> list[Hinge
 
 
 def _level_ground(parts: Sequence[DrawnPart], pins: Sequence[DrawnHinge]) -> tuple[Points, ...]:
-    """Level ground under the lowest of the pivots, wider than the structure."""
+    """Return level ground at the lowest of the pivots, wider than the structure."""
     z = [point for part in parts for each in part.outlines for point in each.tolist()]
     z += [part.centroid for part in parts]
     level = min((pin.point.imag for pin in pins), default=min(point.imag for point in z))
@@ -667,5 +667,5 @@ def _pairs(points: Sequence[complex] | Points) -> list[list[float]]:
 
 
 def _rounded(values: Reals) -> list[float]:
-    """Seven digits: more than can be seen, and half the text."""
+    """Round values to seven digits: more than can be seen, and half the text."""
     return [float(f"{value:.7g}") for value in values.tolist()]

@@ -1,4 +1,4 @@
-"""A pulse on a structure: its equivalent blocks, exactly and by the closed form, beside its nonlinear history."""
+"""The response of a structure to a pulse: exact for its equivalent blocks, by closed form, and by nonlinear history."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ Answer = ExactResponse | SampledHistory
 
 
 def sampled_histories(structure: Structure, pulse: Pulse, polarity: int) -> dict[ModelName, SampledHistory]:
-    """Follow the models that have no exact answer: the nonlinear one, and all if the pulse has no segments.
+    """Simulate the models without an exact solution: the nonlinear one, and all if the pulse has no segments.
 
-    Neither have they where a structure rocks to one side only.
+    If a structure rocks to one side only, no model has an exact solution.
     """
     structure.ask("linear models")
     exact = pulse.segments() and structure.mechanism.rocks_both_ways
@@ -36,18 +36,18 @@ def sampled_histories(structure: Structure, pulse: Pulse, polarity: int) -> dict
 def answers(
     structure: Structure, pulse: Pulse, polarity: int, sampled: Mapping[ModelName, SampledHistory]
 ) -> dict[str, Answer]:
-    """What the models say, the linear ones exactly unless they were sampled.
+    """Return the responses of all models: exact ones of linear models unless these were sampled.
 
     Parameters
     ----------
     structure : Structure
-        What the pulse shakes.
+        The structure.
     pulse : Pulse
-        Any.
+        Any pulse.
     polarity : {1, -1}
         -1 reverses the pulse.
     sampled : mapping of str to SampledHistory
-        What `sampled_histories` gives for them.
+        The result of `sampled_histories` for the same arguments.
     """
     gravity = structure.mechanism.gravity
     found: dict[str, Answer] = {str(name): each for name, each in sampled.items()}
@@ -58,12 +58,12 @@ def answers(
 
 
 def outcome(answer: Answer) -> ExactResponse | History:
-    """What a model says became of the structure."""
+    """Return the outcome of a model, exact or sampled."""
     return answer.history if isinstance(answer, SampledHistory) else answer
 
 
 def closed_forms(structure: Structure, pulse: Pulse) -> dict[str, ClosedForm]:
-    """Eqs. 41-42 with each kappa; none if the pulse is no full sine, the directions differ, or there is one only."""
+    """Return Eqs. 41-42 with each kappa; empty unless the pulse is a full sine and the structure is symmetric."""
     if pulse.name != "sine" or not structure.equivalence.symmetric or not structure.mechanism.rocks_both_ways:
         return {}
     block = structure.equivalence.positive
@@ -72,7 +72,7 @@ def closed_forms(structure: Structure, pulse: Pulse) -> dict[str, ClosedForm]:
 
 
 def scaled(mechanism: Mechanism, block: EquivalentBlock, pulse: Pulse) -> dict[str, float]:
-    """Eq. 40: the pulse as the equivalent blocks see it."""
+    """Return the dimensionless parameters of Eq. 40: the pulse relative to the equivalent block."""
     return {
         "omega": 2 * pi / pulse.period / block.p,
         "a1": pulse.amplitude / (mechanism.gravity * block.lambda_lin),

@@ -1,8 +1,8 @@
-"""A set of records, each with a factor, whose mean spectrum lies within limits about a target over a band of periods.
+"""Selection of a set of records, each with a factor, whose mean spectrum lies within limits about a target in a band.
 
-Each record has the factor that brings it to the target on logarithmic average over the band, and all have one factor in
-common. The best set is the one that leaves the limits least, and of those within them the one whose mean is nearest to
-the target: least root mean square of ln(mean/target). `subsets` finds it.
+Each record has the factor that makes it equal to the target on logarithmic average over the band, times a common
+factor. The best set is the one that exceeds the limits least; of sets within the limits, the one whose mean is nearest
+to the target: least root mean square of ln(mean/target). `subsets` finds it.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ FEWEST = 4  # intervals of a record to a period, for its samples to show it
 
 @dataclass(frozen=True)
 class SetRequirements:
-    """What a set is to be.
+    """Requirements on a set of records.
 
     Parameters
     ----------
     count : int
-        How many records.
+        Number of records.
     band : (float, float)
-        From which period to which [s].
+        Shortest and longest period of the band [s].
     within : (float, float)
         Limits on mean/target.
     damping : float
@@ -47,11 +47,11 @@ class SetRequirements:
     factors : (float, float)
         Limits on the factor of each record.
     one_per : {"event", "station", "none"}
-        Of what there may be one record at most.
+        The kind of origin from which there may be at most one record.
     same_factor : bool
-        Whether all have the same factor.
+        Whether all records have the same factor.
     seed : int
-        Of the searches where there are too many sets to try all.
+        Seed of the random searches, used if there are too many sets to try all.
 
     Raises
     ------
@@ -90,13 +90,13 @@ class Candidates:
     Parameters
     ----------
     motions : sequence of GroundMotion
-        As read.
+        The records as read.
     periods : ndarray, shape (n,)
-        At equal ratios over the band, and the target's own in it [s].
+        Periods at equal ratios over the band, and those of the target inside it [s].
     target : ndarray, shape (n,)
-        Ordinates of the target there [standard gravity].
+        Ordinates of the target at these periods [standard gravity].
     spectra : ndarray, shape (motions, n)
-        Pseudo-accelerations of the motions there [standard gravity].
+        Pseudo-accelerations of the motions at these periods [standard gravity].
     """
 
     motions: Sequence[GroundMotion]
@@ -107,26 +107,26 @@ class Candidates:
 
 @dataclass(frozen=True, eq=False)
 class RecordSet:
-    """The best set that was found, whether it fits or not.
+    """The best set of records that was found, whether or not it fits.
 
     Parameters
     ----------
     wanted : SetRequirements
-        What was requested.
+        The requirements.
     candidates : Candidates
-        What it was chosen from.
+        The candidates.
     chosen : ndarray of int, shape (count,)
-        Which of them, in their order.
+        Indices of the chosen candidates, increasing.
     factors : ndarray, shape (count,)
-        The factor on each.
+        Scale factor of each chosen record.
     left_out : mapping of int to str
-        Why candidates could not be chosen.
+        Candidates that could not be chosen, with the reason.
     silent : int
-        How many candidates do not say of which event, or station, they are: each counts as one of its own.
+        Number of candidates without event, or station: each counts as an event, or station, of its own.
     sets : int
-        How many sets there are.
+        Number of possible sets.
     exact : bool
-        Whether all of them were tried; else the best of several searches is given.
+        Whether all sets were tried; otherwise this is the best set of several searches.
     """
 
     wanted: SetRequirements
@@ -158,22 +158,22 @@ class RecordSet:
 
     @property
     def ratio(self) -> Reals:
-        """The mean over the target, shape (n,)."""
+        """Ratio of the mean spectrum to the target, shape (n,)."""
         return self.mean / self.candidates.target
 
     @property
     def too_low(self) -> NDArray[np.bool_]:
-        """Where the mean is below the lower limit, but for rounding."""
+        """Mask of the periods at which the mean is below the lower limit by more than rounding, shape (n,)."""
         return self.ratio < self.wanted.within[0] * (1 - subsets.SAME)
 
     @property
     def too_high(self) -> NDArray[np.bool_]:
-        """Where the mean is above the upper limit, but for rounding."""
+        """Mask of the periods at which the mean is above the upper limit by more than rounding, shape (n,)."""
         return self.ratio > self.wanted.within[1] * (1 + subsets.SAME)
 
     @property
     def fits(self) -> bool:
-        """Whether the mean lies within the limits all over the band."""
+        """Whether the mean lies within the limits over the whole band."""
         return not (self.too_low | self.too_high).any()
 
 
@@ -183,18 +183,18 @@ def candidates(
     wanted: SetRequirements,
     progress: Callable[[int], object] = lambda done: None,
 ) -> Candidates:
-    """The spectra of records over the band of a target.
+    """Compute the spectra of records over the band of a target.
 
     Parameters
     ----------
     motions : sequence of GroundMotion
         The records, as read.
     target : TargetSpectrum
-        What they are to fit.
+        The target.
     wanted : SetRequirements
         The band and the damping.
     progress : callable, optional
-        Told 1 for each record.
+        Called with 1 after each record.
 
     Raises
     ------
@@ -214,7 +214,7 @@ def candidates(
 
 
 def periods_of(band: tuple[float, float], target: TargetSpectrum, damping: float = DAMPING) -> Reals:
-    """Periods [s] at equal ratios over a band, and the target's own in it if they are not too many."""
+    """Return periods [s] at equal ratios over a band, with those of the target inside it unless they are too many."""
     count = max(POINTS, ceil(log(band[1] / band[0]) / min(max(damping, SPACING[0]), SPACING[1])) + 1)
     found = np.geomspace(*band, count)
     found[[0, -1]] = band
@@ -238,16 +238,17 @@ def choose(
     Parameters
     ----------
     found : Candidates
-        What to choose from.
+        The candidates.
     wanted : SetRequirements
-        What the set is to be.
+        The requirements on the set.
     begin : callable, optional
-        Told how many sets, or searches, there are; what it gives is told how many more are done.
+        Called with the number of sets, or of searches; returns a function that is called with the number of those done
+        since its last call.
 
     Returns
     -------
     RecordSet
-        The best of all sets, or the best found; it may not fit.
+        The best of all sets, or the best that was found; it may violate the limits.
 
     Raises
     ------
@@ -276,9 +277,9 @@ def choose(
 
 
 def own_factors(found: Candidates, wanted: SetRequirements) -> tuple[Reals, dict[int, str]]:
-    """The factor on each record that brings it to the target on logarithmic average; and why others have none.
+    """Return the factor that scales each record to the target on logarithmic average, and why others have none.
 
-    With the same factor for all it is 1.
+    All factors are 1 if the records must have the same factor.
     """
     left_out: dict[int, str] = {}
     factors = np.ones(len(found.motions))
@@ -296,7 +297,7 @@ def own_factors(found: Candidates, wanted: SetRequirements) -> tuple[Reals, dict
 
 
 def log_weights(periods: Reals) -> Reals:
-    """Weights of a mean over ln T by trapezoids, of sum 1: points of the target that lie close weigh no more."""
+    """Return trapezoidal weights of a mean over ln T, of sum 1, so that close points of the target weigh no more."""
     steps = np.diff(np.log(periods))
     weights = np.zeros(periods.size)
     weights[:-1] += steps / 2
@@ -305,18 +306,18 @@ def log_weights(periods: Reals) -> Reals:
 
 
 def key_of(motion: GroundMotion, one_per: str) -> str | None:
-    """What a record shares with those that it may not be chosen with; None where its file does not say."""
+    """Return the event or station of which a set may have only one record; None if the file does not state it."""
     said = {"event": motion.origin.event, "station": motion.origin.station}.get(one_per)
     return " ".join(said.casefold().split()) if said is not None else None
 
 
 def coarse(found: Candidates) -> list[GroundMotion]:
-    """Records whose samples are too far apart for the shortest period of the band."""
+    """Return the records whose sampling interval is too long for the shortest period of the band."""
     return [motion for motion in found.motions if found.periods[0] < FEWEST * motion.dt * (1 - 1e-9)]
 
 
 def _groups(names: Sequence[str | None]) -> NDArray[np.intp]:
-    """A number for each, the same for those of one name, in the order in which they first occur."""
+    """Return a number for each record, equal for records of one name; numbers count from 0 in order of appearance."""
     numbers: dict[object, int] = {}
     return np.array(
         [numbers.setdefault(name if name is not None else k, len(numbers)) for k, name in enumerate(names)],

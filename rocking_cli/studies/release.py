@@ -1,4 +1,4 @@
-"""A tilt that a motion starts from: a fraction of the critical rotation, or an angle."""
+"""The tilt from which a free motion starts: a fraction of the critical rotation, or an angle."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ EXAMPLE = "give a fraction of phi_cr such as 0.5, or an angle such as 0.05rad"
 
 @dataclass(frozen=True)
 class Release:
-    """A tilt at rest; negative ones are anticlockwise.
+    """A tilt at rest; negative tilts are anticlockwise.
 
     Parameters
     ----------
     text : str
-        As it was written.
+        The tilt as it was written.
     size : float
-        A fraction of the critical rotation, or an angle [rad].
+        Fraction of the critical rotation, or angle [rad].
     is_angle : bool
-        Which of them.
+        Whether `size` is an angle.
     """
 
     text: str
@@ -34,7 +34,7 @@ class Release:
 
     @classmethod
     def of(cls, given: float | str) -> Self:
-        """A fraction between -1 and 1, or a text such as `0.5`, `0.05rad` or `3 deg`. Raises `InputError`."""
+        """Read a fraction between -1 and 1, or a text such as `0.5`, `0.05rad` or `3 deg`. Raises `InputError`."""
         text = given.strip() if isinstance(given, str) else f"{given:g}"
         parts = split(given) if isinstance(given, str) else (repr(float(given)), "")
         if parts is None:
@@ -54,12 +54,13 @@ class Release:
         return cls(text, angle, is_angle=True)
 
     def ratio(self, structure: Structure) -> float:
-        """The fraction of what rotations of a structure are over: phi_cr, or the limit where there is none.
+        """Return the tilt as a fraction of phi_cr of a structure, or of the kinematic limit if there is no phi_cr.
 
         Raises
         ------
         InputError
-            If the structure does not rock that way, the tilt is beyond that, or a fraction is of nothing.
+            If the structure does not rock in this direction, the tilt exceeds this rotation, or a fraction has no
+            reference.
         """
         way = Direction.NEGATIVE if self.size < 0 else Direction.POSITIVE
         if way not in structure.mechanism.directions:

@@ -1,4 +1,4 @@
-"""What one ground motion does to a structure: in either polarity, with its neighbours, and the pulse in it alone."""
+"""The response of a structure to one ground motion: in both polarities, with neighbours, and to its pulse alone."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ BEST = "best"
 
 @dataclass(frozen=True)
 class Question:
-    """What is asked of every motion.
+    """Options of the response to ground motions.
 
     Parameters
     ----------
     signs : tuple of int
-        Polarities, of 1 and -1.
+        The polarities: 1, -1 or both.
     release : float or None
-        Start at rest from this fraction of phi_cr.
+        Fraction of phi_cr at which the structure starts at rest; None: phi = 0.
     tail : float
-        How long the samples go on after the record [s].
+        Duration of the history after the end of the record [s].
     rtol : float
         Relative local error of a step.
     with_pulse : str or None
-        Also the response to the pulse in the record alone: its shape, or "best".
+        Shape of the pulse under which the response is computed as well, or "best"; None for no pulse.
     around : Neighbourhood
         The neighbours of every motion; a count of 0 for none.
     release_is_angle : bool
@@ -57,24 +57,24 @@ class Question:
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """What became of a structure under one motion.
+    """Response of a structure to one ground motion.
 
     Parameters
     ----------
     given : Scaled or None
         The motion as read; None for a free release.
     first : GroundMotion or None
-        The motion as scaled, in the first requested polarity.
+        The scaled motion in the first requested polarity.
     runs : mapping of int to mapping of str to History
         The histories under each polarity.
     neighbours : mapping of int to Neighbours
-        What became of the neighbours of the motion, under each polarity; empty if there were to be none.
+        Outcomes of the neighbours of the motion, under each polarity; empty if none were requested.
     fit, to_pulse : PulseFit and mapping of str to History, optional
-        The pulse in the motion, and the histories under it alone.
+        The pulse fitted to the motion, and the histories under this pulse alone.
     contacts : mapping of int to ContactDemand
-        What the nonlinear history asks of the contacts, under each polarity; empty without that history.
+        Check of the contacts in the nonlinear history, under each polarity; empty without that history.
     to_pulse_contact : ContactDemand, optional
-        The same under the pulse alone.
+        Check of the contacts under the pulse alone.
     """
 
     given: Scaled | None
@@ -88,7 +88,7 @@ class Response:
 
 
 def response_of(structure: Structure, names: Sequence[ModelName], given: Scaled | None, asked: Question) -> Response:
-    """Follow models of a structure under a motion, or freely from a release."""
+    """Simulate models of a structure under a motion, or freely from a release, and return all results."""
     contacts = Contacts(structure.mechanism)
     follow = partial(respond, structure, models=names, release=asked.release, tail=asked.tail, rtol=asked.rtol)
     under = {sign: given.motion.scaled(sign * given.factor) if given is not None else None for sign in asked.signs}
@@ -118,6 +118,6 @@ def response_of(structure: Structure, names: Sequence[ModelName], given: Scaled 
 
 
 def _find(motion: GroundMotion, shape: str) -> PulseFit:
-    """The pulse of a shape, or of the best, that captures most energy of the velocity of a motion."""
+    """Return the pulse of a shape, or of the best shape, that captures most energy of the velocity of a motion."""
     fits = fit_pulses(motion, tuple(FITTED) if shape == BEST else (shape,), ("velocity",))
     return max(fits, key=lambda each: each.captured)

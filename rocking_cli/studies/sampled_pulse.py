@@ -1,4 +1,4 @@
-"""The history of any model of a structure under a pulse of any shape, sampled finely enough."""
+"""Time history of any model of a structure under a sampled pulse of any shape, with convergence of the sampling."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class SampledHistory:
     Parameters
     ----------
     history : History
-        Under the finest sampling.
+        The history under the finest sampling.
     per_period : int
-        Its samples to a period.
+        Number of samples in a period.
     converged : bool
-        Whether half as many give the same peak ratio to 1e-6 of it, overturn likewise, or are of unknown outcome, too.
+        Whether half as many samples give the same outcome, and the same peak ratio within a relative 1e-6.
     """
 
     history: History
@@ -34,16 +34,16 @@ class SampledHistory:
 
 
 def sampled_history(structure: Structure, model: ModelName, pulse: Pulse, polarity: int = 1) -> SampledHistory:
-    """The history of a model under a pulse, its sampling refined until that changes nothing.
+    """Simulate a model under a pulse, with the sampling refined until the result does not change.
 
     Parameters
     ----------
     structure : Structure
-        What the pulse shakes.
+        The structure.
     model : {"nonlinear", "linear1", "linear2"}
-        Which equation of motion.
+        The equation of motion.
     pulse : Pulse
-        Any.
+        Any pulse.
     polarity : {1, -1}
         -1 reverses the pulse.
 
@@ -53,8 +53,8 @@ def sampled_history(structure: Structure, model: ModelName, pulse: Pulse, polari
 
     Notes
     -----
-    The motion under n samples to a period is off by order n^-4 of its peak, n^-3 where it only just uplifts: the last
-    halving of the interval changes at least seven times as much as is left to change.
+    With n samples to a period, the error of the motion is of order n^-4 of its peak, n^-3 if it only just uplifts: the
+    last halving of the interval changes the result at least seven times as much as the error that remains.
     """
     engine, before, per_period = engine_of(structure), None, COARSEST
     while True:

@@ -1,4 +1,4 @@
-"""A structure at other sizes: whether shape alone decides how it rocks, and each of them where it does not."""
+"""A structure at other sizes: whether shape alone decides how it rocks, and the structure of each size if not."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ STEPS = 50  # of the search
 
 
 class Sizes:
-    """The sizes of a structure.
+    """The versions of a structure with all lengths multiplied by a scale.
 
     Parameters
     ----------
     mechanism : Mechanism
-        The structure at scale 1, with the restitution that holds.
+        The structure at scale 1, with the restitution that is used.
     model : {"nonlinear", "linear1", "linear2"}
-        Its equation of motion.
+        The equation of motion.
     direction : Direction
-        The one whose p measures sizes.
+        The direction whose p measures sizes.
     """
 
     def __init__(self, mechanism: Mechanism, model: ModelName, direction: Direction) -> None:
@@ -44,7 +44,7 @@ class Sizes:
         self._known: dict[float, Equivalence] = {}
 
     def at(self, scale: float) -> Mechanism:
-        """The structure with every length multiplied. Raises `InputError` if there is none."""
+        """Return the structure with every length multiplied by a scale. Raises `InputError` if it cannot be built."""
         try:
             return self.mechanism.enlarged(scale)
         except ValidationError as error:
@@ -53,7 +53,7 @@ class Sizes:
             raise InputError(Problem(message, hint="choose other sizes")) from None
 
     def equivalence(self, scale: float) -> Equivalence:
-        """Its equivalent blocks at a scale. Raises as `at`, or `MechanismError` if it does not stand."""
+        """Return the equivalent blocks at a scale. Raises as `at`, or `MechanismError` if it does not stand."""
         if scale not in self._known:
             try:
                 self._known[scale] = equivalent_block(self.at(scale))
@@ -62,20 +62,20 @@ class Sizes:
         return self._known[scale]
 
     def block(self, scale: float) -> EquivalentBlock:
-        """The equivalent block of the direction that measures sizes, at a scale. Raises as `equivalence`."""
+        """Return the equivalent block, at a scale, of the direction that measures sizes. Raises as `equivalence`."""
         return self.equivalence(scale)[self.direction]
 
     def build(self, scale: float) -> Model:
-        """Its model at a scale. Raises as `equivalence`, or if its restitution is not known."""
+        """Return the model at a scale. Raises as `equivalence`, or if the restitution is not known."""
         mechanism = self.at(scale)
         return Structure(mechanism.model_copy(update={"name": self._named(scale)})).model(self.model)
 
     def period(self, scale: float) -> float:
-        """2 pi/p at a scale [s]."""
+        """Return 2 pi/p at a scale [s]."""
         return 2 * pi / self.block(scale).p
 
     def scale(self, period: float) -> float:
-        """The scale at which 2 pi/p has a value [s]. Raises as `equivalence`, or if there is none."""
+        """Return the scale at which 2 pi/p has a value [s]. Raises as `equivalence`, or if there is none."""
         one, off = 0.0, log(period / self.period(1.0))  # in logarithms, where 2 pi/p grows about half as the scale
         two = 2 * off
         for _ in range(STEPS):
@@ -91,9 +91,9 @@ class Sizes:
         raise InputError(message)
 
     def are_alike(self) -> bool:
-        """Whether every size rocks as this one, but for the time it takes: no load or mass is given that stays.
+        """Return whether all sizes rock alike, in different time only: no load or mass is given that does not scale.
 
-        Nor a strength, against which the joints of a history are checked: the weight increases faster than it.
+        A strength against which joints are checked also excludes this: the weight increases faster than the strength.
         """
         if self.model == "nonlinear" and isinstance(self.mechanism.strength, Strength):
             return False
@@ -116,7 +116,7 @@ class Sizes:
 
 
 def _shape_of(equivalence: Equivalence, scale: float) -> list[float]:
-    """What does not change with size where shape alone decides."""
+    """Return parameters that do not change with size if shape alone decides how a structure rocks."""
     return [
         value
         for block in (equivalence[direction] for direction in Direction)

@@ -1,4 +1,4 @@
-"""Rocking response spectra: the peak rotation under ground motions over the size of a structure of one shape."""
+"""Rocking response spectra: peak rotation under ground motions as a function of the size of a structure."""
 
 from __future__ import annotations
 
@@ -28,23 +28,24 @@ TOGETHER = 50  # sizes of their own in one call: their tables are in memory at o
 
 @dataclass(frozen=True, eq=False)
 class SpectrumShape:
-    """What a spectrum is of: a structure, or a block of a slenderness, to be enlarged and reduced.
+    """The structure of a spectrum, or a block of given slenderness, to be scaled to other sizes.
 
     Parameters
     ----------
     structure : PulsedModel
-        At scale 1; its direction is the one with the smaller uplift acceleration, whose p measures sizes.
+        The model at scale 1; its direction is the one with the smaller uplift acceleration, whose p measures sizes.
     slenderness : float, optional
-        alpha [rad] of a block whose R is 1 m at scale 1, so that its scale is R in m; None for a structure as given.
+        Slenderness alpha [rad] of a block whose R is 1 m at scale 1, so that its scale is R in m; None for a given
+        structure.
     own : Sizes, optional
-        The structures of other sizes, where loads that do not grow with them make them rock otherwise; None where shape
-        alone decides.
+        The structures of other sizes, if loads that do not scale make them rock differently; None if shape alone
+        decides.
     hung : bool
-        Whether loads or ties are given, whose places alone grow with it.
+        Whether there are loads or ties, of which only the positions scale with the structure.
     bodies : int
-        Number of its bodies.
+        Number of bodies of the structure.
     caution : str
-        What to bear in mind with its lambda; empty if nothing.
+        A caution about the lambda of the structure; empty if there is none.
     """
 
     structure: PulsedModel
@@ -56,7 +57,7 @@ class SpectrumShape:
 
     @property
     def leaves_out_joints(self) -> bool:
-        """Whether it is an equivalent block of several bodies, whose joints are not checked."""
+        """Whether the model is an equivalent block of several bodies, whose joints are not checked."""
         return self.structure.model.is_linear and self.bodies > 1
 
     @property
@@ -65,13 +66,13 @@ class SpectrumShape:
         return 2 * pi / self.structure.p
 
     def scales(self, periods: Reals) -> Reals:
-        """The factors on every length that give 2 pi/p these values [s]: with shape alone p^2 goes as one over it."""
+        """Return the scales at which 2 pi/p has given values [s]; if shape alone decides, p^2 is 1 over scale."""
         if self.own is not None:
             return np.array([self.own.scale(period) for period in periods.tolist()])
         return np.square(periods / self.period)
 
     def periods(self, scales: Reals) -> Reals:
-        """2 pi/p at these scales [s]."""
+        """Return 2 pi/p at some scales [s]."""
         if self.own is not None:
             return np.array([self.own.period(scale) for scale in scales.tolist()])
         return self.period * np.sqrt(scales)
@@ -80,18 +81,18 @@ class SpectrumShape:
 def shape_of(
     mechanism: Mechanism, model: ModelName, eta: float | None = None, file: str | None = None
 ) -> SpectrumShape:
-    """A structure to be enlarged and reduced.
+    """Prepare a structure for scaling to other sizes.
 
     Parameters
     ----------
     mechanism : Mechanism
         The structure.
     model : {"nonlinear", "linear1", "linear2"}
-        Its equation of motion.
+        The equation of motion.
     eta : float, optional
-        Coefficient of restitution of every impact; without it the structure's own.
+        Coefficient of restitution of every impact; by default that of the structure.
     file : str, optional
-        Where it stands, for messages.
+        File of the structure, for messages.
 
     Raises
     ------
@@ -109,7 +110,7 @@ def shape_of(
 
 
 def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) -> SpectrumShape:
-    """Rectangular blocks of one slenderness alpha = atan(b/h) [rad] and any size. Raises as `shape_of`."""
+    """Return rectangular blocks of one slenderness alpha = atan(b/h) [rad] and any size. Raises as `shape_of`."""
     if not 0 < slenderness < pi / 2:
         raise InputError(
             Problem(
@@ -128,26 +129,26 @@ def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) ->
 
 
 def usual_sizes(shapes: Sequence[SpectrumShape]) -> tuple[float, float]:
-    """The smallest and the largest size to show, as 2 pi/p [s]."""
+    """Return the default smallest and largest size of a spectrum, as 2 pi/p [s]."""
     own = [each.period for each in shapes if each.slenderness is None]
     return (min(own) / AROUND**0.5, max(own) * AROUND**0.5) if own else BLOCKS
 
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """What ground motions do to the sizes of a shape.
+    """Responses of a shape at several sizes to ground motions.
 
     Parameters
     ----------
     shape : SpectrumShape
-        What is shaken.
+        The shape.
     scales : ndarray, shape (n,)
-        Factors on every length, ascending; 1 is among them if it is a structure as given.
+        Factors on every length, increasing; 1 is among them for a given structure.
     peak_ratio : ndarray, shape (m, n)
-        Largest rotation over the critical one under each of m motions: 0 without uplift, inf if it overturns or the
-        outcome is unknown, NaN if the motion could not be followed.
+        Peak rotation over the critical one under each of m motions: 0 without uplift, inf if the structure overturns or
+        the outcome is unknown, NaN if the motion could not be simulated.
     lower_bound : ndarray, shape (m, n), or nan
-        What the peak ratio is at least if the outcome is unknown, because a joint opens or slides that the model keeps
+        Lower bound of the peak ratio if the outcome is unknown because a joint opens or slides that the model keeps
         closed; NaN if the outcome is known.
     """
 
@@ -158,7 +159,7 @@ class Spectrum:
 
     @property
     def unknown(self) -> NDArray[np.bool_]:
-        """Whether the outcome is unknown, shape (m, n)."""
+        """Mask of unknown outcomes, shape (m, n)."""
         return np.broadcast_to(~np.isnan(self.lower_bound), self.peak_ratio.shape)
 
     @property
@@ -168,12 +169,12 @@ class Spectrum:
 
     @property
     def periods(self) -> Reals:
-        """2 pi/p of the sizes [s]."""
+        """2 pi/p of the sizes, shape (n,) [s]."""
         return self.shape.periods(self.scales)
 
     @property
     def uplifts(self) -> Reals:
-        """Uplift acceleration over g of the sizes, in the direction that measures them, shape (n,)."""
+        """Uplift acceleration over g at each size, in the direction that measures sizes, shape (n,)."""
         own, model = self.shape.own, self.shape.structure.model.name
         if own is None:
             return np.full(self.scales.size, self.shape.structure.lambda_)
@@ -181,64 +182,64 @@ class Spectrum:
 
     @property
     def given(self) -> int | None:
-        """The place of the structure as given; None for blocks of a slenderness."""
+        """Index of the structure as given among the sizes; None for blocks of a slenderness."""
         return None if self.shape.slenderness is not None else int(np.flatnonzero(self.scales == 1.0)[0])
 
     @property
     def followed(self) -> Integers:
-        """How many motions were followed at each size, shape (n,)."""
+        """Number of motions that were simulated at each size, shape (n,)."""
         counts: Integers = np.sum(~np.isnan(self.peak_ratio), axis=0)
         return counts
 
     @property
     def overturned(self) -> Integers:
-        """How many of them overturn it, shape (n,)."""
+        """Number of motions that are known to overturn the structure at each size, shape (n,)."""
         counts: Integers = np.sum(np.isinf(self.peak_ratio) & ~self.unknown, axis=0)
         return counts
 
     @property
     def doubtful(self) -> Integers:
-        """How many of them have an unknown outcome, shape (n,)."""
+        """Number of motions with an unknown outcome at each size, shape (n,)."""
         counts: Integers = np.sum(self.unknown, axis=0)
         return counts
 
     @property
     def share(self) -> Reals:
-        """The share of the motions followed that overturn it, shape (n,); NaN if there is none."""
+        """Share of the simulated motions that overturn the structure at each size, shape (n,); NaN without motions."""
         return self._share(self.overturned)
 
     @property
     def share_at_most(self) -> Reals:
-        """The share that overturns if all of unknown outcome do, shape (n,); NaN if there is none."""
+        """Share that overturns if all motions of unknown outcome do, shape (n,); NaN without motions."""
         return self._share(self.overturned + self.doubtful)
 
     def _share(self, counts: Integers) -> Reals:
         return np.where(self.followed > 0, counts / np.maximum(self.followed, 1), np.nan)
 
     def fractile(self, q: float) -> Reals:
-        """See `fractile`, shape (n,); motions of unknown outcome count as overturning."""
+        """Return the q-fractile of the peak ratio, shape (n,); unknown outcomes count as overturning."""
         return fractile(self.peak_ratio, q)
 
     def fractile_overturns(self, q: float) -> NDArray[np.bool_]:
-        """Whether a fractile overturns even if no motion of unknown outcome does, shape (n,)."""
+        """Return whether the q-fractile overturns even if no unknown outcome does, shape (n,)."""
         return np.isinf(fractile(np.where(self.unknown, self.lower_bound, self.peak_ratio), q))
 
 
 def fractile(peaks: Reals, q: float) -> Reals:
-    """The q-fractile of peaks under several motions, overturning being larger than any peak.
+    """Return the q-fractile of peaks under several motions; overturning ranks above any peak.
 
     Parameters
     ----------
     peaks : ndarray, shape (m, n)
-        Peaks of m motions, inf where it overturns; those that are NaN are left out.
+        Peaks under m motions, inf for overturning; NaN values are left out.
     q : float
-        In [0, 1]; 0.5 for the median.
+        Fractile in [0, 1]; 0.5 for the median.
 
     Returns
     -------
     ndarray, shape (n,)
-        By straight lines between the ordered peaks, (k - 1)/(m - 1) being the place of the k-th; inf where overturning
-        has a part in it, NaN where there is no peak.
+        By linear interpolation between the ordered peaks, of which the k-th has the fractile (k - 1)/(m - 1); inf if a
+        neighbour in the order overturns, NaN if there is no peak.
     """
     ordered = np.sort(peaks, axis=0)  # NaN come last
     last = np.maximum(np.count_nonzero(~np.isnan(peaks), axis=0) - 1, 0)
@@ -259,7 +260,7 @@ def spectra(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> list[Spectrum]:
-    """Shake every size of several shapes.
+    """Simulate every size of several shapes under ground motions.
 
     Parameters
     ----------
@@ -268,25 +269,25 @@ def spectra(
     periods : ndarray, shape (n,)
         Sizes, as 2 pi/p [s].
     motions : sequence of GroundMotion
-        What shakes them.
+        The ground motions.
     polarities : sequence of int
-        Of 1 and -1; with both, the worse of the two counts for each motion.
+        The polarities, 1, -1 or both; of both, the worse governs for each motion.
     threads : int, optional
-        Histories at a time; without it, one for each processor.
+        Number of threads; by default one for each processor.
     progress : callable, optional
-        Called with the number of histories done since the last call, of `count_histories(...)`.
+        Called with the number of histories done since the last call; `count_histories(...)` is their total.
 
     Returns
     -------
     list of Spectrum
-        One for each shape. A structure as given is run at scale 1 too, whatever the sizes.
+        One for each shape. A given structure is also simulated at scale 1, whatever the sizes.
 
     Notes
     -----
     Every length of the structure is multiplied by the scale: slenderness, uplift, critical rotation and restitution
-    stay, and p goes as one over the square root of the scale. Where they do not stay, because masses or loads are given
-    that do not grow with it, every size is built and followed as a structure of its own. Makris and Konstantinidis
-    (2003) draw the spectrum of a block of given slenderness over 2 pi/p.
+    stay the same, and p is inverse to the square root of the scale. If they change, because masses or loads are given
+    that do not scale, every size is built and simulated as a structure of its own. Makris and Konstantinidis (2003)
+    plot the spectrum of a block of given slenderness against 2 pi/p.
     """
     if not motions:
         raise InputError("no ground motion was given")
@@ -316,7 +317,7 @@ def _of_one_shape(
     threads: int | None,
     progress: Progress | None,
 ) -> Outcomes:
-    """Outcomes under every motion, polarity and scale: one model, whose motion at another size has another pace."""
+    """Simulate every motion, polarity and scale with one model, whose motion at another size has another pace."""
     runs = Runs.every(1, len(motions), polarities=signs, sizes=scales.tolist())
     found = _outcomes([shape.structure.model], motions, runs, threads, progress)
     return found.by_field(lambda values: values.reshape(-1, len(signs), scales.size))
@@ -330,7 +331,7 @@ def _each_its_own(
     threads: int | None,
     progress: Progress | None,
 ) -> Outcomes:
-    """Likewise, with a model for every scale."""
+    """Simulate every motion, polarity and scale, with a model for every scale."""
     assert shape.own is not None
     parts = []
     for start in range(0, scales.size, TOGETHER):
@@ -355,7 +356,7 @@ def _outcomes(
 
 
 def count_histories(shapes: Sequence[SpectrumShape], periods: Reals, motions: int, polarities: Sequence[int]) -> int:
-    """How many histories `spectra` runs."""
+    """Return the number of histories that `spectra` simulates."""
     return motions * sum(_scales(each, periods).size * len(_signs(each, polarities)) for each in shapes)
 
 

@@ -1,4 +1,4 @@
-"""A table of structures, one a row: its columns are fields, and each row becomes a structure of its own."""
+"""A table of structures, one in each row: columns are fields, and each row becomes a structure."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ class Column:
     Parameters
     ----------
     place : int
-        Which of the cells of a row.
+        Index of the cell in a row.
     heading : str
-        As the table has it.
+        Heading of the column in the table.
     path : tuple of str
         The field, see `rocking_cli.io.dotted`.
     unit : str
-        That of its numbers which have none of their own; empty for that of the field.
+        Unit of numbers in the column that are given without a unit; empty for the unit of the field.
     """
 
     place: int
@@ -65,18 +65,18 @@ class _RowDocument(Document):
     def problem(
         self, message: str, mark: yaml.Mark | None, name: str | None = None, hint: str | None = None
     ) -> Problem:
-        """A problem of this row."""
+        """Return a problem of this row."""
         return Problem(message, self.file, self.line, field=name, hint=hint)
 
     def at(self, place: Place, message: str, hint: str | None = None, *, key: bool = False) -> Problem:
-        """A problem with what a column holds, or with a field that none has."""
+        """Return a problem with the content of a column, or with a field that has no column."""
         own = next((self.columns[place[:k]] for k in range(len(place), 0, -1) if place[:k] in self.columns), None)
         of_file = ": ".join(each for each in (cut(one_line(self.base)), spell(place)) if each)
         return self.problem(message, None, own or of_file, hint)
 
 
 class _Kept(Registry):
-    """All mechanisms that are installed, each looked up once: a table asks for the same ones thousands of times."""
+    """All installed mechanisms, each looked up once, as a table looks up the same ones thousands of times."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -89,21 +89,21 @@ class _Kept(Registry):
 
 
 class StructureTable(Sequence["TableRow"]):
-    """The structures of a table, each made on demand.
+    """The structures of a table, each built on demand.
 
     Parameters
     ----------
     sheet : Spreadsheet
         The table.
     folder : Path
-        Where files that it names are.
+        Folder of the files that the table names.
     registry : Registry, optional
-        Where to look up mechanisms; by default all that are installed.
+        Mechanisms to use; by default all that are installed.
 
     Raises
     ------
     InputError
-        If a heading is no field of any mechanism that its rows have.
+        If a heading is not a field of any mechanism in the rows.
     """
 
     def __init__(self, sheet: Spreadsheet, folder: Path, registry: Registry | None = None) -> None:
@@ -116,7 +116,7 @@ class StructureTable(Sequence["TableRow"]):
 
     @classmethod
     def read(cls, path: Path) -> StructureTable:
-        """That of a CSV file. Raises `InputError` if it cannot be used."""
+        """Read a table from a CSV file. Raises `InputError` if it cannot be used."""
         return cls(read_sheet(path), path.parent)
 
     def __len__(self) -> int:
@@ -130,20 +130,20 @@ class StructureTable(Sequence["TableRow"]):
 
     @property
     def short(self) -> list[int]:
-        """The lines of rows that have fewer cells than there are headings."""
+        """Line numbers of rows that have fewer cells than there are headings."""
         return [row.line for row in self.sheet.rows if row.short]
 
     def text(self, row: Row, name: str) -> str:
-        """A cell by the heading of its column; empty without one."""
+        """Return the text of a row's cell, by the heading of its column; empty without such a column."""
         return row.cells[self._special[name]] if name in self._special else ""
 
     def base_of(self, row: Row) -> str:
-        """The YAML file that a row changes; empty for none. Other files are fields of mechanisms."""
+        """Return the YAML file that a row modifies; empty for none. Other files are fields of mechanisms."""
         named = self.text(row, BASE)
         return named if named.lower().endswith(YAML) else ""
 
     def base(self, named: str) -> dict[str, Any]:
-        """The data of a YAML file, read once. Raises `InputError` if there are none."""
+        """Return the data of a YAML file, read once. Raises `InputError` if it cannot be read."""
         if named not in self._bases:
             path = self.folder / named
             try:
@@ -182,7 +182,7 @@ class StructureTable(Sequence["TableRow"]):
         return found
 
     def _check_fields(self) -> None:
-        """Hold the headings against the fields of all mechanisms that rows have."""
+        """Check the headings against the fields of all mechanisms in the rows."""
         classes = []
         for name in sorted(self._mechanisms()):
             try:
@@ -217,7 +217,7 @@ class StructureTable(Sequence["TableRow"]):
             raise InputError(*problems)
 
     def _mechanisms(self) -> set[str]:
-        """The names of mechanisms that rows have, known or not."""
+        """Return the names of the mechanisms in the rows, known or not."""
         found = {self.text(row, MECHANISM) for row in self.sheet.rows}
         for named in {self.base_of(row) for row in self.sheet.rows if not self.text(row, MECHANISM)} - {""}:
             try:
@@ -236,7 +236,7 @@ class TableRow:
     table : StructureTable
         The table.
     place : int
-        Which of its rows, counted from 0.
+        Index of the row, from 0.
     """
 
     table: StructureTable
@@ -244,21 +244,21 @@ class TableRow:
 
     @property
     def row(self) -> Row:
-        """Its cells."""
+        """Cells of the row."""
         return self.table.sheet.rows[self.place]
 
     @property
     def line(self) -> int:
-        """Where it begins in the file."""
+        """Line number in the file at which the row begins."""
         return self.row.line
 
     @property
     def name(self) -> str:
-        """What it is called, whether or not it can be used."""
+        """Name of the structure, whether or not it can be used."""
         return one_line(self.table.text(self.row, "name")) or f"row {self.place + 1}"
 
     def make(self) -> Mechanism:
-        """The structure.
+        """Build the structure of the row.
 
         Raises
         ------
@@ -297,7 +297,7 @@ class TableRow:
             raise InputError(document.problem(message, None, BASE, first.hint)) from None
 
     def _fill(self, document: _RowDocument, based: str) -> None:
-        """Put the cells that are not empty where they belong; what cannot be is noted."""
+        """Write the non-empty cells to the fields of a document; add problems for those that cannot be written."""
         table, data = self.table, document.data
         if given := table.text(self.row, MECHANISM):
             data[MECHANISM] = given
@@ -338,7 +338,7 @@ def _types(cls: type[Mechanism] | None, place: Place) -> frozenset[Any]:
 
 
 def _value(text: str, column: Column, types: frozenset[Any], *, decimal_comma: bool) -> Any:
-    """What a cell says: a number, a list of them, or a text; texts with units become numbers where the fields are."""
+    """Read a cell: a number, a list of numbers, or a text; texts with units are converted later, at the field."""
     if str in types and not types & {float, int}:
         return text
     if text[0] in "[{" and not (decimal_comma and ";" in text):
@@ -369,14 +369,14 @@ def _one(text: str, column: Column, *, decimal_comma: bool) -> Any:
 
 
 def _with_unit(value: Any, unit: str) -> Any:
-    """Numbers as texts with the unit of their heading, if it has one."""
+    """Return a number as text with the unit of its heading, if the heading has one; lists entry by entry."""
     if isinstance(value, list):
         return [_with_unit(each, unit) for each in value]
     return f"{value} {unit}" if unit and isinstance(value, int | float) and not isinstance(value, bool) else value
 
 
 def of_mapping(columns: Mapping[str, Sequence[Any]], name: str = "table") -> StructureTable:
-    """A table given in Python as columns, such as a frame of pandas; empty texts, None and NaN are fields not given."""
+    """Return a table from columns, such as a frame of pandas; empty texts, None and NaN are fields not given."""
     headings = tuple(str(each).strip() for each in columns)
     cells = [[_text(value) for value in columns[key]] for key in columns]
     if len({len(each) for each in cells}) > 1:

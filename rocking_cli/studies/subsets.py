@@ -1,7 +1,7 @@
-"""The subset of some curves whose mean stays within limits about 1 and nearest to 1, with one factor on all of them.
+"""The subset of curves whose mean, with a common factor, stays within limits about 1 and is nearest to 1.
 
-All subsets are tried where they are few enough; else searches from several starts add the best curve until there are
-enough, and exchange one for another as long as that is better.
+If there are few enough subsets, all are tried. Otherwise searches from several starts add the best curve until there
+are enough, and then exchange one curve for another as long as this improves the subset.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ EXCHANGES = 1000  # in a search, at most
 
 @dataclass(frozen=True, eq=False)
 class SubsetProblem:
-    """What is to be chosen.
+    """A selection problem: the curves, and the limits on their mean and factors.
 
     Parameters
     ----------
     curves : ndarray, shape (curves, n)
-        Positive ordinates over the target, each with a factor of its own already.
+        Positive ordinates over the target, each curve already multiplied by its own factor.
     weights : ndarray, shape (n,)
-        Of the points, with the sum 1.
+        Weights of the points, with the sum 1.
     log_factors : ndarray, shape (curves,)
-        Logarithms of these factors.
+        Logarithms of the curves' own factors.
     groups : ndarray of int, shape (curves,)
-        From 0 on; of each group there may be one curve.
+        Group of each curve, from 0; a set may have one curve of each group.
     count : int
-        How many curves a set has.
+        Number of curves in a set.
     within : (float, float)
         Limits on the mean.
     factors : (float, float)
@@ -58,12 +58,12 @@ class SubsetProblem:
 
     @property
     def steps(self) -> int:
-        """How much work there is, as `best` tells it."""
+        """Number of steps of which `best` reports the progress: sets or searches."""
         return count_sets(self.groups, self.count) if all_tried(self.groups, self.count) else STARTS
 
 
 class Judged(NamedTuple):
-    """Of sets, each in an array: ln of how far the mean leaves the limits, rms of ln(mean), ln of the common factor."""
+    """Quality of sets, in arrays: ln of the excess over the limits, rms of ln(mean), ln of the common factor."""
 
     excess: Reals
     rms: Reals
@@ -71,7 +71,7 @@ class Judged(NamedTuple):
 
 
 class Best(NamedTuple):
-    """The curves of a set in their order, its excess and rms as in `Judged`, and the common factor."""
+    """A set: its curves in their order, its excess and rms as in `Judged`, and the common factor."""
 
     members: Integers
     excess: float
@@ -79,7 +79,7 @@ class Best(NamedTuple):
     common: float
 
     def better(self, other: Best | None) -> bool:
-        """Whether it goes before another: by the excess, then the rms, then the order of the curves."""
+        """Return whether this set is better than another: by excess, then rms, then the order of the curves."""
         if other is None:
             return True
         for mine, theirs in ((self.excess, other.excess), (self.rms, other.rms)):
@@ -89,7 +89,7 @@ class Best(NamedTuple):
 
 
 def count_sets(groups: Integers, count: int) -> int:
-    """How many sets of so many there are with at most one of each group."""
+    """Return the number of sets of `count` curves with at most one of each group."""
     found = [1] + [0] * count
     for size in np.bincount(groups).tolist():
         for k in range(count, 0, -1):
@@ -98,22 +98,22 @@ def count_sets(groups: Integers, count: int) -> int:
 
 
 def all_tried(groups: Integers, count: int) -> bool:
-    """Whether so few sets there are, and so small ones, that `best` tries all."""
+    """Return whether the sets are so few and so small that `best` tries all."""
     sets = count_sets(groups, count)
     return sets <= MOST_TRIED and sets * count <= MOST_MEMBERS
 
 
 def best(problem: SubsetProblem, seed: int, progress: Callable[[int], object] = lambda done: None) -> Best:
-    """The best set of all, or the best that searches find.
+    """Return the best of all sets, or the best that searches find.
 
     Parameters
     ----------
     problem : SubsetProblem
-        With at least `count` groups.
+        A problem with at least `count` groups.
     seed : int
-        Of the starts of the searches.
+        Seed of the starts of the searches.
     progress : callable, optional
-        Told how many more of `steps` are done.
+        Called with the number of `steps` done since the last call.
     """
     if all_tried(problem.groups, problem.count):
         return _best_of_all(problem, progress)
@@ -130,16 +130,16 @@ def best(problem: SubsetProblem, seed: int, progress: Callable[[int], object] = 
 
 
 def judge(problem: SubsetProblem, sums: Reals, count: int, least: Reals, most: Reals) -> Judged:
-    """How good sets are, each with the best common factor that is allowed.
+    """Return the quality of sets, each with the best permitted common factor.
 
     Parameters
     ----------
     problem : SubsetProblem
         The limits and weights.
     sums : ndarray, shape (sets, n)
-        Of the curves of each set.
+        Sum of the curves of each set.
     count : int
-        How many these are.
+        Number of curves in each set.
     least, most : ndarray, shape (sets,)
         Smallest and largest logarithm of the own factors in each set.
     """
@@ -163,7 +163,7 @@ def judge(problem: SubsetProblem, sums: Reals, count: int, least: Reals, most: R
 
 
 def _judge_members(problem: SubsetProblem, members: Integers) -> Judged:
-    """The same of sets given by their curves, shape (sets, count)."""
+    """Return the quality of sets given by the indices of their curves, shape (sets, count)."""
     factors = problem.log_factors[members]
     sums = problem.curves[members].sum(axis=1)
     return judge(problem, sums, members.shape[1], factors.min(axis=1), factors.max(axis=1))
@@ -185,14 +185,14 @@ def _best_of_all(problem: SubsetProblem, progress: Callable[[int], object]) -> B
 
 
 def _all_sets(problem: SubsetProblem) -> Iterator[tuple[int, ...]]:
-    """Every set: of every choice of groups every choice of one from each."""
+    """Yield every set: for every choice of groups, every choice of one curve from each."""
     of_group = [np.flatnonzero(problem.groups == k).tolist() for k in range(int(problem.groups.max()) + 1)]
     for groups in combinations(of_group, problem.count):
         yield from product(*groups)
 
 
 def _picked(members: Integers, judged: Judged) -> Best:
-    """The first of the best, shape (sets, count), where differences that are rounding are none."""
+    """Return the first of the best sets, shape (sets, count), ignoring differences due to rounding."""
     kept = np.flatnonzero(judged.excess <= judged.excess.min() + SAME)
     kept = kept[judged.rms[kept] <= judged.rms[kept].min() + SAME]
     k = int(kept[0])
@@ -200,14 +200,14 @@ def _picked(members: Integers, judged: Judged) -> Best:
 
 
 def _grown(problem: SubsetProblem, members: list[int]) -> list[int]:
-    """A set with the best curve added until there are enough."""
+    """Add the best curve to a set until it has enough."""
     while len(members) < problem.count:
         members = [*members, _added(problem, members)[0]]
     return members
 
 
 def _exchanged(problem: SubsetProblem, members: list[int]) -> Best:
-    """A set with one curve exchanged for another, the best of all such steps, as long as there is a better one."""
+    """Improve a set by exchanging one curve at a time, always in the best way, until no exchange improves it."""
     now = _picked(every := np.sort(np.array([members], dtype=np.intp)), _judge_members(problem, every))
     for _ in range(EXCHANGES):
         tried = now
@@ -223,7 +223,7 @@ def _exchanged(problem: SubsetProblem, members: list[int]) -> Best:
 
 
 def _added(problem: SubsetProblem, members: list[int]) -> tuple[int, float, float, float]:
-    """The curve that is best added to a set, and excess, rms and common factor of what results."""
+    """Return the curve that is best added to a set, and excess, rms and common factor of the result."""
     free = np.flatnonzero(~np.isin(problem.groups, problem.groups[members]))
     sums = problem.curves[members].sum(axis=0) + problem.curves[free]
     own, those = problem.log_factors[members], problem.log_factors[free]

@@ -1,4 +1,4 @@
-"""Many structures at once: the equivalent block of each, what ground motions do to it, and which is most vulnerable."""
+"""A survey of many structures: the equivalent block of each, its response to ground motions, and their ranking."""
 
 from __future__ import annotations
 
@@ -27,38 +27,38 @@ PART = 8  # structures that a thread has in memory at a time: the tables of each
 
 
 class SurveyEntry(Protocol):
-    """A structure that is still to be made."""
+    """A structure that is still to be built."""
 
     @property
     def name(self) -> str:
-        """What it is called, whether or not it can be used."""
+        """Name of the structure, whether or not it can be used."""
 
     @property
     def line(self) -> int | None:
-        """Where it stands in a file."""
+        """Line of the structure in a file; None without one."""
 
     def make(self) -> Mechanism:
-        """The structure. Raises `InputError` or `MechanismError` if it cannot be used."""
+        """Build the structure. Raises `InputError` or `MechanismError` if it cannot be used."""
 
 
 @dataclass(frozen=True)
 class Under:
-    """What ground motions do to a structure, by the nonlinear model.
+    """Response of a structure to ground motions, by the nonlinear model.
 
     Parameters
     ----------
     overturned : float
-        The share of the motions that overturn it; of two polarities of a motion the worse.
+        The share of the motions that overturn the structure; of two polarities of a motion, the worse governs.
     peak_ratio : float
-        The largest peak rotation over the critical one, of the motions under which it stays up for certain; NaN if it
-        does so under none.
+        The largest peak rotation over the critical one, of the motions that are known not to overturn the structure;
+        NaN if there are none.
     worst : str
-        A motion that overturns it, else one of unknown outcome, else that of the peak.
+        A motion that overturns the structure, else one of unknown outcome, else that of the largest peak.
     over : str
-        What the peak is over: "phi_cr", or "limit" where a direction has no critical rotation.
+        Reference of the peak: "phi_cr", or "limit" if a direction has no critical rotation.
     unknown : float or None
-        The share of the motions that do not overturn it for certain, but have an unknown outcome; None if its joints
-        are not known, so that nothing was checked.
+        The share of the motions that have an unknown outcome; None if the joints are not known, so that nothing was
+        checked.
     """
 
     overturned: float
@@ -69,41 +69,41 @@ class Under:
 
     @property
     def at_most(self) -> float:
-        """The share of the motions that overturn it if all of unknown outcome do."""
+        """The share of the motions that overturn the structure if all of unknown outcome do."""
         return self.overturned + (self.unknown or 0.0)
 
 
 @dataclass(frozen=True)
 class Surveyed:
-    """A structure of a survey, in the direction in which it uplifts first.
+    """A structure of a survey, with its results in the direction in which it uplifts first.
 
     Parameters
     ----------
     row : int
-        Its place among the requested rows, counted from 1.
+        Number of the row among those requested, from 1.
     line : int or None
-        Where it stands in a file.
+        Line of the structure in its file.
     name, mechanism : str
-        What it is called, and which mechanism it is.
+        Names of the structure and of its mechanism.
     direction : str
-        "positive", or "negative" where it uplifts earlier that way.
+        "positive", or "negative" if the structure uplifts first in this direction.
     lambda_ : float
-        Uplift acceleration over its own g.
+        Uplift acceleration over the gravitational acceleration of the structure.
     uplift : float
-        The same [standard gravity].
+        Uplift acceleration [standard gravity].
     p, phi_cr, kappa1, kappa2, eta : float
-        Of its equivalent block, see `rocking_cli.core.EquivalentBlock`; NaN where undefined.
+        Parameters of the equivalent block, see `rocking_cli.core.EquivalentBlock`; NaN if undefined.
     no_block : str or None
-        Why no single block is equivalent to it.
+        Why there is no equivalent block; None if there is one.
     doubt : str or None
-        What is doubtful about its size.
+        A doubt about the size of the structure, if any.
     caution : str or None
-        What to bear in mind with its lambda.
+        A caution about the lambda of the structure, if any.
     under : Under, optional
-        What ground motions do to it, if there are any.
+        Response to ground motions, if there are any.
     ratio : float, optional
-        What the code of a site allows over what it asks for, in the direction where that is less: it passes from 1.
-        NaN if the site does not give what the code needs for it; None without a site.
+        Capacity over demand by the code of the site, in the direction where it is smaller; passes from 1. NaN if the
+        site file lacks values that the code needs; None without a site.
     """
 
     row: int
@@ -132,13 +132,13 @@ class Bad:
     Parameters
     ----------
     row : int
-        Its place among the requested rows, counted from 1.
+        Number of the row among those requested, from 1.
     line : int or None
-        Where it stands in a file.
+        Line of the structure in its file.
     name : str
-        What it is called.
+        Name of the structure.
     error : RockingError
-        Why, with the place in the file.
+        The reason, with the place in the file.
     """
 
     row: int
@@ -148,7 +148,7 @@ class Bad:
 
     @property
     def reason(self) -> str:
-        """Why, in one line, without the place in the file."""
+        """The reason in one line, without the place in the file."""
         if not isinstance(self.error, InputError):
             return str(self.error)
         return "; ".join(str(Problem(each.message, field=each.field)) for each in self.error.problems)
@@ -158,7 +158,7 @@ Order = Callable[[Surveyed], tuple[float, ...]]
 
 
 def _rounded(value: float) -> float:
-    """A number to nine digits: what is alike but for rounding keeps its order, whatever the processor."""
+    """Round a number to nine digits, so that equal structures keep their order on every processor."""
     return float(f"{value:.9g}")
 
 
@@ -188,13 +188,13 @@ class Survey:
     Parameters
     ----------
     rows : sequence of Surveyed
-        Ranked; the first has rank 1.
+        The structures in the order of their rank.
     bad : sequence of Bad
-        Those that could not be used, in their order.
+        The structures that could not be used, in their order.
     motions : sequence of str
         The names of the ground motions.
     by : str
-        What they are ranked by, a key of `ORDERS`.
+        The quantity by which they are ranked, a key of `ORDERS`.
     """
 
     rows: Sequence[Surveyed]
@@ -214,25 +214,25 @@ def survey(
     processes: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Survey:
-    """Derive the blocks of structures, follow them under ground motions, and rank them.
+    """Derive the equivalent blocks of structures, simulate them under ground motions, and rank them.
 
     Parameters
     ----------
     entries : sequence of SurveyEntry
-        The structures. They are made and dropped a few at a time, so that any number fits in memory.
+        The structures. They are built and dropped a few at a time, so that any number fits in memory.
     motions : sequence of GroundMotion
-        What shakes them, as scaled.
+        The scaled ground motions.
     polarities : sequence of int
-        Of 1 and -1; with both, the worse counts.
+        The polarities, 1, -1 or both; of both, the worse governs.
     site : SiteFile, optional
-        Where they stand: each is verified by its code.
+        The site: each structure is verified by its code.
     opening : float, optional
-        Largest opening of a joint with which a history is known, over D_cr; without it that of each structure.
+        Largest opening of a joint, over D_cr, up to which a history is known; by default that of each structure.
     threads : int, optional
-        How many at a time; without it, one for each processor.
+        Number of threads; by default one for each processor.
     processes : int, optional
-        So many processes in the place of threads, where there are thousands: each takes a second or two to begin.
-        Entries and motions are sent to each.
+        Number of processes to use instead of threads, for thousands of structures: each takes a second or two to start,
+        and is sent all entries and motions.
     progress : callable, optional
         Called with the number of structures done since the last call.
 
@@ -240,7 +240,8 @@ def survey(
     -------
     Survey
         Ranked by uplift acceleration; with motions by the share that overturns or is of unknown outcome, then by the
-        largest peak, then by uplift acceleration; with a site by the ratio of its code. Equal ones keep their order.
+        largest peak, then by uplift acceleration; with a site by the ratio of its code. Structures that rank equal keep
+        their order.
     """
     found: list[Surveyed | Bad | None] = [None] * len(entries)
     site = of_each(site) if site is not None else None
@@ -270,7 +271,7 @@ def _places(
     first: int,
     stop: int,
 ) -> list[Surveyed | Bad | None]:
-    """What is found of the structures from a number to before another, in any process."""
+    """Return the results of the structures from index `first` to before `stop`, in any process."""
     return _part(entries, range(first, stop), motions, polarities, site, opening)
 
 
@@ -282,7 +283,7 @@ def _part(
     site: SiteFile | None,
     opening: float | None,
 ) -> list[Surveyed | Bad | None]:
-    """What is found of some structures."""
+    """Return the results of some structures."""
     ready: dict[int, Structure] = {}
     models: dict[int, Model] = {}
     found: list[Surveyed | Bad | None] = [None] * len(places)
@@ -310,7 +311,7 @@ def _part(
 
 
 def _placed(error: RockingError, entry: SurveyEntry) -> RockingError:
-    """An error of the mechanics of a structure with its line, which only those of its fields have."""
+    """Return an error of a structure's mechanics with the line of the structure, if it has no line yet."""
     if not isinstance(error, InputError):
         return error
     return InputError(
@@ -319,7 +320,7 @@ def _placed(error: RockingError, entry: SurveyEntry) -> RockingError:
 
 
 def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile | None) -> Surveyed:
-    """A structure without ground motions."""
+    """Return the results of a structure without ground motions."""
     mechanism, sides = structure.mechanism, structure.statics
     k = int(sides[1].lambda_ < sides[0].lambda_ * (1 - 1e-9))
     direction, side = mechanism.sides[k], sides[k]
@@ -346,7 +347,7 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile 
 
 
 def _may_lift(structure: Structure, motions: Sequence[GroundMotion]) -> bool:
-    """Whether any of the motions could lift a structure: where none can, its equation of motion is not needed."""
+    """Return whether any of the motions could uplift a structure; if none can, its equation of motion is not needed."""
     least = min(structure.uplift)
     return any(each.vertical is not None or each.pga_g >= least * (1 - 1e-9) for each in motions)
 
@@ -358,7 +359,7 @@ def _over(structure: Structure) -> str:
 def _under(
     models: Sequence[Model], motions: Sequence[GroundMotion], polarities: Sequence[int]
 ) -> list[Under | SolverError]:
-    """What motions do to each of some structures; an error where one cannot be followed."""
+    """Return the response of each of some structures to ground motions; an error if a motion cannot be simulated."""
     if not models:
         return []
     places = [
@@ -376,7 +377,7 @@ def _under(
 def _of_one(
     model: Model, own: np.ndarray, record: np.ndarray, outcomes: Outcomes, motions: Sequence[GroundMotion]
 ) -> Under | SolverError:
-    """What motions do to one structure, whose runs are `own`."""
+    """Return the response of one structure to ground motions; the mask `own` selects its runs."""
     if (outcomes.failed & own).any():
         name = motions[int(record[int((outcomes.failed & own).argmax())])].name
         return SolverError(f"{model.structure}: its motion under {name} could not be simulated")
@@ -399,7 +400,7 @@ def _with(one: Surveyed, under: Under | SolverError, entry: SurveyEntry) -> Surv
 
 @dataclass(frozen=True)
 class MadeStructure:
-    """A structure that is made already.
+    """A structure that is already built.
 
     Parameters
     ----------
@@ -412,9 +413,9 @@ class MadeStructure:
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Name of the structure, or of its mechanism."""
         return self.mechanism.name or self.mechanism.mechanism
 
     def make(self) -> Mechanism:
-        """The structure."""
+        """Return the structure."""
         return self.mechanism

@@ -1,4 +1,4 @@
-"""A target spectrum: ordinates at periods, from a file, straight lines between them."""
+"""A target spectrum from a file: ordinates at periods, with linear interpolation between them."""
 
 from __future__ import annotations
 
@@ -30,23 +30,23 @@ _BARE_G = re.compile(r"(?:^|[\s_,/])g\s*$", re.IGNORECASE)
 
 @dataclass(frozen=True, eq=False)
 class TargetSpectrum:
-    """Pseudo-accelerations over the period, straight lines between the points, as the tables of codes are.
+    """Pseudo-accelerations as a function of period, linear between the points as in the tables of codes.
 
     Parameters
     ----------
     name : str
-        What to call it.
+        Name of the spectrum.
     periods : ndarray, shape (n,)
-        Increasing, from zero on [s].
+        Periods, increasing and not negative [s].
     sa : ndarray, shape (n,)
         Ordinates, not negative [standard gravity].
     unit : str or None
-        What they were given in; None where the file does not say.
+        Unit in which the ordinates were given; None if the file does not state it.
 
     Raises
     ------
     InputError
-        If they are not so, or there are fewer than two points.
+        If periods or ordinates violate these conditions, or there are fewer than two points.
     """
 
     name: str
@@ -59,11 +59,11 @@ class TargetSpectrum:
             raise InputError(*(f"{self.name}, point {k + 1}: {message}" for k, message in problems))
 
     def at(self, periods: Reals) -> Reals:
-        """Ordinates at periods [s] within its own."""
+        """Return the ordinates at periods [s] within the range of the spectrum [standard gravity]."""
         return np.interp(periods, self.periods, self.sa)
 
     def check(self, band: tuple[float, float]) -> None:
-        """Refuse a band [s] that it does not cover, or in which it vanishes."""
+        """Raise `InputError` if the spectrum does not cover a band of periods [s], or is zero inside it."""
         first, last = float(self.periods[0]), float(self.periods[-1])
         if not (first <= band[0] and band[1] <= last):
             message = f"the target goes from {first:g} to {last:g} s, and the band from {band[0]:g} to {band[1]:g} s"
@@ -79,7 +79,7 @@ class TargetSpectrum:
 
 
 def wrong_points(periods: Reals, sa: Reals) -> list[tuple[int, str]]:
-    """The points of a spectrum that are wrong, counted from 0, and what is wrong there."""
+    """Return the invalid points of a spectrum, counted from 0, each with a message."""
     if periods.shape != sa.shape or periods.ndim != 1:
         return [(min(periods.size, sa.size), "a period without an ordinate, or an ordinate without a period")]
     found = []
@@ -140,7 +140,7 @@ def read_target(path: Path) -> TargetSpectrum:
 
 
 def doubts(target: TargetSpectrum) -> list[str]:
-    """What is doubtful about a target spectrum, as sentences."""
+    """Return sentences on what is doubtful about a target spectrum."""
     highest = float(target.sa.max())
     if highest <= ODD:
         return []
@@ -154,7 +154,7 @@ def _what_to_do(message: str) -> str:
 
 
 def _row(file: str, number: int, line: str) -> list[float]:
-    """Period and ordinate of a line."""
+    """Read period and ordinate from a line."""
     separator = next((sign for sign in (";", "\t", ",") if sign in line), None)
     cells = [cell.strip() for cell in line.strip().split(separator)]
     if len(cells) > 2 and not any(cells[2:]):  # a spreadsheet leaves separators of empty columns
@@ -169,7 +169,7 @@ def _row(file: str, number: int, line: str) -> list[float]:
 
 
 def _unit(file: str, number: int, line: str) -> str | None:
-    """The unit of the ordinates that a heading names; None where it names none."""
+    """Return the unit of the ordinates that a heading names; None if it names none."""
     separator = next((sign for sign in (";", "\t", ",") if sign in line), None)
     cells: Sequence[str] = line.split(separator) if separator else [line, line]
     if _OTHER_PERIOD.search(cells[0].replace("_", " ")):

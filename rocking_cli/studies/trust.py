@@ -1,4 +1,4 @@
-"""What the error of the equivalence means for a practitioner, in words: the rule of `rocking_cli.core.advice`."""
+"""The error of the equivalent block in words, for a practitioner: the rule of `rocking_cli.core.advice`."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class Errors:
     Parameters
     ----------
     uplift : float
-        Of its uplift acceleration, relative, with its sign.
+        Relative error of the uplift acceleration, with its sign.
     period, overturning : float
-        Sizes of those of the free period and of the overturning time, relative; infinite where it never uplifts.
+        Absolute relative errors of the free period and of the overturning time; infinite if the block never uplifts.
     """
 
     uplift: float
@@ -38,7 +38,7 @@ class Errors:
 
 
 def errors(asked: Sequence[Linearisation], kappa: int) -> Errors:
-    """The largest errors of the block with kappa1 or kappa2; see `trust`."""
+    """Return the largest errors of the block with kappa1 or kappa2; see `trust`."""
     uplifts = [getattr(each, f"uplift_ratio{kappa}") - 1 for each in asked]
     return Errors(
         max(uplifts, key=abs),
@@ -50,7 +50,8 @@ def errors(asked: Sequence[Linearisation], kappa: int) -> Errors:
 def preferred(asked: Sequence[Linearisation]) -> int | None:
     """Return which kappa to prefer at the requested amplitudes: 1, 2, 0 if either will do, None if neither does.
 
-    The better grade decides; of two that are alike, the uplift acceleration, as `preferred_kappa` has it.
+    The kappa with the better grade is preferred; if both have the same grade, `preferred_kappa` decides by the uplift
+    acceleration.
     """
     one, two = (errors(asked, kappa).grade for kappa in (1, 2))
     if one is two is Grade.DISREGARD:
@@ -66,7 +67,7 @@ def trust(curves: Sequence[Linearisation], asked: Sequence[Linearisation]) -> st
     Parameters
     ----------
     curves : sequence of Linearisation
-        The ratios over their ranges, ascending, one for each direction that differs.
+        The ratios over their ranges, increasing, one for each direction that differs.
     asked : sequence of Linearisation
         The same directions at the amplitudes and accelerations of interest.
 
@@ -99,7 +100,7 @@ def _where(asked: Sequence[Linearisation]) -> str:
 
 
 def _on(kappa: int, found: Errors) -> str:
-    """What a kappa is good for, and the errors that say so."""
+    """Describe what the block with a kappa is good for, with its errors."""
     uplift = "kept" if abs(found.uplift) < KEPT else uplift_in_words(found.uplift)
     overturning = f"off by {percent(found.overturning)}" if np.isfinite(found.overturning) else NEVER
     numbers = (
@@ -114,7 +115,7 @@ def _on(kappa: int, found: Errors) -> str:
 
 
 def _ranges(curves: Sequence[Linearisation], kappa: int) -> list[str]:
-    """Where the errors grow beyond what is small."""
+    """Return sentences on the ranges in which errors are no longer small."""
     said = []
     far = [each.amplitude[np.abs(each.period_ratio - 1) > SMALL] for each in curves]
     wide = [values for values in far if values.size]

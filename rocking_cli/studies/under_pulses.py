@@ -1,4 +1,4 @@
-"""A structure and the pulses that shake it: what a pulse is measured by, and what many pulses do."""
+"""A structure under pulses: the quantities that make pulses dimensionless, and the outcomes of many pulses."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ TIE = 1e-9  # relative difference of amplitudes below which both directions lift
 
 @dataclass(frozen=True, eq=False)
 class PulsedModel:
-    """One model of a structure, and what the pulses on it are measured by.
+    """A model of a structure, with the quantities that make pulses dimensionless.
 
     Parameters
     ----------
     name : str
-        What to call it.
+        Name of the structure.
     model : Model
         Its equation of motion.
     equivalence : Equivalence
         Its equivalent blocks.
     direction : Direction
-        The direction that the weakest pulse lifts: its p, lambda and eta measure the pulses.
+        The direction in which the weakest pulse uplifts; its p, lambda and eta make pulses dimensionless.
     eta_given : bool
         Whether the restitution was given; otherwise it is that of the kinematics.
     """
@@ -51,7 +51,7 @@ class PulsedModel:
 
     @property
     def block(self) -> EquivalentBlock:
-        """The equivalent block of that direction."""
+        """The equivalent block of `direction`."""
         return self.equivalence[self.direction]
 
     @property
@@ -61,7 +61,7 @@ class PulsedModel:
 
     @property
     def lambda_(self) -> float:
-        """Uplift acceleration over g: that which the scaling keeps, lambda_lin for `linear1`."""
+        """Uplift acceleration over g of the scaling: lambda_lin for `linear1`, otherwise lambda."""
         return uplift(self.block, self.model.name)
 
     @property
@@ -71,7 +71,7 @@ class PulsedModel:
 
     @property
     def eta(self) -> float:
-        """Restitution of an impact that ends motion in that direction."""
+        """Coefficient of restitution of an impact that ends motion in `direction`."""
         return self.block.eta
 
     @property
@@ -81,26 +81,26 @@ class PulsedModel:
 
     @property
     def may_open(self) -> bool:
-        """Whether it has joints that could open or slide, so that outcomes may be unknown."""
+        """Whether the structure has joints that could open or slide, so that outcomes may be unknown."""
         return self.model.joints is not None and bool(self.model.joints.labels)
 
     @property
     def symmetric(self) -> bool:
-        """Whether both directions are alike, so that a reversed pulse does the same."""
+        """Whether both directions are equal, so that a reversed pulse has the same effect."""
         return self.equivalence.symmetric and self.model.one_sided is None
 
     @property
     def unit(self) -> float:
-        """The amplitude of a pulse with a = 1, which only just lifts it [m/s2]."""
+        """Amplitude of the pulse with a = 1, which only just uplifts the structure [m/s2]."""
         return self.lambda_ * self.gravity
 
     def period(self, omega: Reals) -> Reals:
-        """Periods of pulses [s] from omega = omega_g/p, or back: the one is 2 pi/p over the other."""
+        """Return pulse periods [s] from omega = omega_g/p, or omega from periods: each is 2 pi/p over the other."""
         return 2 * pi / (self.p * omega)
 
 
 def parse_shape(text: str) -> Pulse:
-    """A pulse of amplitude 1 m/s2 and period 1 s from the name of its shape, and what the shape takes besides.
+    """Return a pulse of amplitude 1 m/s2 and period 1 s from the name and the further parameters of its shape.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def parse_shape(text: str) -> Pulse:
 
 
 def linear_block(eta: float) -> PulsedModel:
-    """The linear block in dimensionless terms, p = g = lambda = 1: a pulse has amplitude a and period 2 pi/omega."""
+    """Return the dimensionless linear block, p = g = lambda = 1: pulses have amplitude a and period 2 pi/omega."""
     check_eta(eta)
     block = EquivalentBlock(**{**dict.fromkeys((each.name for each in fields(EquivalentBlock)), 1.0), "eta": eta})
     model = linear_model("linear block", "linear2", (block, block), 1.0)
@@ -122,7 +122,7 @@ def linear_block(eta: float) -> PulsedModel:
 
 
 def check_eta(eta: float) -> None:
-    """Refuse what is no coefficient of restitution."""
+    """Raise `InputError` if a number is not a coefficient of restitution."""
     if not 0 < eta <= 1:
         raise InputError(f"eta must be in (0, 1], got {eta:g}")
 
@@ -137,13 +137,13 @@ def pulsed_model(
     structure : Structure
         The structure.
     model : {"nonlinear", "linear1", "linear2"}
-        Its equation of motion.
+        The equation of motion.
     shape : Pulse
         Any pulse of the shape.
     polarities : sequence of int
-        Of 1 and -1, the latter for reversed pulses.
+        The polarities, 1, -1 (reversed pulses) or both.
     eta : float, optional
-        Coefficient of restitution of every impact; without it the structure's own.
+        Coefficient of restitution of every impact; by default that of the structure.
 
     Raises
     ------
@@ -163,12 +163,12 @@ def pulsed_model(
 
 
 def uplift(block: EquivalentBlock, model: ModelName) -> float:
-    """The uplift acceleration over g that a scaling keeps: a = a_g/(g lambda)."""
+    """Return the uplift acceleration over g of a scaling, lambda in a = a_g/(g lambda)."""
     return block.lambda_lin if model == "linear1" else block.lambda_
 
 
 def weakest(equivalence: Equivalence, shape: Pulse, polarities: Sequence[int] = (1,)) -> Direction:
-    """The direction that the weakest pulse of a shape lifts; where both lift alike, the one it pushes to first."""
+    """Return the direction in which the weakest pulse of a shape uplifts; if both are equal, the one pushed first."""
     ground = shape.sampled().acceleration / shape.amplitude
     pushes = {d: np.max([-d * polarity * ground for polarity in polarities], axis=0) for d in Direction}
     needed = {d: equivalence[d].lambda_ / max(float(push.max()), 1e-300) for d, push in pushes.items()}
@@ -186,32 +186,32 @@ def outcomes(
     polarities: Sequence[int] = (1,),
     progress: Progress | None = None,
 ) -> Outcomes:
-    """Shake a structure with pulses.
+    """Simulate a structure under pulses.
 
     Parameters
     ----------
     structure : PulsedModel
-        What is shaken.
+        The model of the structure.
     shape : Pulse
         The shape of the pulses.
     periods, amplitudes : ndarray, shape (n,)
-        Of each pulse [s], [m/s2].
+        Period [s] and amplitude [m/s2] of each pulse.
     polarities : sequence of int
-        Of 1 and -1; with both, the worse of the two counts: overturning, after fewer impacts, then an unknown outcome,
-        then the larger peak. The lower bound of an unknown peak is then that of both.
+        The polarities, 1, -1 or both. Of both, the worse governs: overturning (after fewer impacts), then an unknown
+        outcome, then the larger peak. The lower bound of an unknown peak covers both polarities.
     progress : callable, optional
         Called with the number of motions done since the last call.
 
     Returns
     -------
     Outcome
-        Of shape (n,).
+        Outcomes of shape (n,).
 
     Notes
     -----
-    A linear model under a chain of sines and constants is exact. Any other motion is a history under the sampled
-    pulse of 400 points to a period: amplitudes at which it overturns are right to some 1e-8 of their size, the peaks
-    of motions that only just uplift to 1e-4.
+    A linear model under a chain of sines and constants is exact. Any other model is simulated under the pulse sampled
+    with 400 points to a period: amplitudes of overturning have a relative error of some 1e-8, the peaks of motions that
+    only just uplift one of 1e-4.
     """
     exact = structure.model.is_linear and shape.segments() and structure.model.one_sided is None
     follow = _exactly if exact else _by_histories
@@ -270,5 +270,5 @@ def _badness(each: Outcomes) -> Reals:
 
 
 def _known_peak(each: Outcomes) -> Reals:
-    """Return what the peaks over phi_cr are at least."""
+    """Return the lower bounds of the peaks over phi_cr."""
     return np.where(each.unknown, each.lower_bound, each.peak_ratio)

@@ -1,4 +1,4 @@
-"""Contracts of mechanisms, codes of practice and laws of ties, for tests of their authors."""
+"""Contracts of mechanisms, codes of practice and laws of ties, for the tests of their authors."""
 
 from rocking_cli.testing.code import CodeContract as CodeContract
 from rocking_cli.testing.element import check_law as check_law

@@ -1,4 +1,4 @@
-"""Whether a law holds together: the slope is the derivative of the force, and that of the energy is the force."""
+"""Check of the law of an element: the force is the derivative of the energy, and the slope that of the force."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ ROUNDING = 1e-6  # of the largest value: more than differences of so many points
 
 
 def check_law(element: Element, shortest: float, longest: float) -> None:
-    """Hold the law of an element to itself over a range of elongations.
+    """Check the law of an element for consistency over a range of elongations.
 
     Parameters
     ----------
     element : Element
-        Any without memory or rate.
+        Any element without memory or rate dependence.
     shortest, longest : float
         The range [m]; 0 need not be in it.
 

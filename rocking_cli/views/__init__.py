@@ -1,1 +1,1 @@
-"""What results say: rows, plain data and sentences, one result a file, for whoever shows them."""
+"""Views of results: rows, plain data and sentences for output, one result in each file."""

@@ -1,4 +1,4 @@
-"""An animated motion, as people and programs read it."""
+"""View of an animated motion, as text and as data."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ def view(
 
 
 def row(film: Film, near: Neighbours | None) -> list[str]:
-    """Return the row of one of several motions."""
+    """Return the table row of one of several motions: name, outcome, and shares of its neighbours."""
     run = film.history
     fate = f"{UNKNOWN} after {run.known_to:.4g} s, as {why_unknown(run)}" if run.unknown else film.verdict
     return [film.motion.name, fate, *neighbours_cells(near)[:2]]
 
 
 def several(structure: Structure, film: Film, rows: Sequence[Sequence[str]]) -> View:
-    """Show what became of several motions, of which `film` is one, by their rows."""
+    """Show the outcomes of several motions by their rows; `film` is one of them."""
     heads = ["under", film.history.model, "neighbours\noverturn", "are\nunknown"]
     if all(each[-1] in (ABSENT, percent(0)) for each in rows):
         heads, rows = heads[:-1], [each[:-1] for each in rows]

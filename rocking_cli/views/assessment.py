@@ -1,4 +1,4 @@
-"""A report as plain data, and in a sentence."""
+"""View of a report: a sentence, and plain data."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rocking_cli.views.view import View
 
 
 def view(content: Assessment, verified: Verification | None = None) -> View:
-    """The answer in a sentence, and all that the report says as plain data."""
+    """Show a report: its answer in a sentence, and all its content as plain data."""
     verdicts, watched = words.verdicts(content), Watched(content.mechanism)
     data = {
         "structure": {

@@ -33,7 +33,7 @@ MODELS: Mapping[ModelName, str] = {
 
 @dataclass(frozen=True)
 class ReaderAnswer:
-    """A question of the reader and its answer."""
+    """A question of the reader, and the answer."""
 
     question: str
     answer: str
@@ -46,11 +46,11 @@ class MotionAnswers:
     Parameters
     ----------
     name : str
-        Of the motion.
+        Name of the motion.
     headline : str
-        A few words.
+        The outcome in a few words.
     answers : tuple of ReaderAnswer
-        One for each question.
+        The answer to each question.
     doubts : tuple of str
         What is doubtful about the motion and the result.
     """
@@ -62,7 +62,7 @@ class MotionAnswers:
 
 
 def verdicts(content: Assessment) -> tuple[MotionAnswers, ...]:
-    """The answers for each ground motion."""
+    """Return the answers for each ground motion."""
     return tuple(_verdict(content, each) for each in content.results)
 
 
@@ -151,7 +151,7 @@ def _neighbours_unknown(content: Assessment) -> bool:
 
 
 def governs(content: Assessment) -> str:
-    """A sentence on the motion that is the worst."""
+    """Return a sentence on the motion that governs."""
     return governing(
         {
             each.given.motion.name: severity(each.histories["nonlinear"], each.neighbours[each.polarity])
@@ -322,12 +322,12 @@ def _what_that_is(run: History, statics: Statics) -> str:
 
 
 def _least(content: Assessment) -> float:
-    """The smaller uplift acceleration of its directions."""
+    """Return the smaller uplift acceleration of both directions, over g."""
     return min(side.lambda_ for side in content.structure.statics)
 
 
 def _end(run: History) -> str:
-    """The rotation that a peak is compared with, in plain words."""
+    """Return in plain words the rotation with which a peak is compared."""
     if run.reference == "critical rotation":
         return "the critical rotation, beyond which it would fall"
     return "the kinematic limit, at which its motion would end"
@@ -363,7 +363,7 @@ def _trusted(content: Assessment, result: MotionResult) -> str:
 
 
 def why_alone(content: Assessment) -> str:
-    """Why there are no linear models, in sentences."""
+    """Return sentences on why there are no linear models."""
     why = content.structure.why_no_block or content.structure.misleading or ""
     why = why.removeprefix(f"{content.name}: ")
     return f"{why[0].upper()}{why[1:]}."
@@ -419,17 +419,17 @@ def alone(result: MotionResult) -> str:
 
 
 def _ground(content: Assessment, lambda_: float) -> str:
-    """A horizontal ground acceleration, from a multiple of the structure's own gravity."""
+    """Format a horizontal ground acceleration in g, from a multiple of the structure's own gravity."""
     return f"{lambda_ * content.mechanism.gravity / STANDARD_GRAVITY:.3g} g"
 
 
 def _share(ratio: float) -> str:
-    """Return a ratio as words that stand before what it is a part of."""
+    """Return a ratio as words before a noun: "50 % of", "12 times"."""
     return f"{100 * ratio:.3g} % of" if ratio < 10 else f"{ratio:.3g} times"
 
 
 def restitution(content: Assessment) -> str:
-    """Which restitution the histories used, and where it comes from."""
+    """Return a sentence on the restitution that the histories used, and on its source."""
     return restitution_used(content.structure).replace("eta", "η")
 
 

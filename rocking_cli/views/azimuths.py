@@ -1,4 +1,4 @@
-"""The responses of a structure in all directions, as people and programs read them."""
+"""View of the responses of a structure in all directions, as text and as data."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Flags = NDArray[np.bool_]
 
 
 def view(structure: Structure, found: AzimuthResponses, doubts: Iterable[str] = ()) -> View:
-    """What a pair of components does in all directions."""
+    """Show the responses of a structure to a pair of components in all directions."""
     one, other = found.names
     unknown = any(each.unknown.any() for each in found.outcomes.values())
     heads = ["model", "directions\noverturn", *(["are\nunknown"] if unknown else []), "do not\nuplift"]
@@ -43,7 +43,7 @@ def view(structure: Structure, found: AzimuthResponses, doubts: Iterable[str] = 
 
 
 def in_words(found: AzimuthResponses, outcomes: Outcomes) -> str:
-    """Where a structure overturns, and where its outcome is unknown, in a sentence or two."""
+    """Return in a sentence or two the directions in which the structure overturns or has an unknown outcome."""
     falls, unknown = outcomes.overturned, outcomes.unknown
     if not unknown.any():
         return f"it overturns in {_where(found, falls)}."
@@ -52,7 +52,7 @@ def in_words(found: AzimuthResponses, outcomes: Outcomes) -> str:
 
 
 def _where(found: AzimuthResponses, flags: Flags) -> str:
-    """In how many directions something is so, and in which."""
+    """Return in words how many directions are flagged, and which."""
     if not flags.any():
         return "no direction"
     if flags.all():
@@ -62,7 +62,7 @@ def _where(found: AzimuthResponses, flags: Flags) -> str:
 
 
 def columns(found: AzimuthResponses) -> Columns:
-    """A row for each direction; a motion that overturns has no peak, and one of unknown outcome that until then."""
+    """Return a table with a row for each direction. Overturning has no peak; an unknown outcome has its peak so far."""
     table: dict[str, Any] = {"azimuth [deg]": found.azimuths, "PGA [g]": found.pga}
     for name, each in found.outcomes.items():
         table |= {f"peak phi/phi_cr {name}": each.peak_ratio, f"overturns {name}": each.overturned.astype(int)}

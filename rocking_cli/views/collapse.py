@@ -1,4 +1,4 @@
-"""The weakest mechanism of an assembly, as people and programs read it."""
+"""View of the weakest mechanism of an assembly, as text and as data."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ROWS = 24  # joints, the forces in all of which are shown
 
 
 def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> View:
-    """Lambda, hinges, groups, thrust and friction of each direction."""
+    """Show lambda, hinges, groups, thrust and friction of each direction."""
     parts: list[Table | str] = [heading(mechanism)]
     for direction, each in found.items():
         parts += [_hinges(direction, each), *_sentences(mechanism, each)]
@@ -43,7 +43,7 @@ def _hinges(direction: Direction, found: CollapseMechanism) -> Table | str:
 
 
 def _part(found: CollapseMechanism, group: Sequence[str]) -> str:
-    """A part by the names of its blocks; one of many by some of them and its hinges."""
+    """Return the name of a group of blocks: all their names, or of many some names and the hinges."""
     if len(group) <= FEW:
         return "+".join(group)
     letters = [each.letter for each in found.hinges if "+".join(group) in each.between]
@@ -101,7 +101,7 @@ def _sentences(mechanism: Mechanism, found: CollapseMechanism) -> list[str]:
 
 
 def _thrust(direction: Direction, found: CollapseMechanism) -> list[Table | str]:
-    """The forces in the joints: of very many those in which the mechanism hinges or slides."""
+    """Return a table of the forces in the joints; of many joints only those that hinge or slide."""
     shown, rest = found.thrust, ""
     if len(shown) > ROWS:
         moving = {*(each.joint for each in found.hinges), *found.slides}
@@ -132,7 +132,7 @@ def table(found: Mapping[Direction, CollapseMechanism]) -> dict[str, list[Any]]:
 
 
 def data(found: CollapseMechanism) -> dict[str, Any]:
-    """A direction as plain data."""
+    """Return the mechanism of a direction as plain data."""
     return {
         "lambda": found.lambda_,
         "hinges": [

@@ -64,7 +64,7 @@ def contact_row(found: ContactDemand, mechanism: Mechanism) -> list[str]:
 def contact_words(found: ContactDemand, mechanism: Mechanism) -> str:
     """Return the demands as sentences; empty for a structure that does not rock.
 
-    Whether a joint opens or slides so far that the result ends is said with the outcome, if the joints are checked.
+    If the joints are checked, the outcome states whether a joint opens or slides so far that the result ends.
     """
     if isnan(found.friction_needed):
         return ""

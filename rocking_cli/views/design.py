@@ -1,4 +1,4 @@
-"""Where a structure meets a requirement, as people and programs read it."""
+"""View of a design: the values at which a structure meets a requirement, as text and as data."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ ROWS = 11  # of the scan in the table, at most
 
 
 def view(found: Design, excitation: Excitation | None = None) -> View:
-    """The answer in a sentence, the scan, and what to know of both."""
+    """Show the answer in a sentence, the scan, and remarks."""
     said = [answer(found), *doubts(found, excitation)]
     return View(lambda: data(found), [f"{found.structure}: {found.field} for {found.aim}", scan(found), *said])
 
 
 def data(found: Design) -> dict[str, Any]:
-    """A design as plain data."""
+    """Return a design as plain data."""
     return {
         "structure": found.structure,
         "field": found.field,
@@ -47,7 +47,7 @@ def data(found: Design) -> dict[str, Any]:
 
 
 def columns(found: Design) -> Columns:
-    """The scan as a table."""
+    """Return the scan as columns of a table."""
     unit = f" [{found.unit}]" if found.unit else ""
     of_metric = f" [{found.aim.metric.unit}]" if found.aim.metric.unit else ""
     met = ["yes" if each else "no" for each in found.met.tolist()]
@@ -57,7 +57,7 @@ def columns(found: Design) -> Columns:
 
 
 def _unknown_data(found: Design) -> dict[str, list[float | None]]:
-    """The share of unknown outcome at each value, for a metric that needs motions; None if nothing was checked."""
+    """Return the share of unknown outcome at each value, for a metric of motions; None if nothing was checked."""
     if not found.aim.metric.shaken:
         return {}
     return {"unknown": [near.unknown if near is not None else None for near in found.behind]}
@@ -68,7 +68,7 @@ def _some_unknown(found: Design) -> bool:
 
 
 def scan(found: Design) -> Table:
-    """The scan, of many values some."""
+    """Return the table of the scan; of many values only some."""
     unit, asked = f"\n[{found.unit}]" if found.unit else "", found.aim.metric
     of_metric = f"\n[{asked.unit}]" if asked.unit else ""
     shown = np.unique(np.linspace(0, len(found.values) - 1, min(ROWS, len(found.values))).round().astype(int))
@@ -86,7 +86,7 @@ def _doubtful(near: Neighbours | None) -> str:
 
 
 def answer(found: Design) -> str:
-    """What was found, in a sentence or two."""
+    """Return the answer in a sentence or two."""
     aim, low, high = found.aim, _with_unit(found, found.values[0]), _with_unit(found, found.values[-1])
     if found.everywhere:
         return f"{aim} holds at every value of {found.field} tried, from {low} to {high}."
@@ -107,7 +107,7 @@ def answer(found: Design) -> str:
 
 
 def doubts(found: Design, excitation: Excitation | None) -> list[str]:
-    """What to know of the answer."""
+    """Return remarks on the answer."""
     said = list(found.taken_otherwise)
     count = len(found.values)
     if not found.has_effect and not found.aim.metric.shaken:

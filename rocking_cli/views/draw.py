@@ -1,4 +1,4 @@
-"""What a drawing of a structure shows, as people and programs read it."""
+"""View of the drawing of a structure, as text and as data."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from rocking_cli.views.view import View, heading
 
 
 def view(picture: Picture) -> View:
-    """The dimensions of a structure, and all of its picture in numbers."""
+    """Show the dimensions of a structure, and its drawing as plain data."""
     measured: list[Length | Angle] = [*picture.sketch.lengths, *picture.sketch.angles]
     said = [f"{each.text}{f' ({each.direction.label})' if each.direction is not None else ''}" for each in measured]
     said += [f"load {each.name}, {each.text}" for each in picture.loads if each.name]

@@ -1,4 +1,4 @@
-"""The equivalent single rocking block, as people and programs read it."""
+"""View of the equivalent single rocking block, as text and as data."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rocking_cli.views.view import Table, View, heading, number
 
 
 def view(structure: Structure) -> View:
-    """The parameters of both directions, in one column where they agree, and which kappa to prefer."""
+    """Show the parameters of both directions, in one column if they agree, and which kappa to prefer."""
     mechanism, sides = structure.mechanism, sides_of(structure)
     data = {
         "mechanism": mechanism.mechanism,
@@ -66,7 +66,7 @@ def view(structure: Structure) -> View:
 
 
 def _found(mechanism: Mechanism, directions: Sequence[Direction]) -> list[list[str]]:
-    """Rows of what the structure found: it need not be the same in both directions, nor mean the same."""
+    """Return rows of the values that a mechanism found itself, which may differ between directions."""
     found = {direction: {each.key: each for each in mechanism.found(direction)} for direction in directions}
     rows = []
     for key in dict.fromkeys(key for of in found.values() for key in of):
@@ -80,7 +80,7 @@ def _found(mechanism: Mechanism, directions: Sequence[Direction]) -> list[list[s
 
 
 class EquivalentSide(NamedTuple):
-    """A direction of rocking: its moments, and the block that is equivalent to it if one is."""
+    """A direction of rocking: its statics, its equivalent block (None if there is none), and its restitution."""
 
     direction: Direction
     statics: Statics
@@ -89,7 +89,7 @@ class EquivalentSide(NamedTuple):
 
 
 def sides_of(structure: Structure) -> list[EquivalentSide]:
-    """The directions that a structure can rock in."""
+    """Return the directions in which a structure can rock, with their statics and blocks."""
     sides = []
     for direction in structure.mechanism.directions:
         k = 0 if direction > 0 else 1
@@ -109,7 +109,7 @@ def is_symmetric(structure: Structure) -> bool:
 
 
 def without(side: EquivalentSide) -> dict[str, float]:
-    """What there is of the parameters where no block is equivalent; NaN for the rest."""
+    """Return the parameters that exist without an equivalent block; NaN for the others."""
     known = {"lambda": side.statics.lambda_, "eta": side.eta}
     if side.statics.phi_cr is not None:
         known["phi_cr"] = side.statics.phi_cr
@@ -117,7 +117,7 @@ def without(side: EquivalentSide) -> dict[str, float]:
 
 
 def _data(side: EquivalentSide) -> dict[str, Any]:
-    """The parameters of a direction; null where there is no block."""
+    """Return the parameters of a direction as plain data; null if there is no equivalent block."""
     found: dict[str, Any] = values(side.block) if side.block is not None else without(side)
     advice = preferred_kappa(side.block) if side.block is not None else None
     return {
@@ -131,12 +131,12 @@ def _data(side: EquivalentSide) -> dict[str, Any]:
 
 
 def _extras(mechanism: Mechanism, side: EquivalentSide) -> dict[str, float]:
-    """What the mechanism found beside the parameters."""
+    """Return the values that the mechanism found itself, by key."""
     return {each.key: each.value for each in mechanism.found(side.direction)}
 
 
 def sentence(side: EquivalentSide) -> str:
-    """Which kappa to prefer in a direction; where no block is equivalent, why, and what it does instead."""
+    """Return a sentence on which kappa to prefer in a direction; without a block, on why there is none."""
     if side.block is not None:
         return f"critical rotation {degrees(side.block.phi_cr):.4g} deg. {preferred_kappa(side.block).why}"
     statics = side.statics
@@ -154,7 +154,7 @@ def sentence(side: EquivalentSide) -> str:
 
 
 def table(found: Sequence[Structure]) -> dict[str, list[Any]]:
-    """The columns of several structures, a row for each direction."""
+    """Return a table of several structures, with a row for each direction."""
     rows: list[list[Any]] = []
     for structure in found:
         mechanism = structure.mechanism
@@ -168,7 +168,7 @@ def table(found: Sequence[Structure]) -> dict[str, list[Any]]:
 
 
 def warnings(structure: Structure) -> Iterator[str]:
-    """What to be careful about in the parameters."""
+    """Yield warnings about the parameters."""
     mechanism, one = structure.mechanism, is_symmetric(structure)
     if not mechanism.rocks_both_ways:
         return
@@ -182,7 +182,7 @@ def warnings(structure: Structure) -> Iterator[str]:
 
 
 def notes(mechanism: Mechanism) -> Iterator[str]:
-    """What to know of the parameters."""
+    """Yield notes on how to read the parameters."""
     if mechanism.gravity != STANDARD_GRAVITY:
         yield (
             f"{mechanism.name}: lambda is relative to the structure's own gravity of {mechanism.gravity:g} m/s2; "

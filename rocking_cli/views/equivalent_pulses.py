@@ -1,4 +1,4 @@
-"""Pulses to which structures are equivalently vulnerable, as people and programs read them."""
+"""View of pulses to which structures are equivalently vulnerable, as text and as data."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rocking_cli.views.view import Table, View
 
 
 def view(found: EquivalentResponses, verdict: str) -> View:
-    """Each structure under its own pulse and the linear block that they share, and a verdict on them."""
+    """Show each structure under its own pulse, the linear block that they share, and a verdict."""
     data = {
         "pulse": found.members[0].pulse.name,
         "polarity": found.polarity,
@@ -61,7 +61,7 @@ def view(found: EquivalentResponses, verdict: str) -> View:
 
 
 def title(found: EquivalentResponses) -> str:
-    """The shape of the pulses, and what they have in common."""
+    """Return the shape of the pulses and their common a and omega, as a heading."""
     return f"{found.members[0].pulse.title}, a = {found.a:.4g}, omega = {found.omega:.4g}"
 
 
@@ -72,7 +72,7 @@ def _peak(outcome: OneOutcome) -> str:
 
 
 def table(found: EquivalentResponses) -> dict[str, Sequence[object]]:
-    """The columns: p t, and for each structure its own time and rotation; empty fields where it has come to its end."""
+    """Return the columns of a table: p t, and time and rotation of each structure; empty after their end."""
 
     def padded(values: list[float]) -> list[float]:
         return values + [float("nan")] * (found.tau.size - len(values))

@@ -1,4 +1,4 @@
-"""How far to trust the equivalent block of a structure, as people and programs read it."""
+"""View of the errors of the equivalent block of a structure, as text and as data."""
 
 from __future__ import annotations
 

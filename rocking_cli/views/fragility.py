@@ -1,4 +1,4 @@
-"""A fragility study, as people and programs read it: what would be run, and what was found."""
+"""View of a fragility study: its planned runs and its results, as text and as data."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Fitted = TypeVar("Fitted", "Fragility", "Bivariate")
 
 
 def planned(study: Study, plan: Plan) -> View:
-    """What a study would run."""
+    """Show the runs that a study would simulate."""
     samples, records, etas, levels, polarities = plan.shape
     counts = {
         "structures": len(study.structures),
@@ -43,7 +43,7 @@ def planned(study: Study, plan: Plan) -> View:
 
 
 def left_out(plan: Plan) -> list[str]:
-    """The records and the samples that cannot be run, and why, a sentence each."""
+    """Return a sentence on each record and sample that cannot be used, with the reason."""
     records = [f"the record {each.name} is left out: {each.reason}" for each in plan.records if each.reason is not None]
     return records + [
         f"sample {each.number} of {each.structure} is left out: {each.reason}"
@@ -53,7 +53,7 @@ def left_out(plan: Plan) -> list[str]:
 
 
 def without_block(plan: Plan) -> list[str]:
-    """A sentence on each structure that no block is equivalent to: what phi_cr stands for there."""
+    """Return a sentence on each structure without an equivalent block, on the meaning of phi_cr there."""
     found = dict.fromkeys(each.structure for each in plan.trials if each.reason is None and not each.p)
     return [
         f"{structure}: no equivalent single block exists, and therefore no p. In a direction without a critical "
@@ -63,7 +63,7 @@ def without_block(plan: Plan) -> list[str]:
 
 
 def out_of_reach(store: Store, plan: Plan, definition: Definition) -> list[str]:
-    """A sentence on each structure whose top does not move as far as a limit state says, before it overturns."""
+    """Return a sentence on each structure whose top never reaches the displacement of a limit state."""
     found: dict[tuple[str, str], list[bool]] = {}
     for limit, table in kept(store.fact, definition.limit_states).items():
         for trial, pair in zip(plan.trials, table.tolist(), strict=True):
@@ -88,22 +88,22 @@ def view(
     surfaces: Sequence[Bivariate],
     outcomes: Sequence[UnknownRuns] = (),
 ) -> View:
-    """What was found: the curves and surfaces that were fitted to the runs of a store.
+    """Show the results of a study: the curves and surfaces fitted to the runs of a store.
 
     Parameters
     ----------
     store : Store
         Open to read.
     plan : Plan
-        Its runs.
+        The plan of its runs.
     definition : Definition
-        What its study asks for.
+        The definition of its study.
     finished, failed : int
-        Runs in the store, and those of them that could not be simulated.
+        Number of runs in the store, and of those among them that could not be simulated.
     curves, surfaces : sequence
-        What was fitted to them.
+        The curves and surfaces fitted to the runs.
     outcomes : sequence of UnknownRuns
-        How many runs of each structure are of unknown outcome.
+        Number of runs of unknown outcome of each structure.
     """
     name, confidence = store.fact("name"), definition.confidence
     bad = sum(each.reason is not None for each in plan.records)
@@ -149,7 +149,7 @@ def view(
 
 
 def sets_in_words(plan: Plan) -> list[str]:
-    """A sentence on sets of records for levels, and one on weights, where there are any."""
+    """Return sentences on sets of records for levels and on weights, if there are any."""
     sets, said = plan.of_sets, []
     usable = np.array([each.reason is None for each in plan.records])
     if (sets.level >= 0).any():
@@ -168,7 +168,7 @@ def sets_in_words(plan: Plan) -> list[str]:
 
 
 def _records(plan: Plan) -> list[dict[str, Any]]:
-    """What is known of each record, with the level that it is of a set for, and its weight."""
+    """Return each record as plain data, with the level of its set, if any, and its weight."""
     sets = plan.of_sets
     return [
         {**asdict(each), "level": plan.levels[sets.level[k]] if sets.level[k] >= 0 else None, "weight": weight}
@@ -177,7 +177,7 @@ def _records(plan: Plan) -> list[dict[str, Any]]:
 
 
 def _nowhere(plan: Plan, definition: Definition, curves: Sequence[Fragility]) -> list[str]:
-    """A sentence on each measure that no run of a structure has above zero, so that there is no curve over it."""
+    """Return a sentence on each measure that is not positive in any run of a structure, so that no curve exists."""
     known = {(each.structure, each.measure) for each in curves}
     return [
         f"{structure}: no run has a {measure} above zero, so no curve can be fitted."
@@ -188,7 +188,7 @@ def _nowhere(plan: Plan, definition: Definition, curves: Sequence[Fragility]) ->
 
 
 def _curves(structure: str, measure: str, curves: Sequence[Fragility], definition: Definition) -> Iterator[Table | str]:
-    """The curves of a structure over one measure."""
+    """Yield the table and remarks of the curves of a structure over one measure."""
     shown = list(edges(curves))
     interval = f"{100 * definition.confidence:g} %"
     width = "dispersion" if all(each.curve.scale is None for _, each in shown) else "dispersion\nor scale"
@@ -218,7 +218,7 @@ def _curves(structure: str, measure: str, curves: Sequence[Fragility], definitio
 def _surfaces(
     structure: str, measures: tuple[str, str], surfaces: Sequence[Bivariate], confidence: float
 ) -> Iterator[Table | str]:
-    """The surfaces of a structure over two measures."""
+    """Yield the table and remarks of the surfaces of a structure over two measures."""
     one, other = measures
     interval = f"{100 * confidence:g} %"
     shown = list(edges(surfaces))
@@ -238,7 +238,7 @@ def _surfaces(
 
 
 def edges(found: Sequence[Fitted]) -> Iterator[tuple[str, Fitted]]:
-    """Yield all fits with their names: of a band both edges."""
+    """Yield all fits with their names; both edges of a band."""
     for each in found:
         name = limit_name(each.limit)
         if each.is_band and each.lower is not None:
@@ -249,7 +249,7 @@ def edges(found: Sequence[Fitted]) -> Iterator[tuple[str, Fitted]]:
 
 
 def _undecided(found: Sequence[Fragility | Bivariate], *, capacities: bool) -> Iterator[str]:
-    """Say of how many runs, or capacities, it is not known whether they exceed a limit state, and how they count."""
+    """Yield sentences on how many runs or capacities may or may not exceed a limit state, and how they count."""
     for each in found:
         if not each.unknown:
             continue
@@ -274,7 +274,7 @@ def _undecided(found: Sequence[Fragility | Bivariate], *, capacities: bool) -> I
 
 
 def _unknown_in_words(outcomes: Sequence[UnknownRuns]) -> list[str]:
-    """A sentence on each structure with runs of unknown outcome."""
+    """Return a sentence on each structure with runs of unknown outcome."""
     return [
         f"{each.structure}: {each.unknown:,} of {each.runs:,} runs ({percent(each.share or 0.0)}) {_are(each.unknown)} "
         f"of {UNKNOWN} outcome, because a joint opens or slides that the model keeps closed. They are known to exceed "
@@ -290,7 +290,7 @@ def _are(number: int) -> str:
 
 
 def _unchecked_in_words(store: Store, outcomes: Sequence[UnknownRuns]) -> list[str]:
-    """Say for which structures no joint was checked; empty if for none."""
+    """Return a sentence on the structures whose joints were not checked; empty without any."""
     unchecked = [each.structure for each in outcomes if not each.checked]
     if not unchecked:
         return []
@@ -306,7 +306,7 @@ def _unchecked_in_words(store: Store, outcomes: Sequence[UnknownRuns]) -> list[s
 
 
 def _left_out(measure: str, runs: int) -> Iterator[str]:
-    """How many runs are in no fit over a measure."""
+    """Yield a sentence on the number of runs that are left out of a fit over a measure."""
     if runs:
         yield (
             f"{runs:,} run{'s have' if runs > 1 else ' has'} no {measure} above zero and "
@@ -315,7 +315,7 @@ def _left_out(measure: str, runs: int) -> Iterator[str]:
 
 
 def _warnings(fitted: Sequence[FragilityCurve | Surface]) -> Iterator[str]:
-    """What to be careful about in some fits, each thing once; with the result, as it belongs to the numbers."""
+    """Yield each warning of some fits once; they are shown with the numbers that they concern."""
     for warning in dict.fromkeys(each.warning for each in fitted if each.warning):
         yield f"Warning: {warning}."
 
@@ -330,14 +330,14 @@ def _in_years(rate: Rate | None) -> str:
 
 
 def limit_name(limit: Limit) -> str:
-    """A limit state as people read it."""
+    """Return a limit state in words."""
     if isinstance(limit, float):
         return f"> {limit:g} phi_cr"
     return limit if metres(limit) is None else f"top > {limit}"
 
 
 def _estimate(estimate: Estimate | None) -> str:
-    """A number above its interval."""
+    """Format a number above its confidence interval."""
     return ABSENT if estimate is None else f"{estimate.value:.4g}\n{estimate.low:.3g} - {estimate.high:.3g}"
 
 
@@ -356,7 +356,7 @@ def _curve_data(found: Fragility) -> dict[str, Any]:
 
 
 def _fit_data(found: Fragility) -> dict[str, Any]:
-    """Return what was fitted, apart from what it is of."""
+    """Return a fitted curve as plain data, without its structure, measure and limit state."""
     curve = found.curve
     return {
         "kind": curve.kind,
@@ -391,7 +391,7 @@ def _surface_data(found: Bivariate) -> dict[str, Any]:
 
 
 def _plane_data(found: Bivariate) -> dict[str, Any]:
-    """Return what was fitted over two measures, apart from what it is of."""
+    """Return a fitted surface as plain data, without its structure, measures and limit state."""
     surface = found.surface
     return {
         "kind": surface.kind,

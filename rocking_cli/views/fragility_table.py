@@ -1,4 +1,4 @@
-"""Fragility curves as a table of numbers, a row for each intensity of each curve."""
+"""Fragility curves as a table of numbers, with a row for each intensity of each curve."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ COLUMNS = (*NUMBERS, "unknown", *OTHER)
 
 
 def blocks(curves: Sequence[Fragility]) -> Iterator[Mapping[str, Sequence[object] | NDArray[Any]]]:
-    """The curves there are, one after the other, from the least intensity of the data to the largest.
+    """Yield the curves as tables, one after the other, from the least intensity of the data to the largest.
 
     Yields
     ------
     mapping of str to sequence
-        The columns; `dispersion` is of lognormal curves, `scale` of logistic ones, each NaN for the others. `unknown`
-        is the share of runs of which it is not known whether they exceed, NaN if nothing was checked: they exceed in
-        the curve itself, and do not in that whose columns begin with `lower_`.
+        The columns. `dispersion` belongs to lognormal curves, `scale` to logistic ones; each is NaN for the others.
+        `unknown` is the share of undecided runs, NaN if nothing was checked: they count as exceeding in the curve
+        itself, and as not exceeding in columns whose names begin with `lower_`.
     """
     drawn = [each for each in curves if _is_drawn(each)]
     if not drawn:
@@ -49,13 +49,13 @@ def _is_drawn(found: Fragility) -> bool:
 
 
 def _fit(curve: FragilityCurve, x: NDArray[np.float64]) -> list[NDArray[np.float64]]:
-    """Return median, dispersion, scale, probability and its band at intensities; NaN where there is none."""
+    """Return median, dispersion, scale, probability and confidence band at intensities; NaN where missing."""
     same = [np.nan if one is None else one.value for one in (curve.median, curve.dispersion, curve.scale)]
     return [*(np.full(x.size, value) for value in same), curve.probability(x), *curve.band(x)]
 
 
 def _intensities(found: Fragility) -> NDArray[np.float64]:
-    """Intensities at which a curve is given; of a step also the ends of its interval, and where it is drawn."""
+    """Return the intensities of a curve's rows, with the ends of the interval of a step, and both sides of it."""
     least, most = float(found.seen.x.min()), float(found.seen.x.max())
     between = np.geomspace if most > WIDEST * least else np.linspace
     x: NDArray[np.float64] = between(least, most, POINTS)

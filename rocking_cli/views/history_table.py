@@ -1,4 +1,4 @@
-"""Histories as a table, a block of rows at a time: a long one never stands in memory twice."""
+"""Histories as a table in blocks of rows, so that a long one is never in memory twice."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ROWS = 25_000  # of a block
 
 
 def _names(histories: Mapping[str, History], motion: GroundMotion | None) -> list[str]:
-    """Time, ground acceleration, and for each history rotation, rate and ratio, with units."""
+    """Return the headings: time, ground acceleration, and for each history rotation, rate and ratio, with units."""
     vertical = ["v_g [g]"] if motion is not None and motion.vertical is not None else []
     each = [
         f"{name} {what}" for name, run in histories.items() for what in ("phi [rad]", "phi_dot [rad/s]", _ratio(run))
@@ -38,16 +38,16 @@ def blocks(
     watched: Watched | None = None,
     base_shear: Mapping[str, Reals] = MappingProxyType({}),
 ) -> Iterator[dict[str, Reals]]:
-    """Columns by their headings, a block of samples at a time.
+    """Yield histories as columns by their headings, a block of samples at a time.
 
     Parameters
     ----------
     histories : mapping of str to History
         At least one; all on the same samples.
     motion : GroundMotion, optional
-        The ground motion they respond to.
+        The ground motion of the histories.
     rows : int
-        Samples in a block, at most.
+        Largest number of samples in a block.
     watched : Watched, optional
         Points and ties: with them, further columns are displacements, elongations and forces in each history.
     base_shear : mapping of str to ndarray, optional
@@ -56,7 +56,7 @@ def blocks(
     Yields
     ------
     dict of str to ndarray
-        NaN after overturning, and where the motion is not known.
+        The columns; NaN after overturning, and after the time until which the motion is known.
     """
     names = _names(histories, motion)
     runs = list(histories.values())
@@ -79,17 +79,17 @@ def blocks(
 
 
 def _at(time: Reals, motion: GroundMotion) -> Reals:
-    """A component at other times than its own samples; zero after its last."""
+    """Return the acceleration of a component at given times, interpolated; zero after its last sample."""
     own = np.arange(motion.npts) * motion.dt
     return np.interp(time, own, motion.acceleration, right=0.0)
 
 
 def _after(run: History) -> float:
-    """Return what follows a history: one that has come to rest before the longest one stays there."""
+    """Return the value that follows the end of a history: 0 if it has come to rest, otherwise NaN."""
     return np.nan if run.overturned or run.unknown else 0.0
 
 
 def _padded(values: Reals, part: slice, after: float) -> Reals:
-    """Part of the values; `after` where they have ended."""
+    """Return a slice of the values, filled with `after` beyond their end."""
     found = values[part]
     return np.concatenate([found, np.full(part.stop - part.start - found.size, after)])

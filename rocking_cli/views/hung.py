@@ -10,7 +10,7 @@ from rocking_cli.core.hung.element import Element
 
 
 def hung_data(mechanism: Mechanism) -> list[dict[str, Any]]:
-    """Each load, force and tie with its place at rest and its numbers, in SI units."""
+    """Return each load, force and tie as plain data, with its position at rest and its numbers, in SI units."""
     return [{"name": thing.name, **_data(thing)} for thing in mechanism.attached]
 
 

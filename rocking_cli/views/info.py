@@ -1,4 +1,4 @@
-"""What is installed on this machine, as people ask for it and as a report of a fault needs it."""
+"""View of the installation on this machine, for users and for fault reports."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from rocking_cli.views.view import Table, View
 
 
 def view(found: Installation, defaults: Mapping[str, Any]) -> View:
-    """What is installed, and the user's defaults.
+    """Show what is installed, and the user's defaults.
 
     Parameters
     ----------
     found : Installation
         What is installed.
     defaults : mapping
-        `files`, those that are there; `user_file`, where the user's own would be; `set`, each with `option`, `command`,
-        `value` and `place`; `environment`, variables that change what commands do; `unknown`, those that mean nothing;
-        and `problem`, what is wrong with a file, or None.
+        `files`, the files of defaults that exist; `user_file`, path of the user's own file; `set`, each default with
+        `option`, `command`, `value` and `place`; `environment`, variables that change what commands do; `unknown`,
+        variables without meaning; and `problem`, what is wrong with a file, or None.
     """
     data = {**asdict(found), "defaults": defaults}
     rows = [
@@ -59,7 +59,7 @@ def _extra(name: str, packages: Mapping[str, str | None]) -> list[str]:
 
 
 def _plugins(kind: str, plugins: Sequence[Plugin]) -> list[list[str]]:
-    """A line for each package, and one for each that is broken."""
+    """Return a row for each package with its plugins, and one for each broken plugin."""
     packages: dict[str, list[str]] = {}
     for each in plugins:
         packages.setdefault(each.package, []).append(each.name)

@@ -1,4 +1,4 @@
-"""Margins to overturning, as people and programs read them."""
+"""View of margins to overturning, as text and as data."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rocking_cli.views.view import FEW, Table, View, heading, number
 
 
 class MarginRow(NamedTuple):
-    """A motion, the factor on it as read, its PGA [g] with that, and its margin."""
+    """A motion: its name, the scale factor on the record as read, its PGA with this factor [g], and its margin."""
 
     name: str
     factor: float
@@ -23,7 +23,7 @@ class MarginRow(NamedTuple):
 
 
 def view(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood) -> View:
-    """The margins of a structure under some motions."""
+    """Show the margins of a structure under some motions."""
     around = rows[0].margin.around if rows else around  # with the deviations of the structure
     heads = ["motion", "PGA\n[g]", "uplift\nat", "overturn\nat 1"]
     heads += [f"{percent(level)}\nfrom" for level in LEVELS] + [f"below\n{percent(level)} to" for level in LEVELS]
@@ -53,7 +53,7 @@ def view(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around:
 
 
 def _cells(row: MarginRow) -> Iterator[list[str]]:
-    """The row of a motion and, if some outcomes are unknown, another one in which these count as overturning."""
+    """Yield the row of a motion and, if outcomes are unknown, a second one that counts them as overturning."""
     found = row.margin
     yield [
         row.name,
@@ -75,12 +75,12 @@ def _cells(row: MarginRow) -> Iterator[list[str]]:
 
 
 def _last(found: Margin, factor: float | None) -> str:
-    """Format the last factor at which fewer overturn; a plus marks the largest factor tried."""
+    """Format the last factor at which fewer neighbours overturn; a plus marks the largest factor simulated."""
     return f"{number(factor, 3)}{'+' if factor == found.factors[-1] else ''}"
 
 
 def _doubtful(rows: Sequence[MarginRow]) -> Iterator[str]:
-    """Say how to read the rows of unknown outcomes, if there are any."""
+    """Yield a note on how to read the rows of unknown outcomes, if there are any."""
     if any(row.margin.unknown.any() for row in rows):
         yield (
             "Rows 'or unknown' count neighbours of unknown outcome as overturning: each factor and share lies between "
@@ -114,7 +114,7 @@ def _data(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around
 
 
 def margin_data(found: Margin) -> dict[str, Any]:
-    """A margin: the shares, and where they pass each level, also if all of unknown outcome overturn."""
+    """Return a margin as plain data: the shares, and the factors at which they pass each level."""
     return {
         "uplift": found.uplift,
         "overturned": found.itself,

@@ -1,4 +1,4 @@
-"""The measures of intensity that are installed, as people and programs read them."""
+"""View of the installed intensity measures, as text and as data."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ class InstalledMeasure:
     Parameters
     ----------
     name, form, package : str
-        Its own, how it is given, and the distribution and version that it comes from.
+        Name of the measure, how it is written, and the distribution and version that it comes from.
     title : str or None
-        What it is; this and the rest are None if it cannot be loaded.
+        Description; this and all further fields are None if the measure cannot be loaded.
     unit : str or None
-        Of its values.
+        Unit of its values.
     power : float or None
-        Of the factor on a motion; None where it is computed of every run.
+        Power of the scale factor to which the measure is proportional; None if it is computed for every run.
     relative : bool or None
-        Whether it asks what is shaken.
+        Whether the measure depends on the structure.
     source : str or None
-        Where it comes from.
+        Literature source.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Installed mechanisms, the fields of one, and what the contract says of it, as people and programs read them."""
+"""Views of the installed mechanisms, of the fields of one, and of the checks of its contract, as text and as data."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ BOUNDS = (
 
 
 class InstalledMechanism(NamedTuple):
-    """A mechanism, its title, which is None if it cannot be loaded, and the package it comes from."""
+    """An installed mechanism: name, title (None if it cannot be loaded), and package."""
 
     name: str
     title: str | None
@@ -39,7 +39,7 @@ class InstalledMechanism(NamedTuple):
 
 
 def installed(found: Sequence[InstalledMechanism]) -> View:
-    """The mechanisms that are installed."""
+    """Show the installed mechanisms."""
     cells = [[each.name, each.title or "(cannot be loaded)", each.package] for each in found]
     return View(
         {"mechanisms": [each._asdict() for each in found]},
@@ -53,7 +53,7 @@ def installed(found: Sequence[InstalledMechanism]) -> View:
 
 
 def view(cls: type[Mechanism], package: str) -> View:
-    """A mechanism with the fields of its file."""
+    """Show a mechanism with the fields of its file."""
     rows = fields(cls)
     data = {
         "mechanism": cls.mechanism,
@@ -104,7 +104,7 @@ def part(name: str) -> View:
 
 
 def fields(cls: type[BaseModel], common: type[BaseModel] = Mechanism) -> list[dict[str, Any]]:
-    """The fields of a file: name, unit, symbol, bounds, default, description; its own before those of a common base."""
+    """Return the fields of a file with unit, symbol, bounds, default and description; common fields last."""
     found = []
     for key, info in cls.model_fields.items():
         extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
@@ -132,7 +132,7 @@ def fields(cls: type[BaseModel], common: type[BaseModel] = Mechanism) -> list[di
 
 
 def _is_common(cls: type[BaseModel], key: str, common: type[BaseModel]) -> bool:
-    """Whether the base has a field, and this class says nothing of its own on it."""
+    """Return whether the base class has a field that this class does not define again."""
     own = cls.__mro__[: cls.__mro__.index(common)] if issubclass(cls, common) else [cls]
     return not any(key in vars(each).get("__annotations__", {}) for each in own)
 
@@ -152,7 +152,7 @@ def _cells(rows: Sequence[Mapping[str, Any]]) -> list[list[str]]:
 
 
 def checked(name: str, package: str, file: str | None, verdicts: Sequence[Verdict]) -> View:
-    """Which checks of the contract a mechanism passes: of a structure in a file, or of its examples."""
+    """Show which checks of the contract a mechanism passes, for a structure in a file or for its examples."""
     data = {
         "mechanism": name,
         "package": package,
@@ -173,7 +173,7 @@ def checked(name: str, package: str, file: str | None, verdicts: Sequence[Verdic
 
 
 def _told(verdicts: Sequence[Verdict]) -> Iterator[str]:
-    """A line for each check, and under it the traceback of an error of the plugin's own; an error is told once."""
+    """Yield a line for each check, with the traceback of an error in the plugin; each error appears once."""
     told: set[str] = set()
     for each in verdicts:
         if each.why is None:
@@ -188,5 +188,5 @@ def _told(verdicts: Sequence[Verdict]) -> Iterator[str]:
 
 
 def _in_a_line(why: str) -> str:
-    """An error without the lines that it quotes."""
+    """Return an error in one line, without the lines that it quotes."""
     return "; ".join(line.strip() for line in why.splitlines() if not line.startswith("    "))

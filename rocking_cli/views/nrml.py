@@ -11,16 +11,16 @@ NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
 
 
 def nrml(model: OpenQuakeModel, name: str, description: str) -> bytes:
-    """The document.
+    """Return an NRML document with the curves of a model.
 
     Parameters
     ----------
     model : OpenQuakeModel
         The curves.
     name : str
-        Of the study.
+        Name of the study.
     description : str
-        What it is, in a sentence; characters that are not ASCII become question marks.
+        Description of the model in a sentence; characters that are not ASCII become question marks.
     """
     root = ElementTree.Element("nrml", {"xmlns": NAMESPACE})
     about = {"id": identifier(name), "assetCategory": "buildings", "lossCategory": "structural"}

@@ -1,4 +1,4 @@
-"""Maps and curves of overturning, as people and programs read them."""
+"""Views of overturning maps, and of the least pulses that overturn, as text and as data."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NO_JOINTS = (
 
 
 def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionless: bool) -> View:
-    """A map of a structure, or of the linear block if there is none.
+    """Show an overturning map of a structure, or of the linear block if there is none.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
     mechanism : Mechanism, optional
         The structure.
     dimensionless : bool
-        Whether people read it over omega and a; else over the period in s and the amplitude in g.
+        Whether to show the map against omega and a; otherwise against the period in s and the amplitude in g.
     """
     unit = 1.0 if dimensionless else found.accelerations[0] / found.a[0]
     across = found.omega if dimensionless else found.periods
@@ -76,13 +76,13 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
 
 
 def map_title(found: OverturningMap) -> str:
-    """What a map is of."""
+    """Return the structure, the pulse and the model of a map, as a heading."""
     shaken = found.structure
     return f"{shaken.name}, {_pulse(found)}, {shaken.model.name}, eta = {shaken.eta:.4g}"
 
 
 def _pulse(found: OverturningMap | Comparison) -> str:
-    """Shape and polarity of the pulses, as a heading has them."""
+    """Return shape and polarity of the pulses, for a heading."""
     turned = {(1,): "", (-1,): " reversed", (1, -1): " of either polarity"}[found.polarities]
     return f"{found.shape.title}{turned}"
 
@@ -92,7 +92,7 @@ def _polarity(found: OverturningMap | Comparison) -> int | str:
 
 
 def map_table(found: OverturningMap, mechanism: Mechanism | None) -> dict[str, Sequence[object]]:
-    """The columns of a map, a row for each point; periods and accelerations are those of a structure."""
+    """Return the columns of a map, with a row for each point; with periods and accelerations for a structure."""
     rows, columns = np.indices(found.regions.shape)
     row, column = rows.ravel(), columns.ravel()
     result: dict[str, Sequence[object]] = {"omega": found.omega[column].tolist(), "a": found.a[row].tolist()}
@@ -145,7 +145,7 @@ def _map_data(found: OverturningMap, mechanism: Mechanism | None, *, dimensionle
 
 
 def _structure(shaken: PulsedModel, mechanism: Mechanism) -> dict[str, Any]:
-    """A structure, and what its pulses are measured by."""
+    """Return a structure as plain data, with the quantities that make its pulses dimensionless."""
     return {
         "mechanism": mechanism.mechanism,
         "name": shaken.name,
@@ -156,12 +156,12 @@ def _structure(shaken: PulsedModel, mechanism: Mechanism) -> dict[str, Any]:
 
 
 def numbers(values: Reals) -> list[float | None]:
-    """Numbers for JSON: null for NaN."""
+    """Return values for JSON, with null for NaN."""
     return [None if value != value else value for value in values.tolist()]
 
 
 def _some(count: int) -> list[int]:
-    """Places of a few columns, the first and the last among them."""
+    """Return the indices of a few columns, including the first and the last."""
     return sorted({round(place) for place in np.linspace(0, count - 1, min(ROWS, count)).tolist()})
 
 
@@ -170,7 +170,7 @@ def _cell(value: float) -> str:
 
 
 def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
-    """The least amplitudes that overturn each of several structures, and which of them overturns first."""
+    """Show the least amplitudes that overturn each of several structures, and which overturns first."""
     firsts = _firsts(found)
     rows = [
         [
@@ -223,7 +223,7 @@ def _firsts(found: Comparison) -> list[list[str]]:
 
 
 def comparison_table(found: Comparison) -> dict[str, Sequence[object]]:
-    """The columns of the curves, a row for each period."""
+    """Return the columns of the curves, with a row for each period."""
     curves: dict[str, Sequence[object]] = {"period [s]": found.periods.tolist()}
     for each, least, possible in zip(found.structures, found.least, found.possible, strict=True):
         curves[f"{each.name} [g]"] = least.tolist()
@@ -258,7 +258,7 @@ def _comparison_data(found: Comparison, mechanisms: Sequence[Mechanism]) -> dict
 
 
 def _joints(structures: Sequence[PulsedModel], mechanisms: Sequence[Mechanism]) -> list[str]:
-    """Say what is not checked of the joints of structures; nothing if all of them are."""
+    """Return sentences on joints of structures that are not checked; empty if all are."""
     linear, several = structures[0].model.is_linear, len(structures) > 1
     left_out = linear and any(len(each.bodies()) > 1 for each in mechanisms)
     return [
@@ -269,7 +269,7 @@ def _joints(structures: Sequence[PulsedModel], mechanisms: Sequence[Mechanism]) 
 
 
 def _span(possible: float, least: float) -> str:
-    """Format the least amplitude that overturns: a number, the two between which it lies, or a lower bound."""
+    """Format the least amplitude that overturns: a number, the range in which it lies, or a lower bound."""
     if possible != possible or possible >= least:
         return _cell(least)
     return f">= {_cell(possible)}" if least != least else f"{_cell(possible)} to {_cell(least)}"

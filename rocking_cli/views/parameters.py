@@ -1,4 +1,4 @@
-"""The parameters of an equivalent block, one table for all that shows them: a row here is one everywhere."""
+"""The parameters of an equivalent block, in one table for all outputs."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ class Parameter(NamedTuple):
     Parameters
     ----------
     key, unit : str
-        As programs and terminals have them.
+        Key and unit in JSON and on terminals.
     symbol : str
-        In print; an underscore begins a subscript.
+        Symbol in print; an underscore starts a subscript.
     short : str
-        What it is, for who knows the paper.
+        Short description, for readers of the paper.
     meaning : str
-        What it is, for a reader who has never met it.
+        Description for a reader who does not know the parameter.
     of : callable
-        Its value.
+        Returns the value for an equivalent block.
     """
 
     key: str
@@ -34,16 +34,16 @@ class Parameter(NamedTuple):
 
     @property
     def printed_unit(self) -> str:
-        """The unit in print; 1 where there is none."""
+        """The unit in print; 1 for a dimensionless parameter."""
         return self.unit.replace("m2", "m²") or "1"
 
     @property
     def of_mass(self) -> bool:
-        """Whether it is per unit mass where a structure has none."""
+        """Whether the parameter is proportional to mass, and so per unit mass for a structure without masses."""
         return self.unit.startswith("kg ")
 
     def unit_of(self, *, mass: bool) -> str:
-        """The unit for a structure with masses, or without."""
+        """Return the unit for a structure with or without masses."""
         return self.unit if mass else self.unit.removeprefix("kg ")
 
 

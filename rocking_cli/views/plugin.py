@@ -1,4 +1,4 @@
-"""A package for a mechanism or a code that was written, as people and programs read it."""
+"""View of a new package for a mechanism or a code, as text and as data."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from rocking_cli.views.view import Table, View
 
 
 def view(name: str, kind: str, folder: str, files: Mapping[str, str], commands: Sequence[str]) -> View:
-    """What was written, and what to type next.
+    """Show the files that were written, and the commands to type next.
 
     Parameters
     ----------
     name, kind : str
-        What it is called, and what it is: a mechanism or a code.
+        Name of the plugin, and its kind: a mechanism or a code.
     folder : str
-        Where the package is.
+        Folder of the package.
     files : mapping of str to str
-        What each file is, by its place in the folder.
+        Description of each file, by its path in the folder.
     commands : sequence of str
-        To be typed one after the other.
+        The commands to type, in order.
     """
     data = {"plugin": name, "folder": folder, "files": list(files), "commands": list(commands)}
     rows = [[file, what] for file, what in files.items()]

@@ -1,4 +1,4 @@
-"""What was done to a ground motion since it was read, for people and programs."""
+"""The processing of a ground motion, in words and as data."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def in_words(motion: GroundMotion) -> str:
-    """What was done, a few words; empty for nothing."""
+    """Return the processing steps of a motion in a few words; empty if there are none."""
     from rocking_cli.excitation.records import sensor
 
     steps = list(motion.processing)
@@ -20,7 +20,7 @@ def in_words(motion: GroundMotion) -> str:
 
 
 def data(motion: GroundMotion) -> dict[str, Any]:
-    """Return the steps in order, as they would be given again, and for a floor the peak of its own motion [g]."""
+    """Return the processing steps of a motion in order, as options spell them; for a floor also its peak [g]."""
     found: dict[str, Any] = {"processing": list(motion.processing)}
     if motion.ground is not None:
         found["floor_pga"] = motion.pga_g

@@ -1,4 +1,4 @@
-"""A pulse on the dimensionless linear block, as people and programs read it."""
+"""View of a pulse on the dimensionless linear block, as text and as data."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ YES_NO = {True: "yes", False: "no", None: ABSENT}
 
 
 def view(shape: str, a: float, omega: float, eta: float, closed: ClosedForm | None, exact: ExactResponse) -> View:
-    """The closed form, of a shape that has one, beside the exact answer."""
+    """Show the exact solution, and the closed form if the shape has one."""
     data = {
         "shape": shape,
         "a": a,
@@ -40,7 +40,7 @@ def view(shape: str, a: float, omega: float, eta: float, closed: ClosedForm | No
 
 
 def closed_data(closed: ClosedForm, exact: ExactResponse) -> dict[str, Any]:
-    """The closed form, why it cannot be used where it cannot, and by how much it misses two exact peaks."""
+    """Return the closed form as plain data: whether it is valid, why not, and its errors in two exact peaks."""
     return {
         **asdict(closed),
         "valid": closed.valid,
@@ -85,7 +85,7 @@ def _closed_rows(closed: ClosedForm) -> list[list[str]]:
 
 
 def exact_data(exact: ExactResponse) -> dict[str, Any]:
-    """The exact answer; what comes after uplift is counted from there."""
+    """Return the exact solution as plain data; times count from uplift."""
     return {
         "max_ratio": exact.peak_ratio,
         "first_excursion": exact.first_excursion,
@@ -112,12 +112,12 @@ def _exact_rows(exact: ExactResponse) -> list[list[str]]:
 
 
 def impacts_before(outcome: OneOutcome) -> int | None:
-    """Number of impacts before it overturns; None if it does not."""
+    """Return the number of impacts before the block overturns; None if it does not."""
     return outcome.impact_count if outcome.overturned else None
 
 
 def after_impacts(outcome: OneOutcome) -> str:
-    """After how many it overturns, in words; nothing if it does not."""
+    """Return in words after how many impacts the block overturns; empty if it does not."""
     count = impacts_before(outcome)
     if count is None:
         return ""

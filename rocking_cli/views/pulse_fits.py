@@ -1,4 +1,4 @@
-"""The pulses in a record, as people and programs read them."""
+"""View of the pulses fitted to a record, as text and as data."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rocking_cli.views.view import Table, number
 
 
 def fits_data(fits: Sequence[PulseFit]) -> dict[str, Any]:
-    """Fitted pulses by criterion and shape."""
+    """Return fitted pulses as plain data, by criterion and shape."""
     return {
         criterion: {fit.pulse.name: fit_data(fit) for fit in fits if fit.criterion == criterion}
         for criterion in CRITERIA
@@ -20,7 +20,7 @@ def fits_data(fits: Sequence[PulseFit]) -> dict[str, Any]:
 
 
 def parts(name: str, fits: Sequence[PulseFit]) -> Iterator[Table | str]:
-    """A table for each criterion with a column for each shape, and what is maximised."""
+    """Yield a table for each criterion, with a column for each shape, and a sentence on what is maximised."""
     for criterion in CRITERIA:
         one = [fit for fit in fits if fit.criterion == criterion]
         columns = ["", *(fit.pulse.name for fit in one), "unit"]

@@ -1,4 +1,4 @@
-"""A pulse on a structure, as people and programs read it."""
+"""View of the response of a structure to a pulse, as text and as data."""
 
 from __future__ import annotations
 
@@ -29,18 +29,18 @@ from rocking_cli.views.view import Table, View, heading, in_degrees, number
 def view(
     structure: Structure, pulse: Pulse, answers: Mapping[int, Mapping[str, Answer]], closed: Mapping[str, ClosedForm]
 ) -> View:
-    """What the models of a structure say of a pulse.
+    """Show the responses of the models of a structure to a pulse.
 
     Parameters
     ----------
     structure : Structure
-        What the pulse shakes.
+        The structure.
     pulse : Pulse
-        As it is given.
+        The pulse as given.
     answers : mapping of int to mapping of str to Answer
         The responses of the models under each polarity to be analysed, 1 or -1.
     closed : mapping of str to ClosedForm
-        Eqs. 41-42 with each kappa, beside the answers under the first polarity; empty where they do not apply.
+        Eqs. 41-42 with each kappa, shown with the responses in the first polarity; empty if they do not apply.
     """
     mechanism, equivalence = structure.mechanism, structure.equivalence
     blocks = {"positive": equivalence.positive, "negative": equivalence.negative}
@@ -105,7 +105,7 @@ def _data(answer: Answer, answers: Mapping[str, Answer]) -> dict[str, Any]:
 
 
 def _over_nonlinear(answer: Answer, answers: Mapping[str, Answer]) -> float:
-    """The peak of a linear model over that of the nonlinear one; NaN if either does not exist or is unknown."""
+    """Return the peak of a model over that of the nonlinear one; NaN if either does not exist or is unknown."""
     best = outcome(answers["nonlinear"])
     if outcome(answer) is best or best.unknown or not best.peak_ratio > 0:
         return nan
@@ -136,13 +136,13 @@ def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
 
 
 def _ends(found: OneOutcome) -> str:
-    """How it ends; of one that is left rocking, that it rocks."""
+    """Return the outcome in words; a motion that is still rocking counts as rocking."""
     said = names.outcome(uplifts=found.lifted, overturned=found.overturned, unknown=found.unknown)
     return f"{said}\n{after_impacts(found)}" if found.overturned else said
 
 
 def _verdict(answers: Mapping[str, Answer]) -> str:
-    """What the nonlinear history says, and how the linear ones compare."""
+    """Return sentences on the nonlinear history, and on how the linear models compare."""
     nonlinear = outcome(answers["nonlinear"])
     assert isinstance(nonlinear, History)
     joints = joints_in_words(nonlinear) if nonlinear.check is not None or nonlinear.unknown else ""
@@ -167,7 +167,7 @@ def _verdict(answers: Mapping[str, Answer]) -> str:
 
 
 def _closed_parts(closed: Mapping[str, ClosedForm], answers: Mapping[str, Answer]) -> Iterator[Table | str]:
-    """The closed form, its conditions, and how far to trust it."""
+    """Yield the closed form, its conditions, and a sentence on how far to trust it."""
     forms = list(closed.values())
     beside = _beside(closed, answers)
     rows = [
@@ -191,7 +191,7 @@ def _closed_parts(closed: Mapping[str, ClosedForm], answers: Mapping[str, Answer
 def _beside(
     closed: Mapping[str, ClosedForm], answers: Mapping[str, Answer]
 ) -> dict[str, tuple[ClosedForm, ExactResponse]]:
-    """Each closed form with the exact answer that it stands for: a full sine has one."""
+    """Return each closed form with the exact response that it approximates."""
     exact = {name: each for name, each in answers.items() if isinstance(each, ExactResponse)}
     return {name: (form, exact[name]) for name, form in closed.items()}
 

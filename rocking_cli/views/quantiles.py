@@ -1,4 +1,4 @@
-"""How far structures rock at an intensity, as people and programs read it."""
+"""View of the quantiles of peak rotations, as text and as data."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rocking_cli.views.view import ABSENT, Table, View, number
 
 
 def with_quantiles(shown: View, found: Sequence[Quantiles], *, in_words: bool) -> View:
-    """What was found of a study with the quantiles: as data always, and as tables if `in_words`."""
+    """Add quantiles to the view of a study: always as data, as tables only if `in_words`."""
     assert isinstance(shown.data, Mapping)
     unchecked = {each["structure"] for each in shown.data.get("outcomes", ()) if each["unknown"] is None}
     tables = [part for each in found for part in _tables(each)] if in_words else []
@@ -33,7 +33,7 @@ def with_quantiles(shown: View, found: Sequence[Quantiles], *, in_words: bool) -
 
 
 def _tables(found: Quantiles) -> Iterator[Table | str]:
-    """Those that rock and stand with the shares of the others, and all runs: in one they are wider than a terminal."""
+    """Yield two tables: runs that rock without overturning, with the shares of the others; and all runs."""
     over = f"against {label(found.measure)}{'' if found.stripes else ', in tenths'}"
     shares = [f"{100 * share:g} %" for share in SHARES]
     doubtful = bool(found.unknown)
@@ -59,7 +59,7 @@ def _tables(found: Quantiles) -> Iterator[Table | str]:
 
 
 def _ranks(group: Group) -> Iterator[float | str]:
-    """Yield the quantiles of all runs, in words if they are no number."""
+    """Yield the quantiles of all runs, in words if a run overturns or is unknown."""
     for value, doubtful in zip(group.every, group.doubtful, strict=True):
         yield UNKNOWN if doubtful else OVERTURNS if isinf(value) else value
 

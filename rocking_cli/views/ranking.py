@@ -23,7 +23,7 @@ def added(shown: View, rankings: Sequence[Ranking]) -> View:
 
 
 def parts(ranking: Ranking) -> Iterator[Table | str]:
-    """A table of the measures of a structure, and what it says."""
+    """Yield a table of the measures of a structure, and sentences on it."""
     from rocking_cli.studies.fragility.ranking import judge
 
     limits = list(ranking.measures[0].dispersions) if ranking.measures else []

@@ -1,4 +1,4 @@
-"""What records are and how strong, as people and programs read it."""
+"""View of records and their intensity, as text and as data."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ BESIDE = 3  # blanks between columns
 
 
 class Examined(NamedTuple):
-    """A record as read, the factor on it, and of the scaled one measures, doubts, p dt of a structure and pulses.
+    """A record as read, its scale factor, and measures, doubts, p dt and pulses of the scaled record.
 
-    `label` is what to call it: of both polarities the reversed one says so. `asked` are measures requested by
-    name, `spectrum` its response spectrum.
+    `label` is its name, with "reversed" for the second of both polarities. `p_dt` is the frequency parameter of a
+    structure times the sampling interval. `asked` are measures requested by name, `spectrum` is its response spectrum.
     """
 
     file: str
@@ -43,7 +43,7 @@ class Examined(NamedTuple):
 
 
 def data(record: Examined) -> dict[str, Any]:
-    """A record as plain data."""
+    """Return a record as plain data."""
     motion, measures = record.motion, record.measures
     found: dict[str, Any] = {
         "file": record.file,
@@ -82,9 +82,9 @@ def data(record: Examined) -> dict[str, Any]:
 
 
 def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | str]:
-    """A column for each record, in as many tables below one another as so many characters need; then its pulses.
+    """Yield tables with a column for each record, as many as the width requires, then the pulses of each record.
 
-    Without a width there is one table. Where there is room for one record beside the labels, its name is above.
+    Without a width there is one table. If a table has room for one record only, the name is its title.
     """
     names = [_folded(record.label) for record in records]
     rows = _rows(records)
@@ -108,7 +108,7 @@ def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | st
 
 
 def _rows(records: Sequence[Examined]) -> list[list[str]]:
-    """The rows of the table: a label, a cell for each record, a unit."""
+    """Return the rows of the table: a label, a cell for each record, a unit."""
     rows = [
         ("format", [_folded(r.motion.format) for r in records], ""),
         ("channel", [_channel(r) or ABSENT for r in records], ""),
@@ -143,10 +143,10 @@ def _rows(records: Sequence[Examined]) -> list[list[str]]:
 
 
 def _channel(record: Examined) -> str | None:
-    """The channel, of a file with several: readers put it into the name of the motion."""
+    """Return the channel of a record from a file with several; readers put it into the name of the motion."""
     return record.motion.name.partition(f"{Path(record.file).name} channel ")[2] or None
 
 
 def _folded(name: str) -> str:
-    """A name broken into lines of a column's width at its blanks."""
+    """Break a name at blanks into lines of a column's width."""
     return "\n".join(wrap(name, HEADING, break_long_words=False, break_on_hyphens=False))

@@ -1,4 +1,4 @@
-"""A set of records that is to fit a spectrum, as people and programs read it."""
+"""View of a set of records selected to fit a spectrum, as text and as data."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ SPANS = 4  # of periods, in a sentence
 
 @dataclass(frozen=True)
 class ShownSet:
-    """A set, the target, and where the candidates come from.
+    """A selected set of records, its target, and the files of the candidates.
 
     Parameters
     ----------
     found : RecordSet
         The set.
     target : TargetSpectrum
-        What it is to fit.
+        The target spectrum.
     files : sequence of (str or None)
-        Of each candidate.
+        File of each candidate.
     unusable : sequence of str
-        Files that are no candidates: what is wrong with them was said.
+        Files that could not be used; their errors have been reported.
     """
 
     found: RecordSet
@@ -43,14 +43,14 @@ class ShownSet:
 
 
 def view(results: ShownSet) -> View:
-    """The records and their factors, the range of the mean over the target, and what to know of both."""
+    """Show the records and their factors, the range of the mean over the target, and remarks."""
     parts: list[Table | str] = [_records(results), _range(results), verdict(results), search(results)]
     parts += [said for said in (_left_out(results), _silent(results)) if said]
     return View(lambda: data(results), parts)
 
 
 def data(results: ShownSet) -> dict[str, Any]:
-    """A set as plain data."""
+    """Return a set as plain data."""
     found, wanted = results.found, results.found.wanted
     ratio = found.ratio
     return {
@@ -92,7 +92,7 @@ def data(results: ShownSet) -> dict[str, Any]:
 
 
 def table(results: ShownSet) -> dict[str, Sequence[object]]:
-    """The columns of the spectra: the target, the mean, and each scaled record."""
+    """Return the columns of the spectra: the target, the mean, and each scaled record."""
     found = results.found
     names = [found.candidates.motions[k].name for k, _ in _chosen(found)]
     return {
@@ -104,13 +104,13 @@ def table(results: ShownSet) -> dict[str, Sequence[object]]:
 
 
 def title(results: ShownSet) -> str:
-    """What is shown, as a heading."""
+    """Return the number of records and the target, as a heading."""
     found = results.found
     return f"{_records_in_words(len(found.chosen))} for {results.target.name}"
 
 
 def verdict(results: ShownSet) -> str:
-    """Whether the mean lies within the limits, where it is least and most, and over which periods it does not fit."""
+    """Return sentences on whether the mean lies within the limits, its extremes, and the periods outside."""
     found, wanted = results.found, results.found.wanted
     periods, ratio = found.candidates.periods, found.ratio
     low, high = wanted.within
@@ -138,7 +138,7 @@ def verdict(results: ShownSet) -> str:
 
 
 def search(results: ShownSet) -> str:
-    """How the set was found, and how good it is therefore."""
+    """Return a sentence on how the set was found, and so how good it is."""
     found = results.found
     if found.exact:
         one = "the only possible set" if found.sets == 1 else f"the best of all {found.sets:,} sets"
@@ -150,7 +150,7 @@ def search(results: ShownSet) -> str:
 
 
 def ratio_in_words(value: float, within: tuple[float, float]) -> str:
-    """A ratio to three digits, or as many as it takes to see on which side of the limits it is."""
+    """Format a ratio with three digits, or more if needed to show on which side of the limits it is."""
     for digits in range(3, 10):
         shown = f"{value:#.{digits}g}"
         if all((float(shown) < limit) == (value < limit * (1 - 1e-9)) for limit in within[:1]) and all(
@@ -169,7 +169,7 @@ def _records_in_words(count: int) -> str:
 
 
 def _records(results: ShownSet) -> Table:
-    """A row for each record of the set."""
+    """Return a table with a row for each record of the set."""
     found = results.found
     rows = []
     for k, factor in _chosen(found):
@@ -181,7 +181,7 @@ def _records(results: ShownSet) -> Table:
 
 
 def _range(results: ShownSet) -> Table:
-    """Where the mean is least and most over the target."""
+    """Return a table of the smallest and the largest ratio of the mean to the target."""
     found = results.found
     ratio, periods = found.ratio, found.candidates.periods
     limits = results.found.wanted.within
@@ -196,7 +196,7 @@ def _range(results: ShownSet) -> Table:
 
 
 def _spans(periods: NDArray[np.float64], where: NDArray[np.bool_]) -> str:
-    """The stretches of periods where something holds: from 0.2 to 0.31 s and at 1.4 s."""
+    """Return the ranges of flagged periods in words: "from 0.2 to 0.31 s and at 1.4 s"."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], where.astype(int), [0]]))).reshape(-1, 2)
     said = []
     for start, end in edges.tolist():
@@ -212,7 +212,7 @@ def _large(count: int) -> str:
 
 
 def _left_out(results: ShownSet) -> str:
-    """Which records could not be chosen."""
+    """Return a sentence on the records that could not be chosen; empty if there are none."""
     found = results.found
     said = [f"{found.candidates.motions[k].name}: {why}" for k, why in found.left_out.items()]
     if not said:

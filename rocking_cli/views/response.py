@@ -1,4 +1,4 @@
-"""What one ground motion does to a structure, as people and programs read it: in one polarity, or in both."""
+"""View of the response of a structure to one ground motion, in one polarity or both, as text and as data."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ NOTHING_MORE = HistoryDetails()
 
 
 def record_data(motion: GroundMotion, factor: float, polarity: str, pulse: Pulse | None) -> dict[str, Any]:
-    """The record as read, or the pulse as given, and what was done to it."""
+    """Return the record as read, or the pulse as given, and its scaling and processing, as plain data."""
     return {
         **_motion_data(motion),
         **({"pulse": pulse_data(pulse)} if pulse is not None else {}),
@@ -81,7 +81,7 @@ def record_data(motion: GroundMotion, factor: float, polarity: str, pulse: Pulse
 
 
 def pulse_data(pulse: Pulse) -> dict[str, Any]:
-    """A pulse: its shape, amplitude [g], period and duration [s], and what else its shape has."""
+    """Return a pulse as plain data: shape, amplitude [g], period and duration [s], and further parameters."""
     return {
         "shape": pulse.name,
         "specification": pulse.specification,
@@ -93,7 +93,7 @@ def pulse_data(pulse: Pulse) -> dict[str, Any]:
 
 
 def fit_data(fit: PulseFit) -> dict[str, Any]:
-    """A fitted pulse, and where it is in its record."""
+    """Return a fitted pulse as plain data, with its position in the record."""
     return {
         "criterion": fit.criterion,
         "captured": fit.captured,
@@ -117,7 +117,7 @@ def _motion_data(motion: GroundMotion) -> dict[str, Any]:
 
 
 def runs_data(runs: Runs, near: Mapping[int, Neighbours], shown: HistoryDetails = NOTHING_MORE) -> dict[str, Any]:
-    """Responses and neighbours, under their polarities if there are two."""
+    """Return responses and neighbours as plain data, by polarity if there are two."""
     each = {
         str(polarity): {
             "responses": histories_data(histories, shown, polarity),
@@ -131,14 +131,14 @@ def runs_data(runs: Runs, near: Mapping[int, Neighbours], shown: HistoryDetails 
 
 
 def histories_data(histories: Histories, shown: HistoryDetails = NOTHING_MORE, polarity: int = 1) -> dict[str, Any]:
-    """The response of each model."""
+    """Return the response of each model as plain data."""
     return {
         name: {**_history_data(run, shown), "contact": shown.contact(polarity, name)} for name, run in histories.items()
     }
 
 
 def neighbours_data(near: Neighbours) -> dict[str, Any]:
-    """What became of the neighbours of a motion; a peak of those that overturn is null."""
+    """Return the outcomes of the neighbours of a motion as plain data; peaks of overturning are null."""
     peaks = zip(FRACTILES, near.peak_ratio, strict=True)
     return {
         "count": near.around.count,
@@ -153,9 +153,9 @@ def neighbours_data(near: Neighbours) -> dict[str, Any]:
 
 
 def agreement_data(histories: Histories) -> dict[str, Any]:
-    """How the motions of the equivalent blocks compare with the nonlinear one; empty without that.
+    """Return, as plain data, how the models compare with the nonlinear one; empty without it.
 
-    Where the outcome of that is unknown there is nothing to compare with, and each is null.
+    If the outcome of the nonlinear model is unknown, each value is null.
     """
     if "nonlinear" in histories and histories["nonlinear"].unknown:
         return {name: None for name in histories if name != "nonlinear"}
@@ -172,7 +172,7 @@ def agreement_data(histories: Histories) -> dict[str, Any]:
 
 
 def models_used(models: Iterable[ModelName]) -> Iterator[str]:
-    """A sentence on what the models are; none where there is the nonlinear one alone."""
+    """Yield a sentence on what the models are; none for the nonlinear model alone."""
     names = list(models)
     linear = [name for name in names if name != "nonlinear"]
     if linear:
@@ -185,14 +185,14 @@ def models_used(models: Iterable[ModelName]) -> Iterator[str]:
 
 
 def ending(outcome: OneOutcome) -> str:
-    """How a motion ended, as programs read it."""
+    """Return the keyword for how a motion ended, for JSON."""
     if outcome.unknown:
         return names.UNKNOWN
     return "overturned" if outcome.overturned else "still_rocking" if outcome.still_rocking else "at_rest"
 
 
 def known_data(outcome: OneOutcome) -> dict[str, Any]:
-    """Until when a motion is known, and why no further; that of an equivalent block always is."""
+    """Return, as plain data, until when a motion is known and why; linear models are always known."""
     history = outcome if isinstance(outcome, History) else None
     checked = history is None or history.model != "nonlinear" or history.check is not None
     return {
@@ -237,7 +237,7 @@ def _history_data(history: History, shown: HistoryDetails) -> dict[str, Any]:
 
 
 def _movements_data(moved: Movements) -> dict[str, Any]:
-    """How far points move, what ties bear, and how fast an impact is."""
+    """Return peak displacements of points, peak forces of ties and the impact velocity as plain data."""
     return {
         "impact_velocity": moved.impact_velocity,
         "points": {
@@ -249,7 +249,7 @@ def _movements_data(moved: Movements) -> dict[str, Any]:
 
 
 def _impacts(history: History, etas: tuple[float, float], most: int) -> list[tuple[float, Direction, float, float]]:
-    """Time [s], direction that ends, and rates before and after [rad/s] of the first impacts."""
+    """Return time [s], direction that ends, and rates before and after [rad/s] of the first impacts."""
     rows = ((time, Direction(int(sign)), rate) for time, sign, rate in history.impacts[:most].tolist())
     return [(time, direction, rate, etas[0 if direction > 0 else 1] * rate) for time, direction, rate in rows]
 
@@ -264,22 +264,22 @@ def view(
     *,
     impacts: bool,
 ) -> View:
-    """The responses to one motion.
+    """Show the responses to one motion.
 
     Parameters
     ----------
     found : Response
-        What became of the structure.
+        The response of the structure.
     structure : Structure
         The structure.
     asked : Question
-        What was asked.
+        The options of the response.
     polarity : str
         `1`, `-1` or `both`.
     title : str
-        Above the tables.
+        Title of the tables.
     doubts : sequence of str
-        What is doubtful about the structure.
+        Doubts about the structure, as sentences.
     impacts : bool
         Whether to list the impacts: the first in a table, all in the data.
     """
@@ -326,7 +326,7 @@ def _apart(shown: HistoryDetails, runs: Runs) -> Iterator[str]:
 
 
 def runs_view(title: str, runs: Runs, mechanism: Mechanism, contacts: Mapping[int, ContactDemand]) -> View:
-    """Responses alone, under one polarity or both."""
+    """Show responses without neighbours, in one polarity or both."""
     shown = HistoryDetails(Watched(mechanism), contacts=contacts, mechanism=mechanism)
     caution = [f"Caution: {text}" for text in _apart(shown, runs)]
     return View(lambda: runs_data(runs, {}, shown), [*_tables(title, runs, {}, shown), *caution])
@@ -335,7 +335,7 @@ def runs_view(title: str, runs: Runs, mechanism: Mechanism, contacts: Mapping[in
 def _tables(
     title: str, runs: Runs, near: Mapping[int, Neighbours], shown: HistoryDetails = NOTHING_MORE
 ) -> list[Table | str]:  # fmt: skip
-    """A table and sentences on each polarity, and which of two governs."""
+    """Return a table and sentences for each polarity, and which of two governs."""
     parts: list[Table | str] = []
     for polarity, histories in runs.items():
         heading = f"{title}, polarity {polarity}" if len(runs) > 1 else title
@@ -405,7 +405,7 @@ def _impact_table(title: str, history: History, etas: tuple[float, float]) -> li
 
 
 def share_of_pulse(histories: Histories, to_pulse: Histories, called: str) -> str:
-    """A sentence on how much of the response to a record is that to its pulse, called so, by the best model."""
+    """Return a sentence that compares the response to a record with that to its pulse (named `called`) alone."""
     model: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
     whole, alone = histories[model], to_pulse[model]
     if whole.unknown or alone.unknown:

@@ -1,4 +1,4 @@
-"""Response spectra of ground motions, as people and programs read them."""
+"""View of response spectra of ground motions, as text and as data."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def data(spectrum: ResponseSpectrum) -> dict[str, Any]:
-    """A spectrum as plain data: seconds, standard gravity, m/s and m."""
+    """Return a spectrum as plain data, in s, standard gravity, m/s and m."""
     return {
         "damping": spectrum.damping,
         "period": spectrum.periods.tolist(),
@@ -26,7 +26,7 @@ def data(spectrum: ResponseSpectrum) -> dict[str, Any]:
 
 
 def table(spectra: Mapping[str, ResponseSpectrum]) -> Columns:
-    """Spectra of motions by their names, one below the other."""
+    """Return spectra as columns, one motion below the other."""
     found = list(spectra.values())
 
     def joined(name: str) -> Any:
@@ -43,7 +43,7 @@ def table(spectra: Mapping[str, ResponseSpectrum]) -> Columns:
 
 
 def peaks(name: str, spectrum: ResponseSpectrum) -> str:
-    """A sentence on where a spectrum is largest."""
+    """Return a sentence on the largest ordinates of a spectrum and their periods."""
     k, j = int(spectrum.sa.argmax()), int(spectrum.sv.argmax())
     return (
         f"{name}: with {100 * spectrum.damping:g} % damping Sa is largest at {spectrum.periods[k]:.3g} s, "
@@ -52,5 +52,5 @@ def peaks(name: str, spectrum: ResponseSpectrum) -> str:
 
 
 def view(name: str, spectrum: ResponseSpectrum) -> View:
-    """The spectrum of one motion."""
+    """Show the spectrum of one motion."""
     return View(lambda: {"name": name, **data(spectrum)}, [peaks(name, spectrum)])

@@ -1,4 +1,4 @@
-"""Which restitution a history used, as people and programs read it."""
+"""The restitution that histories used, in words and as data."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ELASTIC = 0.97  # a restitution from kinematics above which tests found less
 
 
 def restitution_source(mechanism: Mechanism) -> str:
-    """Where the restitution of a structure comes from: given, of the kinematics, of impacts in sequence, or missing."""
+    """Return the source of a structure's restitution: given, kinematics, impacts in sequence, or missing."""
     given = mechanism.restitution if mechanism.rocks_both_ways else mechanism.rebound
     if given is not None:
         return "given"
@@ -23,7 +23,7 @@ def restitution_source(mechanism: Mechanism) -> str:
 
 
 def restitution_data(structure: Structure) -> dict[str, Any]:
-    """The restitution that the histories used, and where it comes from."""
+    """Return the restitution that the histories used, and its source, as plain data."""
     source = restitution_source(structure.mechanism)
     if not structure.mechanism.rocks_both_ways:
         return {"rebound": structure.etas[0], "direction": structure.mechanism.one_sided, "source": source}

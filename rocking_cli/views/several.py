@@ -1,4 +1,4 @@
-"""What several ground motions do to a structure: a row each, and which governs."""
+"""View of the responses of a structure to several ground motions: a row for each, and which governs."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from rocking_cli.views.view import ABSENT, Table, heading
 
 
 class Several:
-    """The table of several motions, a row each; of a motion no more than its row is kept.
+    """Table of several motions; only the row of each motion is kept in memory.
 
     Parameters
     ----------
     structure : Structure
-        What is shaken.
+        The structure.
     models : tuple of str
         The models simulated.
     """
@@ -79,7 +79,7 @@ class Several:
         self._rows.append([what, pga, *(_fate(histories[name]) for name in self._models), *neighbours_cells(near)])
 
     def parts(self) -> Iterator[Table | str]:
-        """The table, how many motions overturn it, and which governs."""
+        """Yield the table, how many motions overturn the structure, and which governs."""
         heads = [f"peak phi/{'limit' if any(self._free) else 'phi_cr'}\nunder", "PGA\n[g]", *self._models]
         rows = self._rows
         if self._around is None:
@@ -101,7 +101,7 @@ class Several:
             yield f"Caution: {NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}"
 
     def _outcomes(self) -> str:
-        """How many motions overturn it, and under how many the outcome is unknown."""
+        """Return a sentence on how many motions overturn the structure, and how many are unknown."""
         count = len(self._worst)
         if self._fallen:
             said = f"{self._fallen} of {count} motions overturn it"
@@ -112,7 +112,7 @@ class Several:
         return said if self._unknown == count else f"{said}, and none of the others overturns it"
 
     def _joints(self) -> Iterator[str]:
-        """Yield until when motions are known, and the contact demands under which the joints do not hold.
+        """Yield until when motions are known, and the contact demands of motions under which the joints fail.
 
         If the joints hold under all motions, yield the demands of the most demanding one.
         """
@@ -137,7 +137,7 @@ def neighbours_cells(near: Neighbours | None) -> list[str]:
 
 
 def _fate(history: History) -> str:
-    """Return a cell with the peak, or that it overturns, does not uplift, or is of unknown outcome."""
+    """Return a table cell: the peak, or that the structure overturns, does not uplift, or is of unknown outcome."""
     if history.unknown:
         return names.UNKNOWN
     if history.overturned:

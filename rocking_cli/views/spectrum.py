@@ -1,4 +1,4 @@
-"""Rocking spectra, as people and programs read them."""
+"""View of rocking spectra, as text and as data."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ BECAUSE = "a joint opens or slides so far that the model no longer holds"
 
 @dataclass(frozen=True, eq=False)
 class ShownSpectra:
-    """Spectra, the motions they are of, the fractiles to show (0.5 among them), and the polarity as given."""
+    """Spectra, their ground motions, the fractiles to show (0.5 among them), and the polarity as given."""
 
     spectra: Sequence[Spectrum]
     motions: Sequence[Scaled]
@@ -40,7 +40,7 @@ class ShownSpectra:
 
     @property
     def shaking(self) -> str:
-        """The motions, as a heading has them."""
+        """The ground motions, for a heading."""
         first = self.motions[0]
         scaled = f" x {first.factor:.4g}" if first.factor != 1 else ""
         what = f"{first.motion.name}{scaled}" if self.one else f"{len(self.motions)} motions"
@@ -48,7 +48,7 @@ class ShownSpectra:
 
 
 def view(results: ShownSpectra) -> View:
-    """The peaks over the size of each shape, and what becomes of each."""
+    """Show the peaks as a function of the size of each shape, and a verdict on each."""
     parts = [part for each in results.spectra for part in _curve(results, each)]
     said = [_verdict(results, each) for each in results.spectra]
     if any(each.shape.slenderness is None for each in results.spectra):
@@ -79,7 +79,7 @@ def _all(results: ShownSpectra) -> dict[str, Any]:
 
 
 def _joints(results: ShownSpectra) -> list[str]:
-    """Say what is not checked of the joints of the structures; nothing if all of them are."""
+    """Return sentences on joints of the structures that are not checked; empty if all are."""
     said = [NO_JOINTS] if any(each.shape.leaves_out_joints for each in results.spectra) else []
     several = len(results.spectra) > 1
     said += [unchecked(each.shape.structure.name if several else "") for each in results.spectra if not each.checked]
@@ -110,7 +110,7 @@ def lost(results: ShownSpectra) -> str:
 
 
 def table(results: ShownSpectra) -> dict[str, Sequence[object]]:
-    """The columns of the curves, a row for each shape and size."""
+    """Return the columns of the curves, with a row for each shape and size."""
     columns: dict[str, list[object]] = {}
     doubtful = any(each.shape.structure.may_open for each in results.spectra)
 
@@ -190,7 +190,7 @@ def _peak(value: float, least: float = np.nan) -> str:
 
 
 def _fractile(each: Spectrum, q: float) -> list[str]:
-    """Format a fractile at each size: unknown if it depends on motions of unknown outcome whether it overturns."""
+    """Format a fractile at each size: unknown if unknown outcomes decide whether it overturns."""
     certain = each.fractile_overturns(q)
     return [
         UNKNOWN if np.isinf(value) and not falls else _peak(value)
@@ -199,7 +199,7 @@ def _fractile(each: Spectrum, q: float) -> list[str]:
 
 
 def _curve(results: ShownSpectra, each: Spectrum) -> Iterator[Table | str]:
-    """The table of a shape, below what it is of."""
+    """Yield the table of a shape, below its heading."""
     structure = each.shape.structure
     shown = sorted({round(k) for k in np.linspace(0, each.scales.size - 1, min(ROWS, each.scales.size)).tolist()})
     if each.given is not None and each.given not in shown:
@@ -238,7 +238,7 @@ def _curve(results: ShownSpectra, each: Spectrum) -> Iterator[Table | str]:
 
 
 def _verdict(results: ShownSpectra, each: Spectrum) -> str:
-    """Where the structure lies and what becomes of larger and smaller ones, or which blocks overturn."""
+    """Return sentences on the structure among larger and smaller ones, or on which blocks overturn."""
     place = each.given
     if place is None:
         return f"{each.shape.structure.name}: {_blocks(results, each)}"
@@ -281,7 +281,7 @@ def _itself(results: ShownSpectra, each: Spectrum) -> str:
 
 
 def _side(results: ShownSpectra, each: Spectrum, what: str, part: slice) -> str:
-    """A sentence on the sizes to one side of the structure; nothing if there are none."""
+    """Return a sentence on the sizes larger or smaller than the structure; empty if there are none."""
     falls, of, scales = each.overturned[part], each.followed[part], each.scales[part]
     if not falls.size:
         return ""
@@ -302,7 +302,7 @@ def _side(results: ShownSpectra, each: Spectrum, what: str, part: slice) -> str:
 
 
 def _blocks(results: ShownSpectra, each: Spectrum) -> str:
-    """Which sizes of blocks overturn."""
+    """Return a sentence on the sizes of blocks that overturn."""
     falls, of = each.overturned, each.followed
     names = [f"{period:.3g} s (R = {R:.3g} m)" for period, R in zip(each.periods, each.scales, strict=True)]
     if each.doubtful.any():
@@ -316,7 +316,7 @@ def _blocks(results: ShownSpectra, each: Spectrum) -> str:
 
 
 def _most(falls: Integers, of: Integers, names: Sequence[str]) -> str:
-    """How many motions overturn a size at most, and above which size none does."""
+    """Return the largest number of motions that overturn one size, and the size above which none does, in words."""
     worst, last = int(np.argmax(falls / np.maximum(of, 1))), int(np.flatnonzero(falls)[-1])
     said = f"at most {falls[worst]} of {of[worst]} motions overturn any one size, at {names[worst]}"
     if last == len(names) - 1:
@@ -325,7 +325,7 @@ def _most(falls: Integers, of: Integers, names: Sequence[str]) -> str:
 
 
 def _doubt(results: ShownSpectra, falls: Integers, doubtful: Integers, of: Integers, names: Sequence[str]) -> str:
-    """Say how many sizes, or motions at the worst size, are known to overturn, and how many may."""
+    """Return in words how many sizes, or motions at the worst size, are known to overturn, and how many may."""
     places = np.flatnonzero(doubtful)
     where = f"at {names[places[0]]}" if places.size == 1 else f"between {names[places[0]]} and {names[places[-1]]}"
     if results.one:

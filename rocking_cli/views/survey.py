@@ -1,4 +1,4 @@
-"""Many structures, ranked, as people and programs read them."""
+"""View of a survey of structures, ranked, as text and as data."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ RANKED = {
 
 
 def view(found: Survey, top: int = TOP) -> View:
-    """The most vulnerable structures, and how many of all overturn."""
+    """Show the most vulnerable structures, and how many of all overturn."""
     parts: list[Table | str] = []
     if found.rows:
         parts = [table(found, top), *sentences(found, top)]
@@ -39,7 +39,7 @@ def view(found: Survey, top: int = TOP) -> View:
 
 
 def data(found: Survey) -> dict[str, Any]:
-    """A survey as plain data."""
+    """Return a survey as plain data."""
     return {
         "ranked_by": found.by,
         "motions": list(found.motions),
@@ -88,13 +88,13 @@ UNITS = {"uplift": "g", "p": "rad/s", "phi_cr": "rad"}
 
 
 def blocks(found: Survey, *, for_spreadsheets: bool) -> Iterator[Columns]:
-    """All rows, so many at a time; texts that a spreadsheet would compute get an apostrophe before them."""
+    """Yield all rows in blocks; texts that a spreadsheet would compute get an apostrophe in front."""
     for start in range(0, max(len(found.rows), 1), BLOCK):
         yield columns(found, start, start + BLOCK, for_spreadsheets=for_spreadsheets)
 
 
 def columns(found: Survey, start: int = 0, stop: int | None = None, *, for_spreadsheets: bool = False) -> Columns:
-    """Some of the rows as a table."""
+    """Return some of the rows as columns of a table."""
     rows = [_row(rank, each) for rank, each in enumerate(found.rows, 1)][start:stop]
     if not rows:
         return {"rank": [], "name": [], "lambda": []}
@@ -113,7 +113,7 @@ def columns(found: Survey, start: int = 0, stop: int | None = None, *, for_sprea
 
 
 def has_unknown(found: Survey) -> bool:
-    """Whether the outcome of any structure is unknown under any motion."""
+    """Return whether the outcome of any structure is unknown under any motion."""
     return any(each.under is not None and each.under.unknown for each in found.rows)
 
 
@@ -125,7 +125,7 @@ def headings(found: Survey) -> list[str]:
 
 
 def cells(rank: int, each: Surveyed, longest: int | None = NAME, *, unknown: bool = False) -> list[str]:
-    """A structure as people read it, with the share of unknown outcomes if requested."""
+    """Return the cells of a structure, with the share of unknown outcomes if requested."""
     name = one_line(each.name)
     shaken = []
     if each.under is not None:
@@ -151,7 +151,7 @@ def _peak(each: Surveyed) -> str:
 
 
 def table(found: Survey, top: int) -> Table:
-    """The first rows."""
+    """Return a table of the first rows."""
     heads = headings(found)
     unknown = has_unknown(found)
     rows = [cells(rank, each, unknown=unknown) for rank, each in enumerate(found.rows[:top], 1)]
@@ -159,13 +159,13 @@ def table(found: Survey, top: int) -> Table:
 
 
 def title(found: Survey) -> str:
-    """What it is, for a heading."""
+    """Return the number of structures, as a heading."""
     count = len(found.rows)
     return f"{count:,} structure{'s' * (count != 1)}, the most vulnerable first"
 
 
 def sentences(found: Survey, top: int | None = None) -> list[str]:
-    """What to know of the rows."""
+    """Return sentences on how to read the rows."""
     rows, many = found.rows, len(found.rows)
     said = [f"Ranked {RANKED[found.by]}."]
     if top is not None and many > top:
@@ -196,7 +196,7 @@ def sentences(found: Survey, top: int | None = None) -> list[str]:
 
 
 def _not_known(rows: Sequence[Surveyed]) -> Iterator[str]:
-    """Say which structures have unknown outcomes, and of which the joints are not checked."""
+    """Yield sentences on the structures with unknown outcomes, and on those with unchecked joints."""
     doubtful = [each for each in rows if each.under is not None and each.under.unknown]
     if doubtful:
         yield (
@@ -215,7 +215,7 @@ def _named(rows: Sequence[Surveyed], most: int = 3) -> str:
 
 
 def bad_lines(found: Sequence[Bad], file: str, most: int) -> Iterator[str]:
-    """What to say of structures that could not be used: the first of them one by one, then how many more."""
+    """Yield the errors of structures that could not be used: of the first ones in full, then the number of others."""
     for each in found[:most]:
         said = str(each.error)
         place = "" if said.startswith(f"{one_line(file)}:") else f"{one_line(file)}:{each.line}: "

@@ -1,4 +1,4 @@
-"""Files to start from: a structure of any mechanism, and a site for any code of practice."""
+"""Template files: a structure of any mechanism, and a site for any code of practice."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ OF_A_SITE = "Numbers are in the unit in brackets."
 
 
 def template(cls: Any) -> str:
-    """A commented YAML file for a mechanism: its examples, with fields that may be left out commented out.
+    """Return a commented YAML file for a mechanism: its examples, with optional fields commented out.
 
-    A field that the file needs and of which there is no example stands there without a value, and the file says so.
+    A required field without an example has no value, and a comment in the file states this.
 
     Parameters
     ----------
@@ -40,14 +40,14 @@ def template(cls: Any) -> str:
 
 
 def starter(code: Code, commands: Sequence[str] = ()) -> str:
-    """A commented site file for a code of practice: its own, or one made from its fields as `template` does.
+    """Return a commented site file for a code of practice: its own, or one made from its fields like `template`.
 
     Parameters
     ----------
     code : Code
         The code.
     commands : sequence of str
-        What to type to get the file and to use it.
+        The commands that print the file and use it.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def _lines(
     rows : sequence of mapping
         The fields.
     usual : mapping of str to str
-        Values that replace the examples of some.
+        Values that replace the examples of some fields.
     needed : collection of str
         Optional fields that the file needs.
     """
@@ -106,12 +106,12 @@ def _in_a_line(text: str) -> str:
 
 
 def _is_deep(value: Any) -> bool:
-    """Whether it is a mapping that has mappings in it, which on one line nobody reads."""
+    """Return whether a value is a mapping of mappings, which is hard to read on one line."""
     return isinstance(value, dict) and any(isinstance(each, dict) for each in value.values())
 
 
 def _block(key: str, value: Any) -> list[str]:
-    """A field over several lines, down to mappings that fit on one."""
+    """Return the lines of a field, with nested mappings on lines of their own."""
     if not _is_deep(value):
         return [f"{key}: {_yaml(value)}"]
     return [f"{key}:", *(f"  {line}" for name, each in value.items() for line in _block(name, each))]
@@ -128,7 +128,7 @@ def _yaml(value: Any) -> str:
 
 
 def _must_be_quoted(text: str) -> bool:
-    """Whether a text would be something else in a file, alone or in a list."""
+    """Return whether YAML would read a text as something else without quotes, alone or in a list."""
     try:
         found: object = yaml.safe_load(f"[{text}]  # a comment")
     except yaml.YAMLError:

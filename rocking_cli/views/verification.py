@@ -1,4 +1,4 @@
-"""A verification by any code, as people and programs read it."""
+"""View of a verification by any code, as text and as data."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ SHOWN = ("of_direction", "data", "data_of_all", "table", "draw")
 
 
 class Showing(Generic[F, V]):
-    """How the results of a code are shown; a code that shows more, or otherwise, overrides what it needs.
+    """How the results of a code are shown; a code that shows more, or differently, overrides methods.
 
     Attributes
     ----------
     of_site : sequence of str
-        The symbols of the workings of the site that are shown, in their order; empty for all.
+        Symbols of the lines of the site's calculation to show, in order; empty for all.
     compared : str
-        Of what directions have a ratio.
+        The quantities whose ratio compares the directions, in words.
     notation : str
-        How the clauses are written, such as ": [formula] or §section".
+        How clauses are cited, such as ": [formula] or §section".
     """
 
     of_site: Sequence[str] = ()
@@ -41,7 +41,7 @@ class Showing(Generic[F, V]):
     notation: str = ""
 
     def __init_subclass__(cls, **named: Any) -> None:
-        """Guard what a subclass shows."""
+        """Wrap the methods of a subclass, so that errors in them are reported as errors of the plugin."""
         super().__init_subclass__(**named)
         guard(cls, SHOWN, lambda own, method: f"{own.__qualname__} failed in {method}")
 
@@ -73,7 +73,7 @@ class Showing(Generic[F, V]):
         }
 
     def table(self, found: F) -> dict[str, Sequence[Any]]:
-        """Return a row for each direction and method, by columns."""
+        """Return a table as columns, with a row for each direction and method."""
         return columns(
             ["direction", "method", "capacity", "demand", "unit", "ratio", "governs"],
             [
@@ -84,12 +84,12 @@ class Showing(Generic[F, V]):
         )
 
     def draw(self, found: F) -> Figure:
-        """Return a picture. Raises `InputError` if the code has none."""
+        """Return a plot of the verification. Raises `InputError` if the code has none."""
         raise InputError(Problem(f"{found.code} has no picture of a verification", hint="leave out the plot"))
 
 
 def showing(found: Verification) -> Showing[Any, Any]:
-    """How the results of the code of a verification are shown."""
+    """Return how the results of the code of a verification are shown."""
     own = codes()[found.code].showing()
     if own is None:
         return Showing[Any, Any]()
@@ -99,16 +99,16 @@ def showing(found: Verification) -> Showing[Any, Any]:
 
 
 def view(found: Verification, site: str | None = None, *, every_step: bool = False) -> View:
-    """The methods side by side for each direction, which governs, and what to know of them.
+    """Show the methods side by side for each direction, which governs, and remarks.
 
     Parameters
     ----------
     found : Verification
         The verification.
     site : str, optional
-        What the site is called.
+        Name of the site.
     every_step : bool
-        Whether to show every line of the calculation too: symbol, formula, numbers, result and clause.
+        Whether to show also every line of the calculation: symbol, formula, numbers, result and clause.
     """
     sides, own = shown(found), showing(found)
     parts: list[Table | str] = [
@@ -132,7 +132,7 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
 
 
 def shown(found: Verification) -> dict[str, Any]:
-    """The directions that differ, by what they are called."""
+    """Return the directions that differ, by their names."""
     if len(found.distinct) < len(found.directions):
         return {"Both directions": found.distinct[0]}
     return {f"{one.direction.label.capitalize()} direction": one for one in found.distinct}
@@ -151,7 +151,7 @@ def _which_direction(found: Verification, compared: str) -> str:
 
 
 def methods(each: Verified, where: str) -> Table:
-    """Table of what each method found in a direction."""
+    """Return a table of the results of each method in a direction."""
     rows = [
         [one.title, number(one.capacity, 4), number(one.demand, 4), one.unit, number(one.ratio, 4), one.clause,
          "governs" if key == each.governs else ""]
@@ -162,7 +162,7 @@ def methods(each: Verified, where: str) -> Table:
 
 
 def verdict(each: Verified, where: str) -> str:
-    """State whether a direction passes, and by what margin."""
+    """Return a sentence on whether a direction passes, and its margin."""
     counts = each.counts
     if each.passed is None or each.ratio is None:
         return f"{where}: the site does not give what the code asks for."
@@ -174,7 +174,7 @@ def verdict(each: Verified, where: str) -> str:
 
 
 def _site(found: Verification, symbols: Sequence[str]) -> Table:
-    """What is the same in both directions, with the formula of each number; a column for each limit state."""
+    """Return a table of the numbers common to both directions, with formulas; a column for each limit state."""
     rows: dict[str, dict[str, Working]] = {}
     for line in (each.in_plain() for each in found.workings):
         rows.setdefault(line.symbol, {})[line.state] = line
@@ -192,7 +192,7 @@ def _site(found: Verification, symbols: Sequence[str]) -> Table:
 
 
 def steps(workings: Sequence[Working], where: str = "") -> Iterator[Table]:
-    """Yield every line of a calculation, a table for each section; `where` names the direction."""
+    """Yield the lines of a calculation, a table for each section; `where` names the direction."""
     heads = ["", "formula", "numbers", "result", "unit", "clause", "meaning"]
     for section, lines in groupby((each.in_plain() for each in workings), key=lambda line: line.section):
         rows = [
@@ -203,12 +203,12 @@ def steps(workings: Sequence[Working], where: str = "") -> Iterator[Table]:
 
 
 def cited(line: Working) -> str:
-    """Where a formula is in the code, and that it is our reading where it is."""
+    """Return the clause of a formula; with "ours" if the formula is this package's interpretation."""
     return f"{line.clause}, ours" if line.standing == "ours" else line.clause
 
 
 def data(found: Verification) -> dict[str, Any]:
-    """As plain data."""
+    """Return a verification as plain data."""
     own = showing(found)
     return {
         "code": found.code,
@@ -220,19 +220,19 @@ def data(found: Verification) -> dict[str, Any]:
 
 
 def columns(heads: Sequence[str], rows: Sequence[Sequence[Any]]) -> dict[str, Sequence[Any]]:
-    """Rows as columns by their headings."""
+    """Return rows as columns by their headings."""
     return {name: [row[k] for row in rows] for k, name in enumerate(heads)}
 
 
 def table(found: Verification) -> dict[str, Sequence[Any]]:
-    """A row for each direction and method."""
+    """Return a table as columns, with a row for each direction and method."""
     return showing(found).table(found)
 
 
 def standing(workings: Sequence[Working], notation: str = "") -> str:
-    """State how far the formulas were checked against the code; empty if there are none.
+    """Return a sentence on how far the formulas were checked against the code; empty without formulas.
 
-    `notation` says how the code is cited, such as ": [formula] or §section".
+    `notation` is the form in which the code is cited, such as ": [formula] or §section".
     """
     plain = [each.in_plain() for each in workings]
     ours, unchecked, transcribed, printed = (

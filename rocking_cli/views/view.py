@@ -1,4 +1,4 @@
-"""What a result looks like to people and to programs, before anybody shows it."""
+"""The parts of a view: tables, sentences and plain data of one result, before output."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ FEW = 3  # motions, or records, of which each gets its own lines; of more there 
 
 @dataclass(frozen=True)
 class Table:
-    """Rows under headings.
+    """A table of rows under headings.
 
     Parameters
     ----------
     title : str
-        Above it; empty for none.
+        Title above the table; empty for none.
     columns : sequence of str
         Headings; a line break in one, or in a cell, is kept.
     rows : sequence of sequence of str
-        Cells.
+        Cells of each row.
     numbers : collection of int
-        Places of columns that are aligned to the right; these and the first never wrap.
+        Indices of columns that are aligned to the right; these and the first never wrap.
     """
 
     title: str
@@ -38,14 +38,14 @@ class Table:
 
 @dataclass(frozen=True)
 class View:
-    """One result.
+    """One result as plain data, and as tables and sentences.
 
     Parameters
     ----------
     data : mapping, or a function that makes it
-        As plain data, for JSON; it is made only where it is shown.
+        The result as plain data, for JSON; a function is called only if the data are shown.
     parts : sequence of Table or str
-        As people read it, from top to bottom: tables and sentences.
+        Tables and sentences, from top to bottom.
     """
 
     data: Mapping[str, Any] | Callable[[], Mapping[str, Any]]
@@ -53,15 +53,15 @@ class View:
 
 
 def heading(mechanism: Mechanism) -> str:
-    """A structure's name and kind, for a heading."""
+    """Return name and type of a structure, for a heading."""
     return f"{mechanism.name}: {mechanism.title}"
 
 
 def number(value: float | None, digits: int = 6) -> str:
-    """A number as people read it; a dash if it does not exist."""
+    """Format a number; a dash if it does not exist."""
     return ABSENT if value is None or isnan(value) else f"{value + 0.0:.{digits}g}"  # a sum that is never -0
 
 
 def in_degrees(phi: float) -> str:
-    """A rotation [rad] as people read it [deg]; a dash if it does not exist."""
+    """Format a rotation given in rad in degrees; a dash if it does not exist."""
     return number(degrees(phi), 5)

@@ -1,4 +1,4 @@
-"""What `rocking warm` compiled."""
+"""View of the kernels that `rocking warm` compiled."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rocking_cli.views.view import View
 
 
 def view(folder: Path | None, found: Sequence[Compiled]) -> View:
-    """What is compiled now, how long that took, and the folder that keeps it; as shipped nothing has to be kept."""
+    """Show the compiled kernels, the time this took, and the folder that keeps them; None if nothing is kept."""
     kernels = [
         {"kernel": CALLED[each.kernel], "compiled_before": each.before, "seconds": each.seconds} for each in found
     ]

@@ -60,13 +60,13 @@ class Italian(Code):
         return of_each(site)
 
     def showing(self) -> Any:
-        """Return how its results are shown."""
+        """Return how results by the Italian code are shown."""
         from rocking_cli.codes.italian.view import ItalianShowing
 
         return ItalianShowing()
 
     def sheet(self) -> Any:
-        """Return its calculation sheet."""
+        """Return the calculation sheet of the Italian code."""
         from rocking_cli.codes.italian.sheet.build import SHEET
 
         return SHEET

@@ -1,4 +1,4 @@
-"""Capacity curves: acceleration over displacement of one degree of freedom, exactly and on the straight line."""
+"""Capacity curves: acceleration against displacement of the equivalent oscillator, exact and as a straight line."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ HALVINGS = 200
 
 
 def root(rises: Callable[[float], float], low: float, high: float) -> float:
-    """Where a function that is negative at `low` and positive at `high` passes zero, to rounding."""
+    """Return the zero of a function that is negative at `low` and positive at `high`, to rounding, by bisection."""
     for _ in range(HALVINGS):
         middle = (low + high) / 2
         if middle in (low, high):
@@ -34,7 +34,7 @@ def root(rises: Callable[[float], float], low: float, high: float) -> float:
 
 @dataclass(frozen=True)
 class Seat:
-    """A seat that is lost: of which load, its length [m], and the displacement d at which that is [m]."""
+    """Loss of a seat: name of the load, length of the seat [m], and displacement d at which the load leaves it [m]."""
 
     load: str
     length: float
@@ -43,16 +43,16 @@ class Seat:
 
 @dataclass(frozen=True, eq=False)
 class ExactCurve:
-    """a*(d) as the mechanism moves.
+    """Capacity curve a*(d) computed from the exact motion of the mechanism.
 
     Parameters
     ----------
     chain : Chain
-        What moves.
+        The moving blocks of the mechanism.
     control : Control
         The control point.
     confidence : float
-        FC, which divides accelerations.
+        Confidence factor FC, by which accelerations are divided.
     """
 
     chain: Chain
@@ -61,12 +61,12 @@ class ExactCurve:
 
     @cached_property
     def _bare(self) -> Mechanism:
-        """The structure after its courses have slid apart."""
+        """The structure without crossing walls, after their courses have slid apart."""
         return self.chain.mechanism.model_copy(update={"interlock": None})
 
     @cached_property
     def torn(self) -> float | None:
-        """The rotation at which the courses of crossing walls have slid by their overlap [rad]; None if never."""
+        """Rotation at which the courses of crossing walls have slid by their overlap [rad]; None if never."""
         interlock = self.chain.mechanism.interlock
         if interlock is None:
             return None
@@ -87,7 +87,7 @@ class ExactCurve:
 
     @cached_property
     def end(self) -> float:
-        """The rotation at which a* vanishes, of what holds it up to collapse [rad]. Raises `InputError` without one."""
+        """First rotation at which a* vanishes [rad], which ends the curve. Raises `InputError` if there is none."""
         if self._first is None:
             raise InputError(
                 Problem(
@@ -102,7 +102,7 @@ class ExactCurve:
 
     @property
     def is_endless(self) -> bool:
-        """Whether a* vanishes nowhere before the kinematic limit."""
+        """Whether a* does not vanish before the kinematic limit."""
         return self._first is None
 
     @cached_property
@@ -129,7 +129,7 @@ class ExactCurve:
             )
 
     def acceleration_at(self, phi: float, *, after: bool = False) -> float:
-        """a* at a rotation [m/s2]; at a break just before it, or after it."""
+        """Return a* at a rotation [m/s2]; at the rotation of a break the value before it, or `after` it."""
         gone = self.torn is not None and (phi > self.torn or (after and phi == self.torn))
         mechanism = self._bare if gone else self.chain.mechanism
         here = mechanism.coefficients(np.array([phi]), self.chain.direction)
@@ -137,11 +137,11 @@ class ExactCurve:
         return alpha * mechanism.gravity / (self.chain.e_star * self.confidence)
 
     def displacement_at(self, phi: float) -> float:
-        """d at a rotation [m]."""
+        """Return d at a rotation [m]."""
         return float(self.chain.displacement(np.array([phi]), self.control)[0])
 
     def rotation(self, d: float) -> float:
-        """The rotation at a displacement up to the last [rad]."""
+        """Return the rotation at a displacement on the curve [rad]."""
         return root(lambda phi: self.displacement_at(phi) - d, 0.0, self.end)
 
     @cached_property
@@ -151,11 +151,11 @@ class ExactCurve:
 
     @cached_property
     def d0(self) -> float:
-        """The displacement at which a* vanishes [m]."""
+        """Displacement d0* at which a* vanishes [m]."""
         return self.displacement_at(self.end)
 
     def acceleration(self, d: float) -> float:
-        """a* at a displacement [m/s2]; at a break just before it."""
+        """Return a* at a displacement [m/s2]; at the displacement of a break the value before it."""
         if self.broken is not None and d == self.broken and self.torn is not None:
             return self.acceleration_at(self.torn)
         return self.acceleration_at(self.rotation(d))
@@ -170,13 +170,13 @@ class ExactCurve:
 
     @property
     def lost_on_the_way(self) -> bool:
-        """Whether the courses have slid apart before what holds the structure with them would vanish."""
+        """Whether the courses of crossing walls slide apart before a* vanishes."""
         first = self._vanishes(self.chain.mechanism)
         return self.torn is not None and (first is None or self.torn < first)
 
     @cached_property
     def broken(self) -> float | None:
-        """The displacement of a break that takes more than half of the largest a* [m]; None without one."""
+        """Displacement of a break at which a* loses more than half of its largest value [m]; None without one."""
         if self.torn is None or self.torn > self.end:
             return None
         lost = self.acceleration_at(self.torn) - self.acceleration_at(self.torn, after=True)
@@ -184,7 +184,7 @@ class ExactCurve:
 
     @cached_property
     def seat(self) -> Seat | None:
-        """The load that is the first to be moved off its seat, up to the end of the curve; None if none is."""
+        """The first load that moves off its seat before the end of the curve; None if none does."""
         phi, mechanism = np.linspace(0.0, self.end, STEPS + 1), self.chain.mechanism
         spots = {mass.name: mass.spot for mass in mechanism.hung.masses}
         lost = []
@@ -203,14 +203,14 @@ class ExactCurve:
         return root(lambda x: float(self._slid(spot, np.array([x]))[0]) - length, phi[k - 1], phi[k])
 
     def points(self, count: int = 65) -> tuple[Reals, Reals]:
-        """The curve, displacements [m] and accelerations [m/s2], shape (n,) each."""
+        """Return points of the curve: displacements [m] and accelerations [m/s2], shape (n,) each."""
         phi = np.linspace(0.0, self.end, count)
         return self.chain.displacement(phi, self.control), np.array([self.acceleration_at(float(x)) for x in phi])
 
 
 @dataclass(frozen=True)
 class StraightCurve:
-    """a*(d) on the straight line from a0* [m/s2] at rest to d0* [m]."""
+    """Capacity curve a*(d) as a straight line from a0* [m/s2] at rest to zero at d0* [m]."""
 
     a0: float
     d0: float
@@ -218,7 +218,7 @@ class StraightCurve:
     seat: Seat | None = None
 
     def acceleration(self, d: float) -> float:
-        """a* at a displacement [m/s2]."""
+        """Return a* at a displacement [m/s2]."""
         return self.a0 * (1 - d / self.d0)
 
 
@@ -226,5 +226,5 @@ CapacityCurve = ExactCurve | StraightCurve
 
 
 def with_elastic_branch(a: float, d: float, T0: float | None) -> float:
-    """a* at a displacement, on the elastic branch 4 pi^2 d/T0^2 up to where that meets the curve [m/s2]."""
+    """Limit a* at a displacement to the elastic branch 4 pi^2 d/T0^2, if there is a T0 [m/s2]."""
     return a if T0 is None else min(a, 4 * pi**2 * d / T0**2)

@@ -1,4 +1,4 @@
-"""The blocks that move in a direction of rocking, as a code sees them: weights and virtual displacements at rest."""
+"""The blocks that move in a direction of rocking, as the code needs them: weights and virtual displacements at rest."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ LEAST = 1e-9  # of the largest virtual displacement: a control point that moves 
 
 @dataclass(frozen=True)
 class Weight:
-    """A mass of the chain: where it is, what of it is carried, and what of it is moved sideways.
+    """A mass of the chain: its position, the weight that is carried, and the weight that moves sideways.
 
     Parameters
     ----------
     spot : Spot
-        Its place.
+        Position of the mass.
     carried : float
-        P, its weight as far as the block carries it [N].
+        P, the part of its weight that the block carries [N].
     inertial : float
         P + Q, the weight of the mass that moves sideways with the block [N].
     """
@@ -40,22 +40,22 @@ class Weight:
 
 @dataclass(frozen=True)
 class ChainBlock:
-    """Pieces that move as one, and the loads they carry.
+    """A block of the chain: pieces that move together, and the loads they carry.
 
     Parameters
     ----------
     bodies : sequence of str
-        The pieces, by their names in the picture.
+        The pieces, by their names in the drawing.
     P, PQ : float
         Weights carried, and weights moved sideways [N].
     at : complex
         Barycentre of P + Q at rest [m]; of P where P + Q is zero.
     dx : float
-        x' of the barycentre of P + Q, positive in the direction of rocking [m].
+        Virtual displacement x' of the barycentre of P + Q, positive in the direction of rocking [m/rad].
     dy : float
-        y' of the barycentre of P, up [m].
+        Virtual displacement y' of the barycentre of P, positive upwards [m/rad].
     x_of_P : float
-        Where the barycentre of P is sideways at rest [m].
+        Horizontal coordinate of the barycentre of P at rest [m].
     """
 
     bodies: Sequence[str]
@@ -69,14 +69,14 @@ class ChainBlock:
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """What moves in one direction of rocking.
+    """The moving blocks of a structure in one direction of rocking.
 
     Parameters
     ----------
     mechanism : Mechanism
         The structure, with what is attached to it.
     direction : Direction
-        Which way it rocks.
+        The direction of rocking.
     """
 
     mechanism: Mechanism
@@ -84,7 +84,7 @@ class Chain:
 
     @cached_property
     def weights(self) -> Sequence[Weight]:
-        """The masses that move; what rests is left out."""
+        """The masses that move; masses at rest are left out."""
         moving = {name for name, number in parts(self.mechanism, self.direction).items() if number}
         g = self.mechanism.gravity
         own = [
@@ -100,7 +100,7 @@ class Chain:
 
     @cached_property
     def blocks(self) -> Sequence[ChainBlock]:
-        """The blocks of the chain: cutting one into pieces that move as one changes nothing."""
+        """The blocks of the chain; the division of a block into pieces that move together has no effect."""
         pairs = zip(self._names_of_blocks, self._weights_of_blocks, strict=True)
         return [self._block(names, weights) for names, weights in pairs]
 
@@ -129,32 +129,32 @@ class Chain:
 
     @property
     def inertial(self) -> float:
-        """The sum of P + Q [N]."""
+        """Sum of P + Q over the blocks [N]."""
         return sum(block.PQ for block in self.blocks)
 
     @property
     def first(self) -> float:
-        """The sum of (P + Q) x' [N m]."""
+        """Sum of (P + Q) x' over the blocks [N m]."""
         return sum(block.PQ * block.dx for block in self.blocks)
 
     @property
     def second(self) -> float:
-        """The sum of (P + Q) x'^2 [N m2]."""
+        """Sum of (P + Q) x'^2 over the blocks [N m2]."""
         return sum(block.PQ * block.dx**2 for block in self.blocks)
 
     @property
     def lifted(self) -> float:
-        """The sum of P y' [N m]."""
+        """Sum of P y' over the blocks [N m]."""
         return sum(block.P * block.dy for block in self.blocks)
 
     def held_by(self, *, ties: bool) -> float:
-        """The work per unit rotation that ties take at rest, or that forces take: internal work, or -F.r' [N m]."""
+        """Return the work per unit rotation at rest that ties absorb, or that forces absorb [N m]."""
         hung = self.mechanism.hung
         return sum(self._moment(thing) for thing in hung.things if (thing in hung.ties) == ties)
 
     @property
     def works(self) -> dict[str, float]:
-        """The work per unit rotation that each force and tie takes at rest, by its name [N m]."""
+        """Work per unit rotation that each force and tie absorbs at rest, by name [N m]."""
         held = [thing for thing in self.mechanism.attached if not isinstance(thing, PointMass)]
         return {thing.name: self._moment(thing) for thing in held}
 
@@ -166,12 +166,12 @@ class Chain:
 
     @property
     def alpha0(self) -> float:
-        """Multiplier alpha0 at which the mechanism starts."""
+        """Multiplier alpha0 that activates the mechanism."""
         return (self.lifted + self.held_by(ties=False) + self.held_by(ties=True)) / self.first
 
     @cached_property
     def _letter(self) -> tuple[float, float]:
-        """alpha0 and e* with every weight carried in P + Q, also of what has no horizontal inertia."""
+        """alpha0 and e* if P + Q includes every weight carried, even without horizontal inertia."""
         sums = np.zeros(3)
         for block, weights in zip(self.blocks, self._weights_of_blocks, strict=True):
             more = [max(each.carried - each.inertial, 0.0) for each in weights]
@@ -184,18 +184,18 @@ class Chain:
 
     @property
     def by_the_letter(self) -> float:
-        """The multiplier with every weight carried in P + Q."""
+        """alpha0 if P + Q includes every weight carried, as the code is worded."""
         return self._letter[0]
 
     @property
     def start_by_the_letter(self) -> float:
-        """What a0* would be by the letter, over what it is."""
+        """Ratio of a0* by the wording of the code to the a0* that is used."""
         alpha0, e_star = self._letter
         return (alpha0 / e_star) / (self.alpha0 / self.e_star)
 
     @property
     def is_by_the_letter(self) -> bool:
-        """Whether every weight carried has its horizontal inertia too."""
+        """Whether every weight carried has its full horizontal inertia, so that both wordings agree."""
         return all(each.carried <= each.inertial * (1 + 1e-12) for each in self.weights)
 
     def _sideways(self, spot: Spot) -> float:
@@ -203,16 +203,16 @@ class Chain:
 
     @property
     def e_star(self) -> float:
-        """The share of the mass that takes part, e*."""
+        """Participating mass ratio e*."""
         return self.first**2 / (self.inertial * self.second)
 
     @property
     def barycentre(self) -> Control:
-        """The control point where nobody asks for another: the barycentre of P + Q."""
+        """Default control point: the barycentre of P + Q."""
         return Control(sum(block.PQ * block.at for block in self.blocks) / self.inertial)
 
     def sideways(self, control: Control) -> float:
-        """x' of a control point at rest [m]. Raises `InputError` if it does not move in the direction of rocking."""
+        """Return x' of a control point at rest [m/rad]. Raises `InputError` if it does not move in the direction."""
         dx = self.first / self.inertial if control.body is None else self._sideways(Spot(control.body, control.at))
         if not dx > LEAST * max(abs(block.dx) for block in self.blocks):
             raise InputError(
@@ -222,7 +222,7 @@ class Chain:
         return dx
 
     def moved(self, phi: Reals, control: Control) -> Reals:
-        """d_C: how far a control point is displaced sideways over rotations, shape (n,) [m]."""
+        """Return the horizontal displacement d_C of a control point at rotations, shape (n,) [m]."""
         follow = self.mechanism.followed(phi, self.direction)
         if control.body is not None:
             return np.asarray(self.direction * (follow(Spot(control.body, control.at)).z - control.at).real)
@@ -230,9 +230,9 @@ class Chain:
         return np.asarray(self.direction * np.sum(ways, axis=0) / self.inertial)
 
     def displacement_of_control(self, phi: float, control: Control) -> float:
-        """d_C at one rotation [m]."""
+        """Return d_C of a control point at one rotation [m]."""
         return float(self.moved(np.array([phi]), control)[0])
 
     def displacement(self, phi: Reals, control: Control) -> Reals:
-        """d of the one degree of freedom over rotations, shape (n,) [m]."""
+        """Return d of the equivalent oscillator at rotations, shape (n,) [m]."""
         return np.asarray(self.moved(phi, control) * self.second / (self.sideways(control) * self.first))

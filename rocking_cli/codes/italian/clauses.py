@@ -1,7 +1,7 @@
-"""Where the formulas stand in the code: [C8.7.1.3] is a formula, §C8.7.1.2.1.7 a section.
+"""Clauses of the code that have the formulas: [C8.7.1.3] is a formula, §C8.7.1.2.1.7 a section.
 
-Those with C are of Circolare 7/2019, the others of NTC 2018. What is computed by a transcribed clause was checked
-against a transcription of its text, and not yet against its print.
+References with C are to Circolare 7/2019, the others to NTC 2018. Formulas of a transcribed clause were checked against
+a transcription of the text, not yet against the printed text.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Capacity curves of a verification: exact and straight, with the capacity and demand at each limit state."""
+"""Plot of the capacity curves of a verification: exact and straight, with capacity and demand at each limit state."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rocking_cli.views.view import heading
 
 
 def draw_verification(found: ItalianVerification) -> Figure:
-    """Draw the capacity curve of each direction that differs.
+    """Plot the capacity curve of each direction; one if both are equal.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""What the ground, or a floor, asks of one degree of freedom: elastic spectra of the Italian code, floors, tables.
+"""Seismic demand on an oscillator on the ground or on a floor: elastic spectra of the Italian code, or from tables.
 
-Formulas are those of NTC 2018, 3.2.3, and Circolare 7/2019, C7.2.3, checked against a transcription of both [code: not
-yet against the print].
+Formulas are those of NTC 2018, 3.2.3, and Circolare 7/2019, C7.2.3, checked against a transcription of both, not yet
+against the printed text.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ FALL_BELOW, FALL_ABOVE = 1.6, 1.2  # exponents of either side
 
 
 def correction(damping: float) -> float:
-    """eta = sqrt(10/(5 + xi)), at least 0.55, xi in per cent; of a damping ratio [NTC 3.2.4]."""
+    """Return the damping correction eta = sqrt(10/(5 + xi)), at least 0.55, for a damping ratio xi/100 [NTC 3.2.4]."""
     return max(sqrt(10 / (5 + 100 * damping)), 0.55)
 
 
 class DemandSpectrum(Protocol):
-    """What shakes one degree of freedom, on the ground or above."""
+    """Elastic response spectrum at the support of an oscillator, on the ground or on a floor."""
 
     @property
     def ag(self) -> float:
@@ -42,36 +42,36 @@ class DemandSpectrum(Protocol):
 
     @property
     def peak(self) -> float:
-        """Largest acceleration of what it stands on [m/s2]: a_g S, or S_Z."""
+        """Peak acceleration of the support [m/s2]: a_g S on the ground, S_Z on a floor."""
         ...
 
     def with_ag(self, ag: float) -> DemandSpectrum:
-        """The same for another ground acceleration [g]: F0 and T_C held, T_D following."""
+        """Return the spectrum for another ground acceleration [g], with the same F0 and T_C; T_D follows from a_g."""
         ...
 
     def acceleration(self, period: float, damping: float) -> float:
-        """S_e [m/s2]."""
+        """Return the spectral acceleration S_e at a period [s] and a damping ratio [m/s2]."""
         ...
 
     def displacement(self, period: float, damping: float) -> float:
-        """S_De [m]."""
+        """Return the spectral displacement S_De at a period [s] and a damping ratio [m]."""
         ...
 
 
 @dataclass(frozen=True)
 class GroundSpectrum:
-    """The elastic spectrum of the ground.
+    """Elastic response spectrum of the ground.
 
     Parameters
     ----------
     ag : float
-        a_g [g].
+        Ground acceleration a_g on rock [g].
     F0, S : float
-        Amplification, and that by soil and topography.
+        Maximum spectral amplification F0, and factor S of soil and topography.
     TC : float
-        [s].
+        End of the level part of the spectrum, T_C [s].
     soil : str or None
-        A to E, which sets T_E; without it the first form holds throughout.
+        Soil class A to E, which sets T_E; without it the displacement spectrum has no change of form at T_E.
     """
 
     ag: float
@@ -82,25 +82,25 @@ class GroundSpectrum:
 
     @property
     def TB(self) -> float:
-        """[s]."""
+        """Start of the level part of the spectrum, T_B [s]."""
         return self.TC / 3
 
     @property
     def TD(self) -> float:
-        """[s]."""
+        """Start of the part of constant displacement, T_D [s]."""
         return 4.0 * self.ag + 1.6
 
     @property
     def peak(self) -> float:
-        """a_g S [m/s2]."""
+        """Peak ground acceleration a_g S [m/s2]."""
         return self.ag * self.S * STANDARD_GRAVITY
 
     def with_ag(self, ag: float) -> GroundSpectrum:
-        """The same for another a_g [g]."""
+        """Return the spectrum for another a_g [g]."""
         return replace(self, ag=ag)
 
     def acceleration(self, period: float, damping: float) -> float:
-        """S_e [m/s2; NTC 3.2.2]."""
+        """Return the spectral acceleration S_e [m/s2; NTC 3.2.2]."""
         eta, T = correction(damping), period
         level = self.peak * eta * self.F0
         if T < self.TB:
@@ -111,7 +111,7 @@ class GroundSpectrum:
         return level * self.TC / T if T < self.TD else level * self.TC * self.TD / T**2
 
     def displacement(self, period: float, damping: float) -> float:
-        """S_De [m; NTC 3.2.10-12]."""
+        """Return the spectral displacement S_De [m; NTC 3.2.10-12]."""
         start = LONG[self.soil] if self.soil is not None else inf
         if period <= start:
             return self.acceleration(period, damping) * (period / (2 * pi)) ** 2
@@ -122,20 +122,20 @@ class GroundSpectrum:
 
 @dataclass(frozen=True)
 class TableSpectrum:
-    """A spectrum given as ordinates at 5 %, straight between them; others by the correction for damping.
+    """A spectrum given as ordinates at 5 % damping, linear between them; corrected for other damping ratios.
 
-    The correction grows in from T = 0, where there is none, to the period of the largest ordinate.
+    The correction increases from none at T = 0 to its full value at the period of the largest ordinate.
 
     Parameters
     ----------
     points : sequence of (float, float)
-        Periods [s], from 0 on, and accelerations [g].
+        Periods [s], starting at 0, and accelerations [g].
     factor : float
-        On all of them.
+        Factor on all accelerations.
     start : float
-        T0, the period from which displacements are looked at [s]: 0 for a rigid start.
+        T0, the shortest period considered for displacements [s]: 0 for an element that is rigid before it rocks.
     field : str
-        Where it stands in the site file, for messages.
+        Field of the site file, for messages.
     """
 
     points: Sequence[tuple[float, float]]
@@ -145,46 +145,46 @@ class TableSpectrum:
 
     @property
     def ag(self) -> float:
-        """The ordinate at T = 0 [g], which is a_g S."""
+        """Ordinate at T = 0 [g], which is a_g S."""
         return self.factor * self.points[0][1]
 
     @property
     def peak(self) -> float:
-        """The same [m/s2]."""
+        """Ordinate at T = 0 [m/s2], which is a_g S."""
         return self.ag * STANDARD_GRAVITY
 
     @property
     def S(self) -> float:
-        """Is in the ordinates."""
+        """Factor of soil and topography: 1, as the ordinates include it."""
         return 1.0
 
     @cached_property
     def _known(self) -> tuple[Reals, Reals]:
-        """Periods [s] and accelerations [m/s2], with the factor."""
+        """Periods [s] and accelerations [m/s2] of the table, with the factor."""
         T, a = np.array(self.points, dtype=np.float64).T
         return T, self.factor * STANDARD_GRAVITY * a
 
     @cached_property
     def ramp(self) -> float:
-        """The period up to which the correction for damping grows in [s]."""
+        """Period at which the correction for damping reaches its full value [s]."""
         return max(self.points, key=lambda each: each[1])[0]
 
     def with_ag(self, ag: float) -> TableSpectrum:
-        """The same shape with another ordinate at T = 0 [g]."""
+        """Return a spectrum of the same shape with another ordinate at T = 0 [g]."""
         return replace(self, factor=ag / self.points[0][1])
 
     def acceleration(self, period: float, damping: float) -> float:
-        """S_e [m/s2]. Raises `InputError` beyond the table."""
+        """Return the spectral acceleration S_e [m/s2]. Raises `InputError` beyond the table."""
         self._check(period)
         return float(self._at(np.array([period]), damping)[0])
 
     def displacement(self, period: float, damping: float) -> float:
-        """The largest S_e (t/2 pi)^2 from T0 to a period [m; §C8.7.1.2.1.8]. Raises `InputError` beyond the table."""
+        """Return the largest S_e (t/2 pi)^2 for t from T0 to a period [m; §C8.7.1.2.1.8]. Raises `InputError`."""
         t = self.governing(period, damping)
         return self.acceleration(t, damping) * (t / (2 * pi)) ** 2
 
     def governing(self, period: float, damping: float) -> float:
-        """The period of that largest displacement [s]. Raises `InputError` beyond the table."""
+        """Return the t at which S_e (t/2 pi)^2 is largest, up to a period [s]. Raises `InputError` beyond the table."""
         self._check(period)
         start = min(self.start, period)
         knots = np.union1d(self._known[0], self.ramp)
@@ -196,16 +196,16 @@ class TableSpectrum:
         return np.asarray(self.undamped(T) * self.corrected(T, damping))
 
     def undamped(self, T: Reals) -> Reals:
-        """The ordinates of the table at periods, straight between its own, shape (n,) [m/s2]."""
+        """Return the ordinates of the table at periods, interpolated linearly, shape (n,) [m/s2]."""
         return np.asarray(np.interp(T, *self._known))
 
     def corrected(self, T: Reals, damping: float) -> Reals:
-        """The correction for damping at periods, shape (n,)."""
+        """Return the correction for damping at periods, shape (n,)."""
         share = np.minimum(T / self.ramp, 1.0) if self.ramp > 0 else np.ones_like(T)
         return np.asarray(1 - (1 - correction(damping)) * share)
 
     def _turns(self, knots: Reals, damping: float) -> Reals:
-        """Where S_e t^2 turns between two periods: S_e is (p + q t)(r + s t) there."""
+        """Return the periods at which S_e t^2 has an extreme between points, where S_e is (p + q t)(r + s t)."""
         low, high = knots[:-1], knots[1:]
         a, b = np.interp(low, *self._known), np.interp(high, *self._known)
         q = (b - a) / (high - low)
@@ -232,18 +232,18 @@ class TableSpectrum:
 
 @dataclass(frozen=True)
 class FloorSpectrum:
-    """The spectrum at a height of a building, of its first mode [C7.2.5-7, C7.2.10].
+    """The spectrum of a floor, from the first mode of its building [C7.2.5-7, C7.2.10].
 
     Parameters
     ----------
     ground : DemandSpectrum
-        That of the ground.
+        The spectrum of the ground.
     z, H : float
         Heights of the floor and of the building above its foundation [m].
     T1 : float
         First period of the building [s].
     xi1 : float
-        Its damping, a ratio.
+        Damping ratio of the building.
     n : int
         Number of storeys.
     """
@@ -261,12 +261,12 @@ class FloorSpectrum:
         return self.ground.ag
 
     def with_ag(self, ag: float) -> FloorSpectrum:
-        """The same for another a_g of the ground [g]."""
+        """Return the spectrum for another a_g of the ground [g]."""
         return replace(self, ground=self.ground.with_ag(ag))
 
     @property
     def gamma(self) -> float:
-        """Participation of the first mode, 3n/(2n + 1)."""
+        """Participation factor of the first mode, 3n/(2n + 1)."""
         return 3 * self.n / (2 * self.n + 1)
 
     @property
@@ -276,16 +276,16 @@ class FloorSpectrum:
 
     @property
     def peak(self) -> float:
-        """S_Z [m/s2]."""
+        """Peak acceleration of the floor, S_Z [m/s2]."""
         shape = self.gamma * self.psi * sqrt(1 + 4 * self.xi1**2)
         return self.ground.acceleration(self.T1, self.xi1) * shape
 
     def amplification(self, damping: float) -> float:
-        """A = 1.1 xi_1^-1/2 eta(xi), xi_1 as a ratio: our reading."""
+        """Return the amplification A = 1.1 xi_1^-1/2 eta(xi), with xi_1 as a ratio: our interpretation."""
         return AMPLIFIED * correction(damping) / sqrt(self.xi1)
 
     def alone(self, period: float, damping: float) -> float:
-        """S_eZ without the bound by the ground [m/s2]."""
+        """Return the floor spectrum S_eZ without the lower bound by the ground spectrum [m/s2]."""
         A, low, high = self.amplification(damping), BELOW * self.T1, ABOVE * self.T1
         if period < low:
             return A * self.peak / (1 + (A - 1) * float((1 - period / low) ** FALL_BELOW))
@@ -294,19 +294,19 @@ class FloorSpectrum:
         return A * self.peak / (1 + (A - 1) * float((period / high - 1) ** FALL_ABOVE))
 
     def acceleration(self, period: float, damping: float) -> float:
-        """S_eZ [m/s2]; above T1 never below that of the ground."""
+        """Return S_eZ [m/s2]; above T1 at least that of the ground."""
         own = self.alone(period, damping)
         return own if period <= self.T1 else max(own, self.ground.acceleration(period, damping))
 
     def displacement(self, period: float, damping: float) -> float:
-        """Displacement demand [m; C8.7.1.12].
+        """Return the displacement demand [m; C8.7.1.12].
 
-        Above T1 it is not less than that of the ground, above b T1 not less than its value at b T1.
+        Above T1 it is at least that of the ground, and above b T1 at least its value at b T1.
         """
         return max(self.bounds(period, damping))
 
     def bounds(self, period: float, damping: float) -> list[float]:
-        """What a displacement demand is not below [m]: the floor's own, the ground's, and that at b T1."""
+        """Return the lower bounds of a displacement demand [m]: the floor's own, the ground's, and that at b T1."""
         found = [self.alone(period, damping) * (period / (2 * pi)) ** 2]
         if period > self.T1:
             found.append(self.ground.displacement(period, damping))
@@ -316,5 +316,5 @@ class FloorSpectrum:
 
 
 def ordinates(spectrum: DemandSpectrum, periods: Reals, damping: float) -> Reals:
-    """S_e at many periods [m/s2], for pictures and tests."""
+    """Return S_e at many periods [m/s2], for plots and tests."""
     return np.array([spectrum.acceleration(float(T), damping) for T in periods])

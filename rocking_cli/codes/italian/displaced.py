@@ -1,4 +1,4 @@
-"""The chain in a displaced position: where its blocks are, how they go on, and what holds them back there."""
+"""The chain in a displaced position: positions and motions of its blocks, and the forces that restrain it."""
 
 from __future__ import annotations
 
@@ -21,22 +21,23 @@ ROUNDING = 1e-9  # of the work of the weights, or of the masses: what is left ov
 
 @dataclass(frozen=True)
 class Moved:
-    """A block in a position of the chain, per unit rotation.
+    """A block in a displaced position of the chain, with its motion per unit rotation.
 
     Parameters
     ----------
     block : ChainBlock
         The block.
     gone : float
-        How far its barycentre has gone sideways, in the direction of rocking [m].
+        Horizontal displacement of its barycentre, positive in the direction of rocking [m].
     at : complex
-        Where that is now [m].
+        Present position of the barycentre [m].
     turns : float
-        Its rotation in the direction of rocking [rad].
+        Rotation of the block per unit rotation of the chain, positive in the direction of rocking.
     centre : complex or None
-        About which point [m]; None if it goes straight on.
+        Instantaneous centre of rotation [m]; None if the block translates.
     dx, dy : float
-        x' of the barycentre of P + Q, in the direction of rocking, and y' of that of P, upwards [m].
+        Virtual displacements x' of the barycentre of P + Q, in the direction of rocking, and y' of that of P, upwards
+        [m/rad].
     """
 
     block: ChainBlock
@@ -50,7 +51,7 @@ class Moved:
 
 @dataclass(frozen=True)
 class ForceWork:
-    """What a force or a tie does there: the force [N], how fast its point goes [m], and what that takes [N m]."""
+    """A force or tie in a position: force [N], velocity of its point per unit rotation [m], and work absorbed [N m]."""
 
     name: str
     force: float
@@ -65,7 +66,7 @@ class DisplacedChain:
     Parameters
     ----------
     curve : ExactCurve
-        Its capacity curve.
+        The capacity curve of the chain.
     phi : float
         The rotation [rad].
     """
@@ -75,7 +76,7 @@ class DisplacedChain:
 
     @property
     def chain(self) -> Chain:
-        """What moves."""
+        """The moving blocks."""
         return self.curve.chain
 
     @cached_property
@@ -84,7 +85,7 @@ class DisplacedChain:
 
     @cached_property
     def blocks(self) -> Sequence[Moved]:
-        """Its blocks."""
+        """The blocks of the chain in this position."""
         return [self._moved(block) for block in self.chain.blocks]
 
     def _moved(self, block: ChainBlock) -> Moved:
@@ -98,24 +99,24 @@ class DisplacedChain:
         return Moved(block, s * (now - block.at).real, now, turns, centre, s * velocity.real, lifted)
 
     def _lift(self, block: ChainBlock) -> float:
-        """y' of the barycentre of what a block carries [m]."""
+        """Return y' of the barycentre of the weights that a block carries [m/rad]."""
         own = [each for each in self.chain.weights if each.spot.body in block.bodies]
         lifts = [each.carried * float(self._follow(each.spot).dz[0].imag) for each in own]
         return sum(lifts) / (block.P or 1.0)
 
     @property
     def lifted(self) -> float:
-        """The sum of P y' [N m]."""
+        """Sum of P y' over the blocks [N m]."""
         return sum(each.block.P * each.dy for each in self.blocks)
 
     @property
     def driven(self) -> float:
-        """The sum of (P + Q) x' [N m]."""
+        """Sum of (P + Q) x' over the blocks [N m]."""
         return sum(each.block.PQ * each.dx for each in self.blocks)
 
     @cached_property
     def held(self) -> Sequence[ForceWork]:
-        """What forces and ties do."""
+        """The forces and ties in this position."""
         torn = self.curve.torn is not None and self.phi > self.curve.torn
         mechanism = self.chain.mechanism
         standing = mechanism.model_copy(update={"interlock": None}) if torn else mechanism
@@ -151,12 +152,12 @@ class DisplacedChain:
 
     @property
     def alpha(self) -> float:
-        """The multiplier there, V'/(g B)."""
+        """The multiplier in this position, V'/(g B)."""
         return self._own.V / (self.chain.mechanism.gravity * self._own.B)
 
     @property
     def rest(self) -> float:
-        """What of V' neither weights nor forces nor ties give: what the mechanism says itself [N m]."""
+        """Part of V' that weights, forces and ties do not give: what the mechanism itself adds [N m]."""
         known = self.lifted + sum(each.work for each in self.held)
         rest = self._own.V - known
         scale = sum(abs(each.block.P * each.dy) for each in self.blocks) + sum(abs(each.work) for each in self.held)
@@ -164,14 +165,14 @@ class DisplacedChain:
 
     @property
     def more(self) -> float:
-        """What of g B the weights do not give: inertia that the mechanism says itself [N m]."""
+        """Part of g B that the weights do not give: inertia that the mechanism itself adds [N m]."""
         more = self._own.B * self.chain.mechanism.gravity - self.driven
         return more if abs(more) > ROUNDING * abs(self.driven) else 0.0
 
 
 @dataclass(frozen=True)
 class _Sums:
-    """V' [N m] and B [kg m]."""
+    """The derivative V' [N m] of the potential, and the coefficient B [kg m]."""
 
     V: float
     B: float

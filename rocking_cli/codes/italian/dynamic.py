@@ -1,8 +1,8 @@
-"""Histories of one degree of freedom on the capacity curve, with the confidence factor and without.
+"""Time histories of the mechanism for a verification, with the confidence factor and without.
 
-FC divides what holds the structure back: I phi.. + J phi.^2 + V'/FC = -s B u_g''. In the time t sqrt(FC) that is the
-structure itself under a motion FC times as strong and sqrt(FC) times as quick, so that nothing but the motion changes;
-without FC it is the structure's own history. Its inertia is that of the mechanism, and e* is not in it: our choice.
+FC divides the restoring forces: I phi.. + J phi.^2 + V'/FC = -s B u_g''. In the time t sqrt(FC), this is the structure
+itself under a motion with FC times the acceleration and a time axis shorter by sqrt(FC), so that only the motion has to
+be changed; without FC it is the structure's own history. The inertia is that of the mechanism, without e*: our choice.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ RECORDS = 7  # that the code wants before the mean may be used
 
 
 def with_confidence(motion: GroundMotion, FC: float) -> GroundMotion:
-    """The motion under which a structure moves as it would, held back 1/FC as much, under the motion itself."""
+    """Return a motion with the same effect as the given one on a structure with 1/FC of its restoring forces."""
     quick = sqrt(FC)
     vertical = motion.vertical and replace(motion.vertical, dt=motion.vertical.dt / quick)
     return replace(motion, dt=motion.dt / quick, acceleration=FC * motion.acceleration, vertical=vertical)
@@ -37,9 +37,10 @@ def with_confidence(motion: GroundMotion, FC: float) -> GroundMotion:
 def peaks(
     structure: Structure, curves: Mapping[Direction, ExactCurve], motion: GroundMotion, signs: Sequence[int]
 ) -> dict[Direction, RecordPeak]:
-    """The largest displacement in each direction under one record, the worse of several polarities.
+    """Return the peak displacement in each direction under one record, in the worse of several polarities.
 
-    The outcome is unknown where that of any polarity is, unless another one overturns the structure in this direction.
+    The outcome is unknown if that of any polarity is, unless another polarity overturns the structure in this
+    direction.
 
     Parameters
     ----------
@@ -48,9 +49,9 @@ def peaks(
     curves : mapping
         The capacity curve of each direction, with its FC.
     motion : GroundMotion
-        The record, as scaled.
+        The scaled record.
     signs : sequence of int
-        Polarities, of 1 and -1.
+        The polarities: 1, -1 or both.
 
     Raises
     ------
@@ -118,9 +119,9 @@ def _state_of_records(found: ItalianVerification, state: str | None) -> str:
 def _largest(
     curve: ExactCurve, direction: Direction, histories: Sequence[History]
 ) -> tuple[float | None, float | None]:
-    """The largest d of several histories in a direction [m], and until when they are known [s] if one is unknown.
+    """Return the largest d of several histories in a direction [m], and until when they are known [s], or None.
 
-    No d if one overturned that way, or is unknown.
+    There is no d if a history overturned in this direction, or has an unknown outcome.
     """
     if any(history.overturned and history.fell_to == direction for history in histories):
         return None, None

@@ -1,6 +1,6 @@
-"""Every formula of a verification by the Italian code: symbol, text, slots for its numbers, unit and clause, once.
+"""The formulas of a verification by the Italian code: symbol, text, slots for its numbers, unit and clause.
 
-Calculation sheet, `workings` and the terminal are written from these. What a formula is, `meaning`, is a key of the
+The calculation sheet, `workings` and the terminal all use these formulas. The `meaning` of a formula is a key of the
 texts of the sheet.
 """
 

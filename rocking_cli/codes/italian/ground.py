@@ -22,7 +22,7 @@ AS_LARGE = 1e-13  # relative: a demand that scales with a_g
 
 @dataclass(frozen=True)
 class SiteGround:
-    """What a site does to a structure.
+    """Spectra and return periods of a site for a structure.
 
     Parameters
     ----------
@@ -34,18 +34,18 @@ class SiteGround:
 
     @cached_property
     def hazard(self) -> Hazard | None:
-        """Its hazard, where the file has one."""
+        """Seismic hazard of the site; None if the site file has none."""
         site = self.site
         return Hazard(site.hazard, site.soil or "A", site.topography) if site.hazard is not None else None
 
     def return_period(self, state: str) -> float | None:
-        """That of a limit state [years], where the hazard is known."""
+        """Return the return period of a limit state [years]; None if the hazard is not known."""
         if self.hazard is None:
             return None
         return self.hazard.counted((self.site.VN or 0.0) * (self.site.CU or 0.0), state)
 
     def on_ground(self, state: str) -> GroundSpectrum | TableSpectrum | None:
-        """The spectrum of the ground of a limit state; None where the file does not give it."""
+        """Return the spectrum of the ground at a limit state; None if the site file does not give it."""
         TR = self.return_period(state)
         if TR is not None and self.hazard is not None:
             return self.hazard.spectrum(TR)
@@ -59,27 +59,28 @@ class SiteGround:
         return GroundSpectrum(given.ag, given.F0, given.TC, given.S, self.site.soil)
 
     def spectrum(self, state: str) -> DemandSpectrum | None:
-        """The spectrum where the structure stands; None where the file does not give the limit state."""
+        """Return the spectrum at the support of the structure, ground or floor; None if the state is not given."""
         ground = self.on_ground(state)
         return None if ground is None else self._where_it_stands(ground, state)
 
     @property
     def state_of_activation(self) -> str:
-        """The limit state whose ground the linear method takes: SLD, or SLV if the file does not give SLD likewise.
+        """The limit state whose ground the linear method uses: SLD, or SLV if SLD is not given in the same form.
 
-        The ordinates of a table have S in them, which is not known: they are compared with those of a table only.
+        The ordinates of a table include S, which is then not known, so that they are compared only with those of a
+        table.
         """
         return "SLD" if type(self.on_ground("SLD")) is type(self.on_ground("SLV")) else "SLV"
 
     @property
     def of_activation(self) -> DemandSpectrum:
-        """The spectrum that the linear method takes, on a floor with the mode of SLD."""
+        """The spectrum that the linear method uses; on a floor with the mode of SLD."""
         ground = self.on_ground(self.state_of_activation)
         assert ground is not None  # SLV is always given
         return self._where_it_stands(ground, "SLD")
 
     def at_return_period(self, TR: float, state: str) -> DemandSpectrum:
-        """The spectrum where the structure stands at a return period [years], with the mode of a limit state.
+        """Return the spectrum at the support for a return period [years], with the floor's mode at a limit state.
 
         The hazard must be known.
         """
@@ -94,7 +95,7 @@ class SiteGround:
         return FloorSpectrum(ground, floor.z, floor.H, mode.T1, mode.xi1, floor.n)
 
     def capacity(self, spectrum: DemandSpectrum, demand: Callable[[DemandSpectrum], float], capacity: float) -> float:
-        """The a_g at which a demand reaches a capacity [g]; F0 and T_C those of a spectrum, T_D following."""
+        """Return the a_g at which a demand reaches a capacity [g], with F0 and T_C fixed; T_D follows from a_g."""
         own = demand(spectrum)
         in_ratio = spectrum.ag * capacity / own
         if abs(demand(spectrum.with_ag(in_ratio)) / capacity - 1) < AS_LARGE:
@@ -107,7 +108,7 @@ class SiteGround:
     def lasts(
         self, state: str, demand: Callable[[DemandSpectrum], float], capacity: float
     ) -> tuple[float | None, bool]:
-        """The return period at which a demand reaches a capacity [years], all of that period; whether it is beyond."""
+        """Return the return period at which a demand reaches a capacity [years]; whether it is off the table."""
         hazard = self.hazard
         if hazard is None:
             return None, False

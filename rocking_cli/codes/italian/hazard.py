@@ -1,4 +1,4 @@
-"""Seismic hazard at a site by return period, and what soil and topography make of it [NTC 2018, 3.2; code]."""
+"""Seismic hazard at a site by return period, and the effects of soil and topography [NTC 2018, 3.2]."""
 
 from __future__ import annotations
 
@@ -28,32 +28,32 @@ TOPOGRAPHY = {"T1": 1.0, "T2": 1.2, "T3": 1.2, "T4": 1.4}
 
 
 def soil_factor(soil: str, F0: float, ag: float) -> float:
-    """S_S of a soil; ag in g."""
+    """Return the factor S_S of a soil class, for a_g in g."""
     first, second, least, most, _, _ = SOILS[soil]
     return min(max(first - second * F0 * ag, least), most)
 
 
 def corner_factor(soil: str, TC_star: float) -> float:
-    """C_C of a soil; TC* in s."""
+    """Return the factor C_C of a soil class, for TC* in s."""
     *_, factor, power = SOILS[soil]
     return factor * float(TC_star**power)
 
 
 def return_period(life: float, state: str) -> float:
-    """TR = -VR/ln(1 - P) of a limit state [years], VR the reference life."""
+    """Return TR = -VR/ln(1 - P) of a limit state [years], with VR the reference life."""
     return -life / log(1 - PROBABILITY[state])
 
 
 @dataclass(frozen=True)
 class Hazard:
-    """The hazard of a site.
+    """Seismic hazard of a site.
 
     Parameters
     ----------
     table : sequence of (TR, ag, F0, TC*)
         Return period [years], ground acceleration on rock [g], amplification, period [s].
     soil, topography : str
-        A to E, and T1 to T4.
+        Soil class A to E, and topographic class T1 to T4.
     """
 
     table: Sequence[Sequence[float]]
@@ -62,28 +62,28 @@ class Hazard:
 
     @property
     def first(self) -> float:
-        """The shortest return period that counts [years]."""
+        """Shortest return period that is used [years]."""
         return max(self.table[0][0], SHORTEST)
 
     @property
     def last(self) -> float:
-        """The longest [years]."""
+        """Longest return period that is used [years]."""
         return min(self.table[-1][0], LONGEST)
 
     def parameters(self, TR: float) -> tuple[float, float, float]:
-        """ag [g], F0 and TC* [s] at a return period, each interpolated on logarithms of both."""
+        """Return ag [g], F0 and TC* [s] at a return period [years], interpolated in logarithms."""
         known = np.log(np.array(self.table, dtype=np.float64))
         ag, F0, TC = (exp(np.interp(log(TR), known[:, 0], known[:, k])) for k in (1, 2, 3))
         return ag, F0, TC
 
     def spectrum(self, TR: float) -> GroundSpectrum:
-        """The spectrum of the ground at a return period."""
+        """Return the spectrum of the ground at a return period [years]."""
         ag, F0, TC_star = self.parameters(TR)
         S = soil_factor(self.soil, F0, ag) * TOPOGRAPHY[self.topography]
         return GroundSpectrum(ag, F0, corner_factor(self.soil, TC_star) * TC_star, S, self.soil)
 
     def counted(self, life: float, state: str) -> float:
-        """The return period of a limit state, within what the code takes [years]. Raises `InputError` off the table."""
+        """Return the return period of a limit state, within the limits of the code [years]. Raises off the table."""
         TR = min(max(return_period(life, state), SHORTEST), LONGEST)
         if not self.table[0][0] <= TR * (1 + 1e-9) or not self.table[-1][0] * (1 + 1e-9) >= TR:
             raise InputError(

@@ -1,6 +1,6 @@
 """The three methods of the Italian code for mechanisms of masonry: damage, linear, nonlinear.
 
-Clauses are those of Circolare 7/2019 where they begin with C, else of NTC 2018: see `clauses`.
+Clauses that begin with C are of Circolare 7/2019, the others of NTC 2018: see `clauses`.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ EDITION = "NTC 2018 and Circolare 7/2019"
 
 @dataclass(frozen=True)
 class _Case:
-    """A direction at a site, on one curve."""
+    """A direction of rocking at a site, with one of its capacity curves."""
 
     ground: SiteGround
     curve: CapacityCurve
 
     def state(self, rule: Rule) -> LimitState:
-        """What the curve allows at a limit state, and what the site asks for [§C8.7.1.2.1.6, C8.7.1.10-12]."""
+        """Return capacity and demand in displacement at a limit state [§C8.7.1.2.1.6, C8.7.1.10-12]."""
         site, curve = self.ground.site, self.curve
         d = rule.share * curve.d0
         if rule.at_breaks and curve.broken is not None:
@@ -51,7 +51,7 @@ class _Case:
     def method(
         self, title: str, clause: str, state: str, demand: Callable[[DemandSpectrum], float], capacity: float
     ) -> ItalianMethod:
-        """Capacity of the structure by one method."""
+        """Return the capacity a_g by one method."""
         spectrum = self.ground.spectrum(state)
         if spectrum is None:
             return ItalianMethod(title, None, None, clause)
@@ -69,7 +69,7 @@ class _Case:
 
     @property
     def of_damage(self) -> str:
-        """The formula by which rocking starts."""
+        """The clause of the formula for the onset of rocking."""
         return clauses.DAMAGE if self.ground.site.own_period is None else clauses.DAMAGE_VIBRATING
 
     def forces(self, spectrum: DemandSpectrum) -> float:
@@ -163,6 +163,6 @@ def _verified(
 
 
 def _governs(methods: Mapping[str, ItalianMethod], damage: str, nonlinear: str) -> str:
-    """The method that governs of the two of a limit state: the nonlinear one is never below damage."""
+    """Return the method that governs at a limit state; the capacity of the nonlinear one is at least that of onset."""
     start, moved = methods[damage].a_g, methods[nonlinear].a_g
     return damage if start is not None and moved is not None and start > moved else nonlinear

@@ -1,4 +1,4 @@
-"""What a verification by the Italian code found."""
+"""Results of a verification by the Italian code."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class LimitState:
     Parameters
     ----------
     d, a, T : float
-        Displacement that it allows [m], acceleration there [m/s2], and the period of both [s].
+        Displacement capacity [m], acceleration of the curve there [m/s2], and the period of both [s].
     demand : float or None
-        Displacement that the site asks for [m]; None where the site file does not give this limit state.
+        Displacement demand of the site [m]; None if the site file does not give this limit state.
     """
 
     d: float
@@ -35,12 +35,12 @@ class LimitState:
 
     @property
     def ratio(self) -> float | None:
-        """Capacity over demand: it passes from 1."""
+        """Displacement capacity over demand, which passes from 1; None without a demand."""
         return None if self.demand is None else self.d / self.demand
 
     @property
     def passes(self) -> bool | None:
-        """Whether it does."""
+        """Whether the capacity meets the demand; None without a demand."""
         return None if self.ratio is None else self.ratio >= 1 - CLOSE
 
 
@@ -51,9 +51,9 @@ class ItalianMethod(frame.Method):
     Parameters
     ----------
     return_period : float or None
-        The same capacity as a return period, where the hazard is known [years].
+        The capacity as a return period [years]; None if the hazard is not known.
     beyond : bool
-        Whether the capacity is beyond the table, whose end the return period then is.
+        Whether the capacity is beyond the table of the hazard; the return period is then the end of the table.
     """
 
     return_period: float | None = None
@@ -62,7 +62,7 @@ class ItalianMethod(frame.Method):
 
     @property
     def a_g(self) -> float | None:
-        """Capacity, as ground acceleration on rock [g]; None if the site does not give what that depends on."""
+        """Capacity as ground acceleration on rock [g]; None if the site lacks values for it."""
         return self.capacity
 
     @property
@@ -72,7 +72,7 @@ class ItalianMethod(frame.Method):
 
     @property
     def lasts(self) -> str:
-        """The return period as it is printed, whether or not it is beyond the table; empty if it is not known."""
+        """The return period as printed, with > or < beyond the table; empty if it is not known."""
         if self.return_period is None:
             return ""
         mark = ("" if self.zeta is None else ">" if self.zeta >= 1 else "<") if self.beyond else ""
@@ -81,16 +81,16 @@ class ItalianMethod(frame.Method):
 
 @dataclass(frozen=True)
 class RecordPeak:
-    """The largest displacement under one record, with FC and without.
+    """Peak displacements under one record, with FC and without.
 
     Parameters
     ----------
     name : str
-        Of the record.
+        Name of the record.
     with_confidence, without : float or None
-        The displacement [m]; None where the structure overturned, or the outcome is unknown.
+        The peak displacement [m]; None if the structure overturned, or the outcome is unknown.
     known_to_with_confidence, known_to_without : float or None
-        Until when the outcome is known [s], where it is unknown.
+        Time until which the history is known [s]; None if all of it is known.
     """
 
     name: str
@@ -100,32 +100,32 @@ class RecordPeak:
     known_to_without: float | None = None
 
     def peak(self, *, confident: bool) -> float | None:
-        """The displacement with FC, or without [m]."""
+        """Return the peak displacement with FC, or without [m]."""
         return self.with_confidence if confident else self.without
 
     def known_to(self, *, confident: bool) -> float | None:
-        """Until when the outcome is known with FC, or without [s]; None if all of it is known."""
+        """Return until when the outcome is known with FC, or without [s]; None if all of it is known."""
         return self.known_to_with_confidence if confident else self.known_to_without
 
 
 @dataclass(frozen=True)
 class Dynamic:
-    """What histories say of a direction.
+    """Results of the time histories in one direction.
 
     Parameters
     ----------
     records : sequence of RecordPeak
-        What each record did.
+        Peak displacements under each record.
     d0 : float
-        Displacement that no record may pass [m].
+        Displacement d0* that no record may exceed [m].
     allowed : mapping of str to float
         The displacement that the mean may reach at the limit state to which the records belong [m].
     enough : int
-        How many records the code wants.
+        Number of records that the code requires.
     checked : bool
-        Whether the joints of the structure are known; if not, no outcome is said to be unknown.
+        Whether the joints of the structure are known; if not, no outcome is unknown.
     motions : Motions
-        What the records are motions of.
+        Kind of the motions: of the ground or of a floor.
     """
 
     records: Sequence[RecordPeak]
@@ -136,39 +136,39 @@ class Dynamic:
     motions: Motions = field(default_factory=Motions)
 
     def mean(self, *, confident: bool) -> float | None:
-        """The mean of the largest displacements [m]; None where one overturned, passed d0* or is unknown."""
+        """Return the mean of the peak displacements [m]; None if one overturned, exceeded d0* or is unknown."""
         found = self.peaks(confident=confident)
         known = [each for each in found if each is not None and each < self.d0]
         return sum(known) / len(found) if len(known) == len(found) else None
 
     def peaks(self, *, confident: bool) -> list[float | None]:
-        """The largest displacement under each record [m]."""
+        """Return the peak displacement under each record [m]."""
         return [each.peak(confident=confident) for each in self.records]
 
     def passed(self, *, confident: bool) -> list[str]:
-        """The records that pass d0*."""
+        """Return the names of the records that exceed d0* or overturn the structure."""
         known = [each for each in self.records if each.known_to(confident=confident) is None]
         pairs = [(each.name, each.peak(confident=confident)) for each in known]
         return [name for name, d in pairs if d is None or d >= self.d0]
 
     def unknown(self, *, confident: bool) -> list[str]:
-        """The records of unknown outcome."""
+        """Return the names of the records of unknown outcome."""
         return [each.name for each in self.records if each.known_to(confident=confident) is not None]
 
     def holds(self, state: str, *, confident: bool) -> bool:
-        """Whether it holds at a limit state; with an unknown outcome it does not."""
+        """Return whether the mean passes at a limit state; with an unknown outcome it does not."""
         mean = self.mean(confident=confident)
         return mean is not None and mean <= self.allowed[state]
 
 
 @dataclass(frozen=True, eq=False)
 class ItalianVerified(frame.Verified):
-    """What was found in one direction of rocking, with what all codes have.
+    """Result in one direction of rocking by the Italian code, in addition to that of every code.
 
     Parameters
     ----------
     first : str
-        The limit state whose verification counts.
+        The limit state whose verification decides.
     lambda_, a0, d0, M : float
         Uplift acceleration over g; a0* [m/s2]; d0* [m]; M* [kg], None without masses.
     exact : ExactCurve
@@ -176,11 +176,11 @@ class ItalianVerified(frame.Verified):
     states, straight_states : mapping of str to LimitState
         The limit states on the exact curve, and on the straight line.
     methods, straight_methods : mapping of str to ItalianMethod
-        What each method says on either.
+        Result of each method on either curve.
     governing : mapping of str to str
         The method that governs at each limit state; `governs` is that at the first one.
     dynamic : Dynamic, optional
-        What histories say.
+        Results of time histories.
     """
 
     methods: Mapping[str, ItalianMethod]
@@ -198,7 +198,7 @@ class ItalianVerified(frame.Verified):
 
     @property
     def chain(self) -> Chain:
-        """What moves, with its sums."""
+        """The moving blocks, with their sums."""
         return self.exact.chain
 
     @property
@@ -207,23 +207,23 @@ class ItalianVerified(frame.Verified):
         return self.methods[self.governs]
 
     def passes(self, state: str) -> bool | None:
-        """Whether it passes at a limit state by what governs; None where the site does not give it."""
+        """Return whether the direction passes at a limit state; None if the site does not give it."""
         held = self.methods[self.governing[state]].passed
         return None if held is None else held or bool(self.states[state].passes)
 
     @property
     def passed(self) -> bool | None:
-        """Whether it passes at the first limit state."""
+        """Whether the direction passes at the first limit state."""
         return self.passes(self.first)
 
     @property
     def ratio(self) -> float | None:
-        """That of displacements at the first limit state; zeta_E where the damage method governs."""
+        """Ratio of displacements at the first limit state; zeta_E if the onset of rocking governs."""
         displaced, zeta = self.states[self.first].ratio, self.counts.zeta
         return zeta if self.governs == "damage" and zeta is not None else displaced
 
     def is_like(self, other: frame.Verified) -> bool:
-        """Whether another direction has the same curve; with histories none is, as the ground is not symmetric."""
+        """Return whether another direction has the same curve; False with histories, as motions are not symmetric."""
         assert isinstance(other, ItalianVerified)  # of one code
         pairs = [(self.a0, other.a0), (self.d0, other.d0), (self.chain.e_star, other.chain.e_star)]
         pairs += [(self.states[key].a, other.states[key].a) for key in self.states]

@@ -1,4 +1,4 @@
-"""The limit states of displacement of the Italian code, and their methods [§C8.7.1.2.1.6, C8.7.1.10-11]."""
+"""The limit states of displacement of the Italian code, with their limits and periods [§C8.7.1.2.1.6, C8.7.1.10-11]."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from rocking_cli.codes.italian import clauses
 
 @dataclass(frozen=True)
 class Rule:
-    """A limit state.
+    """Rule for the displacement capacity and the demand at a limit state.
 
     Parameters
     ----------
     state : str
-        What it is called.
+        Name of the limit state.
     share : float
-        Of d0*, that it allows.
+        Share of d0* that is permitted.
     at_breaks : bool
-        Whether it ends where a tie breaks that takes more than half of the largest a*. Where a load is moved off its
-        seat, both end: what ends SLC must not have happened at SLV either.
+        Whether the capacity ends where a break reduces a* by more than half of its largest value. The loss of a seat
+        ends both limit states: what ends SLC must not have happened at SLV either.
     factor : float
-        Of pi sqrt(d/a*), its period.
+        Factor on pi sqrt(d/a*) in its period.
     damping : float
-        A ratio.
+        Damping ratio of the demand.
     clause : str
-        That of its period.
+        Clause of the period.
     probability : float
-        Of being exceeded in the reference life.
+        Probability of exceedance in the reference life.
     """
 
     state: str

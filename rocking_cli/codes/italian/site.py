@@ -1,4 +1,4 @@
-"""A site for the Italian code: what the ground does there, on which floor the structure stands, and what is known."""
+"""The site file of the Italian code: ground motion, floor of the structure, and confidence factor."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class StateGround(Part):
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """It is given in one way, and whole; a spectrum is a function."""
+        """Check that the ground is given in one way, completely, and that a spectrum has one ordinate per period."""
         there = [name for name in SIZES if given.get(name) is not None]
         if given.get("spectrum") is not None and there:
             yield ("spectrum",), f"cannot be combined with {there[0]}: give either the parameters or the ordinates"
@@ -58,7 +58,7 @@ class StateGround(Part):
 
     @classmethod
     def _needs_sizes(cls, given: dict[str, Any]) -> bool:
-        """Whether the parameters must be there where no spectrum is."""
+        """Return whether the parameters are required if there is no spectrum."""
         return True
 
 
@@ -113,7 +113,7 @@ class SiteFloor(Mode):
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """A floor is not above the roof."""
+        """Check that the floor is not above the roof."""
         z, H = given.get("z"), given.get("H")
         if z is not None and H is not None and sound("z") and sound("H") and z > H:
             yield ("z",), f"is above the roof: got {z:g} m, but the building is {H:g} m high"
@@ -137,23 +137,23 @@ class VibratingElement(Part):
 
     @property
     def kappa(self) -> float:
-        """The factor of its support."""
+        """Factor of the support condition."""
         return KAPPA[self.kind]
 
     @property
     def size(self) -> tuple[float, float]:
-        """L and t [m], once they are known."""
+        """L and t [m]; both must be known."""
         assert self.L is not None and self.t is not None
         return self.L, self.t
 
     @property
     def period(self) -> float:
-        """T0 [s], once its size is known."""
+        """T0 [s]; the size must be known."""
         L, t = self.size
         return self.kappa * (L / t) * L * sqrt(self.w / (self.E * STANDARD_GRAVITY))
 
     def sized(self, mechanism: Mechanism) -> VibratingElement:
-        """Return the same with what its size lacks taken from a structure. Raises `InputError` if that has none."""
+        """Return the element with missing dimensions taken from a structure. Raises `InputError` if it has none."""
         sizes = {
             "L": (self.L, getattr(mechanism, "height", None)),
             "t": (self.t, getattr(mechanism, "thickness", getattr(mechanism, "width", None))),
@@ -189,17 +189,17 @@ class ItalianSite(StateGround, Site):
 
     @property
     def own_period(self) -> float | None:
-        """T0 [s], as given or of the element."""
+        """T0 [s], as given or from the element; None without both."""
         return self.T0 if self.element is None else self.element.period
 
     def shaking(self, state: str) -> StateGround | None:
-        """Return what the file says of the ground at a limit state: its own fields are those of SLV."""
+        """Return the ground at a limit state; the fields of the site itself are those of SLV."""
         found: StateGround | None = self if state == FIRST else getattr(self, state)
         return found
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """The ground is given in one way; a hazard has what belongs to it."""
+        """Check that the ground is given in one way, and that a hazard has the fields it needs."""
         yield from super().between(given, sound)
         if given.get("element") is not None and given.get("T0") is not None:
             yield ("element",), "cannot be combined with T0, which is computed from it: give one of the two"
@@ -237,12 +237,12 @@ def floor_at(site: ItalianSite, state: str) -> Floor | None:
 
 
 def of_structure(site: ItalianSite, mechanism: Mechanism) -> ItalianSite:
-    """Return the site with the size of its element, where that is the structure's. Raises `InputError` if unknown."""
+    """Return the site with the dimensions of its element, from the structure if needed. Raises `InputError`."""
     return site if site.element is None else site.model_copy(update={"element": site.element.sized(mechanism)})
 
 
 def of_each(site: ItalianSite) -> ItalianSite:
-    """Return the site of many structures, each of which has an element of its own size."""
+    """Return the site of many structures, in which the element takes its dimensions from each structure."""
     if site.element is None:
         return site
     return site.model_copy(update={"element": site.element.model_copy(update={"L": None, "t": None})})

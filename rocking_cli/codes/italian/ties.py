@@ -1,4 +1,4 @@
-"""Ties, and forces that stand for them, as verifications take them: their strength is not known."""
+"""Ties, and forces that represent them, in a verification; their strength is not known."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ WIDE = 0.8
 
 @dataclass(frozen=True)
 class Pull:
-    """A tie at a displacement, or a force against the motion that may stand for one.
+    """A tie at a displacement, or a force against the motion that may represent a tie.
 
     Parameters
     ----------
     name : str
-        What it is called.
+        Name of the tie or force.
     force : float
-        Its force there [N], tension positive.
+        Force at this displacement [N], tension positive.
     elongation : float
-        How much longer it is than at rest; of a force, how far its point has moved against it [m].
+        Elongation since rest; for a force, displacement of its point against the force [m].
     strain : float or None
-        The elongation over the length of the tie; None if that is not known, as of a force.
+        The elongation over the length of the tie; None if the length is not known, as for a force.
     """
 
     name: str
@@ -89,12 +89,12 @@ def furthest(curve: ExactCurve, d: float) -> tuple[float, float]:
 
 
 def elastic(mechanism: Mechanism) -> Sequence[Tie]:
-    """The ties, and beds of springs, whose force grows with what they stretch."""
+    """Return the ties and beds of springs whose force increases with the elongation."""
     return [tie for tie in mechanism.ties or [] if tie.bed is not None or tie.k > 0]
 
 
 def carried(curve: ExactCurve, d: float) -> dict[str, float]:
-    """What each elastic tie carries at a displacement [N], tension positive, by its name; beds are not among them."""
+    """Return the force of each elastic tie at a displacement [N], tension positive, by name; without beds."""
     chain, phi = curve.chain, curve.rotation(d)
     follow = chain.mechanism.followed(np.array([phi]), chain.direction)
     bars = [each for each in chain.mechanism.hung.elements if isinstance(each, Spring) and each.stiffness > 0]
@@ -102,9 +102,10 @@ def carried(curve: ExactCurve, d: float) -> dict[str, float]:
 
 
 def lasting(mechanism: Mechanism) -> Mechanism:
-    """The structure; with its elastic ties as they pull at rest, if it could not come down with what they grow to.
+    """Return the structure; if elastic ties would hold it for ever, with ties of constant force.
 
-    A code counts what is there up to collapse, and that a tie would hold for ever is a model beyond its strength.
+    The code needs a curve up to collapse; a tie that holds for ever is a model beyond the strength of the tie. The
+    constant force is that at rest.
     """
     if not elastic(mechanism):
         return mechanism

@@ -1,4 +1,4 @@
-"""A verification by the Italian code, as people and programs read it."""
+"""View of a verification by the Italian code, as text and as data."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ OF_SITE = [
 
 
 class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
-    """How it is shown."""
+    """How the results of the Italian code are shown."""
 
     of_site, compared = OF_SITE, "displacement capacity to demand"
     notation = ": [formula] or §section"
@@ -88,7 +88,7 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
 
 
 def _capacity(each: ItalianVerified, where: str) -> Table:
-    """The capacity curve, exactly and on the straight line."""
+    """Return a table of the capacity curve, exact and straight."""
     clause = {line.symbol: cited(line) for line in each.workings}
     rows = [
         ["alpha0", number(each.chain.alpha0), "", "", clause["alpha0"]],
@@ -186,7 +186,7 @@ def _state(each: ItalianVerified, name: str, at: LimitState) -> dict[str, Any]:
 
 
 def _ties(each: ItalianVerified) -> dict[str, dict[str, float | None]]:
-    """Force [N], elongation [m] and strain of each tie, and of each force against the motion, at the limit states."""
+    """Return force [N], elongation [m] and strain of each tie, and of each force against the motion, by limit state."""
     found: dict[str, dict[str, float | None]] = {}
     for key in ("force", "elongation", "strain"):
         for name, at in each.states.items():
@@ -196,7 +196,7 @@ def _ties(each: ItalianVerified) -> dict[str, dict[str, float | None]]:
 
 
 def _pulls(each: ItalianVerified) -> list[Table]:
-    """Table of the ties, and of the forces against the motion, at each limit state; none if there are none."""
+    """Return a table of ties, and of forces against the motion, at each limit state; empty if there are none."""
     rows = [
         [pull.name, f"d_{state}", number(pull.force / 1e3), number(pull.elongation, 4),
          ABSENT if pull.strain is None else number(100 * pull.strain, 3)]
@@ -208,7 +208,7 @@ def _pulls(each: ItalianVerified) -> list[Table]:
 
 
 def _return_periods(methods: Mapping[str, ItalianMethod]) -> dict[str, dict[str, Any]]:
-    """Of each method, where the hazard is known."""
+    """Return the capacity of each method as a return period, if the hazard is known."""
     known = {key: each for key, each in methods.items() if each.return_period is not None}
     return {key: {"years": each.return_period, "beyond": each.beyond} for key, each in known.items()}
 

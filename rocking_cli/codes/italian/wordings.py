@@ -1,4 +1,4 @@
-"""What to know of a verification by the Italian code, in sentences that its numbers decide."""
+"""Remarks on a verification by the Italian code, as sentences that depend on its numbers."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ def _told(key: str, **values: Any) -> Told:
 
 
 def _named(states: Sequence[str]) -> str:
-    """One or more names, as they are listed."""
+    """Join names as a list in a sentence."""
     *before, last = states
     return _told("and", one=", ".join(before), other=last) if before else last
 
 
 def of_site(ground: SiteGround, found: Collection[ItalianVerified]) -> list[str]:
-    """Of the site and of both directions."""
+    """Return remarks on the site and on both directions."""
     said: list[str] = [*_of_spectrum(ground), *_of_lives(ground)]
     periods = [state.T for each in found for state in each.states.values() if state.demand is not None]
     long = max(periods, default=0.0)
@@ -70,7 +70,7 @@ def _of_spectrum(ground: SiteGround) -> list[str]:
 
 
 def _of_modes(ground: SiteGround) -> list[str]:
-    """Of a floor whose T1 and xi1 are the same at several limit states."""
+    """Return a remark on a floor whose T1 and xi1 are the same at several limit states."""
     floor = ground.site.floor
     same = [state for state in FURTHER if floor is not None and getattr(floor, state) is None]
     if floor is None or not same:
@@ -96,7 +96,7 @@ def _of_lives(ground: SiteGround) -> list[str]:
 
 
 def of_direction(curve: ExactCurve, states: Mapping[str, LimitState], ground: SiteGround) -> list[str]:
-    """Of one direction."""
+    """Return remarks on one direction."""
     said = [*_of_line(curve, states), *_of_ties(curve, states), *_of_break(curve, states), *_of_seat(curve, states)]
     said += [*_of_stretch(curve, states), *_of_letter(curve.chain, curve)]
     T0 = ground.site.own_period
@@ -128,7 +128,7 @@ def _of_ties(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[str]:
 
 
 def _of_stretch(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[str]:
-    """Ties that would be far too long, forces that follow far, and blocks that go as far as they are thick."""
+    """Return remarks on ties of too large elongation, forces with large displacements, and blocks that move far."""
     said: dict[str, str] = {}
     for state, at in states.items():
         if state != "SLV" and at.demand is None:
@@ -149,7 +149,7 @@ def _of_stretch(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[str
 
 
 def of_ties_at_rest(ties: Sequence[Tie]) -> str:
-    """That ties count as they pull at rest."""
+    """Return the remark that ties count with their force at rest."""
     return _told("at_rest", names=", ".join(tie.name for tie in ties))
 
 
@@ -183,7 +183,7 @@ def _of_letter(chain: Chain, curve: ExactCurve) -> list[str]:
 
 
 def of_control(chosen: ItalianMethod, usual: ItalianMethod, d0: float, usual_d0: float) -> str:
-    """What a chosen control point changes: d0* [m] and the nonlinear method, against the barycentre of P + Q."""
+    """Return a remark on the effect of a chosen control point on d0* [m] and the nonlinear method."""
     change = d0 / usual_d0 - 1
     if abs(change) < ROUNDING:
         return _told("control_same", d0=d0)

@@ -1,1 +1,1 @@
-"""How likely a limit state is exceeded at an intensity of shaking, and how often in a year at a site."""
+"""Fragility: the probability that a limit state is exceeded at an intensity, and its annual rate at a site."""

@@ -1,4 +1,4 @@
-"""From the runs of a study to its fragility curves, surfaces and annual rates."""
+"""Fit the runs of a study: fragility curves, surfaces and annual rates."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ MOST_UNKNOWN = 0.02  # share of runs of which it is not known whether they excee
 
 @dataclass(frozen=True)
 class UnknownRuns:
-    """How many runs of a structure are of unknown outcome.
+    """Number of runs of a structure with unknown outcome.
 
     Parameters
     ----------
     structure : str
-        Which.
+        Name of the structure.
     runs : int
-        How many runs can be used.
+        Number of runs that can be used.
     unknown : int or None
-        How many of them; None if its joints are not known, so that nothing was checked.
+        Number of those with unknown outcome; None if the joints are not known, so that nothing was checked.
     checked : bool
         Whether the joints are known in all runs.
     """
@@ -49,54 +49,54 @@ class UnknownRuns:
 
     @property
     def share(self) -> float | None:
-        """Share of the runs."""
+        """Share of the runs that have an unknown outcome; None if nothing was checked."""
         return None if self.unknown is None else self.unknown / self.runs
 
 
 class _FittedTwice:
-    """A fit in which runs exceed if it is not known whether they do, with one in which they do not."""
+    """A fit in which undecided runs count as exceeding, with a second fit in which they count as not exceeding."""
 
     unknown: int | None
 
     @property
     def total(self) -> int:
-        """How many runs, or capacities, were fitted."""
+        """Number of runs, or of capacities, that were fitted."""
         raise NotImplementedError
 
     @property
     def share(self) -> float | None:
-        """Share of the runs of which it is not known whether they exceed; None if nothing was checked."""
+        """Share of undecided runs, not known to exceed the limit state or not; None if nothing was checked."""
         return None if self.unknown is None else self.unknown / max(self.total, 1)
 
     @property
     def is_band(self) -> bool:
-        """Whether these are so many that the result is the band between both fits, and neither alone."""
+        """Whether so many runs are undecided that the result is the band between both fits, not one of them."""
         return self.share is not None and self.share > MOST_UNKNOWN
 
 
 @dataclass(frozen=True, eq=False)
 class Fragility(_FittedTwice):
-    """How likely one structure is to exceed one limit state, over one measure.
+    """Fragility of one structure for one limit state, as a function of one intensity measure.
 
     Parameters
     ----------
     structure, measure : str
-        What it is of.
+        Names of the structure and of the measure.
     limit : str or float
         The limit state: a word, or a ratio of rotations.
     seen : Observations
-        The runs; in incremental dynamic analysis all above the first that exceeds count as exceeding.
+        The runs; in incremental dynamic analysis all levels above the first that exceeds count as exceeding.
     curve : FragilityCurve
         The fit.
     rate : Rate or None
-        How often it is exceeded a year, where the hazard is known.
+        Annual rate of exceeding the limit state; None if the hazard is not known.
     left_out : int
-        Runs whose intensity is not above zero, or not known, and which no curve over its logarithm can hold.
+        Number of runs left out because their intensity is not positive, or not known, so that it has no logarithm.
     unknown : int or None
-        Runs, or in incremental dynamic analysis capacities, of which it is not known whether or where they exceed: here
-        they do. None if the joints of the structure are not known, so that nothing was checked.
+        Number of undecided runs (in incremental dynamic analysis: capacities). Here they count as exceeding. None if
+        the joints of the structure are not known, so that nothing was checked.
     lower : Fragility or None
-        The same as if they did not; None if there are none.
+        The fit in which undecided runs count as not exceeding; None if there are none.
     """
 
     structure: str
@@ -111,15 +111,16 @@ class Fragility(_FittedTwice):
 
     @property
     def total(self) -> int:
-        """How many runs, or capacities, were fitted."""
+        """Number of runs, or of capacities, that were fitted."""
         return self.curve.runs
 
 
 @dataclass(frozen=True, eq=False)
 class Bivariate(_FittedTwice):
-    """How likely one structure is to exceed one limit state, over two measures; the fields as of `Fragility`.
+    """Fragility of one structure for one limit state, as a function of two measures; other fields as in `Fragility`.
 
-    Runs are counted in cells: `runs` and `exceeding` are how many there are and how many exceed at `x1` and `x2`.
+    Runs are counted in cells: `runs` and `exceeding` are the numbers of runs, and of those that exceed, at `x1` and
+    `x2`.
     """
 
     structure: str
@@ -136,28 +137,28 @@ class Bivariate(_FittedTwice):
 
     @property
     def total(self) -> int:
-        """How many runs were fitted."""
+        """Number of runs that were fitted."""
         return self.surface.runs
 
 
 def structures(plan: Plan) -> list[str]:
-    """Names of the structures, in the order of the study."""
+    """Return the names of the structures, in the order of the study."""
     return list(dict.fromkeys(trial.structure for trial in plan.trials))
 
 
 def counted(store: Store, plan: Plan, definition: Definition, progress: Counted) -> dict[str, Tally]:
-    """The finished runs of each structure of a store, counted for what its study asks for.
+    """Count the finished runs of each structure of a store, for the limit states and measures of its study.
 
     Parameters
     ----------
     store : Store
         Open to read.
     plan : Plan
-        Its runs.
+        The plan of its runs.
     definition : Definition
-        What its study asks for.
+        The definition of its study.
     progress : callable
-        Told how many numbers of runs have been gone through since the last call.
+        Called with the number of runs read since the last call.
     """
     measures = [*definition.fitted_measures, *(one for pair in definition.bivariate for one in pair)]
     limits, ladders = definition.limit_states, definition.method == "ida"
@@ -169,18 +170,18 @@ def counted(store: Store, plan: Plan, definition: Definition, progress: Counted)
 def fitted(
     found: Mapping[str, Tally], definition: Definition, hazard: HazardCurve | None, progress: Callable[[int], None]
 ) -> tuple[list[Fragility], list[Bivariate]]:
-    """All curves and surfaces that a study asks for, of the structures that have runs.
+    """Fit all curves and surfaces that a study requests, for the structures that have runs.
 
     Parameters
     ----------
     found : mapping of str to Tally
         The runs of each structure.
     definition : Definition
-        What the study asks for.
+        The definition of the study.
     hazard : HazardCurve or None
-        How often intensities are exceeded.
+        Annual rates at which intensities are exceeded.
     progress : callable
-        Told how many fits were made since the last call.
+        Called with the number of fits made since the last call.
     """
     lines: list[Fragility] = []
     planes: list[Bivariate] = []
@@ -197,7 +198,7 @@ def fitted(
 
 
 def outcomes(found: Mapping[str, Tally]) -> list[UnknownRuns]:
-    """How many runs of each structure are of unknown outcome; of structures without runs nothing."""
+    """Return the number of runs of unknown outcome of each structure that has runs."""
     return [
         UnknownRuns(name, int(tally.runs.sum()), tally.unknown_if_checked, tally.checked)
         for name, tally in found.items()
@@ -208,7 +209,7 @@ def outcomes(found: Mapping[str, Tally]) -> list[UnknownRuns]:
 def curves(
     tally: Tally, structure: str, definition: Definition, hazard: HazardCurve | None
 ) -> Iterator[Fragility]:  # fmt: skip
-    """The fragility curves of a structure: each limit state over each measure that is above zero in any run."""
+    """Yield the fragility curves of a structure: each limit state over each measure that is positive in some run."""
     for measure in definition.fitted_measures:
         cells = tally.over(measure)
         x = cells.intensities(measure)
@@ -230,7 +231,7 @@ def _curve(
     cells: Cells, x: Reals, structure: str, measure: str, limit: Limit, definition: Definition,
     hazard: HazardCurve | None,
 ) -> Fragility:  # fmt: skip
-    """The curve of one limit state over one measure, of which the intensities of the cells are given."""
+    """Fit the curve of one limit state over one measure; `x` holds the intensities of the cells."""
     tally, confidence, there = cells.tally, definition.confidence, x > 0
     level = cells.level[there] if tally.decided_by_level(measure) else None
     record, weight = tally.one(cells.record[there]), tally.weight(cells.record[there])
@@ -254,7 +255,7 @@ def _curve(
 
 
 def _undecided_runs(cells: Cells, limit: Limit, there: Bools) -> int:
-    """How many runs in some cells are not known to exceed, nor not to."""
+    """Return the number of runs in some cells that are not known to exceed a limit state or not."""
     if cells.tally.lower is None:
         return 0
     known = replace(cells, tally=cells.tally.lower)
@@ -262,7 +263,7 @@ def _undecided_runs(cells: Cells, limit: Limit, there: Bools) -> int:
 
 
 def _undecided_ladders(tally: Tally, limit: Limit) -> int:
-    """How many ladders are not known to exceed first at one level."""
+    """Return the number of ladders (levels of one record) whose first exceeding level is not known."""
     if tally.lower is None:
         return 0
     assert tally.ladders is not None and tally.lower.ladders is not None
@@ -270,7 +271,7 @@ def _undecided_ladders(tally: Tally, limit: Limit) -> int:
 
 
 def _capacities(tally: Tally, measure: str, limit: Limit, cells: Cells) -> tuple[Reals, Reals, Integers]:
-    """Between which intensities each ladder first exceeds, and its record; 0 and infinity where no level bounds it."""
+    """Return the bounds of the capacity of each ladder, 0 or infinity if no level bounds it, and its record."""
     assert tally.ladders is not None
     first, last = tally.ladders.first[limit], tally.ladders.below(limit)
     levels = len(tally.plan.levels)
@@ -289,7 +290,7 @@ def _capacities(tally: Tally, measure: str, limit: Limit, cells: Cells) -> tuple
 
 
 def surfaces(tally: Tally, structure: str, definition: Definition) -> Iterator[Bivariate]:
-    """The fragility surfaces of a structure."""
+    """Yield the fragility surfaces of a structure."""
     for measures in definition.bivariate:
         cells = tally.over(*measures)
         one, other = (cells.intensities(measure) for measure in measures)
@@ -308,7 +309,7 @@ def surfaces(tally: Tally, structure: str, definition: Definition) -> Iterator[B
 def _surface(
     cells: Cells, x1: Reals, x2: Reals, structure: str, measures: tuple[str, str], limit: Limit, definition: Definition
 ) -> Bivariate:  # fmt: skip
-    """The surface of one limit state over two measures, of which the intensities of the cells are given."""
+    """Fit the surface of one limit state over two measures; `x1` and `x2` hold the intensities of the cells."""
     there = (x1 > 0) & (x2 > 0)
     x1, x2, runs, exceeding = x1[there], x2[there], cells.runs[there], cells.exceeding(limit)[there]
     record, weight = cells.tally.one(cells.record[there]), cells.tally.weight(cells.record[there])

@@ -1,4 +1,4 @@
-"""Running a study: examine its records and structures, and bring its store up to date."""
+"""Run a study: read its records and structures, and simulate the runs that its store lacks."""
 
 from __future__ import annotations
 
@@ -45,13 +45,13 @@ class Prepared:
     study : Study
         The study.
     plan : Plan
-        Its runs.
+        The plan of its runs.
     motions : KeptMotions
         Its ground motions.
     finished, failed : int
-        Runs that the store holds already, and those of them that could not be followed.
+        Number of runs in the store, and of those among them that could not be simulated.
     mended : tuple of str
-        Records that could not be used when the study was begun, and now can.
+        Names of records that could not be used when the study was started, and now can.
     """
 
     study: Study
@@ -65,7 +65,7 @@ class Prepared:
 def prepare(
     study: Study, store: Store, examined: Examined | None = None, *, rank_measures: bool = False
 ) -> Prepared:  # fmt: skip
-    """Examine what a study runs, and begin its store or hold it against what the store was begun with.
+    """Read the records and structures of a study, and start its store or check the study against it.
 
     Parameters
     ----------
@@ -76,13 +76,14 @@ def prepare(
     examined : callable, optional
         Called with the number of records and structures examined since the last call.
     rank_measures : bool
-        Whether to measure and keep all that the measures which are installed need, besides what the study asks for.
+        Whether to compute and store the values of all installed measures, and not only of those that the study
+        requests.
 
     Raises
     ------
     InputError
-        If anything that decides the runs has changed since the store was begun: every change is named. If no
-        structure or no record can be used.
+        If anything on which the runs depend has changed since the store was started; the error lists every change. If
+        no structure or no record can be used.
     """
     known = store.plan() if not store.empty else None
     plan, motions = survey(study, examined, known)
@@ -118,12 +119,12 @@ def prepare(
 
 
 def steps(study: Study, *, rank_measures: bool = False) -> int:
-    """How much `prepare` tells: of structures and records, and of records again where more than peaks are measured."""
+    """Return the number of steps of which `prepare` reports the progress: structures, records and measured records."""
     return len(study.samples) + len(study.sources) * (1 + _measures(study, rank_measures=rank_measures))
 
 
 def _measures(study: Study, *, rank_measures: bool) -> bool:
-    """Whether records are measured beyond their peaks."""
+    """Return whether intensity measures other than PGA and PGV of the records are needed."""
     bases = (parse_measure(name).base for name in study.definition.asked_measures)
     return rank_measures or any(base is None or str(base) not in (PGA, PGV) for base in bases)
 
@@ -138,14 +139,14 @@ def survey(study: Study, examined: Examined | None = None, known: Plan | None = 
     examined : callable, optional
         Called with the number of records and structures examined since the last call.
     known : Plan, optional
-        What is known already: of records that could be used only the checksum is taken anew.
+        The plan in the store: for records that could be used, only the checksum is computed again.
 
     Returns
     -------
     plan : Plan
         All runs.
     motions : KeptMotions
-        The ground motions, those that were read still in memory as far as there is room.
+        The ground motions; those that were read stay in memory as far as there is room.
     """
     tell = examined if examined is not None else lambda count: None
     before = {each.name: each for each in known.records} if known is not None else {}
@@ -175,13 +176,13 @@ def measured(
     *,
     origins: bool = False,
 ) -> Plan:
-    """The plan with what its levels and some measures need, and with what records state of their earthquake."""
+    """Return the plan with the values that its levels and some measures need, and with data of earthquakes."""
     mechanisms = [sample.mechanism for sample in study.samples]
     return complete(plan, mechanisms, study.definition.model, motions, measures, told, origins=origins)
 
 
 def _of_one_kind(one: Plan, other: Plan) -> bool:
-    """Whether what was measured for a plan holds for another: same records, samples and levels in their order."""
+    """Return whether two plans have the same records, samples and levels in order, so that values carry over."""
     return (
         [each.name for each in one.records] == [each.name for each in other.records]
         and [(each.structure, each.number) for each in one.trials]
@@ -191,16 +192,16 @@ def _of_one_kind(one: Plan, other: Plan) -> bool:
 
 
 def run(prepared: Prepared, store: Store, workers: Workers, progress: Progress | None = None) -> None:
-    """Run what the store does not hold yet, and put it there.
+    """Simulate the runs that the store lacks, and add them to it.
 
     Parameters
     ----------
     prepared : Prepared
-        See `prepare`.
+        The result of `prepare`.
     store : Store
         Open to write.
     workers : Workers
-        Where to run it: results do not depend on it.
+        The processes or threads that simulate; results do not depend on them.
     progress : callable, optional
         See `Progress`.
     """
@@ -215,14 +216,14 @@ def run(prepared: Prepared, store: Store, workers: Workers, progress: Progress |
 
 
 def versions(study: Study) -> dict[str, str]:
-    """Of this program and of the packages that its structures come from."""
+    """Return the versions of this program and of the packages of the structures' mechanisms."""
     registry = Registry()
     plugins = {f"mechanism {each.mechanism}": registry.package_of(each.mechanism) for each in study.structures}
     return {"rocking-cli": __version__, **plugins}
 
 
 def libraries() -> dict[str, str]:
-    """Versions of what else has a say in the last bits: kept for whoever compares two stores."""
+    """Return the versions of Python and libraries that may affect the last bits of results, to compare two stores."""
     return {
         "python": platform.python_version(),
         **{name: version(name) for name in ("numpy", "scipy")},
@@ -256,9 +257,9 @@ def _trial(study: Study, sample: Sample) -> Trial:
 
 
 def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, tuple[float, float]]:
-    """p, lambda and the rotations that others are compared with, of a structure with an equivalent block or without.
+    """Return p, lambda and the reference rotations of a structure, with or without an equivalent block.
 
-    Raises `NoEquivalentBlock` if it has none and the study asks for what needs one.
+    Raises `NoEquivalentBlock` if there is none and the study needs one.
     """
     try:
         found = equivalent_block(mechanism)
@@ -272,14 +273,14 @@ def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, t
 
 
 def _hazard(study: Study) -> list[list[float]] | None:
-    """The hazard curve as plain data: the store must do without the file."""
+    """Return the hazard curve as plain data, so that the store does not need the file."""
     if study.hazard is None:
         return None
     return [list(map(float, study.hazard.intensity)), list(map(float, study.hazard.annual_rate))]
 
 
 def _displacements(study: Study, plan: Plan, known: dict[str, Any]) -> dict[str, Any]:
-    """The rotations that limits on the displacement of the top stand for, as a fact; none where there is no such."""
+    """Return the rotations at which the top reaches the displacements among the limit states; empty without any."""
     limits = asked_for(study.definition.limit_states)
     return {FACT: rotations(study.samples, plan.trials, limits, known)} if limits else {}
 
@@ -292,7 +293,7 @@ def _refuse_useless(plan: Plan) -> None:
 
 
 def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, now: Plan) -> None:
-    """Raise with every difference between what the store was begun with and what there is now."""
+    """Raise `InputError` with every difference between the study in the store and the present one."""
     found = [*differences(store.fact("description"), facts["description"])]
     found += [f"version of {each}" for each in differences(store.fact("versions"), facts["versions"])]
     before = {each.name: each for each in known.records}
@@ -309,7 +310,7 @@ def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, now: Plan)
 
 
 def _other_mechanics(before: Trial, now: Trial) -> list[str]:
-    """What a mechanism of the same version and fields gives otherwise than it did."""
+    """Return sentences on what a mechanism of the same version and fields computes differently than before."""
     name = f"sample {now.number} of {now.structure}"
     if (before.reason is None) != (now.reason is None):
         return [f"{name} {'can be run now' if now.reason is None else f'cannot be run any more: {now.reason}'}"]
@@ -323,7 +324,7 @@ def _other_mechanics(before: Trial, now: Trial) -> list[str]:
 
 
 def differences(before: Any, now: Any, where: str = "") -> list[str]:
-    """Where two pieces of plain data differ, and how, as a person would say it."""
+    """Return sentences on the places where two pieces of plain data differ, with both values."""
     if isinstance(before, dict) and isinstance(now, dict):
         return [
             each
@@ -351,7 +352,7 @@ def differences(before: Any, now: Any, where: str = "") -> list[str]:
 
 
 def _ends(values: list[Any]) -> str:
-    """Numbers by how many they are and how far they reach."""
+    """Describe a list of numbers by its length and its smallest and largest value."""
     return f"{len(values)} numbers from {min(values)} to {max(values)}"
 
 

@@ -1,4 +1,4 @@
-"""Fragility curves: the probability that a limit state is exceeded, over an intensity of shaking."""
+"""Fragility curves: the probability that a limit state is exceeded, as a function of intensity."""
 
 from __future__ import annotations
 
@@ -38,27 +38,27 @@ TINY = 1e-300  # stands for an intensity of zero, which has no logarithm
 
 @dataclass(frozen=True, eq=False)
 class FragilityCurve:
-    """A fragility curve, or the reason why there is none.
+    """A fragility curve, or the reason why none could be fitted.
 
     Parameters
     ----------
     kind : str
-        `lognormal`: P = Phi(ln(x/median)/dispersion). `logistic`: P = 1/(1 + exp(-(x - median)/scale)). `step`: no
-        exceedance up to one intensity, nothing else from another one on. `none`.
+        `lognormal`: P = Phi(ln(x/median)/dispersion). `logistic`: P = 1/(1 + exp(-(x - median)/scale)). `step`: no run
+        exceeds up to one intensity, all exceed from another one on. `none`: no curve.
     why : str
-        Why this kind, a sentence.
+        Why this kind was chosen, a sentence.
     confidence : float
-        Of all intervals and bands.
+        Confidence level of all intervals and bands.
     runs, exceedances : int
-        Number of runs, or of records with a capacity each, and how many exceed.
+        Number of runs, or of capacities, and how many of them exceed.
     fit : Fit or None
-        Of lognormal, over 1 and ln x; of logistic, over 1 and x.
+        The fitted predictor: a lognormal in 1 and ln x, a logistic in 1 and x.
     step : Estimate or None
-        Where the step is taken, and the interval in which it lies.
+        Intensity at which the step is placed, and the interval in which it lies.
     goodness : Goodness or None
-        Of the kind that was chosen.
+        Goodness-of-fit test of the kind that was chosen.
     aic : dict of str to float, or None
-        Akaike's criterion of the kinds that were fitted; of repeated records without what makes them alike.
+        Akaike's criterion of the kinds that were fitted; it ignores the dependence between runs of one record.
     records : int
         Number of different records.
     """
@@ -76,12 +76,12 @@ class FragilityCurve:
 
     @property
     def warning(self) -> str:
-        """What to say where records are so few that intervals may not hold as they say; empty elsewhere."""
+        """Warning that there are too few records for reliable intervals; empty if there are enough."""
         return few_records(self.records) if self.fit is not None else ""
 
     @property
     def median(self) -> Estimate | None:
-        """The intensity at which one half exceed, in the unit of x; its interval is where the band crosses one half."""
+        """Intensity of probability one half, in the unit of x; its interval is where the band crosses one half."""
         if self.fit is None:
             return self.step
         a, b = self.fit.coefficients
@@ -93,17 +93,17 @@ class FragilityCurve:
 
     @property
     def dispersion(self) -> Estimate | None:
-        """Standard deviation of the logarithm of the capacity; of lognormal only."""
+        """Standard deviation of the logarithm of the capacity; None unless the curve is lognormal."""
         return self._inverse_slope() if self.kind == "lognormal" else None
 
     @property
     def scale(self) -> Estimate | None:
-        """Of logistic only, in the unit of x."""
+        """Scale of a logistic curve, in the unit of x; None for other kinds."""
         return self._inverse_slope() if self.kind == "logistic" else None
 
     @property
     def unbounded(self) -> bool:
-        """Whether the data bound a fit neither above nor below: its band would be nearly all probabilities."""
+        """Whether the upper confidence limit of the median is infinite: the band then covers nearly everything."""
         return self.fit is not None and self.median is not None and not np.isfinite(self.median.high)
 
     def _inverse_slope(self) -> Estimate:
@@ -112,7 +112,7 @@ class FragilityCurve:
         return Estimate(1 / slope.value, 1 / slope.high, 1 / slope.low if slope.low > 0 else np.inf)
 
     def probability(self, x: Reals) -> Reals:
-        """Probability of exceedance at intensities of any shape; NaN where there is no curve."""
+        """Return the probability of exceedance at intensities of any shape; NaN if there is no curve."""
         x = np.asarray(x, dtype=np.float64)
         if self.fit is not None:
             return self.fit.probability(self._design(x)).reshape(x.shape)
@@ -121,7 +121,7 @@ class FragilityCurve:
         return np.full(x.shape, np.nan)
 
     def band(self, x: Reals) -> tuple[Reals, Reals]:
-        """Confidence limits of the probability at each intensity alone; inside the interval of a step, 0 and 1."""
+        """Return pointwise confidence limits of the probability at intensities; 0 and 1 within a step's interval."""
         x = np.asarray(x, dtype=np.float64)
         if self.fit is not None:
             low, high = self.fit.band(self._design(x))
@@ -142,15 +142,15 @@ def fit_curve(observations: Observations, *, confidence: float = 0.95) -> Fragil
     observations : Observations
         The runs.
     confidence : float
-        Of the intervals and the band.
+        Confidence level of the intervals and the band.
 
     Returns
     -------
     FragilityCurve
         Lognormal, unless that is wrong: logistic if the lognormal does not increase, or is rejected at 5 % while
         logistic is likelier. Logistic is taken in the intensity, not in its logarithm: that would be within 0.01 of the
-        lognormal and wrong where it is wrong. A step if all that exceed lie above all that do not: the likelihood
-        then grows for ever with the slope. None if there is nothing to fit.
+        lognormal and wrong where it is wrong. A step if all that exceed lie above all that do not: the likelihood then
+        grows for ever with the slope. None if there is nothing to fit.
     """
     seen = observations
     bare = FragilityCurve("none", "", confidence, seen.runs, seen.exceedances, records=seen.records)
@@ -191,15 +191,16 @@ def fit_capacities(
     ----------
     lower, upper : ndarray, shape (n,)
         For each record the last level that does not exceed the limit state, 0 if the first one does; and the first that
-        does, infinite if none does. The capacity is known to lie between them, and taken as no more than that.
+        does, infinite if none does. All that is known of the capacity is that it lies between them.
     record : ndarray of int, shape (n,), optional
-        The record each is of, where one has several: of either polarity, of several samples. They are not independent.
+        The record of each capacity, if a record has several (two polarities, several samples), which are not
+        independent.
     levels : ndarray, shape (m,), optional
-        The levels that were tried, where they are the same for all; without them the curve is not tested.
+        The levels that were simulated, if they are the same for all; without them the goodness of fit is not tested.
     confidence : float
-        Of the intervals and the band.
+        Confidence level of the intervals and the band.
     weight : ndarray, shape (n,), optional
-        Weight of each among the others; equal unless given.
+        Relative weight of each capacity; equal unless given.
 
     Returns
     -------
@@ -248,7 +249,7 @@ def fit_capacities(
 
 
 def _capacities(bare: FragilityCurve) -> str:
-    """What there is a capacity of."""
+    """Describe the capacities of a curve: the number of ladders and of records."""
     return f"{bare.runs} ladders of {bare.records} records" if bare.runs > bare.records else f"{bare.runs} records"
 
 
@@ -257,7 +258,7 @@ def _design(kind: Kind, x: Reals) -> Reals:
 
 
 def _step_or_none(bare: FragilityCurve, below: Reals, above: Reals) -> FragilityCurve | None:
-    """The curve where no likelihood has a maximum: what exceeds and what does not share at most one intensity."""
+    """Return a step, or kind `none`, if runs that exceed and others share at most one intensity; else None."""
     if below.min() == above.max() == below.max() == above.min():
         return replace(bare, why=f"all runs have the intensity {above[0]:.4g}: other levels are needed")
     if above.max() <= below.min():
@@ -283,7 +284,7 @@ def _step_or_none(bare: FragilityCurve, below: Reals, above: Reals) -> Fragility
 
 
 def _choice(curves: dict[Kind, FragilityCurve]) -> tuple[Kind, str]:
-    """Which kind, and why."""
+    """Choose the kind of curve, and say why."""
     lognormal, logistic = curves["lognormal"], curves.get("logistic")
     if _slope(lognormal) <= 0:
         if logistic is None or _slope(logistic) <= 0:
@@ -314,7 +315,7 @@ def _rejected(curve: FragilityCurve) -> bool:
 
 
 def _tested(curve: FragilityCurve) -> str:
-    """What the data say of a curve."""
+    """Describe the result of the goodness-of-fit test of a curve."""
     assert curve.goodness is not None and curve.fit is not None
     p = curve.goodness.p_value
     if p is None:
@@ -329,7 +330,7 @@ def _tested(curve: FragilityCurve) -> str:
 
 
 def _why_open(curve: FragilityCurve) -> str:
-    """Why standard errors do not bound a slope: it may be none, or be steeper than they can tell."""
+    """Say why the standard errors do not bound the slope of a curve."""
     from scipy.special import chdtrc
 
     assert curve.fit is not None
@@ -343,7 +344,7 @@ def _why_open(curve: FragilityCurve) -> str:
 
 
 def _root_interval(fit: Fit) -> tuple[float, float]:
-    """All u at which the band of a + b u contains one half [Fieller 1954, J. R. Statist. Soc. B 16, 175-185]."""
+    """Return the u at which the band of a + b u contains one half [Fieller 1954, J. R. Statist. Soc. B 16, 175-185]."""
     a, b = fit.coefficients
     squared = fit.quantile**2 * fit.covariance
     leading, middle, constant = b * b - squared[1, 1], a * b - squared[0, 1], a * a - squared[0, 0]

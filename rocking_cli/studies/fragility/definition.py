@@ -1,4 +1,4 @@
-"""A fragility study from its YAML file: the fields, and what must hold between them."""
+"""The definition of a fragility study in its YAML file: the fields, and the rules between them."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ MOST = 100_000  # levels or samples: more is a slip of the keyboard
 
 
 def _measure(value: object) -> object:
-    """A measure as it is spelt here, from any case and spacing."""
+    """Return the standard spelling of a measure given in any case and spacing."""
     if not isinstance(value, str):
         return value
     try:
@@ -48,7 +48,7 @@ def _measure(value: object) -> object:
 
 
 def _level_measure(value: object) -> object:
-    """Return what levels are of: the factor on the records, or a measure proportional to a power of it."""
+    """Return the measure of levels: the factor on the records, or a measure proportional to a power of this factor."""
     if isinstance(value, str) and value.strip().lower() == SCALE:
         return SCALE
     found = _measure(value)
@@ -58,7 +58,7 @@ def _level_measure(value: object) -> object:
 
 
 def _spelled(value: object) -> object:
-    """An entry of a list that was found right: measures in their own spelling, all else as it is."""
+    """Return an entry of a list with measures in their standard spelling; other entries unchanged."""
     if isinstance(value, list):
         return [_spelled(each) for each in value]
     if isinstance(value, str) and value.strip().lower() == SCALE:
@@ -70,7 +70,7 @@ def _spelled(value: object) -> object:
 
 
 def _limit(value: object) -> object:
-    """A limit state: a word, a ratio of rotations, or a displacement of the top, in mm."""
+    """Read a limit state: a word, a ratio of rotations, or a displacement of the top, converted to mm."""
     if isinstance(value, int | float) and not isinstance(value, bool) and 0 < value < float("inf"):
         return float(value)
     if value in (UPLIFT, OVERTURNING, SLIDING):
@@ -82,7 +82,7 @@ def _limit(value: object) -> object:
 
 
 def _right(given: dict[str, Any], name: str, sound: Sound) -> list[Any]:
-    """The entries of a list that are right by themselves, measures and limit states in their own spelling."""
+    """Return the valid entries of a list, with measures and limit states in their standard spelling."""
     values = given.get(name)
     entries = enumerate(values if isinstance(values, list) else [])
     own = _limit if name == "limit_states" else _spelled
@@ -90,7 +90,7 @@ def _right(given: dict[str, Any], name: str, sound: Sound) -> list[Any]:
 
 
 def _twice(given: dict[str, Any], name: str, sound: Sound) -> Iterator[tuple[Place, str]]:
-    """What a list repeats."""
+    """Yield an error for each entry that a list repeats."""
     values = _right(given, name, sound)
     for k, value in enumerate(values):
         if value in values[:k] and value not in values[k + 1 :]:
@@ -105,7 +105,7 @@ def _pair(values: list[str]) -> list[str]:
 
 
 def _file(value: object) -> object:
-    """A plain text stands for an entry that is only a file."""
+    """Expand an entry that is plain text to a mapping with the text as its `file`."""
     return {"file": value} if isinstance(value, str) else value
 
 
@@ -132,7 +132,7 @@ class RecordEntry(Entry, Part):
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """There must be one source."""
+        """Check that an entry has exactly one source, and only the fields that suit it."""
         there = {name for name in given if given.get(name) is not None}
         if len(there & {"file", "pulse"}) != 1:
             yield (), "give a file or a pulse"
@@ -160,7 +160,7 @@ class Levels(Part):
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """They must be listed or ranged, and differ by more than rounding."""
+        """Check that levels are either listed or given as a range, and differ by more than rounding."""
         values: Any = given.get("values")
         least, most, count = ranged = [given.get(name) for name in ("least", "most", "count")]
         listed = values is not None
@@ -181,7 +181,7 @@ class Levels(Part):
                 yield ("most",), f"is too close to least for {count} distinct levels"
 
     def levels(self) -> list[float]:
-        """The levels, growing."""
+        """Return the levels, increasing."""
         if self.values is not None:
             return sorted(self.values)
         assert self.least is not None and self.most is not None and self.count is not None
@@ -194,12 +194,12 @@ def _spaced(least: float, most: float, count: int, spacing: str) -> list[float]:
 
 
 def _apart(one: float, other: float) -> bool:
-    """Whether a level is above another by more than rounding."""
+    """Return whether `other` is above `one` by more than rounding."""
     return other > one * (1 + SAME)
 
 
 class HazardEntry(Part):
-    """How often intensities are exceeded at the site."""
+    """Annual rates at which intensities are exceeded at the site."""
 
     measure: Measure = Field("PGA", description="of the intensities")
     file: str | None = Field(None, description="CSV of two columns: intensity, annual rate of exceedance")
@@ -209,7 +209,7 @@ class HazardEntry(Part):
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """There must be one source, and points in order."""
+        """Check that the hazard has exactly one source, and that its points are in order."""
         points = given.get("points")
         if (given.get("file") is None) == (points is None):
             yield (), "give a file or points"
@@ -228,20 +228,20 @@ class Sampling(Part):
 
 
 class Common(Part):
-    """What is made of every record."""
+    """Processing and floor of all records."""
 
     processing: Steps = Field([], description="corrections of every record, in their order, after its own")
     floor: FloorText | None = Field(None, description="the floor of a building that the structures stand on")
 
     @property
     def reading(self) -> Reading:
-        """How every record is read that does not say otherwise."""
+        """How every record is read and processed, unless its entry states otherwise."""
         floor = Floor.parse(self.floor) if self.floor is not None else None
         return Reading(steps=parse_steps(self.processing), floor=floor)
 
 
 class Definition(Sampling, Common):
-    """What a study file says."""
+    """The content of a study file."""
 
     name: Name | None = Field(None, description="what to call the study")
     structures: list[Annotated[StructureEntry, BeforeValidator(_file)]] = Field(
@@ -270,7 +270,7 @@ class Definition(Sampling, Common):
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """Levels must suit the method, samples what varies, and the model what is asked."""
+        """Check that the levels suit the method, the samples what varies, and the model the requested measures."""
         method, levels, structures = (given.get(name) for name in ("method", "levels", "structures"))
         scaled = isinstance(levels, dict) and sound("levels", "measure") and _spelled(levels["measure"]) != SCALE
         if method == "cloud" and scaled:
@@ -294,7 +294,7 @@ class Definition(Sampling, Common):
 
     @property
     def fitted_measures(self) -> list[str]:
-        """The measures of curves: those requested, else that of the levels; and that of the hazard."""
+        """Measures of the curves: those requested, otherwise that of the levels; and that of the hazard."""
         found: list[str] = list(self.measures or [])
         if not found:
             found = [PGA if self.levels.measure == SCALE else self.levels.measure]
@@ -302,7 +302,7 @@ class Definition(Sampling, Common):
 
     @property
     def asked_measures(self) -> list[str]:
-        """All measures that it names, each once: of levels, curves, surfaces and hazard."""
+        """All measures that the study names, each once: those of levels, curves, surfaces and hazard."""
         asked = [self.levels.measure, *self.fitted_measures, *(one for pair in self.bivariate for one in pair)]
         return [name for name in dict.fromkeys(asked) if name != SCALE]
 
@@ -313,12 +313,12 @@ class Definition(Sampling, Common):
 
     @property
     def hazard_measure(self) -> str | None:
-        """What the hazard curve is of."""
+        """Measure of the hazard curve; None without a hazard curve."""
         return self.hazard.measure if self.hazard is not None else None
 
 
 def _wrong_sets(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-    """Sets of records must be of levels that there are, in stripes; used as they are, every record is of one."""
+    """Yield an error for each record whose set or level does not suit the levels and the method of the study."""
     entries, levels = given.get("records"), given.get("levels")
     entries = entries if isinstance(entries, list) else []
     of_sets = [k for k, each in enumerate(entries) if isinstance(each, dict) and each.get("level") is not None]
@@ -344,7 +344,7 @@ def _said(levels: list[float]) -> str:
 
 
 def checks_sliding(given: dict[str, Any]) -> bool:
-    """Whether what a study file gives asks for sliding, so that every run is checked for it."""
+    """Return whether the data of a study file names sliding as a limit state, so that every run is checked."""
     asked = given.get("limit_states")
     return isinstance(asked, list) and SLIDING in asked
 
@@ -356,7 +356,7 @@ Piece = TypeVar("Piece", bound=BaseModel)
 
 
 def read_definition(path: Path) -> tuple[Document, Definition | None]:
-    """The content of a study file, with what is wrong in it among the document's problems.
+    """Read the content of a study file; errors in it are added to the problems of the document.
 
     Parameters
     ----------
@@ -366,14 +366,14 @@ def read_definition(path: Path) -> tuple[Document, Definition | None]:
     Returns
     -------
     document : Document
-        Where everything stands.
+        The content with the lines on which everything stands, and the problems.
     definition : Definition or None
         None if there are problems.
 
     Raises
     ------
     InputError
-        If it cannot be read at all.
+        If the file cannot be read at all.
     """
     document = parse(read_text(path, "study"), str(path), "study", HINT)
     of_units = in_units_of_fields(document, path.parent)
@@ -393,7 +393,7 @@ def read_definition(path: Path) -> tuple[Document, Definition | None]:
 
 
 def usable_entries(document: Document, field: str, model: type[Piece]) -> list[tuple[int, Piece]]:
-    """The entries of a list with their places; of those that are wrong what can be looked at all the same."""
+    """Return the entries of a list with their places; of an invalid entry one part that is valid by itself, if any."""
     found = []
     entries = document.data.get(field)
     for k, entry in enumerate(entries if isinstance(entries, list) else []):
@@ -407,7 +407,7 @@ def usable_entries(document: Document, field: str, model: type[Piece]) -> list[t
 
 
 def usable_part(model: type[Piece], data: Any) -> Piece | None:
-    """A part of the file that is right by itself, whatever is wrong elsewhere; None if it is among the problems."""
+    """Return a part of the file that is valid by itself, whatever is wrong elsewhere; None if it is invalid."""
     try:
         return model.model_validate(data)
     except ValidationError:

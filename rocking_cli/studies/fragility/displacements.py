@@ -1,7 +1,7 @@
-"""Limit states on how far the top of a structure moves: `25 mm`, as they are written and kept.
+"""Limit states on the horizontal displacement of the top of a structure, such as `25 mm`.
 
-Whether a run exceeds one is decided by two rotations of its sample, one in either direction, at which the top has moved
-so far: `reached` finds them, and a store keeps them, so that its runs can be asked without the structures.
+Whether a run exceeds one follows from two rotations of its sample, one in each direction, at which the top has this
+displacement: `reached` finds them, and a store keeps them, so that its runs can be counted without the structures.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ DIGITS = 10
 
 
 def spelt(text: str) -> str:
-    """A displacement as limit states spell it, in mm: `25 mm` for `2.5 cm`.
+    """Return a displacement in mm, as limit states are spelt: `25 mm` for `2.5 cm`.
 
     Raises
     ------
     ValueError
-        If it is no length above zero.
+        If the text is not a positive length.
     """
     try:
         value = read(text, UNIT)
@@ -38,25 +38,25 @@ def spelt(text: str) -> str:
 
 
 def is_quantity(value: object) -> bool:
-    """Whether something is a text of a number and a unit, so that a displacement may be meant."""
+    """Return whether a value is a text with a number and a unit, so that a displacement may be meant."""
     parts = split(value) if isinstance(value, str) else None
     return parts is not None and bool(parts[1])
 
 
 def metres(limit: str | float) -> float | None:
-    """How far the top moves at a limit state [m]; None for one that is no displacement."""
+    """Return the displacement of the top at a limit state [m]; None if the limit state is not a displacement."""
     if not isinstance(limit, str) or not is_quantity(limit) or kind_of(limit.split()[-1]) != "length":
         return None
     return read(limit, "m")
 
 
 def asked_for(limits: Sequence[str | float]) -> list[str]:
-    """Those among limit states that are displacements."""
+    """Return those limit states that are displacements."""
     return [limit for limit in limits if isinstance(limit, str) and metres(limit) is not None]
 
 
 def kept(fact: Callable[[str], Any], limits: Sequence[str | float]) -> dict[str, Reals]:
-    """The rotations of every sample [rad] that a store keeps for displacements among limit states.
+    """Return the rotations of every sample [rad] that a store keeps for displacements among limit states.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def kept(fact: Callable[[str], Any], limits: Sequence[str | float]) -> dict[str,
     Returns
     -------
     dict of str to ndarray, shape (samples, 2)
-        By the limit, positive and negative; infinite where the top does not move so far before the structure ends.
+        Positive and negative rotation of each sample, by limit state; infinite if the top never moves that far.
     """
     asked = asked_for(limits)
     found = fact(FACT) if asked else {}

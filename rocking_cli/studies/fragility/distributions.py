@@ -1,4 +1,4 @@
-"""Numbers that are not known for certain, and samples of them."""
+"""Probability distributions of uncertain numbers, and samples of them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class _Bounded(Part):
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """The bounds must be in order."""
+        """Check that the bounds are in order."""
         return _bounds_in_order(given, sound)
 
 
@@ -55,7 +55,7 @@ class Uniform(Part):
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """The ends must be in order."""
+        """Check that the ends are in order."""
         return _bounds_in_order(given, sound)
 
 
@@ -68,7 +68,7 @@ class Triangular(Part):
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """The mode must lie between the ends."""
+        """Check that the mode lies between the ends."""
         if all(sound(name) for name in ("low", "mode", "high")):
             low, mode, high = given["low"], given["mode"], given["high"]
             if not low <= mode <= high or low == high:
@@ -86,12 +86,12 @@ class Distribution(Part):
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """There must be exactly one."""
+        """Check that there is exactly one distribution."""
         if sum(each is not None for each in given.values()) != 1:
             yield (), f"give one distribution, of {', '.join(cls.model_fields)}"
 
     def quantile(self, probability: Reals) -> Reals:
-        """The values that are not exceeded with these probabilities, in (0, 1)."""
+        """Return the values that are not exceeded with some probabilities, each in (0, 1)."""
         if self.normal is not None:
             mean, deviation = self.normal.mean, self.normal.deviation
             within = _standard(self.normal, mean, deviation, None)
@@ -113,7 +113,7 @@ class Distribution(Part):
 def _standard(
     bounds: _Bounded, mean: float, deviation: float, transform: Callable[[float], float] | None
 ) -> tuple[float, float]:
-    """The bounds in standard deviations from the mean."""
+    """Return the bounds as numbers of standard deviations from the mean; infinite where there is none."""
 
     def one(bound: float | None, absent: float) -> float:
         if bound is None:
@@ -128,7 +128,7 @@ def _standard(
 
 
 def _standard_normal(probability: Reals, low: float, high: float) -> Reals:
-    """Quantiles between two bounds: in logarithms, as so little may lie between them that no number can hold it."""
+    """Return quantiles of the standard normal distribution between two bounds, without underflow in its tails."""
     from scipy.special import log_ndtr, ndtri_exp
 
     if low > 0:  # by symmetry, where the distribution function has its digits
@@ -155,18 +155,19 @@ def draw(
     stream: str,
     method: Literal["random", "latin hypercube"],
 ) -> Reals:
-    """Samples of a distribution.
+    """Draw samples of a distribution.
 
     Parameters
     ----------
     distribution : Distribution
-        What is drawn from.
+        The distribution.
     count : int
-        How many.
+        Number of samples.
     seed : int
-        The study's.
+        Seed of the study.
     stream : str
-        What is drawn: its own stream of random numbers, so that another quantity beside it changes nothing.
+        Name of the quantity that is drawn. Each name has its own stream of random numbers, so that adding another
+        quantity does not change the samples of this one.
     method : {"random", "latin hypercube"}
         Independent draws, or one in each of `count` equally likely ranges, in random order.
     """

@@ -1,4 +1,4 @@
-"""The likeliest coefficients of a predictor, and how sure they are: the record is the cluster."""
+"""Maximum-likelihood coefficients of a linear predictor, and their covariance: each record is a cluster of runs."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Estimate:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """The likeliest coefficients of a linear predictor.
+    """Maximum-likelihood coefficients of a linear predictor eta = X The coefficients c.
 
     Parameters
     ----------
@@ -57,15 +57,15 @@ class Fit:
     coefficients : ndarray, shape (k,)
         c.
     covariance : ndarray, shape (k, k)
-        Of the coefficients.
+        Covariance of the coefficients.
     log_likelihood : float
-        Its maximum.
+        Maximum of the log-likelihood.
     confidence : float
-        Of the intervals.
+        Confidence level of the intervals.
     degrees : float
-        Of freedom of Student's distribution, on which the intervals are based; infinite: the normal one.
+        Degrees of freedom of Student's distribution, on which the intervals are based; infinite: normal distribution.
     ladders : bool
-        Whether it is of capacities, which increase by definition, and not of runs.
+        Whether the fit is to capacities of ladders, whose curve increases by definition, and not to runs.
     """
 
     link: Link
@@ -96,11 +96,11 @@ class Fit:
         return [Estimate(float(c), float(c - r), float(c + r)) for c, r in zip(self.coefficients, reach, strict=True)]
 
     def probability(self, design: Reals) -> Reals:
-        """P of each row of the design, shape (n,)."""
+        """Return the probability of each row of the design, shape (n,)."""
         return cumulative(self.link, design @ self.coefficients)
 
     def band(self, design: Reals) -> tuple[Reals, Reals]:
-        """Confidence limits of P of each row: those of eta, through the link, so that they stay within 0 and 1."""
+        """Return confidence limits of the probability of each row; those of eta, so that they stay within 0 and 1."""
         eta = design @ self.coefficients
         variance = np.einsum("ij,jk,ik->i", design, self.covariance, design)
         reach = self.quantile * np.sqrt(np.maximum(variance, 0.0))  # what rounding leaves of a variance of zero
@@ -109,18 +109,18 @@ class Fit:
 
 @dataclass(frozen=True, eq=False)
 class Counts:
-    """How often each record says what, each an ndarray of one length.
+    """Number of runs by record and by observation (such as "exceeds at an intensity"), each an ndarray of one length.
 
     Parameters
     ----------
     record : ndarray of int
-        Which record, numbered from 0.
+        Number of the record, from 0.
     term : ndarray of int
-        What it says: a place among the terms of a likelihood.
+        The observation: its place among the terms of a likelihood.
     number : ndarray
-        How often.
+        Number of runs of this record with this observation.
     weighted : bool
-        Whether some records count more than others, so that what is said is no number of times.
+        Whether records have different weights, so that `number` holds weighted sums.
     """
 
     record: Integers
@@ -130,17 +130,17 @@ class Counts:
 
     @property
     def records(self) -> int:
-        """How many there are."""
+        """Number of records."""
         return int(self.record.max()) + 1
 
     @property
     def repeated(self) -> bool:
-        """Whether a record says several things, or counts otherwise than once: it is the cluster then."""
+        """Whether any record has several runs or a weight: records are then treated as clusters."""
         return self.weighted or bool(self.records < self.number.sum())
 
 
 def too_few(seen: Counts, coefficients: int, what: str = "runs") -> str:
-    """What to say if records repeat and are too few to tell how what is of one record is alike; else empty."""
+    """Return a message if records repeat and are too few to estimate the dependence within a record; else empty."""
     if not seen.repeated or seen.records > coefficients:
         return ""
     return (
@@ -150,7 +150,7 @@ def too_few(seen: Counts, coefficients: int, what: str = "runs") -> str:
 
 
 class Sums(NamedTuple):
-    """Log-likelihood, gradient (k,) and information (k, k) of all that was observed."""
+    """Log-likelihood, its gradient (k,) and the information (k, k), summed over all observations."""
 
     value: float
     gradient: Reals
@@ -158,26 +158,26 @@ class Sums(NamedTuple):
 
 
 def fit_outcomes(link: Link, design: Reals, seen: Counts, exceeding: Reals, confidence: float) -> Fit | str:
-    """Fit a predictor to runs that exceed or do not.
+    """Fit a predictor to runs that exceed a limit state or do not.
 
     Parameters
     ----------
     link : str
         `probit` or `logit`.
     design : ndarray, shape (n, k)
-        X of each place, ones first. The caller has made sure that no column after it is constant, and that no plane
-        separates the outcomes.
+        Rows of X, one for each observation, with ones in the first column. The caller has made sure that no column
+        after it is constant, and that no plane separates the outcomes.
     seen : Counts
-        How many runs each record has at each place.
+        Number of runs of each record in each row.
     exceeding : ndarray
-        How many of them exceed.
+        Number of these runs that exceed.
     confidence : float
-        Of the intervals.
+        Confidence level of the intervals.
 
     Returns
     -------
     Fit or str
-        Why there is none.
+        The fit, or a message why there is none.
     """
     # A place stands for two terms: a run there that exceeds, and one that does not.
     term = np.concatenate([seen.term, seen.term + len(design)])
@@ -198,15 +198,15 @@ def fit_brackets(lower: Reals, upper: Reals, seen: Counts, confidence: float) ->
     lower, upper : ndarray, shape (n,)
         The different brackets; minus and plus infinity where open. The caller has made sure that no point lies in all.
     seen : Counts
-        How many capacities of each record lie in each.
+        Number of capacities of each record in each bracket.
     confidence : float
-        Of the intervals, which are by Student's distribution of one degree of freedom less than there are records, as
-        they are for the mean of capacities known exactly.
+        Confidence level of the intervals, which follow Student's distribution with one degree of freedom less than
+        records, as for the mean of capacities known exactly.
 
     Returns
     -------
     Fit or str
-        Why there is none.
+        The fit, or a message why there is none.
     """
     start, degrees = np.array([0.0, 1.0]), seen.records - 1.0
     found = _fitted("probit", Brackets(lower, upper), seen, start, confidence, degrees)
@@ -216,7 +216,7 @@ def fit_brackets(lower: Reals, upper: Reals, seen: Counts, confidence: float) ->
 def _fitted(
     link: Link, terms: Terms, seen: Counts, start: Reals, confidence: float, degrees: float
 ) -> Fit | str:  # fmt: skip
-    """The likeliest coefficients with their covariance."""
+    """Return the maximum-likelihood coefficients with their covariance, or a message why there are none."""
     number = totals(seen.term, seen.number, len(terms))
     with np.errstate(all="ignore"):  # of a term far out, whose probability is 0 or 1 to the last bit
         found = _maximum(terms, number, start)
@@ -233,7 +233,7 @@ def _fitted(
 
 
 def _sums(terms: Terms, number: Reals, coefficients: Reals) -> Sums:
-    """Sums over all terms, each counted so often."""
+    """Return log-likelihood, gradient and information, summed over all terms times the number of runs of each."""
     k = coefficients.size
     value, gradient, information = 0.0, np.zeros(k), np.zeros((k, k))
     for part in _parts(len(terms)):
@@ -250,7 +250,7 @@ def _parts(count: int) -> Iterator[slice]:
 
 
 def _maximum(terms: Terms, number: Reals, start: Reals) -> tuple[Reals, Sums] | None:
-    """The coefficients at which a concave log-likelihood is largest, and what it is there; None if there are none.
+    """Return the coefficients that maximise a concave log-likelihood, and its sums there; None if there is no maximum.
 
     Newton's method with halved steps.
     """
@@ -270,7 +270,7 @@ def _maximum(terms: Terms, number: Reals, start: Reals) -> tuple[Reals, Sums] | 
 
 
 def _tells(information: Reals) -> bool:
-    """Whether an information, or each of several, bounds the coefficients in every direction."""
+    """Return whether an information matrix, or each of several, bounds the coefficients in every direction."""
     if not np.isfinite(information).all():
         return False
     values = np.linalg.eigvalsh(information)
@@ -278,13 +278,13 @@ def _tells(information: Reals) -> bool:
 
 
 def _covariance(terms: Terms, seen: Counts, coefficients: Reals, information: Reals) -> Reals | None:
-    """The covariance of the coefficients; None if it cannot be told.
+    """Return the covariance of the coefficients; None if the data do not determine it.
 
-    Where every record says one thing it is the inverse of the information. Else the record is the cluster: each is left
-    out in turn, and (G - 1)/G times the sum of the squared changes of the coefficients is the covariance, of G records.
-    The change is that of one step of Newton's method, with the information that is left [MacKinnon, Nielsen & Webb
-    2023, J. Appl. Econometrics 38, 671-694]: whole refits leave the slope of one in two studies of seven records open,
-    and the usual sandwich is narrower; docs/fragility.md has trials.
+    If every record has one run, this is the inverse of the information. Otherwise the record is the cluster: each is
+    left out in turn, and (G - 1)/G times the sum of the squared changes of the coefficients is the covariance, of G
+    records. The change is that of one step of Newton's method, with the information that is left [MacKinnon, Nielsen &
+    Webb 2023, J. Appl. Econometrics 38, 671-694]. Complete refits leave the slope of one in two studies of seven
+    records unbounded, and the usual sandwich estimator gives narrower intervals; docs/fragility.md has trials.
     """
     if not seen.repeated:
         return np.asarray(np.linalg.inv(information)) if _tells(information) else None
@@ -297,7 +297,7 @@ def _covariance(terms: Terms, seen: Counts, coefficients: Reals, information: Re
 
 
 def _by_record(terms: Terms, seen: Counts, coefficients: Reals) -> tuple[Reals, Reals]:
-    """Gradient (g, k) and information (g, k, k) of what each record says."""
+    """Return gradient (g, k) and information (g, k, k) of the runs of each record."""
     k = coefficients.size
     score, information = np.zeros((seen.records, k)), np.zeros((seen.records, k, k))
     order = np.argsort(seen.term, kind="stable")

@@ -1,4 +1,4 @@
-"""Whether a fitted curve agrees with the data: counts in groups against what the curve expects there."""
+"""Goodness-of-fit tests of curves: observed counts in groups against the counts that the curve expects."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ BY_RECORD = ", corrected for repeated records"
 
 @dataclass(frozen=True)
 class Goodness:
-    """A test of a curve against its data.
+    """Result of a goodness-of-fit test of a curve.
 
     Parameters
     ----------
     name : str
-        Which test.
+        Name of the test.
     statistic, degrees, p_value : float or None
-        The statistic, its degrees of freedom, and how likely one as large is if the curve is right; None if there
+        The statistic, its degrees of freedom, and the probability of one as large if the curve is right; None if there
         are too few data.
     why : str
-        Why it was not tested; empty if it was.
+        Why the curve was not tested; empty if it was.
     """
 
     name: str
@@ -46,7 +46,7 @@ class Goodness:
 
 
 def goodness_of_runs(fit: Fit, design: Reals, seen: Observations) -> Goodness:
-    """Test a curve against the numbers that exceed, in each group of the runs.
+    """Test a curve against the number of runs that exceed, in each group of the runs.
 
     Parameters
     ----------
@@ -62,8 +62,8 @@ def goodness_of_runs(fit: Fit, design: Reals, seen: Observations) -> Goodness:
     Pearson's statistic T = sum (observed - expected)^2/variance over the groups is a sum of chi-squares of one degree
     of freedom, weighted by the eigenvalues of the covariance V of the standardised differences. V counts that the
     coefficients were fitted to the same runs, and that runs of one record are alike. T tr(V)/tr(V^2) is then a
-    chi-square of tr(V)^2/tr(V^2) degrees of freedom [Rao & Scott 1984, Annals of Statistics 12, 46-60]. For stripes
-    of independent runs V has m - 2 eigenvalues, all one: this is the usual test with m - 2 degrees of freedom.
+    chi-square of tr(V)^2/tr(V^2) degrees of freedom [Rao & Scott 1984, Annals of Statistics 12, 46-60]. For stripes of
+    independent runs V has m - 2 eigenvalues, all one: this is the usual test with m - 2 degrees of freedom.
     """
     place, record, number = seen.counts.term, seen.counts.record, seen.counts.number
     eta = np.clip(design @ fit.coefficients, -FARTHEST, FARTHEST)[place]
@@ -98,7 +98,7 @@ def goodness_of_runs(fit: Fit, design: Reals, seen: Observations) -> Goodness:
 
 
 def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, seen: Counts, levels: Reals | None) -> Goodness:
-    """Test a distribution of capacities against their number in cells whose bounds cut no bracket.
+    """Test a distribution of capacities against their number in cells whose bounds lie inside no bracket.
 
     Parameters
     ----------
@@ -107,14 +107,14 @@ def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, seen: Counts, lev
     lower, upper : ndarray, shape (n,)
         The different brackets of u; minus and plus infinity where open.
     seen : Counts
-        How many capacities of each record lie in each.
+        Number of capacities of each record in each bracket.
     levels : ndarray, shape (m,), optional
-        All that were tried, finite: the bounds of cells may not be chosen by where capacities lie.
+        All levels that were simulated, finite: the bounds of cells must not depend on the capacities.
 
     Notes
     -----
-    As `goodness_of_runs`; where every record has one capacity V is the covariance of the counts less what the fit takes
-    up of it, and where the cells are the brackets it has m - 3 eigenvalues, all one.
+    As in `goodness_of_runs`. If every record has one capacity, V is the covariance of the counts minus the part that
+    the fit absorbs; if the cells are the brackets, V has m - 3 eigenvalues, all one.
     """
     name = "chi-square of the capacities"
     if levels is None:
@@ -156,12 +156,12 @@ def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, seen: Counts, lev
 
 
 def _sums(group: Integers, weights: Reals, rows: Reals, count: int) -> Reals:
-    """Weighted sums of the rows of each group, shape (count, k)."""
+    """Return weighted sums of the rows of each group, shape (count, k)."""
     return np.column_stack([totals(group, weights * column, count) for column in rows.T])
 
 
 def _weighted(name: str, rest: Reals, variance: Reals, covariance: Reals) -> Goodness:
-    """The test of a sum of squares of differences with this covariance, by a chi-square of equal mean and variance."""
+    """Test a sum of squared differences with a given covariance, by a chi-square of equal mean and variance."""
     from scipy.special import chdtrc
 
     standard, deviation = rest / np.sqrt(variance), np.sqrt(variance)
@@ -174,21 +174,22 @@ def _weighted(name: str, rest: Reals, variance: Reals, covariance: Reals) -> Goo
 
 
 def _merged(table: Reals, part: Reals | None = None) -> tuple[Integers, int]:
-    """Join neighbouring groups, from the lowest, until each expects enough records on either side.
+    """Merge neighbouring groups, from the lowest, until each expects enough records on either side of the limit state.
 
     Parameters
     ----------
     table : ndarray, shape (groups, records)
-        How many runs each group has of each record. As they are alike they count as (sum n)^2/sum n^2 records.
+        Number of runs of each record in each group. As runs of a record depend on each other, n runs count as (sum
+        n)^2/sum n^2 records.
     part : ndarray, shape (groups,), optional
-        The part of them that is expected on one side; on the other is the rest. Without it all are on one side.
+        The share of each group that is expected to exceed. Without it, only one side is counted.
 
     Returns
     -------
     ndarray of int, shape (groups,)
-        Which of the new groups each belongs to.
+        Number of the merged group to which each group belongs.
     int
-        How many of these there are.
+        Number of merged groups.
     """
     new = np.zeros(len(table), dtype=np.int64)
     number, gathered, there = 0, np.zeros(table.shape[1]), 0.0

@@ -1,4 +1,4 @@
-"""From a fragility curve and a hazard curve to the annual rate at which a limit state is exceeded."""
+"""The annual rate at which a limit state is exceeded, from a fragility curve and a hazard curve."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LIFE = 50.0  # years
 
 @dataclass(frozen=True, eq=False)
 class HazardCurve:
-    """How often in a year an intensity is exceeded at a site: straight in log-log between points.
+    """Annual rate at which an intensity is exceeded at a site: straight lines in log-log between points.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class HazardCurve:
     Raises
     ------
     InputError
-        If they are not so, or there are fewer than two points.
+        If intensities or rates violate these conditions, or there are fewer than two points.
     """
 
     intensity: Reals
@@ -47,13 +47,13 @@ class HazardCurve:
             raise InputError(*(f"hazard curve, point {k + 1}: {message}" for k, message in problems))
 
     def rate(self, x: Reals) -> Reals:
-        """Annual rate of exceeding x; NaN outside the points."""
+        """Return the annual rate of exceeding the intensity x [1/year]; NaN outside the points."""
         logs = np.log(self.intensity), np.log(self.annual_rate)
         return np.exp(np.interp(np.log(x), *logs, left=np.nan, right=np.nan))
 
 
 def wrong_points(intensity: Reals, rate: Reals) -> list[tuple[int, str]]:
-    """The points of a hazard curve that are wrong, counted from 0, and what is wrong there."""
+    """Return the invalid points of a hazard curve, counted from 0, each with a message."""
     if intensity.size != rate.size:
         return [(min(intensity.size, rate.size), "an intensity without a rate, or a rate without an intensity")]
     found = []
@@ -120,20 +120,20 @@ def read_hazard(path: Path) -> HazardCurve:
 
 @dataclass(frozen=True)
 class Rate:
-    """How often in a year a limit state is exceeded.
+    """Annual rate at which a limit state is exceeded.
 
     Parameters
     ----------
     rate : float
-        The integral of P(x) |d rate(x)| over the hazard curve, and beyond its end with P as it is there [1/year].
+        The integral of P(x) |d rate(x)| over the hazard curve; beyond its last point, P keeps its value there [1/year].
     low, high : float
-        The same of the confidence limits of the curve: as if the curve were at its limit everywhere at once, so that
-        the interval is at least as wide as requested. The hazard curve is taken as exact.
+        The rates with the confidence limits of the curve in place of the curve: at least as wide as the confidence
+        level asks, because all points reach their limit at once. The hazard curve counts as exact [1/year].
     above : float
-        What stronger shaking than the last point can add at most: P may grow to one there [1/year].
+        Upper bound of the additional rate from intensities beyond the last point, if P is one there [1/year].
     below : float
-        What weaker shaking than the first point adds if the first slope of the hazard curve goes on; infinite for a
-        curve that does not vanish with the intensity [1/year].
+        Additional rate from intensities below the first point, if the first slope of the hazard curve continues;
+        infinite for a curve that does not vanish at zero intensity [1/year].
     """
 
     rate: float
@@ -144,7 +144,7 @@ class Rate:
 
     @property
     def return_period(self) -> float:
-        """Of the exceedance [years]; infinite at a rate of zero."""
+        """Return period of the exceedance [years]; infinite at a rate of zero."""
         return 1 / self.rate if self.rate > 0 else math.inf
 
     @property
@@ -154,19 +154,19 @@ class Rate:
 
 
 def annual_rate(curve: FragilityCurve, hazard: HazardCurve) -> Rate:
-    """Convolve a fragility curve with a hazard curve.
+    """Compute the annual rate of exceedance from a fragility curve and a hazard curve.
 
     Parameters
     ----------
     curve : FragilityCurve
-        Over the same measure of intensity, in the same unit.
+        A curve over the measure of the hazard curve, in the same unit.
     hazard : HazardCurve
-        The site's.
+        The hazard curve of the site.
 
     Raises
     ------
     InputError
-        If there is no curve.
+        If the fragility curve is of kind `none`.
 
     Notes
     -----
@@ -189,7 +189,7 @@ def annual_rate(curve: FragilityCurve, hazard: HazardCurve) -> Rate:
 
 
 def _integral(hazard: HazardCurve, probability: Callable[[Reals], Reals]) -> float:
-    """Integral of P |d rate| between the first and the last point."""
+    """Return the integral of P |d rate| between the first and the last point of the hazard curve [1/year]."""
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     logs = np.log(hazard.intensity)
     ends = np.concatenate(
@@ -208,7 +208,7 @@ def _integral(hazard: HazardCurve, probability: Callable[[Reals], Reals]) -> flo
 
 
 def _rate_at(hazard: HazardCurve, x: float) -> float:
-    """Rate at an intensity; that of the first point below it, and none above the last."""
+    """Return the rate at an intensity [1/year]: below the first point the rate of that point, beyond the last one 0."""
     first, last = hazard.intensity[[0, -1]]
     if x > last * (1 + SAME):
         return 0.0
@@ -216,13 +216,13 @@ def _rate_at(hazard: HazardCurve, x: float) -> float:
 
 
 def _first_slope(hazard: HazardCurve) -> float:
-    """The k of the first power law."""
+    """Return the exponent k of the power law between the first two points."""
     (x0, x1), (rate0, rate1) = hazard.intensity[:2], hazard.annual_rate[:2]
     return float(np.log(rate0 / rate1) / np.log(x1 / x0))
 
 
 def _beyond(hazard: HazardCurve, at: float) -> float:
-    """What a step below the first point adds, if the first power law goes on."""
+    """Return the rate that a step below the first point adds, if the first power law continues [1/year]."""
     if at >= hazard.intensity[0]:
         return 0.0
     first = float(hazard.annual_rate[0])
@@ -230,7 +230,7 @@ def _beyond(hazard: HazardCurve, at: float) -> float:
 
 
 def _below(curve: FragilityCurve, hazard: HazardCurve) -> float:
-    """What intensities below the first point add, if the first power law goes on."""
+    """Return the rate that intensities below the first point add, if the first power law continues [1/year]."""
     from scipy.special import log_ndtr, ndtr
 
     k = _first_slope(hazard)

@@ -1,4 +1,4 @@
-"""The measures of intensity of a study, by name: those of `processing.intensity`, and the factor on the records."""
+"""The intensity measures of a study, by name: those of `processing.intensity`, and the factor on the records."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ ALWAYS = (PGA, PGV, "PGA/(g lambda)", "p PGV/(g lambda)")
 
 
 def spelled(text: str) -> str:
-    """The one spelling of a measure, from any case and spacing. Raises `InputError` if there is none of the name."""
+    """Return the standard spelling of a measure given in any case and spacing. Raises `InputError` if unknown."""
     return str(parse_measure(text))
 
 
 def no_levels(measure: str) -> str | None:
-    """Why levels cannot be of a measure; None if they can."""
+    """Return a message why levels cannot be defined by a measure; None if they can."""
     power = parse_measure(measure).power
     if power is None:
         return f"{measure} is computed of every run, in no power of the factor on the record: levels cannot be of it"
@@ -25,12 +25,12 @@ def no_levels(measure: str) -> str | None:
 
 
 def of_the_motion(measure: str) -> bool:
-    """Whether a measure, or the factor on the records, does not ask what is shaken."""
+    """Return whether a measure, or the factor on the records, depends on the motion alone and not on the structure."""
     return measure == SCALE or not parse_measure(measure).is_relative
 
 
 def proportional(one: str, other: str) -> bool:
-    """Whether two measures are in proportion for one structure whatever the motion: both of the same quantity of it."""
+    """Return whether two measures of one structure are proportional under all motions, because they have one base."""
     if SCALE in (one, other):
         return False
     base = parse_measure(one).base
@@ -38,5 +38,5 @@ def proportional(one: str, other: str) -> bool:
 
 
 def label(measure: str) -> str:
-    """A measure with its unit, for a heading."""
+    """Return the name of a measure with its unit, for a heading."""
     return parse_measure(measure).label

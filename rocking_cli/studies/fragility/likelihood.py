@@ -1,4 +1,4 @@
-"""What runs say of a linear predictor eta = X c: the log-likelihood of each thing that was observed, and its slopes."""
+"""Log-likelihood of each observation under a linear predictor eta = X c, with its derivatives."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ class Slopes:
 
 
 class Terms(Protocol):
-    """The different things that runs can say, each with a log-likelihood that is concave in the coefficients.
+    """The different observations of a fit, each with a log-likelihood that is concave in the coefficients.
 
     Parameters
     ----------
     back : ndarray, shape (k, k)
-        Coefficients times this are those of the caller's units: within, the design is standardised.
+        Matrix that converts coefficients of the standardised design to the caller's units.
     """
 
     back: Reals
@@ -50,21 +50,21 @@ class Terms(Protocol):
     def __len__(self) -> int: ...
 
     def at(self, coefficients: Reals, part: slice) -> Slopes:
-        """At some coefficients, of some of the terms."""
+        """Return log-likelihoods and derivatives of some of the terms at given coefficients."""
         ...
 
 
 class ExceedanceTerms:
-    """A run that exceeds, or one that does not, at each row of a design.
+    """The terms of runs: for each row of a design, a run that exceeds or one that does not.
 
     Parameters
     ----------
     link : str
         `probit`, P = Phi(eta), or `logit`, P = 1/(1 + exp(-eta)).
     design : ndarray, shape (n, k)
-        X, ones first.
+        The design X, with ones in the first column.
     exceeds : ndarray of bool, shape (n,)
-        Which of the two each term is.
+        Whether each term is of a run that exceeds.
     """
 
     def __init__(self, link: Link, design: Reals, exceeds: Bools) -> None:
@@ -76,7 +76,7 @@ class ExceedanceTerms:
         return self._sign.size
 
     def at(self, coefficients: Reals, part: slice) -> Slopes:
-        """As `Terms.at`."""
+        """Return log-likelihoods and derivatives, as `Terms.at`."""
         from scipy.special import expit, log_expit, log_ndtr
 
         design, sign = self._design[part], self._sign[part]
@@ -93,7 +93,7 @@ class ExceedanceTerms:
 
 
 class Brackets:
-    """A capacity u that is known to lie between two bounds: normal with mean -a/b and deviation 1/b, eta = a + b u.
+    """The terms of capacities u in brackets; u is normal with mean -a/b and deviation 1/b, eta = a + b u.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ class Brackets:
         return int(self._lower.size)
 
     def at(self, coefficients: Reals, part: slice) -> Slopes:
-        """As `Terms.at`; the log-likelihood is ln[Phi(a + b upper) - Phi(a + b lower)]."""
+        """Return log-likelihoods ln[Phi(a + b upper) - Phi(a + b lower)] and derivatives, as `Terms.at`."""
         from scipy.special import log_ndtr
 
         a, b = coefficients
@@ -138,12 +138,12 @@ class Brackets:
 
 
 def totals(group: Integers, weights: Reals, count: int = 0) -> Reals:
-    """Sums of weights in groups numbered from 0, of which there are so many at least."""
+    """Return the sums of weights in groups numbered from 0; at least `count` groups."""
     return np.asarray(np.bincount(group, weights, count), dtype=np.float64)
 
 
 def cumulative(link: Link, eta: Reals) -> Reals:
-    """P at eta."""
+    """Return the probability P at eta."""
     from scipy.special import expit, ndtr
 
     result: Reals = ndtr(eta) if link == "probit" else expit(eta)
@@ -151,23 +151,23 @@ def cumulative(link: Link, eta: Reals) -> Reals:
 
 
 def density(link: Link, eta: Reals) -> Reals:
-    """dP/d eta."""
+    """Return the derivative dP/d eta."""
     if link == "probit":
         return np.asarray(np.exp(-eta * eta / 2) / np.sqrt(2 * np.pi))
     return cumulative(link, eta) * cumulative(link, -eta)
 
 
 def standardised(design: Reals) -> tuple[Reals, Reals]:
-    """A design whose columns after the first, of ones, are about their mean, in units of their deviation.
+    """Standardise the columns of a design after its first, of ones: mean 0, standard deviation 1.
 
-    Neither the unit of an intensity nor how far from one it lies then matters to a fit.
+    The fit then depends neither on the unit of an intensity nor on its magnitude.
 
     Returns
     -------
     design : ndarray, shape (n, k)
-        The new one.
+        The standardised design.
     back : ndarray, shape (k, k)
-        Coefficients of the new one times this are those of the old one.
+        Matrix that converts coefficients of the standardised design to those of the given one.
     """
     mean, deviation = design[:, 1:].mean(axis=0), design[:, 1:].std(axis=0)
     back = np.diag(np.concatenate([[1.0], 1 / deviation]))
@@ -176,10 +176,10 @@ def standardised(design: Reals) -> tuple[Reals, Reals]:
 
 
 def separable(design: Reals, exceeded: Bools) -> bool:
-    """Whether a plane has all that exceed on or above it and all others on or below, not all on it.
+    """Return whether a plane separates the runs that exceed from the others; points on it may be of either kind.
 
-    Then the likelihood has no maximum: it grows for ever as the predictor is made steeper [Albert & Anderson 1984,
-    Biometrika 71, 1-10]. Found by linear programming; the columns of the design should be of the order of one.
+    The likelihood then has no maximum: it increases without bound as the predictor becomes steeper [Albert & Anderson
+    1984, Biometrika 71, 1-10]. Found by linear programming; the columns of the design should be of the order of one.
     """
     from scipy.optimize import linprog
 

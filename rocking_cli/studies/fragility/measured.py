@@ -1,4 +1,4 @@
-"""What was measured for a study, beyond the peaks that every record has: values of records, samples and runs."""
+"""Values measured for a study beyond the peaks that every record has: of records, samples and runs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Reals = NDArray[np.float64]
 
 
 class Value(NamedTuple):
-    """One value, as a store keeps it; places that it does not depend on are None, and so is a value that is none."""
+    """One value as a store keeps it. Indices on which the value does not depend are None; a missing value is None."""
 
     measure: str
     sample: int | None
@@ -24,16 +24,16 @@ class Value(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """Values by name; NaN where there is none.
+    """Values measured for a study, by name; NaN where there is none.
 
     Parameters
     ----------
     of_record : mapping of str to ndarray, shape (records,)
-        Measures of the motions as they are, by their spelling.
+        Measures of the unscaled motions, by their standard spelling.
     of_sample : mapping of str to ndarray, shape (samples,)
-        Fields of `Reference` that the trials do not have.
+        Fields of `Reference` that trials lack.
     of_run : mapping of str to ndarray, shape (samples, records, levels)
-        Measures that go with no power of the factor.
+        Measures that are not proportional to a power of the factor on the record.
     """
 
     of_record: Mapping[str, Reals] = field(default_factory=dict)
@@ -44,7 +44,7 @@ class Measured:
         return bool(self.of_record or self.of_sample or self.of_run)
 
     def values(self) -> Iterator[Value]:
-        """One after the other, without those that are none."""
+        """Yield all values that are not NaN, one at a time."""
         for name, values in self.of_record.items():
             yield from (Value(name, None, k, None, value) for (k,), value in _there(values))
         for name, values in self.of_sample.items():
@@ -54,14 +54,14 @@ class Measured:
 
     @classmethod
     def of(cls, values: Iterator[Value], shape: tuple[int, int, int]) -> Measured:
-        """From single values, of so many samples, records and levels.
+        """Collect single values of a study with a given number of samples, records and levels.
 
         Raises
         ------
         ValueError
-            If a place depends on what no value does.
+            If the indices of a value are not those of a record, a sample or a run.
         IndexError
-            If there is no such place.
+            If an index is out of range.
         """
         samples, records, levels = shape
         kinds: tuple[tuple[dict[str, Reals], tuple[int, ...]], ...] = (
@@ -83,6 +83,6 @@ class Measured:
 
 
 def _there(values: Reals) -> Iterator[tuple[Any, float]]:
-    """Place and value of what is not NaN."""
+    """Return the index and the value of every entry that is not NaN."""
     places = np.argwhere(~np.isnan(values)).tolist()
     return zip((tuple(place) for place in places), values[~np.isnan(values)].tolist(), strict=True)

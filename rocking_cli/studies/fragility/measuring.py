@@ -1,4 +1,4 @@
-"""Measuring what a study asks for, and what is not known of its records, samples and runs yet."""
+"""Measure what a study requests and its store does not hold yet: values of records, samples and runs."""
 
 from __future__ import annotations
 
@@ -38,20 +38,20 @@ def complete(
     *,
     origins: bool = False,
 ) -> Plan:
-    """A plan with all that some measures need, of which what is known already is not measured anew.
+    """Return a plan with all values that some measures need; values that are known are not measured again.
 
     Parameters
     ----------
     plan : Plan
         All runs, with what was measured for them.
     mechanisms : sequence of Mechanism
-        Those of its trials.
+        The mechanisms of the plan's trials.
     model : {"nonlinear", "linear1", "linear2"}
         The equation of motion.
     motions : KeptMotions
-        Those of its records.
+        The motions of the plan's records.
     asked : iterable of str
-        The measures; the plain factor is none of them.
+        Names of the measures; the factor on the records is ignored.
     told : callable, optional
         See `Told`; it is called for every record.
     origins : bool
@@ -95,18 +95,18 @@ def complete(
 
 
 def _stated(motion: GroundMotion, name: str) -> float:
-    """What a record states of its earthquake; NaN where it does not."""
+    """Return a value that a record states of its earthquake, such as the magnitude; NaN if it does not."""
     found: float | None = getattr(motion.origin, name)
     return nan if found is None else float(found)
 
 
 def _copied(known: Mapping[str, Reals], name: str, *shape: int) -> Reals:
-    """What is known under a name, to be added to; NaN of what is not."""
+    """Return a copy of the known values of a name, or an array of NaN."""
     return np.array(known[name]) if name in known else np.full(shape, np.nan)
 
 
 def _with_samples(plan: Plan, mechanisms: Sequence[Mechanism], model: ModelName, measures: Sequence[Measure]) -> Plan:
-    """With the velocity steps that just overturn the samples, where a measure needs them."""
+    """Return a plan with the velocity steps that just overturn the samples, if a measure needs them."""
     if not any(V_IMP in each.needs for each in measures):
         return plan
     values = _copied(plan.measured.of_sample, V_IMP, len(plan.trials))
@@ -120,7 +120,7 @@ def _with_samples(plan: Plan, mechanisms: Sequence[Mechanism], model: ModelName,
 
 
 def _without_unscalable(plan: Plan) -> Plan:
-    """With a reason at each record that no factor brings to the levels."""
+    """Return a plan with a reason at each record that no factor scales to the levels."""
     if plan.measure == SCALE:
         return plan
     base = parse_measure(plan.measure).base
@@ -137,7 +137,7 @@ def _without_unscalable(plan: Plan) -> Plan:
 
 
 def _of_runs(plan: Plan, measure: RunMeasure, motions: KeptMotions, k: int, usable: Bools) -> Reals:
-    """A measure of the runs of a record, shape (samples, levels); samples that are alike in it share it."""
+    """Return a measure of the runs of a record, shape (samples, levels); equal samples are computed once."""
     samples, _, _, levels, _ = plan.shape
     found = np.full((samples, levels), np.nan)
     known: dict[tuple[float, ...], float] = {}

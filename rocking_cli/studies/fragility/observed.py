@@ -1,4 +1,4 @@
-"""Runs as they were observed: which have one intensity, what part of them exceeds, and how many records say so."""
+"""Observed runs: those at one intensity, the share that exceeds, and the number of records behind it."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ HELD = {5: (89, 100), 10: (90, 98)}  # of so many records, how often those of 95
 
 @dataclass(frozen=True, eq=False)
 class Observations:
-    """How many runs exceed a limit state, of each record at each intensity; `of` counts them.
+    """Number of runs that exceed a limit state, by record and intensity; `of` counts them.
 
     Parameters
     ----------
     x : ndarray, shape (m,)
         The different intensities, positive and growing.
     counts : Counts
-        How many runs each record has at each of them: n cells.
+        Number of runs of each record at each intensity: n cells.
     exceeding : ndarray, shape (n,)
-        How many runs of each cell exceed.
+        Number of runs of each cell that exceed.
     whole : (int, int), optional
-        How many runs there are and how many exceed, where records count more or less than once in the cells.
+        Number of runs and of those that exceed, without weights, if the cells hold weighted numbers.
     """
 
     x: Reals
@@ -51,27 +51,27 @@ class Observations:
         runs: Reals | Integers | None = None,
         weight: Reals | None = None,
     ) -> Observations:
-        """Count runs, each by itself or several alike.
+        """Count runs, given one by one or as numbers of equal runs.
 
         Parameters
         ----------
         x : ndarray, shape (n,)
-            Intensities, positive. Those that differ by rounding alone are made one.
+            Intensities, positive. Those that differ only by rounding are merged.
         exceeding : ndarray, shape (n,)
-            Whether it exceeds the limit state, or how many of the runs do.
+            Whether the run exceeds the limit state, or the number of equal runs that do.
         record : ndarray of int, shape (n,)
-            The record it belongs to: runs of one record are not independent.
+            The record of each run: runs of one record are not independent.
         level : ndarray of int, shape (n,), optional
-            The level to which it was scaled, where that decides its intensity.
+            The level to which the record was scaled, if the level alone decides the intensity.
         runs : ndarray, shape (n,), optional
-            How many runs are alike; one unless given.
+            Number of equal runs; one unless given.
         weight : ndarray, shape (n,), optional
-            Weight of each among the others; equal unless given. On average over the runs it is made one.
+            Relative weight of each run; equal unless given. Weights are scaled to an average of one.
 
         Raises
         ------
         InputError
-            If an intensity is not a positive number, runs of one level have several, or there are no runs.
+            If an intensity is not a positive number, runs of one level have several intensities, or there are no runs.
         """
         if not x.size == exceeding.size == record.size:
             raise InputError(f"{x.size} intensities, {exceeding.size} outcomes, {record.size} records")
@@ -98,17 +98,17 @@ class Observations:
 
     @property
     def runs(self) -> int:
-        """How many there are."""
+        """Number of runs."""
         return self.whole[0] if self.whole is not None else int(self.counts.number.sum())
 
     @property
     def exceedances(self) -> int:
-        """How many of them exceed."""
+        """Number of runs that exceed the limit state."""
         return self.whole[1] if self.whole is not None else int(self.exceeding.sum())
 
     @property
     def records(self) -> int:
-        """How many different records there are."""
+        """Number of different records."""
         return self.counts.records
 
     @property
@@ -118,7 +118,7 @@ class Observations:
 
     @cached_property
     def sides(self) -> tuple[Reals, Reals]:
-        """The intensities at which a run does not exceed, and those at which one does."""
+        """The intensities of runs that do not exceed the limit state, and those of runs that do."""
         place = self.counts.term
         return self.x[np.unique(place[self.exceeding < self.counts.number])], self.x[
             np.unique(place[self.exceeding > 0])
@@ -126,12 +126,12 @@ class Observations:
 
     @property
     def stripes(self) -> bool:
-        """Whether records share intensities often enough for these to be looked at one by one."""
+        """Whether so many records share each intensity that every intensity can be a group of its own."""
         return self.x.size <= STRIPES and A_STRIPE * self.x.size <= self.counts.record.size
 
     @cached_property
     def group(self) -> Integers:
-        """The group of each cell, from the lowest: a stripe, or a tenth of the records' intensities in their order."""
+        """The group of each cell, from the lowest: a stripe, or a tenth of the cells in order of intensity."""
         place = self.counts.term
         if self.stripes:
             return place
@@ -139,19 +139,19 @@ class Observations:
         return np.unique(tenth, return_inverse=True)[1].astype(np.int64)
 
     def group_of(self, x: Reals, record: Integers, level: Integers | None = None) -> Integers:
-        """The group of each of the runs that were counted, by what was given for them: see `of`."""
+        """Return the group of each run that `of` counted, from its intensity, record and level."""
         place = np.searchsorted(self.x, one_of_each(x if level is None else _of_levels(x, level)))
         who = np.unique(record, return_inverse=True)[1]
         cells = self.counts.term * self.records + self.counts.record  # growing
         return np.asarray(self.group[np.searchsorted(cells, place * self.records + who)])
 
     def parts(self, confidence: float) -> ObservedParts:
-        """The part of the runs that exceeds, in each group.
+        """Return the share of the runs that exceeds, in each group.
 
         Parameters
         ----------
         confidence : float
-            Of the intervals.
+            Confidence level of the intervals.
 
         Returns
         -------
@@ -159,10 +159,10 @@ class Observations:
 
         Notes
         -----
-        Wilson's interval with as many trials as there are records: whatever the runs of a record have in common, their
-        mean scatters from record to record by p(1 - p) at most, the scatter of one trial. Records of unlike numbers of
-        runs count as (sum n)^2/sum n^2. As for bands, the quantile is Student's with one degree of freedom less than
-        records where these repeat, so that a single record bounds nothing; else it is the normal one.
+        Wilson's interval with as many trials as records: the variance between records of the mean of their runs is at
+        most p(1 - p), that of one trial. Records with different numbers n of runs count as (sum n)^2/sum n^2 records.
+        As for bands, the quantile is Student's with one degree of freedom less than records if records repeat, so that
+        a single record bounds nothing; otherwise it is the normal one.
         """
         from scipy.special import ndtri, stdtrit
 
@@ -194,16 +194,16 @@ class Observations:
 
 @dataclass(frozen=True, eq=False)
 class ObservedParts:
-    """Observed parts that exceed, each an ndarray of one length, a place for each group of runs.
+    """Observed shares of runs that exceed, each an ndarray with one entry for each group of runs.
 
     Parameters
     ----------
     x : ndarray
-        Mean intensity.
+        Mean intensity of the group.
     part, low, high : ndarray
-        The part that exceeds, and its confidence interval.
+        The share that exceeds, and its confidence interval.
     runs, exceeding, records : ndarray of int
-        How many runs there are, how many of them exceed, and of how many records they are.
+        Number of runs, of those that exceed, and of different records.
     """
 
     x: Reals
@@ -216,7 +216,7 @@ class ObservedParts:
 
 
 def one_of_each(x: Reals) -> Reals:
-    """Intensities of any size, where those that differ by rounding alone are all the least of them."""
+    """Replace intensities that differ only by rounding by the least of them."""
     order = np.argsort(x, kind="stable")
     rising = x[order]
     new = np.concatenate([[True], ~(rising[1:] <= rising[:-1] * (1 + SAME))])
@@ -226,7 +226,7 @@ def one_of_each(x: Reals) -> Reals:
 
 
 def _of_levels(x: Reals, level: Integers) -> Reals:
-    """The intensity of each run's level, as the first run of it has it."""
+    """Return the intensity of the level of each run, taken from the first run of that level."""
     _, first, which = np.unique(level, return_index=True, return_inverse=True)
     of_level: Reals = x[first][which]
     wrong = np.abs(x - of_level) > SAME * of_level
@@ -237,7 +237,7 @@ def _of_levels(x: Reals, level: Integers) -> Reals:
 
 
 def few_records(records: int) -> str:
-    """What to say of intervals and bands that rest on few records; empty if there are enough."""
+    """Return a warning that intervals and bands rest on few records; empty if there are enough."""
     if records >= FEW:
         return ""
     trials = max([each for each in HELD if each <= records], default=min(HELD))

@@ -1,4 +1,4 @@
-"""Which fragility curves OpenQuake takes, and as what: its intensity measures, limit states and parameters.
+"""Select the fragility curves that OpenQuake can hold, and convert measures, limit states and parameters for it.
 
 OpenQuake's fragility model holds lognormal curves, by the mean and the standard deviation of the intensity itself. Each
 function, of one taxonomy over one measure, gives every limit state of the file, in order of severity: the share in a
@@ -40,18 +40,18 @@ FINE = 400  # intensities at which it is looked whether curves cross
 
 @dataclass(frozen=True, eq=False)
 class Function:
-    """A fragility function of OpenQuake: of one structure over one measure.
+    """A fragility function of OpenQuake: one structure over one measure.
 
     Parameters
     ----------
     name : str
-        Its taxonomy.
+        Taxonomy of the function.
     curves : sequence of Fragility
-        By limit state, in order of severity.
+        The curve of each limit state, in order of severity.
     intensity_type : str
-        OpenQuake's name of the measure.
+        Name of the measure in OpenQuake.
     factor : float
-        What one unit of the measure is in OpenQuake's.
+        Factor that converts the measure to the unit of OpenQuake.
     """
 
     name: str
@@ -66,9 +66,9 @@ class Function:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """From which intensity to which the curves hold, in OpenQuake's unit: beyond, OpenQuake takes them as flat.
+        """Lowest and highest intensity of the curves, in OpenQuake's unit; OpenQuake continues them flat.
 
-        From where all are below 1e-4 if the data begin above that, to the largest of the data.
+        The lowest is where all curves are below 1e-4, or that of the data if lower; the highest is that of the data.
         """
         medians, spreads = zip(*map(_median_and_spread, self.curves), strict=True)
         low = min(m * np.exp(-NEGLIGIBLE * b) for m, b in zip(medians, spreads, strict=True))
@@ -78,18 +78,18 @@ class Function:
 
 @dataclass(frozen=True)
 class OpenQuakeModel:
-    """What is written for OpenQuake.
+    """The fragility model that is written for OpenQuake.
 
     Parameters
     ----------
     limits : sequence of str
         Names of the limit states, in order of severity.
     functions : sequence of Function
-        Each with a curve for every limit state.
+        The functions, each with a curve for every limit state.
     left_out : sequence of str
-        The curves that are not written, and why, a sentence each.
+        A sentence on each curve that is not written, with the reason.
     doubts : sequence of str
-        What to be careful about in those that are.
+        Warnings about the curves that are written.
     """
 
     limits: Sequence[str]
@@ -99,7 +99,7 @@ class OpenQuakeModel:
 
 
 def moments(found: Fragility) -> tuple[float, float]:
-    """Mean and standard deviation of a lognormal capacity: m exp(beta^2/2), and that times sqrt(exp(beta^2) - 1)."""
+    """Return mean m exp(beta^2/2) and standard deviation mean sqrt(exp(beta^2) - 1) of a lognormal capacity."""
     median, beta = _median_and_spread(found)
     with np.errstate(over="ignore"):
         mean = median * np.exp(beta**2 / 2)
@@ -113,24 +113,24 @@ def _median_and_spread(found: Fragility) -> tuple[float, float]:
 
 
 def intensity_type(measure: str) -> tuple[str, float] | None:
-    """OpenQuake's name of a measure, and what one unit is there; None if it has none."""
+    """Return the name of a measure in OpenQuake, and the factor to its unit; None if OpenQuake lacks the measure."""
     if spectral := SPECTRAL.fullmatch(measure):
         return f"SA({float(spectral[1]):g})", 1.0
     return TYPES.get(measure)
 
 
 def chosen(curves: Sequence[Fragility]) -> OpenQuakeModel:
-    """The curves that OpenQuake takes; of several selections that one file cannot hold together, the largest.
+    """Choose the curves that one file of OpenQuake can hold together: of several such selections, the largest.
 
     Parameters
     ----------
     curves : sequence of Fragility
-        All of a study.
+        All curves of a study.
 
     Raises
     ------
     InputError
-        If it takes none: it says why.
+        If no curve can be written; the message has the reasons.
     """
     reasons = [_why_not(each) for each in curves]
     fit: dict[tuple[str, str], dict[Limit, Fragility]] = {}
@@ -150,7 +150,7 @@ def chosen(curves: Sequence[Fragility]) -> OpenQuakeModel:
 
 
 def _why_not(found: Fragility) -> str:
-    """Why OpenQuake does not take a curve; empty if it does."""
+    """Return the reason why OpenQuake cannot hold a curve; empty if it can."""
     of = _name(found)
     if intensity_type(found.measure) is None:
         return f"all curves over {found.measure}: OpenQuake has no such intensity measure"
@@ -176,7 +176,7 @@ def _why_not_together(
     held: Mapping[tuple[str, str], Mapping[Limit, Fragility]],
     fit: Mapping[tuple[str, str], Mapping[Limit, Fragility]],
 ) -> str:
-    """Why a curve that could be written by itself does not go with the others; empty if it does."""
+    """Return the reason why a curve is left out although it could be written alone; empty if it is not left out."""
     key = found.structure, found.measure
     same = "all functions of a file must have the same limit states"
     if key not in held:
@@ -189,7 +189,7 @@ def _why_not_together(
 
 
 def _most_curves(sets: Sequence[frozenset[Limit]]) -> frozenset[Limit]:
-    """The limit states with which most curves are written: those, times the functions that have them all."""
+    """Return the limit states that give most curves: their number times that of the functions that have them all."""
     candidates = set(sets)
     while new := {one & other for one in candidates for other in candidates} - candidates:
         candidates |= new
@@ -201,7 +201,7 @@ def _most_curves(sets: Sequence[frozenset[Limit]]) -> frozenset[Limit]:
 
 
 def _by_severity(limits: Iterable[Limit], curves: Mapping[Limit, Fragility]) -> list[Limit]:
-    """Uplift, then ratios and displacements, each growing and merged by their medians, then overturning."""
+    """Sort limit states: uplift, then ratios and displacements merged by their medians, then overturning."""
     between = [limit for limit in limits if limit not in (UPLIFT, OVERTURNING)]
     ratios = sorted((each for each in between if isinstance(each, float)), reverse=True)
     moved = sorted((each for each in between if isinstance(each, str)), key=lambda each: metres(each) or 0.0)[::-1]
@@ -219,7 +219,7 @@ def _median(found: Fragility) -> float:
 
 
 def _functions(held: Mapping[tuple[str, str], Mapping[Limit, Fragility]], order: Sequence[Limit]) -> list[Function]:
-    """Functions with names of their own; with several measures the name has the measure, as an asset has one."""
+    """Build functions with unique names; with several measures the name contains the measure."""
     measures = list(dict.fromkeys(measure for _, measure in held))
     functions: list[Function] = []
     taken: set[str] = set()
@@ -233,7 +233,7 @@ def _functions(held: Mapping[tuple[str, str], Mapping[Limit, Fragility]], order:
 
 
 def _doubts(functions: Sequence[Function]) -> Iterable[str]:
-    """What to be careful about in the curves that are written, and names that are not those of the study."""
+    """Yield warnings about the curves that are written, and about names that differ from those of the study."""
     for function in functions:
         first = function.curves[0]
         if function.name != first.structure:
@@ -264,12 +264,12 @@ def _doubts(functions: Sequence[Function]) -> Iterable[str]:
 
 
 def _name(found: Fragility) -> str:
-    """Of which curve a sentence speaks."""
+    """Return the name of a curve in sentences: structure, limit state and measure."""
     return f"{found.structure}, {found.limit} over {found.measure}"
 
 
 def limit_id(limit: Limit) -> str:
-    """A limit state as a name of OpenQuake: letters, digits and _, a letter first."""
+    """Return a limit state as an identifier of OpenQuake: letters, digits and _, starting with a letter."""
     if isinstance(limit, float):
         return f"ratio_{_digits(limit)}"
     moved = metres(limit)
@@ -281,7 +281,7 @@ def _digits(value: float) -> str:
 
 
 def identifier(text: str, taken: Iterable[str] = ()) -> str:
-    """A name as OpenQuake takes it, of a to z, digits, - and _, that none of the others has."""
+    """Return a name as a unique identifier of OpenQuake: letters, digits, - and _, different from those taken."""
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
     name = re.sub(r"[^A-Za-z0-9_-]+", "_", plain).strip("_")[:LONGEST] or "structure"
     used, k = set(taken), 1

@@ -24,26 +24,27 @@ Integers = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Trial:
-    """What a study knows of one sample of a structure.
+    """One sample of a structure in a study, with its parameters.
 
     Parameters
     ----------
     structure : str
         The structure's name.
     number : int
-        Which sample of it, from 0.
+        Number of the sample, from 0.
     drawn : dict of str to float
-        The fields that were drawn.
+        The sampled fields, by name.
     reason : str or None
-        Why it cannot be run; None if it can.
+        Why the sample cannot be simulated; None if it can.
     p : float
-        Frequency parameter [rad/s], 0 if no block is equivalent; this and the rest are 0 if it cannot be run.
+        Frequency parameter [rad/s], 0 if there is no equivalent block. This and all further fields are 0 if the sample
+        cannot be simulated.
     lambda_ : float
-        Uplift acceleration over g that the model keeps.
+        Uplift acceleration of the model over g.
     gravity : float
-        [m/s2].
+        Gravitational acceleration [m/s2].
     phi_cr_positive, phi_cr_negative : float
-        Critical rotations [rad]; the kinematic limit where there is none.
+        Critical rotations [rad]; the kinematic limit if there is no critical rotation.
     """
 
     structure: str
@@ -58,19 +59,19 @@ class Trial:
 
 
 def weaker(equivalence: Equivalence, model: ModelName) -> tuple[float, float]:
-    """p and lambda of the direction that uplifts first: what the dimensionless measures refer to."""
+    """Return p and lambda of the direction that uplifts first, the reference of dimensionless measures."""
     block = weaker_block(equivalence, model)
     return block.p, uplift(block, model)
 
 
 def weaker_block(equivalence: Equivalence, model: ModelName) -> EquivalentBlock:
-    """The equivalent block of the direction that uplifts first."""
+    """Return the equivalent block of the direction that uplifts first."""
     return min((equivalence.positive, equivalence.negative), key=lambda each: uplift(each, model))
 
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """All combinations, numbered with the polarity changing fastest, then level, restitution, record and sample.
+    """All runs of a study, numbered with the polarity changing fastest, then level, restitution, record and sample.
 
     Parameters
     ----------
@@ -79,17 +80,17 @@ class Plan:
     records : sequence of Record
         The ground motions.
     etas : sequence of float
-        Restitutions; NaN for the structure's own.
+        Coefficients of restitution; NaN for the one of the structure.
     measure : str
-        What the levels are of: a measure, or "scale".
+        Measure of the levels, or "scale" for factors on the records.
     levels : sequence of float
         The levels.
     polarities : sequence of int
-        Of 1 and -1.
+        The polarities: 1, -1 or both.
     measured : Measured
-        What was measured beyond the peaks of the records.
+        Values measured beyond the peaks of the records.
     sets : Sets, optional
-        Which records are run at which levels, and how much they count; without it all at all, and alike.
+        The levels and the weight of each record; without it every record is run at all levels, with equal weight.
     """
 
     trials: Sequence[Trial]
@@ -103,22 +104,22 @@ class Plan:
 
     @property
     def of_sets(self) -> Sets:
-        """Which records are run at which levels, and how much they count."""
+        """The levels at which each record is run, and its weight."""
         return self.sets if self.sets is not None else Sets.plain(len(self.records))
 
     @property
     def shape(self) -> tuple[int, int, int, int, int]:
-        """How many samples, records, restitutions, levels and polarities there are."""
+        """Numbers of samples, records, restitutions, levels and polarities."""
         return len(self.trials), len(self.records), len(self.etas), len(self.levels), len(self.polarities)
 
     @property
     def block(self) -> int:
-        """Runs of one sample under one record: they stand together."""
+        """Number of runs of one sample under one record; their numbers are consecutive."""
         return prod(self.shape[2:])
 
     @property
     def total(self) -> int:
-        """How many runs can be run: not those of samples and records that cannot be used."""
+        """Number of runs that can be simulated: without samples and records that cannot be used."""
         _, _, etas, levels, polarities = self.shape
         usable = sum(each.reason is None for each in self.trials)
         places = [k for k, each in enumerate(self.records) if each.reason is None]
@@ -127,11 +128,11 @@ class Plan:
 
     @property
     def size(self) -> int:
-        """How many numbers there are: of runs that can be run and of those that cannot."""
+        """Number of all combinations, whether or not they can be simulated."""
         return prod(self.shape)
 
     def name(self, run: int) -> str:
-        """What a run is, in words."""
+        """Describe a run in words."""
         if not 0 <= run < self.size:
             return f"run {run}, which the study does not have"
         sample, record, _, level, polarity = (int(place[0]) for place in self.places(np.array([run])))
@@ -142,19 +143,19 @@ class Plan:
         )
 
     def places(self, runs: Integers) -> tuple[Integers, Integers, Integers, Integers, Integers]:
-        """The places of sample, record, restitution, level and polarity of runs."""
+        """Return the indices of sample, record, restitution, level and polarity of runs."""
         sample, record, eta, level, polarity = np.unravel_index(runs, self.shape)
         return sample, record, eta, level, polarity
 
     def reference(self, sample: Integers) -> Reference:
-        """What the dimensionless measures refer to, for samples by their places."""
+        """Return the reference values of dimensionless measures for samples given by their indices."""
         columns = np.array([(each.p, each.lambda_, each.gravity) for each in self.trials])[sample]
         p = np.where(columns[:, 0] > 0, columns[:, 0], np.nan)
         steps = self.measured.of_sample.get("v_imp", np.full(len(self.trials), nan))
         return Reference(p, columns[:, 1], columns[:, 2], steps[sample])
 
     def of_records(self, measure: str) -> Reals:
-        """A measure of the motions as they are, shape (records,); NaN of those of which it is not known."""
+        """Return a measure of the unscaled motions, shape (records,); NaN where it is not known."""
         if measure in (PGA, PGV):
             return np.array([each.pga if measure == PGA else each.pgv for each in self.records])
         return self.measured.of_record.get(measure, np.full(len(self.records), nan))
@@ -162,7 +163,7 @@ class Plan:
     def intensities(
         self, measure: str, sample: Integers, record: Integers, level: Integers, factor: float | Reals
     ) -> Reals:
-        """The intensity of runs, by their places and the factors on the records; NaN where it is not known."""
+        """Return the intensity of runs, from their indices and the factors on the records; NaN if not known."""
         asked = parse_measure(measure)
         if asked.base is None or asked.power is None:
             table = self.measured.of_run.get(str(asked), np.full((len(self.trials), len(self.records), 1), nan))
@@ -171,7 +172,7 @@ class Plan:
         return np.asarray(asked.relative(value, self.reference(sample)), dtype=np.float64)
 
     def factors(self, sample: Integers, record: Integers, level: Integers) -> Reals:
-        """Factors on the records that bring them to the levels, for places of one shape."""
+        """Return the factors that scale records to levels, for indices of one shape."""
         wanted = np.array(self.levels)[level]
         if self.sets is not None and not self.sets.scaled:
             return np.ones(wanted.shape)

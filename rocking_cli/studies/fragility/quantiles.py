@@ -1,7 +1,7 @@
-"""How far structures rock at an intensity: quantiles of the peak rotation over the runs that are observed there.
+"""Quantiles of the peak rotation over the runs at an intensity.
 
-Runs that do not uplift and runs that overturn are kept apart, as neither has a peak of rocking; beside it all runs are
-ranked, without uplift as zero and overturned as beyond every number. Runs of unknown outcome count as overturned there.
+Runs that do not uplift and runs that overturn are counted apart, as they have no peak of rocking. A second set of
+quantiles ranks all runs: without uplift as zero, overturned or of unknown outcome as beyond every number.
 """
 
 from __future__ import annotations
@@ -33,19 +33,20 @@ class Group:
     x : float
         Mean intensity.
     low, high : float
-        The least and the largest of them.
+        The least and the largest intensity.
     runs, records : int
-        How many runs there are, and of how many records.
+        Number of runs, and of their records.
     no_uplift, overturned : int
-        How many of the runs do not uplift, and how many overturn.
+        Number of runs that do not uplift, and of runs that overturn.
     rocking : tuple of float
-        Peak phi/phi_cr that 16, 50 and 84 % of those that rock and stand do not exceed; NaN where there is none.
+        Peak phi/phi_cr not exceeded by 16, 50 and 84 % of the runs that rock without overturning; NaN without any.
     every : tuple of float
-        The same of all runs: 0 without uplift, infinite where it overturns or the outcome is unknown.
+        Peak phi/phi_cr not exceeded by these shares of all runs: 0 without uplift, infinite if a run overturns or its
+        outcome is unknown.
     unknown : int
-        How many of the runs are of unknown outcome.
+        Number of runs of unknown outcome.
     doubtful : tuple of bool
-        Whether each of `every` is the peak of such a run: all that overturn are beyond it.
+        Whether each value of `every` belongs to a run of unknown outcome; runs that overturn rank higher.
     """
 
     x: float
@@ -63,16 +64,16 @@ class Group:
 
 @dataclass(frozen=True)
 class Quantiles:
-    """Quantiles of one structure over one measure.
+    """Quantiles of the peak rotation of one structure, as a function of one measure.
 
     Parameters
     ----------
     structure, measure : str
-        What they are of.
+        Names of the structure and of the measure.
     stripes : bool
-        Whether a group is one intensity, else it is a tenth of the records' intensities.
+        Whether each group is one intensity; otherwise it is a tenth of the runs in order of intensity.
     groups : sequence of Group
-        From the lowest intensity.
+        The groups, from the lowest intensity.
     """
 
     structure: str
@@ -82,34 +83,34 @@ class Quantiles:
 
     @property
     def unknown(self) -> int:
-        """How many runs are of unknown outcome."""
+        """Number of runs of unknown outcome."""
         return sum(each.unknown for each in self.groups)
 
 
 def all_quantiles(store: Store, plan: Plan, definition: Definition) -> Iterator[Quantiles]:
-    """Those of every structure of a study over every measure that it asks for, a structure at a time."""
+    """Yield the quantiles of every structure of a study over every measure of its curves."""
     for structure in dict.fromkeys(trial.structure for trial in plan.trials):
         yield from quantiles(store, plan, structure, definition.fitted_measures)
 
 
 def quantiles(store: Store, plan: Plan, structure: str, measures: Sequence[str]) -> Iterator[Quantiles]:
-    """The quantiles of a structure over measures, in the groups in which observed parts are counted.
+    """Yield the quantiles of a structure over several measures, in the groups in which observed shares are counted.
 
     Parameters
     ----------
     store : Store
         Open to read.
     plan : Plan
-        Its runs.
+        The plan of its runs.
     structure : str
-        Which structure.
+        Name of the structure.
     measures : sequence of str
-        What they are over.
+        Names of the measures.
 
     Yields
     ------
     Quantiles
-        One a measure; none if no run is finished.
+        One for each measure; none if no run is finished.
     """
     table = np.moveaxis(endings_of(store, plan, structure), 2, 3)  # sample, record, level; restitution and polarity
     runs: NDArray[Any] = (~np.isnan(table)).sum(axis=(3, 4), dtype=np.int32)  # of many samples there are many
@@ -155,7 +156,7 @@ def _group(peaks: Reals, x: Reals, mean: float, records: int) -> Group:
 
 
 def _not_exceeded(ranked: Reals) -> tuple[float, ...]:
-    """The lowest of some values, growing, that these shares of them do not exceed: always one that was observed."""
+    """Return the lowest of increasing observed values that each share of them does not exceed."""
     if not ranked.size:
         return (np.nan,) * len(SHARES)
     return tuple(float(ranked[int(np.ceil(share * ranked.size - ROUNDING)) - 1]) for share in SHARES)

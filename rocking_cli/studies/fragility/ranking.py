@@ -1,7 +1,7 @@
-"""Which measure of intensity predicts best: how closely it follows the rotation, and whether it leaves anything out.
+"""Ranking of intensity measures: how well each predicts the peak rotation, and whether it is sufficient.
 
-Terms are those of Luco and Cornell (2007) and Padgett, Nielson and DesRoches (2008). Over the runs that rock and stand
-ln(peak phi/phi_cr) = a + b ln(measure) is fitted by least squares.
+Terms are those of Luco and Cornell (2007) and Padgett, Nielson and DesRoches (2008). Over the runs that rock without
+overturning, ln(peak phi/phi_cr) = a + b ln(measure) is fitted by least squares.
 """
 
 from __future__ import annotations
@@ -35,23 +35,23 @@ SAME = 1e-9  # of a logarithm: measures that differ by no more than a factor are
 
 @dataclass(frozen=True)
 class Ranked:
-    """A measure, and how it serves for one structure.
+    """How well one measure predicts the peak rotation of one structure.
 
     Parameters
     ----------
     measure : str
-        Which.
+        Name of the measure.
     efficiency : float
         Standard deviation of ln(peak phi/phi_cr) about the line, with two degrees of freedom less than runs.
     practicality : float
         Slope of the line.
     runs, records : int
-        Runs that rock and stand, over which it goes, and the different records among theirs.
+        Number of runs that rock without overturning, and of their records.
     trends : dict of str to float
-        Of what the residuals, averaged for each record, are tested against: the p-value of their slope over it. NaN if
-        that cannot be told.
+        For each quantity against which the residuals, averaged for each record, are tested: the p-value of their slope;
+        NaN if it cannot be computed.
     dispersions : dict of limit state to float
-        Of the fragility curve of each limit state over the measure; NaN where it is not lognormal, or is a band.
+        Dispersion of the fragility curve of each limit state over the measure; NaN if it is not lognormal, or a band.
     """
 
     measure: str
@@ -64,30 +64,30 @@ class Ranked:
 
     @property
     def proficiency(self) -> float:
-        """Efficiency over practicality; NaN where the rotation does not grow with the measure."""
+        """Efficiency over practicality; NaN if the rotation does not increase with the measure."""
         return self.efficiency / self.practicality if self.practicality > 0 else nan
 
     @property
     def sufficient(self) -> bool | None:
-        """Whether no trend is left; None where nothing can be told."""
+        """Whether the residuals show no trend; None if no trend could be tested."""
         known = [p for p in self.trends.values() if p == p]
         return min(known) >= TREND if known else None
 
 
 @dataclass(frozen=True)
 class Ranking:
-    """The measures of one structure.
+    """The ranked measures of one structure.
 
     Parameters
     ----------
     structure : str
-        Which.
+        Name of the structure.
     measures : tuple of Ranked
-        The most efficient first.
+        The measures, the most efficient first.
     against : tuple of str
-        What residuals are tested against.
+        Names of the quantities against which residuals are tested.
     alike : dict of str to str
-        Measures that are a constant times another one in every run, and that one.
+        Measures that are proportional to another one in every run, with the name of that one.
     left_out : dict of str to str
         Measures that cannot be ranked, and why.
     unknown : int or None
@@ -116,7 +116,7 @@ class FittedLine:
 
 
 def line(x: Reals, y: Reals) -> FittedLine | None:
-    """Fit a straight line; None of fewer than three points, or of points above one another."""
+    """Fit a straight line by least squares; return None for fewer than three points, or if all x are equal."""
     from scipy.special import stdtr
 
     free = x.size - 2
@@ -133,7 +133,7 @@ def line(x: Reals, y: Reals) -> FittedLine | None:
 
 
 def candidates(plan: Plan, definition: Definition) -> list[str]:
-    """The measures that can be ranked: those of the study and all that are installed, as far as values are known."""
+    """Return the measures that can be ranked: those of the study and all installed ones whose values are known."""
     asked = [*definition.asked_measures, *(str(each) for each in all_measures())]
     return [each for each in dict.fromkeys(asked) if _known(plan, each)]
 
@@ -149,7 +149,7 @@ def _known(plan: Plan, name: str) -> bool:
 
 
 def covariates(plan: Plan) -> dict[str, Reals]:
-    """Return what residuals are tested against, of each record; empty if nothing is known of all usable ones."""
+    """Return, by name, the data of each record against which residuals are tested; empty if the data have gaps."""
     usable = np.array([record.reason is None for record in plan.records])
 
     def of(names: Iterable[str]) -> dict[str, Reals]:
@@ -178,13 +178,13 @@ def rank(
     store : Store
         Open to read.
     plan : Plan
-        Its runs.
+        The plan of its runs.
     definition : Definition
-        What its study asks for.
+        The definition of its study.
     progress : callable, optional
-        Told how many numbers of runs have been gone through since the last call.
+        Called with the number of runs read since the last call.
     against : mapping of str to ndarray, shape (records,), optional
-        What residuals are tested against, a name and a value of each record; those of `covariates` unless given.
+        Quantities against which residuals are tested, a value for each record; those of `covariates` unless given.
     """
     names = candidates(plan, definition)
     against = covariates(plan) if against is None else against
@@ -206,7 +206,7 @@ def _rank(
     fitted: Mapping[tuple[str, Limit], Fragility],
     against: Mapping[str, Reals],
 ) -> Ranking:
-    """The ranking of one structure."""
+    """Rank the measures of one structure."""
     runs, y = rocking(store, plan, structure)
     sample, record, _, level, _ = plan.places(runs)
     factors, one = plan.factors(sample, record, level), plan.of_sets.one[record]  # alike in several sets
@@ -239,18 +239,18 @@ def _rank(
 def serves(
     measure: str, x: Reals, y: Reals, record: Integers, against: Mapping[str, Reals]
 ) -> tuple[float, float, int, int, dict[str, float]] | None:
-    """How a measure serves: efficiency, practicality, runs, records and trends; None where there is no line.
+    """Return efficiency, practicality, number of runs, number of records and trends of a measure; None without a line.
 
     Parameters
     ----------
     measure : str
-        Which: against itself nothing is held.
+        Name of the measure; its residuals are not tested against the measure itself.
     x, y : ndarray, shape (n,)
         Logarithms of the measure and of the peak rotation of runs.
     record : ndarray of int, shape (n,)
-        The record of each.
+        The record of each run.
     against : mapping of str to ndarray, shape (records,)
-        What residuals are tested against.
+        Quantities against which residuals are tested.
     """
     fit = line(x, y)
     if fit is None:
@@ -266,7 +266,7 @@ def serves(
 
 
 def rocking(store: Store, plan: Plan, structure: str) -> tuple[Integers, Reals]:
-    """The numbers of the runs of a structure that rock and stand, and ln(peak phi/phi_cr) of each."""
+    """Return the numbers of a structure's runs that rock without overturning, and their ln(peak phi/phi_cr)."""
     samples = samples_of(plan, structure)
     each = len(plan.records) * plan.block
     ids, peaks = [np.zeros(0, dtype=np.int64)], [np.zeros(0)]
@@ -287,7 +287,7 @@ def _dispersion(found: Fragility) -> float:
 
 
 def judge(ranking: Ranking) -> list[str]:
-    """What a ranking says, in sentences: of these runs and records, and of no others."""
+    """Return sentences on a ranking: the most efficient measure, the runs left out, and trends of the residuals."""
     if not ranking.measures:
         none = f"{ranking.structure}: no measure can be ranked: fewer than three runs rock and stand."
         return [none, *_left_out(ranking)]
@@ -308,7 +308,7 @@ def _left_out(ranking: Ranking) -> list[str]:
 
 
 def _of_trends(ranking: Ranking) -> list[str]:
-    """Which is the most efficient among those whose residuals have no trend."""
+    """Return a sentence on the most efficient measure among those whose residuals have no trend."""
     if not ranking.against:
         return ["What its residuals depend on is not tested: the store has no data to test them against."]
     tested = [each for each in ranking.measures if each.sufficient is not None]

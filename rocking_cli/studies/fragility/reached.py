@@ -1,4 +1,4 @@
-"""The rotations at which the top of a structure has moved to the side by as much as a limit state says."""
+"""The rotations at which the top of a structure reaches the horizontal displacement of a limit state."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ LOOKS = 10  # which are as many as leave no more than rounding
 def rotations(
     samples: Sequence[Sample], trials: Sequence[Trial], limits: Sequence[str], known: Mapping[str, Sequence[Pair]]
 ) -> dict[str, Sequence[Pair]]:
-    """The rotations that limits on the displacement of the top stand for, of each sample.
+    """Return the rotations of each sample at which its top reaches the displacements of limit states.
 
     Parameters
     ----------
     samples : sequence of Sample
         The structures.
     trials : sequence of Trial
-        What is known of them: of those that cannot be run nothing is asked.
+        The trials of these samples; samples that cannot be simulated are skipped.
     limits : sequence of str
-        Such as `25 mm`.
+        Limit states such as `25 mm`.
     known : mapping of str to sequence of pair
-        What has been found before, which stays.
+        Rotations found before, which are kept.
 
     Returns
     -------
     dict of str to sequence of pair
-        By the limit; what is known with what was not.
+        The rotations of all samples, by limit state, including the known ones.
     """
     missing = [limit for limit in limits if limit not in known]
     wanted = [value for value in map(metres, missing) if value is not None]
@@ -56,7 +56,7 @@ def rotations(
 
 
 def held(study: Study) -> list[str]:
-    """A sentence on each structure whose top is held sideways, where limits ask for its displacement."""
+    """Return a sentence on each structure whose top is held sideways although limit states are on its displacement."""
     limits = asked_for(study.definition.limit_states)
     return [
         f"{structure.name or structure.mechanism}: its top is held to the side and a hinge moves more, but limits "
@@ -67,7 +67,7 @@ def held(study: Study) -> list[str]:
 
 
 def of_a_structure(mechanism: Mechanism, displacements: Sequence[float]) -> list[Pair]:
-    """The rotations at which the top has first moved to the side by each of some displacements [m], either way."""
+    """Return, for each displacement [m], the rotations of either sign at which the top first reaches it."""
     _, spot = top(mechanism)
     sides: dict[Direction, list[float | None]] = {}
     for direction in Direction:
@@ -86,7 +86,7 @@ def of_a_structure(mechanism: Mechanism, displacements: Sequence[float]) -> list
 
 
 def first_reached(moved: Callable[[Reals], Reals], phi: Reals, at: Reals, wanted: float) -> float | None:
-    """The first rotation at which a displacement is reached, although it may shrink again; None if there is none.
+    """Return the first rotation at which a displacement is reached, even if it decreases again; None if it never is.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def first_reached(moved: Callable[[Reals], Reals], phi: Reals, at: Reals, wanted
 
 
 def _crossing(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float) -> float:
-    """Where between two rotations a displacement is first reached, looked at from ever closer by."""
+    """Find by successive refinement where between two rotations a displacement is first reached."""
     for _ in range(LOOKS):
         fine = np.linspace(low, high, CLOSER + 1)
         k = max(int(np.argmax(moved(fine) >= wanted)), 1)
@@ -116,7 +116,7 @@ def _crossing(moved: Callable[[Reals], Reals], low: float, high: float, wanted: 
 
 
 def _peak(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float) -> float | None:
-    """A rotation between two at which a displacement is reached that neither reaches; None if there is none."""
+    """Return a rotation between two at which a displacement is reached, unlike at both ends; None without one."""
     for _ in range(LOOKS):
         fine = np.linspace(low, high, CLOSER + 1)
         at = moved(fine)

@@ -1,4 +1,4 @@
-"""Sets of records: which records are run at which level, how much each counts, and which are one and the same."""
+"""Sets of records: the levels at which each record is run, its weight, and which entries are the same record."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ EVERY = -1
 
 @dataclass(frozen=True, eq=False)
 class Sets:
-    """What records a study runs at which levels; each an ndarray, a place a record.
+    """The levels at which the records of a study are run; each field is an ndarray with an entry for each record.
 
     Parameters
     ----------
     level : ndarray of int
-        The place of the one level that it is of a set for; -1 for a record that is run at all levels.
+        Index of the one level at which the record is run; -1 for a record that is run at all levels.
     weight : ndarray
-        How much it counts beside the others, positive.
+        Relative weight of the record, positive.
     one : ndarray of int
-        The place of the first that is the same record, of another set or in another direction.
+        Index of the first entry that is the same record, in another set or another direction.
     scaled : bool
-        Whether records are scaled to their levels; else sets are used as they are, and a level is their name.
+        Whether records are scaled to their levels; otherwise they are used as they are, and a level only names its set.
     """
 
     level: Integers
@@ -47,7 +47,7 @@ class Sets:
         *,
         scaled: bool = True,
     ) -> Sets:
-        """Sets of records from the level that each is for, if any, how much it counts, and its file."""
+        """Build sets from the level (if any), the weight and the file of each record."""
         values = np.array(levels)
         places = [EVERY if each is None else int(np.argmin(np.abs(values - each))) for each in at]
         first = {file: len(files) - 1 - k for k, file in enumerate(reversed(files))}
@@ -65,21 +65,21 @@ class Sets:
 
     @property
     def weighted(self) -> bool:
-        """Whether some records count more than others."""
+        """Whether the records have different weights."""
         return bool(np.ptp(self.weight) > SAME * self.weight.max()) if self.weight.size else False
 
     def there(self, record: int, levels: int) -> NDArray[np.bool_]:
-        """At which levels a record is run."""
+        """Return a mask of the levels at which a record is run."""
         return np.ones(levels, dtype=bool) if self.level[record] == EVERY else np.arange(levels) == self.level[record]
 
 
 def among(level: float, levels: Sequence[float]) -> bool:
-    """Whether a record's level is one of those of the study, rounding aside."""
+    """Return whether the level of a record is one of the study's levels, within rounding."""
     return any(abs(level - each) <= SAME * abs(each) for each in levels)
 
 
 def described(description: dict[str, Any], weights: Sequence[float] | None) -> Sets:
-    """The sets of a store, from the description of its study and the weights that were requested last."""
+    """Build the sets of a store from the description of its study and the weights last requested."""
     records, levels = description["records"], description["levels"]
     return Sets.of(
         levels["values"],

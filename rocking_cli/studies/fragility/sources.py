@@ -1,4 +1,4 @@
-"""The ground motions of a study: where each comes from, its checksum, and its samples when they are needed."""
+"""The ground motions of a study: their files, checksums and samples."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ class Source:
     Parameters
     ----------
     name : str
-        What to call it: the file as the study names it, or the pulse's specification.
+        Name of the motion: the file as the study names it, or the pulse's specification; with the set if it is in one.
     entry : RecordEntry
-        What the study says of it.
+        The entry of the study file.
     reading : Reading
-        How to read it, and what to make of it.
+        How to read and process the record.
     file : str
-        The file as the study names it, or the pulse's specification: the name, but for the set it is in.
+        The name without the set.
     path, vertical : Path, optional
-        Its files.
+        The files of the record and of its vertical component.
     """
 
     name: str
@@ -46,7 +46,7 @@ class Source:
     vertical: Path | None = None
 
     def checksum(self) -> str:
-        """SHA-256 of its files, or of the pulse and how it is sampled. Raises `InputError` if one is not there."""
+        """Return the SHA-256 of its files, or of the pulse and its sampling. Raises `InputError` without a file."""
         found = hashlib.sha256()
         other = Path(self.reading.other) if self.reading.other is not None else None
         for path in (self.path, self.vertical, other):
@@ -64,7 +64,7 @@ class Source:
         return found.hexdigest()
 
     def read(self) -> GroundMotion:
-        """The motion, unscaled. Raises `InputError` if it cannot be read."""
+        """Read the motion, unscaled. Raises `InputError` if it cannot be read."""
         if self.path is None:
             assert self.entry.pulse is not None
             return self.reading.on_floor(parse_pulse(self.entry.pulse).sampled(COARSE))
@@ -76,22 +76,22 @@ class Source:
 
 @dataclass(frozen=True)
 class Record:
-    """What a study knows of one of its ground motions.
+    """A ground motion of a study as its store keeps it: checksum, peaks and sampling.
 
     Parameters
     ----------
     name, checksum : str
         See `Source`; the checksum of a file that cannot be read is empty.
     reason : str or None
-        Why it cannot be used; None if it can.
+        Why the motion cannot be used; None if it can.
     dt : float
-        Sample interval [s]; this and the rest are 0 if it cannot be used.
+        Sampling interval [s]; this and all further fields are 0 if the motion cannot be used.
     npts : int
         Number of samples.
     pga, pgv : float
-        Peaks [standard gravity], [m/s].
+        Peak acceleration [standard gravity] and peak velocity [m/s].
     doubts : int
-        How many things are doubtful about it; `rocking record` names them.
+        Number of doubts about the motion; `rocking record` lists them.
     """
 
     name: str
@@ -105,7 +105,7 @@ class Record:
 
 
 def examine(source: Source) -> tuple[Record, GroundMotion | None]:
-    """Read a ground motion and measure it; one that cannot be used is absent, and its record says why."""
+    """Read a ground motion and measure it; if it cannot be used, return None for it, and a record with the reason."""
     checksum = ""
     try:
         checksum = source.checksum()
@@ -123,7 +123,7 @@ def examine(source: Source) -> tuple[Record, GroundMotion | None]:
 
 
 class KeptMotions:
-    """The samples of a study's ground motions, the ones last used kept in memory.
+    """The ground motions of a study, of which the ones used last are kept in memory.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ class KeptMotions:
         self._size = 0
 
     def examine(self, k: int, known: Record | None) -> Record:
-        """What there is to know of a motion; of one that is known and can be used only the checksum is taken anew."""
+        """Return the record of a motion; if it is known and usable, only its checksum is computed again."""
         source = self._sources[k]
         if known is not None and known.reason is None:
             record = replace(known, checksum=_checksum(source))
@@ -150,7 +150,7 @@ class KeptMotions:
         return record
 
     def __getitem__(self, k: int) -> GroundMotion:
-        """A motion by its place. Raises `InputError` if its file has changed."""
+        """Return a motion by its index. Raises `InputError` if its file has changed."""
         if k in self._kept:
             self._kept.move_to_end(k)
             return self._kept[k]
@@ -169,7 +169,7 @@ class KeptMotions:
 
 
 def _checksum(source: Source) -> str:
-    """Its checksum, empty if it cannot be read any more."""
+    """Return the checksum of a motion; empty if it cannot be read any more."""
     try:
         return source.checksum()
     except InputError:

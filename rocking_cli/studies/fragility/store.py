@@ -1,6 +1,6 @@
-"""A study's runs in an SQLite file beside it: each finished run is there once, whatever stops the work.
+"""The runs of a study in an SQLite file: each finished run is stored once, even if the work is interrupted.
 
-What is damaged is found when a store is opened: every run has a checksum, and so has what they are runs of.
+Damage is found when a store is opened: every run has a checksum, and so has the description of the study.
 """
 
 from __future__ import annotations
@@ -109,35 +109,36 @@ Say = Callable[[str], None]
 
 @dataclass(frozen=True, eq=False)
 class RunRows:
-    """Finished runs, one a place, each an ndarray of one length.
+    """Finished runs; each field is an ndarray with one entry for each run.
 
     Parameters
     ----------
     id : ndarray of int
-        Their numbers.
+        Numbers of the runs.
     scale : ndarray
         Factor on the record.
     eta : ndarray
-        Restitution; NaN for the structure's own.
+        Coefficient of restitution; NaN for the one of the structure.
     outcome : ndarray of int
         `STANDS`, `FAILED`, `UNKNOWN`, or the sign of the direction to which it overturned.
     peak_ratio : ndarray
-        Largest rotation over the critical one; NaN if it overturned. Of a run of unknown outcome this, and all else,
-        is until `known_to`.
+        Peak rotation over the critical one; NaN if the run overturned. For a run of unknown outcome, this and all other
+        fields cover the time until `known_to`.
     peak_positive, peak_negative : ndarray
-        Largest rotation in either direction [rad]; NaN in that in which it overturned.
+        Peak rotation in either direction [rad]; NaN in the direction in which the run overturned.
     uplift_time, overturning_time : ndarray
-        When it first uplifted, and when it passed the critical rotation for good [s]; NaN if never.
+        Time of the first uplift, and time of passing the critical rotation for good [s]; NaN if never.
     known_to : ndarray, optional
-        Until when a run of unknown outcome is known [s]; NaN for the others. None in stores of earlier versions, whose
-        runs were not checked.
+        Time until which a run of unknown outcome is known [s]; NaN for the others. None in stores of earlier versions,
+        whose runs were not checked.
     lower_bound : ndarray, optional
-        Of unknown outcome: largest rotation over the critical one until the first joint would not bear; NaN for the
+        For runs of unknown outcome: peak rotation over the critical one until the first joint would fail; NaN for
         others.
     opening : ndarray, optional
-        Largest opening or slip of a joint over D_cr, as far as the run was simulated; NaN if its joints are not known.
+        Largest opening or slip of a joint over D_cr, as far as the run was simulated; NaN if the joints are not known.
     slide_time : ndarray, optional
-        When a joint first needed more friction than there is [s]; NaN if never. None where no run was checked for it.
+        Time at which a joint first required more friction than available [s]; NaN if never. None if runs were not
+        checked for sliding.
     """
 
     id: Integers
@@ -159,20 +160,20 @@ class RunRows:
 
     @property
     def failed(self) -> int:
-        """How many could not be followed."""
+        """Number of runs that could not be simulated."""
         return int((self.outcome == FAILED).sum())
 
     def select(self, which: NDArray[np.bool_]) -> RunRows:
-        """Some of them."""
+        """Return the runs that a mask selects."""
         return RunRows(**{name: getattr(self, name)[which] for name in self.columns})
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """The names of those that are there."""
+        """Names of the fields that are not None."""
         return tuple(each.name for each in fields(self) if getattr(self, each.name) is not None)
 
     def checksums(self, salt: int) -> Integers:
-        """CRC-32 of each: of its columns as doubles, the lowest byte first, begun with that of the study."""
+        """Return the CRC-32 of each run, over its columns as little-endian doubles, starting from the study's salt."""
         columns = np.stack([getattr(self, name) for name in self.columns], axis=1).astype("<f8")
         columns = np.where(np.isnan(columns), np.nan, columns) + 0.0  # SQLite keeps neither NaNs nor zeros apart
         row = 8 * len(self.columns)
@@ -185,9 +186,10 @@ COLUMNS = tuple(each.name for each in fields(RunRows) if each.name != SLIDE)
 
 @dataclass(frozen=True, eq=False)
 class Endings:
-    """What fragility asks of finished runs, one a place: columns of `RunRows`, and whether they uplift and slide.
+    """The columns of finished runs that fragility needs, with one entry for each run.
 
-    The largest rotations, shape (n, 2), stand as a pair, positive and negative. `checked` is whether their joints were.
+    `peaks`, shape (n, 2), holds the peak rotations in the positive and the negative direction [rad]; `uplifts`,
+    `slides` and `checked` tell whether a run uplifts, slides, and had its joints checked.
     """
 
     id: Integers
@@ -201,28 +203,28 @@ class Endings:
 
     @property
     def overturned(self) -> NDArray[np.bool_]:
-        """Whether it is known to overturn."""
+        """Whether each run is known to overturn."""
         return np.asarray(np.abs(self.outcome) == 1)
 
     @property
     def unknown(self) -> NDArray[np.bool_]:
-        """Whether its outcome is unknown."""
+        """Whether the outcome of each run is unknown."""
         return np.asarray(self.outcome == UNKNOWN)
 
     def select(self, which: NDArray[np.bool_]) -> Endings:
-        """Some of them."""
+        """Return the runs that a mask selects."""
         return Endings(*(getattr(self, each.name)[which] for each in fields(self)))
 
 
 class Store:
-    """The runs of one study in a file; `writing` and `reading` open it.
+    """The file with the runs of one study; open it with `writing` or `reading`.
 
     Parameters
     ----------
     path : Path
         The file.
     connection : sqlite3.Connection
-        To it; to an empty store in memory as long as there is no file.
+        Connection to the file; to an empty store in memory as long as there is no file.
 
     Attributes
     ----------
@@ -231,13 +233,13 @@ class Store:
     unreadable : bool
         Whether pages of the file are damaged, so that runs may be missing.
     missing : int
-        Finished runs that the store counted and that cannot be found any more.
+        Number of finished runs that the store counted and that cannot be found any more.
     checked : bool
-        Whether its runs have checksums: those of the first versions have none.
+        Whether the runs have checksums, which stores of the first versions lack.
     with_joints : bool
-        Whether its runs say until when they are known: those of earlier versions do not.
+        Whether the runs have `known_to` and further results on joints, which stores of earlier versions lack.
     columns : tuple of str
-        Those of its runs.
+        Names of the columns of the runs.
     """
 
     def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
@@ -260,26 +262,26 @@ class Store:
     @classmethod
     @contextmanager
     def writing(cls, path: Path, *, anew: bool = False, say: Say = lambda text: None) -> Iterator[Store]:
-        """Open a store to add runs to, or make one; nobody else can write it meanwhile, everybody can read it.
+        """Open a store to add runs, or make one; meanwhile no other process can write it, but all can read it.
 
-        What is finished is kept also when an error ends the work. The file is made as the study begins, and none is
-        deleted: one that is damaged, or not wanted any more, is kept under a name that is new.
+        Finished runs are kept also when an error ends the work. The file is made when the study starts, and no file is
+        deleted: one that is damaged, or not wanted any more, is renamed.
 
         Parameters
         ----------
         path : Path
-            The file; through a link, the one it stands for.
+            The file; a link is followed.
         anew : bool
-            Leave the runs there are aside: the store is empty, and takes the place of the old one as it begins.
+            Leave the present runs aside: the store is empty, and replaces the old one when the study starts.
         say : callable, optional
-            Told what is damaged, and where an old file is kept.
+            Called with messages on damage, and on the new name of an old file.
 
         Raises
         ------
         InputError
-            If the file is no store, is damaged beyond its runs, or another process is at work on it.
+            If the file is not a store, is damaged beyond its runs, or is in use by another process.
         StoreError
-            If the system refuses: a full disk.
+            If the system refuses, for example because the disk is full.
         """
         path = Path(os.path.realpath(path))
         with in_words(path):
@@ -295,7 +297,7 @@ class Store:
     @classmethod
     @contextmanager
     def reading(cls, path: Path) -> Iterator[Store]:
-        """Open a store to read. Raises `InputError` if it is none, `StoreError` if the system refuses."""
+        """Open a store to read. Raises `InputError` if the file is not a store, `StoreError` if the system refuses."""
         if path.is_dir():
             raise InputError(Problem("this is a folder, not the store of a study", str(path)))
         if not path.exists():
@@ -313,11 +315,11 @@ class Store:
 
     @property
     def empty(self) -> bool:
-        """Whether nothing has been written yet."""
+        """Whether nothing has been written to the store yet."""
         return not tables(self._connection)
 
     def _lock_and_check(self, *, anew: bool) -> None:
-        """Lock the store that is there, and make sure that its runs can be relied upon."""
+        """Lock the existing store, and check that its runs can be relied upon."""
         self._there = True
         try:
             self._go_on_with(open_locked(self.path))
@@ -338,17 +340,17 @@ class Store:
             self._name_who_is_at_work()
 
     def _go_on_with(self, connection: sqlite3.Connection) -> None:
-        """Go on with another connection than the one to nothing."""
+        """Close the present connection and use another one."""
         self._connection.close()
         self._connection = connection
 
     def _name_who_is_at_work(self) -> None:
-        """Tell others who is at work."""
+        """Write the name of this process to the store, so that others can see who uses it."""
         self._connection.execute("INSERT OR REPLACE INTO study VALUES (?, ?)", (AT_WORK, this_process()))
         self.commit()
 
     def _let_go(self) -> None:
-        """Keep what is finished, and let others write."""
+        """Commit the finished runs, and release the lock."""
         try:
             if self._connection.in_transaction:  # not after a full disk, which has undone the last one
                 self._seal_count()
@@ -362,7 +364,7 @@ class Store:
                 self._replaced.close()
 
     def _rebuild(self) -> None:
-        """Take the sound runs over into a new store that takes the place of this one."""
+        """Copy the undamaged runs to a new store that replaces this one."""
         plan, facts = self.plan(), self.facts()
         for each in self.doubts():
             self._say(f"{self.path}: {each}")
@@ -385,7 +387,7 @@ class Store:
         self._check_count()
 
     def doubts(self) -> list[str]:
-        """What is wrong with the runs, a sentence each."""
+        """Return sentences on what is wrong with the runs."""
         found = []
         if not self.checked:
             found.append(
@@ -403,19 +405,19 @@ class Store:
         return found
 
     def begin(self, plan: Plan, facts: Mapping[str, Any]) -> None:
-        """Write what a new store starts with.
+        """Write the plan and the facts with which a new store starts.
 
         Parameters
         ----------
         plan : Plan
-            The runs to come.
+            The plan of the runs.
         facts : mapping
-            Plain data to keep by name: `fact` gives them back.
+            Plain data by name, which `fact` returns.
 
         Raises
         ------
         InputError
-            If another process has begun it meanwhile.
+            If another process has started the store meanwhile.
         """
         if self._replaced is not None:
             old, self._replaced = self._replaced, None
@@ -463,7 +465,7 @@ class Store:
         self._connection.execute("INSERT INTO finished VALUES (0, ?)", (self._of_count(0),))
 
     def keep(self, measured: Measured) -> None:
-        """Keep what was measured, in place of what was there."""
+        """Store measured values, replacing those in the store."""
         if not measured:
             return
         if self._has_measured():
@@ -486,18 +488,18 @@ class Store:
         return (name,) in names.fetchall()
 
     def _of_count(self, runs: int) -> int:
-        """Checksum of a number of finished runs."""
+        """Return the checksum of a number of finished runs."""
         return crc32(str(runs).encode(), self._salt)
 
     def _seal_count(self) -> None:
-        """Keep how many runs are finished, so that those of a page that is lost are missed."""
+        """Store the number of finished runs, so that runs lost with a damaged page can be missed."""
         if self._more and self._has_table("finished"):  # stores of earlier versions do not have it
             sealed = self._finished, self._of_count(self._finished)
             self._connection.execute("UPDATE finished SET runs = ?, checksum = ?", sealed)
         self._more = False
 
     def _check_count(self) -> None:
-        """Find out whether there are fewer runs than were finished."""
+        """Find out whether the store has fewer runs than it counted."""
         try:
             sealed = (
                 self._connection.execute("SELECT * FROM finished").fetchall() if self._has_table("finished") else []
@@ -512,24 +514,24 @@ class Store:
             self.missing = max(runs - self._finished, 0) if checksum == self._of_count(runs) else 0
 
     def _measured(self, shape: tuple[int, int, int]) -> Measured:
-        """What was measured, of so many samples, records and levels."""
+        """Read the measured values, for given numbers of samples, records and levels."""
         if not self._has_measured():
             return Measured()
         rows = self._connection.execute("SELECT measure, sample, record, level, value FROM measured ORDER BY id")
         return Measured.of((Value(*row) for row in rows), shape)
 
     def note(self, facts: Mapping[str, Any]) -> None:
-        """Keep plain data by name, in place of what was there."""
+        """Store plain data by name, replacing those in the store."""
         rows = [(key, json_text(value, sort_keys=True)) for key, value in facts.items()]
         self._connection.executemany("INSERT OR REPLACE INTO study VALUES (?, ?)", rows)
         self._seal()
 
     def _seal(self) -> None:
-        """Renew the checksum of all that a store holds but its runs."""
+        """Renew the checksum of everything in the store except the runs."""
         self._connection.execute("INSERT OR REPLACE INTO study VALUES (?, ?)", (SEAL, self._digest()))
 
     def _digest(self) -> str:
-        """SHA-256 of all that a store holds but its runs."""
+        """Return the SHA-256 of everything in the store except the runs."""
         found = hashlib.sha256()
         queries = [f"SELECT * FROM {table} ORDER BY id" for table in PLAN]
         for query in (*queries, f"SELECT * FROM study WHERE key NOT IN ('{SEAL}', '{AT_WORK}') ORDER BY key"):
@@ -540,12 +542,12 @@ class Store:
         return found.hexdigest()
 
     def facts(self) -> dict[str, Any]:
-        """All that was kept by name."""
+        """Return all plain data in the store, by name."""
         rows = self._connection.execute("SELECT key, value FROM study WHERE key NOT IN (?, ?)", (SEAL, AT_WORK))
         return {key: json.loads(value) for key, value in rows}
 
     def _check_plan(self) -> None:
-        """Refuse a store that does not hold any more what its runs are runs of."""
+        """Raise an error if the description of the study in the store is damaged, or of another version."""
         if not (alone := self._connection.in_transaction):
             self._connection.execute("BEGIN")  # at one moment: somebody may be at work
         try:
@@ -575,7 +577,7 @@ class Store:
                 self._connection.execute("COMMIT")
 
     def _check_definition(self) -> None:
-        """Refuse a definition that is none; one that asks for what is not installed any more is not damaged."""
+        """Raise an error if the definition of the study is invalid; measures not installed any more are no damage."""
         try:
             Definition.model_validate(self.fact("definition"))
         except ValidationError as error:
@@ -583,14 +585,14 @@ class Store:
                 raise
 
     def _check_pages(self) -> None:
-        """Find out whether the file can be written to: what is damaged would get worse."""
+        """Find out whether pages of the file are damaged: writing to it would make the damage worse."""
         try:
             self.unreadable = self._connection.execute("PRAGMA quick_check(1)").fetchone()[0] != "ok"
         except sqlite3.DatabaseError as error:
             self._unless_corrupt(error)
 
     def _check_runs(self) -> None:
-        """Find the runs that do not agree with their checksums, and miss those that are counted but not found."""
+        """Find the runs that do not agree with their checksums, and those that are counted but missing."""
         self._check_count()
         size = self.plan().size
         strangers = self._connection.execute("SELECT id FROM run WHERE id < 0 OR id >= ?", (size,))
@@ -607,7 +609,7 @@ class Store:
             self.unreadable, self.missing = True, self.missing + self._finished - found
 
     def _unless_corrupt(self, error: sqlite3.DatabaseError) -> None:
-        """Note damaged pages; raise any other error."""
+        """Note that pages are damaged if an error says so; raise any other error."""
         if getattr(error, "sqlite_errorcode", 0) & 0xFF != sqlite3.SQLITE_CORRUPT:
             raise error
         self.unreadable = True
@@ -618,14 +620,14 @@ class Store:
         self._connection.executemany(f"INSERT INTO {table} VALUES ({marks})", numbered)
 
     def fact(self, key: str) -> Any:
-        """What was kept under a name."""
+        """Return the plain data stored under a name."""
         found = self._connection.execute("SELECT value FROM study WHERE key = ?", (key,)).fetchone()
         if found is None:
             raise damaged(self.path, f"{key} is missing")
         return json.loads(found[0])
 
     def plan(self) -> Plan:
-        """The runs that the store is for."""
+        """Return the plan of the runs."""
 
         def column(table: str, of: Any) -> list[Any]:
             rows = self._connection.execute(f"SELECT value FROM {table} ORDER BY id")
@@ -652,19 +654,19 @@ class Store:
         )
 
     def replace_record(self, k: int, record: Record) -> None:
-        """Put right what is known of a record that could not be used so far."""
+        """Replace what is stored of a record that could not be used so far."""
         columns = asdict(record)
         names = ", ".join(f"{name} = ?" for name in columns)
         self._connection.execute(f"UPDATE record SET {names} WHERE id = ?", (*columns.values(), k))
         self._seal()
 
     def finished(self, first: int, stop: int) -> Integers:
-        """The numbers of the finished runs from `first` to before `stop`, growing."""
+        """Return the numbers of the finished runs from `first` to before `stop`, increasing."""
         rows = self._connection.execute("SELECT id FROM run WHERE id >= ? AND id < ?", (first, stop))
         return np.fromiter((row[0] for row in rows), dtype=np.int64)
 
     def count(self) -> tuple[int, int]:
-        """How many runs are finished, and how many of these failed."""
+        """Return the number of finished runs, and of those that failed."""
         if self.damaged or self.unreadable:
             blocks = [(len(rows), rows.failed) for rows in self._blocks(0, self.plan().size)]
             return sum(done for done, _ in blocks), sum(failed for _, failed in blocks)
@@ -673,7 +675,7 @@ class Store:
         return done, failed
 
     def add(self, rows: RunRows) -> None:
-        """Add finished runs; about every second what has been added is made safe."""
+        """Add finished runs; about every second they are committed to the file."""
         self._insert_runs(rows)
         if monotonic() - self._last > PATIENCE:
             self.commit()
@@ -686,28 +688,28 @@ class Store:
         self._more = self._more or len(rows) > 0
 
     def commit(self) -> None:
-        """Make safe what has been added, and keep others from writing."""
+        """Commit the runs added, and keep the lock."""
         self._seal_count()
         self._connection.execute("COMMIT")
         self._connection.execute("BEGIN IMMEDIATE")
         self._last = monotonic()
 
     def runs(self, first: int, stop: int) -> RunRows:
-        """The finished runs with numbers from `first` to before `stop`, without those that are damaged."""
+        """Return the undamaged finished runs with numbers from `first` to before `stop`."""
         blocks = list(self._blocks(first, stop)) or [_rows([], self.columns)]
         return RunRows(**{name: np.concatenate([getattr(each, name) for each in blocks]) for name in self.columns})
 
     def endings(
         self, first: int, stop: int, counted: Callable[[int], None] = lambda numbers: None
     ) -> Iterator[Endings]:
-        """How the finished runs with numbers from `first` to before `stop` end, a block at a time.
+        """Yield how the finished runs with numbers from `first` to before `stop` end, in blocks.
 
         Parameters
         ----------
         first, stop : int
             Numbers of runs.
         counted : callable, optional
-            Called with how many numbers have been looked at since the last call.
+            Called with the number of runs read since the last call.
         """
         more = [name for name in ("lower_bound", "opening", SLIDE) if name in self.columns]
         names = ("id", "outcome", "peak_ratio", "peak_positive", "peak_negative", "uplift_time", *more)
@@ -733,7 +735,7 @@ class Store:
             yield self._read(start, min(start + READ, stop))[0]
 
     def _read(self, first: int, stop: int) -> tuple[RunRows, list[int]]:
-        """The sound runs with numbers from `first` to before `stop`, and the numbers of the damaged ones."""
+        """Return the undamaged runs with numbers from `first` to before `stop`, and the numbers of the damaged ones."""
         names = (*self.columns, "checksum") if self.checked else self.columns
         found = self._fetch(f"SELECT {', '.join(names)} FROM run WHERE id >= ? AND id < ?", first, stop)
         table, bad = _numbers(found, len(names))
@@ -746,7 +748,7 @@ class Store:
         return rows.select(sound), bad + rows.id[~sound].tolist()
 
     def _fetch(self, query: str, first: int, stop: int) -> list[tuple[Any, ...]]:
-        """Rows between two numbers; of damaged pages those that can be reached from either side."""
+        """Return the rows between two numbers; of damaged pages, the rows that can be reached from either side."""
         try:
             return self._connection.execute(query, (first, stop)).fetchall()
         except sqlite3.DatabaseError as error:
@@ -758,18 +760,18 @@ class Store:
 
 
 def _nothing() -> sqlite3.Connection:
-    """An empty store that is in no file."""
+    """Open an empty store in memory."""
     return sqlite3.connect(":memory:", isolation_level=None)
 
 
 def _columns(description: Mapping[str, Any], *, with_joints: bool) -> tuple[str, ...]:
-    """The columns of the runs of a study."""
+    """Return the names of the columns of a study's runs."""
     usual = COLUMNS if with_joints else tuple(name for name in COLUMNS if name not in JOINTS)
     return (*usual, SLIDE) if SLIDING in description else usual
 
 
 def _rows(table: Any, names: tuple[str, ...]) -> RunRows:
-    """Runs from a table of numbers, a column each."""
+    """Return runs from a table of numbers with a column for each name."""
     columns: dict[str, Any] = dict(zip(names, np.array(table, dtype=np.float64).reshape(-1, len(names)).T, strict=True))
     for name in ("id", "outcome"):  # what is no whole number is no number of a run, and no outcome
         columns[name] = np.where(np.abs(columns[name]) < 2.0**53, columns[name], -2).astype(np.int64)
@@ -777,7 +779,7 @@ def _rows(table: Any, names: tuple[str, ...]) -> RunRows:
 
 
 def _numbers(found: Sequence[tuple[Any, ...]], columns: int) -> tuple[Reals, list[int]]:
-    """Rows of a query as numbers, and the first numbers of the rows that are none."""
+    """Convert the rows of a query to numbers; also return the run numbers of rows that are not numeric."""
     try:
         return np.array(found, dtype=np.float64).reshape(-1, columns), []
     except (ValueError, TypeError):
@@ -789,7 +791,7 @@ def _numbers(found: Sequence[tuple[Any, ...]], columns: int) -> tuple[Reals, lis
 
 
 def _salt(hash_: Any) -> int:
-    """What the checksums of a study's runs begin with, so that none passes for that of another study."""
+    """Return the start value of the checksums of a study's runs, so that runs of another study do not match."""
     return int(str(hash_)[:8], 16)
 
 

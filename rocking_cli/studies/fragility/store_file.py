@@ -1,7 +1,7 @@
-"""The SQLite file of a store: opened, locked, and exchanged for another without losing anything.
+"""The SQLite file of a store: opening, locking, and replacing it without losing runs.
 
-No store is ever deleted, and none is made before there is something to keep in it: whoever deletes what is empty may
-delete what another process fills at this moment.
+A store with runs is never deleted, and a file is made only when there is something to write: whoever deletes an empty
+file may delete what another process fills at this moment.
 """
 
 from __future__ import annotations
@@ -41,17 +41,17 @@ BEYOND_READING = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_
 
 
 class StoreError(Refused):
-    """A store that the system does not let us write or read."""
+    """A store that the system does not allow to be written or read."""
 
 
 def damaged(path: Path, what: str) -> InputError:
-    """The error of a store of which more than runs is damaged."""
+    """Return the error for a store of which more than runs is damaged."""
     return InputError(Problem(f"the store is damaged: {what}", str(path), hint=RESTART))
 
 
 @contextmanager
 def in_words(path: Path) -> Iterator[None]:
-    """Say what SQLite and the system refuse as errors that name the store."""
+    """Turn errors of SQLite and of the system into errors that name the store."""
     try:
         yield
     except sqlite3.Error as error:
@@ -67,7 +67,7 @@ def in_words(path: Path) -> Iterator[None]:
 
 
 def open_store(path: Path) -> sqlite3.Connection:
-    """A connection to a file that is the store of a study, or empty."""
+    """Open a file that is the store of a study, or empty, and return the connection."""
     if path.exists() and not path.is_file():
         what = "a folder" if path.is_dir() else "a device or a pipe"
         raise InputError(Problem(f"this is {what}, not the store of a study", str(path)))
@@ -89,7 +89,7 @@ def open_store(path: Path) -> sqlite3.Connection:
 
 
 def header(connection: sqlite3.Connection) -> tuple[int, int]:
-    """Mark and version in the header of a database."""
+    """Return the application mark and the version in the header of a database."""
     mark, version = (
         connection.execute(f"PRAGMA {name}").fetchone()[0] for name in ("application_id", "user_version")
     )  # fmt: skip
@@ -97,12 +97,12 @@ def header(connection: sqlite3.Connection) -> tuple[int, int]:
 
 
 def tables(connection: sqlite3.Connection) -> int:
-    """How many tables, views and indices a database has."""
+    """Return the number of tables, views and indices of a database."""
     return int(connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0])
 
 
 def is_beyond_reading(path: Path, error: sqlite3.DatabaseError) -> bool:
-    """Whether an error says that a file, by its first bytes a store, is damaged so that it cannot even be locked."""
+    """Return whether an error means that a file, a store by its first bytes, cannot even be locked."""
     if getattr(error, "sqlite_errorcode", 0) & 0xFF not in BEYOND_READING:
         return False
     with path.open("rb") as file:
@@ -111,7 +111,7 @@ def is_beyond_reading(path: Path, error: sqlite3.DatabaseError) -> bool:
 
 
 def open_locked(path: Path) -> sqlite3.Connection:
-    """A connection to a store, made if it is not there, in a transaction that keeps others from writing."""
+    """Open a store, making it if missing, in a transaction that keeps others from writing; return the connection."""
     connection = open_store(path)
     try:
         connection.execute("PRAGMA busy_timeout = 0")
@@ -131,12 +131,12 @@ def open_locked(path: Path) -> sqlite3.Connection:
 
 
 def this_process() -> str:
-    """What others are told of this process."""
+    """Return the name of this process and its machine, for messages of other processes."""
     return f"process {os.getpid()} on {platform.node() or 'this machine'}"
 
 
 def _at_work(connection: sqlite3.Connection) -> str:
-    """Who is at work on a store, where that can be read at this moment."""
+    """Return the name of the process that uses a store, if it can be read now; otherwise an empty text."""
     with suppress(sqlite3.Error):
         found = connection.execute("SELECT value FROM study WHERE key = ?", (AT_WORK,)).fetchone()
         return f": {found[0]}" if found is not None else ""
@@ -144,7 +144,7 @@ def _at_work(connection: sqlite3.Connection) -> str:
 
 
 def new_name(path: Path, word: str) -> Iterator[Path]:
-    """Names beside a file that nothing has: study.before.db, study.before-2.db, ..."""
+    """Yield unused file names beside a file: study.before.db, study.before-2.db, ..."""
     for k in count(1):
         name = path.with_name(f"{path.stem}.{word}{f'-{k}' if k > 1 else ''}{path.suffix}")
         # A journal that waits for its database would be played into whatever takes this name.
@@ -155,23 +155,23 @@ def new_name(path: Path, word: str) -> Iterator[Path]:
 def exchange(
     path: Path, old: sqlite3.Connection, fill: Callable[[sqlite3.Connection], None], say: Callable[[str], None]
 ) -> sqlite3.Connection:
-    """Put a new store in the place of an old one, which is kept under a name that is new.
+    """Replace an old store by a new one, and keep the old one under an unused name.
 
     Parameters
     ----------
     path : Path
-        The place.
+        Path of the store.
     old : sqlite3.Connection
-        To the old store, locked; it is closed.
+        Connection to the old store, locked; it is closed.
     fill : callable
-        Given a connection to the new store, writes what it starts with.
+        Called with a connection to the new store, to write its first content.
     say : callable
-        Told where the old store is, before the new one takes its place.
+        Called with a message on where the old store is, before it is replaced.
 
     Returns
     -------
     sqlite3.Connection
-        To the new store, locked.
+        Connection to the new store, locked.
     """
     locked = old.in_transaction
     fresh = _create(path)
@@ -201,7 +201,7 @@ def exchange(
 
 
 def _has_runs(connection: sqlite3.Connection) -> bool:
-    """Whether a store has runs, counted some that cannot be found any more, or may have some that cannot be read."""
+    """Return whether a store has runs, has counted runs that are missing, or may have runs that cannot be read."""
     found = "SELECT 1 FROM run UNION ALL SELECT 1 FROM finished WHERE runs > 0 LIMIT 1"
     try:
         return not tables(connection) or connection.execute(found).fetchone() is not None
@@ -210,7 +210,7 @@ def _has_runs(connection: sqlite3.Connection) -> bool:
 
 
 def sweep(path: Path) -> None:
-    """Remove what a process that was killed began to put in the place of a store: files without a single run.
+    """Remove files without runs that a killed process left when it was replacing a store.
 
     Only the process that has locked the store may do this: nobody else is exchanging it.
     """
@@ -225,7 +225,7 @@ def sweep(path: Path) -> None:
 
 
 def _is_in_use_or_filled(place: Path) -> bool:
-    """Whether a store has runs. Raises `sqlite3.Error` if somebody is at work on it, `InputError` if it is none."""
+    """Return whether a store has runs. Raises `sqlite3.Error` if it is in use, `InputError` if it is not a store."""
     connection = open_store(place)
     try:
         connection.execute("PRAGMA busy_timeout = 0")
@@ -236,7 +236,7 @@ def _is_in_use_or_filled(place: Path) -> bool:
 
 
 def _others(aside: Path) -> str:
-    """Say how many stores have been kept before this one."""
+    """Return a note on how many older stores are kept beside this one; empty if there are none."""
     number = aside.stem.rpartition("-")[2]
     if not number.isdecimal():
         return ""
@@ -245,7 +245,7 @@ def _others(aside: Path) -> str:
 
 
 def _create(path: Path) -> Path:
-    """A file that nobody had, for a store to come."""
+    """Create a file with an unused name, for a new store."""
     for name in new_name(path, "new"):
         try:
             name.touch(exist_ok=False)
@@ -256,7 +256,7 @@ def _create(path: Path) -> Path:
 
 
 def _keep(path: Path) -> Path:
-    """Give a store a second name: as long as it has the first, nobody else can begin one there."""
+    """Give a store a second name: while it also has the first, no other process can make a store there."""
     for name in new_name(path, "before"):
         try:
             os.link(path, name)

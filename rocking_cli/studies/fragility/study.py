@@ -1,4 +1,4 @@
-"""A fragility study with all that its file names: structures, samples of them, and where the records are."""
+"""A fragility study with everything that its file names: structures, their samples, and the records' files."""
 
 from __future__ import annotations
 
@@ -48,18 +48,18 @@ RESTITUTION = "restitution"
 
 @dataclass(frozen=True)
 class Sample:
-    """One structure as it is run.
+    """One sample of a structure, as it is simulated.
 
     Parameters
     ----------
     structure : int
-        Its place among the study's structures.
+        Index of the structure in the study.
     number : int
-        Which sample of it, from 0.
+        Number of the sample, from 0.
     drawn : dict of str to float
-        The fields that were drawn.
+        The sampled fields, by name.
     mechanism : Mechanism
-        The structure with these.
+        The structure with these values.
     """
 
     structure: int
@@ -69,12 +69,12 @@ class Sample:
 
     @property
     def geometry(self) -> tuple[tuple[str, float], ...]:
-        """What was drawn apart from restitution, which needs no new tables."""
+        """The sampled fields except restitution, which needs no new tables of coefficients."""
         return tuple(each for each in self.drawn.items() if each[0] != RESTITUTION)
 
     @property
     def eta(self) -> float:
-        """The restitution that was drawn; NaN if it was not."""
+        """The sampled coefficient of restitution; NaN if it is not sampled."""
         return self.drawn.get(RESTITUTION, nan)
 
 
@@ -85,17 +85,17 @@ class Study:
     Parameters
     ----------
     name : str
-        What to call it.
+        Name of the study.
     definition : Definition
-        What its file says.
+        The definition in its file.
     structures : tuple of Mechanism
         The structures, named.
     samples : tuple of Sample
-        Those to run: of each structure one, or as many as are drawn, one structure after the other.
+        The samples to simulate, structure by structure: one of each, or as many as are drawn.
     sources : tuple of Source
         The ground motions.
     hazard : HazardCurve, optional
-        How often intensities are exceeded.
+        Annual rates at which intensities are exceeded.
     """
 
     name: str
@@ -107,7 +107,7 @@ class Study:
 
     @property
     def sets(self) -> Sets:
-        """Which of its records are run at which levels, and how much they count."""
+        """The levels at which each record is run, and its weight."""
         levels, entries = self.definition.levels, [source.entry for source in self.sources]
         return Sets.of(
             levels.levels(),
@@ -118,7 +118,7 @@ class Study:
         )
 
     def description(self) -> dict[str, Any]:
-        """All that decides what is run, apart from what is in the records, as plain data."""
+        """Return everything that decides the runs, except the content of the records, as plain data."""
         given = self.definition
         return {
             "structures": {
@@ -149,18 +149,18 @@ class Study:
 
 
 def _described(source: Source) -> dict[str, Any]:
-    """What decides the runs under a record: not how much they count, and of a set also which file it is."""
+    """Return what decides the runs under a record: its entry without the weight, and for a set also its file."""
     said = {key: value for key, value in as_written(source.entry).items() if key != "weight"}
     return {"name": source.name, **said, **({"file": source.file} if source.entry.level is not None else {})}
 
 
 def digest(description: dict[str, Any]) -> str:
-    """SHA-256 of a description, the same whatever the order of its keys."""
+    """Return the SHA-256 of a description; the order of its keys does not matter."""
     return hashlib.sha256(json_text(description, sort_keys=True).encode()).hexdigest()
 
 
 def load_study(path: str | Path) -> Study:
-    """Read a study and the structures it names; of the records only the names.
+    """Read a study and the structures it names; of the records, only the names are read.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def _structure(
 
 
 def _of_file(document: Document, place: Place, name: str, file: Path, error: InputError) -> list[Problem]:
-    """The problems of a file that the study names; what stands in no line of it, in that of the study."""
+    """Return the problems of a file that the study names; those without a line get the line in the study file."""
     return [
         each
         if each.line is not None or each.file != str(file)
@@ -242,7 +242,7 @@ def _without_friction(file: Path) -> Problem:
 
 
 def _varied(document: Document, place: Place) -> list[str]:
-    """The fields of a structure that vary, whether their distributions are right or not."""
+    """Return the names of the fields of a structure that vary, whether or not their distributions are valid."""
     field, k = place
     entry = document.data[str(field)][k]
     given = entry.get("vary") if isinstance(entry, dict) else None
@@ -286,7 +286,7 @@ def _of_file_or_list(
     file: Path,
     vertical: Path | None,
 ) -> list[Source]:
-    """The records of a file: itself, or those of a list, which are read as each says, and else as the entry does."""
+    """Return the records of a file, or of a list of records; the options of a list's entry take precedence."""
     reading = entry.reading(folder, common.reading)
     if not is_list(file):
         shown = _shown(file, folder)
@@ -310,7 +310,7 @@ def _of_file_or_list(
 
 
 def _together(entry: RecordEntry, listed: Entry) -> dict[str, Any]:
-    """What the entry of a study and that of a list in it say of a record; their corrections come one after another."""
+    """Combine the entry of a study and the entry of a list of records; their corrections follow each other."""
     said = {**as_written(entry), **as_written(listed), "file": str(entry.file)}
     steps = [*(listed.processing or []), *(entry.processing or [])]
     if listed.factor is not None and (entry.processing or entry.factor is not None):
@@ -320,19 +320,19 @@ def _together(entry: RecordEntry, listed: Entry) -> dict[str, Any]:
 
 
 def _at_level(name: str, entry: RecordEntry) -> str:
-    """What to call a record: one of a set may be in others too."""
+    """Return the name of a record; with its level if it is in a set, as it may be in several."""
     return name if entry.level is None else f"{name} at {entry.level:g}"
 
 
 def _in_words(name: str, entry: RecordEntry) -> str:
-    """A record by its file, and by which channel and direction of it is taken."""
+    """Return the name of a record with its channel, azimuth and level, if given."""
     channel = "" if entry.channel is None else f" channel {entry.channel}"
     towards = "" if entry.azimuth is None or entry.other is None else f" azimuth {entry.azimuth:g}"
     return _at_level(f"{name}{channel}{towards}", entry)
 
 
 def _apart(sources: Sequence[Source]) -> list[Source]:
-    """The records, those of one file called by their channel and direction too."""
+    """Return the records; those that share a name are named by channel and azimuth as well."""
     names = [source.name for source in sources]
     return [
         replace(each, name=_in_words(each.file, each.entry)) if names.count(each.name) > 1 else each for each in sources
@@ -340,7 +340,7 @@ def _apart(sources: Sequence[Source]) -> list[Source]:
 
 
 def _unlike_others(source: Source) -> str:
-    """What may stand in a study once only: a channel and direction of a file, or a pulse; of a set, in it."""
+    """Return a text that identifies a record: file or pulse, channel, azimuth and level; it may occur only once."""
     place = source.path.resolve().as_posix() if source.path else source.file
     return _in_words(place, source.entry)
 
@@ -354,12 +354,12 @@ def _select(document: Document, place: Place, pattern: str, folder: Path) -> lis
 
 
 def _within(document: Document, place: Place, key: str) -> Place:
-    """The place of a key of an entry; of the entry itself where that is a plain text."""
+    """Return the place of a key of an entry; the place of the entry itself if this is plain text."""
     return (*place, key) if (*place, key) in document.values else place
 
 
 def _shown(path: Path, folder: Path) -> str:
-    """A file as the study names it, alike on every system."""
+    """Return the name of a file relative to the study's folder, the same on every system."""
     return one_line((path.relative_to(folder) if path.is_relative_to(folder) else path).as_posix())
 
 
@@ -387,7 +387,7 @@ def _hazard(document: Document, folder: Path) -> HazardCurve | None:
 def _samples(
     document: Document, sampling: Sampling, k: int, entry: StructureEntry, structure: Mechanism
 ) -> list[Sample]:  # fmt: skip
-    """The samples of a structure; those that cannot be built are a problem of what it varies."""
+    """Return the samples of a structure; samples that cannot be built are reported as problems of its `vary`."""
     if not entry.vary or any(name not in type(structure).model_fields for name in entry.vary):
         return [Sample(k, 0, {}, structure)]
     columns = {name: _drawn(sampling, structure, name, each) for name, each in entry.vary.items()}

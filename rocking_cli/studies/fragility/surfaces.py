@@ -1,4 +1,4 @@
-"""Fragility over two measures of intensity at once."""
+"""Fragility as a function of two intensity measures at once."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ PARALLEL = 1e-4  # 1 - |correlation| of two measures that are one
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """The probability of exceedance over two intensities, P = Phi(c0 + c1 ln x1 + c2 ln x2).
+    """Probability of exceedance as a function of two intensities, P = Phi(c0 + c1 ln x1 + c2 ln x2).
 
     Parameters
     ----------
     kind : str
         `lognormal` or `none`.
     why : str
-        Why there is none, or how the two measures compare, in words.
+        A sentence on why there is no surface, or on how the two measures compare.
     confidence : float
-        Of the intervals.
+        Confidence level of the intervals.
     runs, exceedances : int
         Number of runs, and how many exceed.
     fit : Fit or None
@@ -35,8 +35,8 @@ class Surface:
     aic : dict of str to float or None
         Akaike's criterion with `both`, and with the `first` and the `second` measure alone.
     p_values : tuple of float or None
-        How likely as much is gained by adding the first measure to the second, and the second to the first, if it
-        does not matter: by the likelihood ratio, or where records repeat by the robust standard error.
+        P-values of the gain from adding the first measure to the second, and the second to the first: by the likelihood
+        ratio, or if records repeat by the robust standard error.
     records : int
         Number of different records.
     """
@@ -53,16 +53,16 @@ class Surface:
 
     @property
     def warning(self) -> str:
-        """What to say where records are so few that intervals may not hold as they say; empty elsewhere."""
+        """Warning that there are too few records for reliable intervals; empty if there are enough."""
         return few_records(self.records) if self.fit is not None else ""
 
     @property
     def coefficients(self) -> list[Estimate] | None:
-        """c0, c1 and c2 with their confidence intervals."""
+        """The coefficients c0, c1 and c2 with their confidence intervals; None without a fit."""
         return None if self.fit is None else self.fit.intervals
 
     def probability(self, x1: Reals, x2: Reals) -> Reals:
-        """Probability of exceedance at positive intensities of one shape; NaN where there is no surface."""
+        """Return the probability of exceedance at positive intensities of one shape; NaN without a fit."""
         x1, x2 = np.broadcast_arrays(x1, x2)
         if self.fit is None:
             return np.full(x1.shape, np.nan)
@@ -79,27 +79,28 @@ def fit_surface(
     confidence: float = 0.95,
     weight: Reals | None = None,
 ) -> Surface:
-    """Fit the probability of exceedance over two measures of intensity.
+    """Fit the probability of exceedance as a function of two intensity measures.
 
     Parameters
     ----------
     x1, x2 : ndarray, shape (n,)
         Intensities, positive.
     exceeding : ndarray, shape (n,)
-        Whether it exceeds the limit state, or how many of the runs there do.
+        Whether the run exceeds the limit state, or the number of equal runs that do.
     record : ndarray of int, shape (n,)
-        The record it belongs to.
+        The record of each run.
     runs : ndarray of int, shape (n,), optional
-        How many runs there are at each of them; one unless given.
+        Number of equal runs; one unless given.
     confidence : float
-        Of the intervals.
+        Confidence level of the intervals.
     weight : ndarray, shape (n,), optional
-        Weight of each among the others; equal unless given.
+        Relative weight of each run; equal unless given.
 
     Returns
     -------
     Surface
-        None of it where a line in the plane of the logarithms separates the outcomes, or the measures are one.
+        Of kind `none` if a line in the plane of the logarithms separates the outcomes, or the measures are
+        proportional.
 
     Raises
     ------
@@ -154,14 +155,14 @@ def _design(x1: Reals, x2: Reals) -> Reals:
 
 
 def _separable(design: Reals, number: Reals, exceeding: Reals) -> bool:
-    """Whether a line has all that exceed on one side; not where some do and some do not at more places than one."""
+    """Return whether a line separates the runs that exceed from the others; mixed outcomes at one place only."""
     standard = standardised(design)[0]
     some, none = exceeding > 0, exceeding < number
     return separable(np.concatenate([standard[some], standard[none]]), np.arange(some.sum() + none.sum()) < some.sum())
 
 
 def _gain(both: Fit, alone: Fit, column: int, clustered: bool) -> float:
-    """How likely as large a gain is by chance; with repeated records the likelihood ratio is no chi-square."""
+    """Return the p-value of adding a measure; with repeated records by the standard error, as no chi-square holds."""
     from scipy.special import chdtrc, stdtr
 
     if clustered:

@@ -1,4 +1,4 @@
-"""The runs of a study as a table, a block at a time: a long study never stands in memory."""
+"""The runs of a study as a table, in blocks, so that a long study need not fit in memory."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ HEADINGS = {
 
 
 def blocks(store: Store, plan: Plan, measures: Sequence[str] = ()) -> Iterator[Mapping[str, Sequence[object]]]:
-    """The finished runs, in the order of their numbers.
+    """Yield the finished runs as blocks of a table, in the order of their numbers.
 
     Parameters
     ----------
     store : Store
         Open to read.
     plan : Plan
-        Its runs.
+        The plan of its runs.
     measures : sequence of str
-        Those that have a column, beside those that are always there.
+        Measures with a column, in addition to those that every table has.
 
     Yields
     ------
     mapping of str to sequence
-        The columns, with units; the first block is there even if no run is.
+        The columns by heading, with units; the first block is yielded even if it is empty.
     """
     end, asked = int(np.prod(plan.shape)), tuple(dict.fromkeys([*ALWAYS, *measures]))
     for first in range(0, end, ROWS):

@@ -1,4 +1,4 @@
-"""The runs of a structure, counted while they are read: what a study keeps of them does not grow with its runs."""
+"""Counts of the runs of a structure, made while runs are read, so that memory does not increase with their number."""
 
 from __future__ import annotations
 
@@ -27,26 +27,27 @@ Counted = Callable[[int], None]
 
 @dataclass(frozen=True, eq=False)
 class Tally:
-    """How many runs of a structure there are, and how many exceed, under each record at each level.
+    """Number of runs of a structure, and of those that exceed limit states, under each record at each level.
 
     Parameters
     ----------
     plan : Plan
-        The study's runs.
+        The plan of the study's runs.
     samples : range
-        The places of the structure's samples.
+        Indices of the structure's samples.
     runs : ndarray of int, shape (s, records, levels)
-        How many can be used, of each sample; of all together (s is 1) where the measures do not tell them apart.
+        Number of usable runs of each sample; of all samples together (s is 1) if the measures do not differ between
+        them.
     exceeding : dict of limit state to ndarray of int, shape (s, records, levels)
-        How many of them exceed, if all do of which it is not known.
+        Number of these runs that exceed, with undecided runs counted as exceeding.
     ladders : Ladders or None
-        Where each ladder of levels first exceeds; of incremental dynamic analysis.
+        The level at which each ladder first exceeds; only in incremental dynamic analysis.
     unknown : int
-        How many runs are of unknown outcome.
+        Number of runs of unknown outcome.
     checked : bool
-        Whether the joints of all runs are known; if not, none is said to be unknown for what they do.
+        Whether the joints of all runs are known; if not, no outcome is unknown because of a joint.
     lower : Tally or None
-        The same runs, of which only those exceed that are known to; None if no outcome is unknown.
+        The counts with undecided runs as not exceeding; None if no outcome is unknown.
     """
 
     plan: Plan
@@ -60,11 +61,11 @@ class Tally:
 
     @property
     def unknown_if_checked(self) -> int | None:
-        """How many runs are of unknown outcome; None if that is none, and not all joints are known."""
+        """Number of runs of unknown outcome; None if there are none because joints were not checked."""
         return self.unknown if self.unknown or self.checked else None
 
     def one(self, record: Integers) -> Integers:
-        """The record that each is one with: the same may be in the sets of several levels."""
+        """Return the index of the first entry that is the same record, as sets of several levels may share a record."""
         return np.asarray(self.plan.of_sets.one[record])
 
     def weight(self, record: Integers) -> Reals | None:
@@ -73,14 +74,14 @@ class Tally:
         return np.asarray(sets.weight[record]) if sets.weighted else None
 
     def over(self, *measures: str) -> Cells:
-        """The cells of runs that are alike in some measures, without the empty ones."""
+        """Return the non-empty cells of runs that have the same intensity in some measures."""
         together = not any(_differs_between_samples(self.plan, self.samples, measure) for measure in measures)
         runs = self.runs.sum(axis=0, keepdims=True) if together else self.runs
         there = np.nonzero(runs)
         return Cells(self, there, runs[there], together)
 
     def decided_by_level(self, measure: str) -> bool:
-        """Whether all runs of a level have one intensity: whatever was scaled to it, and drawn of the structure."""
+        """Return whether all runs of a level have the same intensity in a measure."""
         if measure == self.plan.measure:
             return True
         return proportional(measure, self.plan.measure) and not _drawn_otherwise(self.plan, self.samples)
@@ -88,12 +89,12 @@ class Tally:
 
 @dataclass(frozen=True, eq=False)
 class Ladders:
-    """Runs that differ in their level alone, for each sample, record, restitution and polarity.
+    """Ladders: for each sample, record, restitution and polarity, the runs that differ only in their level.
 
     Parameters
     ----------
     first : dict of limit state to ndarray of int, shape (samples, records, etas, polarities)
-        The level at which each first exceeds; the number of levels if it does not.
+        Index of the level at which the ladder first exceeds; the number of levels if it never does.
     there : ndarray of bool, shape (samples, records, etas, levels, polarities)
         The runs that can be used.
     """
@@ -102,32 +103,31 @@ class Ladders:
     there: Bools
 
     def below(self, limit: Limit) -> Integers:
-        """The last level of each ladder that does not exceed, before the first that does; -1 if there is none."""
+        """Return the last level of each ladder that does not exceed, below the first that does; -1 if there is none."""
         levels = np.arange(self.there.shape[3])[:, None]
         lower = self.there & (levels < self.first[limit][..., None, :])
         return np.asarray(np.where(lower, levels, -1).max(axis=3))
 
     def above(self, limit: Limit) -> Integers:
-        """How many runs of each sample, record and level are at the first that exceeds or above it."""
+        """Return the number of runs of each sample, record and level at or above the first level that exceeds."""
         levels = np.arange(self.there.shape[3])[:, None]
         return np.asarray((self.there & (levels >= self.first[limit][..., None, :])).sum(axis=(2, 4)))
 
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """Runs that are alike, counted: those of one record, level and, where it matters, sample.
+    """Cells of equal runs: those of one record, one level and, if samples differ, one sample.
 
     Parameters
     ----------
     tally : Tally
-        What they are of.
+        The counts from which the cells are made.
     place : tuple of ndarray of int, each of shape (n,)
-        Which sample of the structure, record and level each cell is of; where samples are together the first stands for
-        all.
+        Indices of sample, record and level of each cell; if samples are counted together, the first stands for all.
     runs : ndarray of int, shape (n,)
-        How many there are.
+        Number of runs in each cell.
     together : bool
-        Whether samples are.
+        Whether samples are counted together.
     """
 
     tally: Tally
@@ -137,12 +137,12 @@ class Cells:
 
     @property
     def record(self) -> Integers:
-        """The record of each."""
+        """Index of the record of each cell."""
         return self.place[1]
 
     @property
     def level(self) -> Integers:
-        """The level of each."""
+        """Index of the level of each cell."""
         return self.place[2]
 
     def of(self, table: Integers) -> Integers:
@@ -151,23 +151,23 @@ class Cells:
         return np.asarray(summed[self.place])
 
     def exceeding(self, limit: Limit) -> Integers:
-        """How many runs of each exceed."""
+        """Return the number of runs of each cell that exceed a limit state."""
         return self.of(self.tally.exceeding[limit])
 
     def intensities(self, measure: str) -> Reals:
-        """The intensity of each."""
+        """Return the intensity of each cell in a measure."""
         return intensities(self.tally.plan, measure, self.place[0] + self.tally.samples.start, self.record, self.level)
 
 
 def intensities(plan: Plan, measure: str, sample: Integers, record: Integers, level: Integers) -> Reals:
-    """The intensity of runs; where the levels are of it, to the last digit."""
+    """Return the intensity of runs; exactly the level if the levels are of this measure."""
     if measure == plan.measure:
         return np.asarray(np.array(plan.levels)[level])
     return plan.intensities(measure, sample, record, level, plan.factors(sample, record, level))
 
 
 def samples_of(plan: Plan, structure: str) -> range:
-    """The places of a structure's samples."""
+    """Return the indices of a structure's samples."""
     places = [k for k, trial in enumerate(plan.trials) if trial.structure == structure]
     return range(places[0], places[-1] + 1)
 
@@ -189,17 +189,17 @@ def count(
     store : Store
         Open to read.
     plan : Plan
-        Its runs.
+        The plan of its runs.
     structure : str
-        Which structure.
+        Name of the structure.
     limits : sequence of limit states
-        What is asked of the runs.
+        The limit states to count.
     measures : sequence of str
         Measures in which their intensities will be requested; `Tally.over` gives no others.
     ladders : bool
-        Whether to find where ladders of levels first exceed.
+        Whether to find the level at which each ladder first exceeds.
     counted : callable, optional
-        Told how far it is.
+        Called with the number of runs read since the last call.
     """
     samples = samples_of(plan, structure)
     reach = {limit: table[samples.start : samples.stop] for limit, table in kept(store.fact, limits).items()}
@@ -245,7 +245,7 @@ def count(
 
 
 class _Counts:
-    """How many runs exceed, and where ladders first do, while they are counted; see `Tally` and `Ladders`."""
+    """Numbers of exceeding runs and first levels of ladders, while they are counted; see `Tally` and `Ladders`."""
 
     def __init__(
         self, limits: Sequence[Limit], shape: tuple[int, ...], rungs: tuple[int, ...] | None, levels: int
@@ -261,24 +261,24 @@ class _Counts:
 
 
 def exceeds(found: Endings, limit: Limit, reach: Reals | None = None) -> Bools:
-    """Return which runs exceed a limit state, or may: of unknown outcome, all that are not known to.
+    """Return which runs exceed a limit state or may exceed it because their outcome is unknown.
 
     Parameters
     ----------
     found : Endings
-        n runs.
+        The endings of n runs.
     limit : limit state
-        Which.
+        The limit state.
     reach : ndarray, shape (n, 2), optional
-        Of a displacement, the rotations of each run [rad].
+        For a displacement, the positive and the negative rotation of each run at which the top reaches it [rad].
     """
     return np.asarray(found.unknown | _exceeds(found, limit, reach, found.peak_ratio))
 
 
 def known_to_exceed(found: Endings, limit: Limit, reach: Reals | None, phi_cr: Reals) -> Bools:
-    """Return which runs are known to exceed a limit state: of unknown outcome, by what was seen of them.
+    """Return which runs are known to exceed a limit state, even if their outcome is unknown.
 
-    That is uplift, a first slip, or the peak until the first joint would not bear.
+    A run of unknown outcome is known by its uplift, its first slip, or its peak until the first joint would fail.
 
     Parameters
     ----------
@@ -299,7 +299,7 @@ def known_to_exceed(found: Endings, limit: Limit, reach: Reals | None, phi_cr: R
 
 
 def _exceeds(found: Endings, limit: Limit, reach: Reals | None, ratio: Reals) -> Bools:
-    """Whether runs exceed a limit state, by their peaks over phi_cr if it is a ratio."""
+    """Return which runs exceed a limit state, by their peaks over phi_cr if the limit state is a ratio."""
     if limit == SLIDING:
         return found.slides
     overturned = found.overturned
@@ -312,9 +312,9 @@ def _exceeds(found: Endings, limit: Limit, reach: Reals | None, ratio: Reals) ->
 
 
 def peaks(store: Store, plan: Plan, structure: str) -> Reals:
-    """Peak phi/phi_cr of each ladder that is complete, shape (m, levels); NaN where it overturns.
+    """Return the peak phi/phi_cr of each complete ladder, shape (m, levels); NaN where a run overturns.
 
-    Infinite where the outcome is unknown.
+    Peaks of unknown outcome are infinite.
     """
     table = endings_of(store, plan, structure)
     ladders = np.moveaxis(table, 3, -1).reshape(-1, table.shape[3])
@@ -323,10 +323,10 @@ def peaks(store: Store, plan: Plan, structure: str) -> Reals:
 
 
 def endings_of(store: Store, plan: Plan, structure: str) -> Reals:
-    """How the runs of a structure end, shape (samples, records, etas, levels, polarities).
+    """Return how the runs of a structure end, shape (samples, records, etas, levels, polarities).
 
-    The peak phi/phi_cr; 0 without uplift, infinite where it overturns, `UNSEEN` where the outcome is unknown, NaN where
-    no run is that could be followed.
+    Each entry is the peak phi/phi_cr; 0 without uplift, infinite if the run overturns, `UNSEEN` if the outcome is
+    unknown, NaN if there is no run that could be simulated.
     """
     samples = samples_of(plan, structure)
     table = np.full((len(samples), *plan.shape[1:]), np.nan)
@@ -340,18 +340,18 @@ def endings_of(store: Store, plan: Plan, structure: str) -> Reals:
 
 
 def _differs_between_samples(plan: Plan, samples: range, measure: str) -> bool:
-    """Whether samples under one record at one level differ in a measure."""
+    """Return whether samples under one record at one level have different values of a measure."""
     of_motion = of_the_motion(measure) and of_the_motion(plan.measure)
     return measure != plan.measure and not of_motion and _drawn_otherwise(plan, samples)
 
 
 def _drawn_otherwise(plan: Plan, samples: range) -> bool:
-    """Whether samples differ in more than their restitution, so that one motion is not one intensity for all."""
+    """Return whether samples differ in more than restitution, so that their relative intensities differ."""
     return any(set(plan.trials[k].drawn) - {RESTITUTION} for k in samples)
 
 
 def _add(table: Integers, cell: Integers) -> None:
-    """Count cells into a table; those of one call lie together in it."""
+    """Add one to a table for each cell given; the cells of one call lie close together in the table."""
     if cell.size:
         low = int(cell.min())
         found = np.bincount(cell - low)

@@ -1,4 +1,4 @@
-"""What must hold between the fields of a study or site file, also where one of them is wrong by itself."""
+"""Rules between the fields of a study or site file, checked even if some fields are invalid."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ class Part(BaseModel):
 
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-        """What is wrong between fields, although each may be right.
+        """Yield what is wrong between fields that are each valid.
 
         Parameters
         ----------
         given : dict
-            The fields that the file gives, as it gives them.
+            The fields as the file gives them.
         sound : callable
-            Which of them can be looked at.
+            Returns whether a field, or an entry of it, is valid.
 
         Yields
         ------
         place : tuple
-            Where, within this part; empty for the whole of it.
+            Place of the problem within this part; empty for the whole part.
         message : str
             What is wrong there.
         """
@@ -50,27 +50,27 @@ class Part(BaseModel):
 def between_fields(
     annotation: Any, data: Any, wrong: Collection[Place], place: Place = ()
 ) -> Iterator[tuple[Place, str]]:
-    """What is wrong between the fields of a part, and of all parts that it holds.
+    """Yield what is wrong between the fields of a part of a file, and of all parts inside it.
 
-    pydantic looks between the fields of a part only if all of them are right: one mistake would hide another.
+    pydantic checks rules between fields only if all fields are valid, so that one mistake would hide another.
 
     Parameters
     ----------
     annotation : type
         A `Part`, or a list, a mapping or a choice of such.
     data : object
-        What the file gives for it.
+        The data that the file gives for the annotation.
     wrong : collection of tuple
-        The places of what is wrong by itself.
+        Places of the fields that are invalid.
     place : tuple
-        Where the data stand.
+        Place of the data in the file.
 
     Yields
     ------
     place : tuple
-        Where something is wrong.
+        Place of the problem.
     message : str
-        What it is.
+        The problem.
     """
     if isinstance(annotation, type) and issubclass(annotation, Part):
         if not isinstance(data, dict):

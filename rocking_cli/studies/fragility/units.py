@@ -1,4 +1,4 @@
-"""A piece of a study that can be run anywhere: it holds all that its runs need."""
+"""Units of a study: groups of runs with all that is needed to simulate them on any machine."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ MODELS = 16  # of a unit, at most: some 30 megabytes, of arches 120
 
 @dataclass(frozen=True, eq=False)
 class WorkUnit:
-    """Runs with their models and ground motions.
+    """A group of runs with their models and ground motions.
 
     Parameters
     ----------
     id : ndarray of int
         Numbers of the runs in the study.
     runs : Runs
-        What they are; their models and records are places in the tuples below.
+        The runs; their models and records are indices into the tuples below.
     models : tuple of Model
     motions : tuple of GroundMotion
     checked : tuple of Mechanism
-        The structures of the models, where runs are checked for sliding; else empty.
+        The structures of the models if runs are checked for sliding; otherwise empty.
     """
 
     id: Integers
@@ -56,7 +56,7 @@ class WorkUnit:
 
 
 def carry_out(unit: WorkUnit) -> RunRows:
-    """Run a unit on one processor; the same to the last bit wherever and with whatever else it is run."""
+    """Simulate a unit on one processor; the results are the same to the last bit on every machine."""
     found = respond_many(unit.models, unit.motions, unit.runs, threads=1, only_peaks=True)
     slides = None
     if unit.checked:
@@ -85,7 +85,7 @@ def carry_out(unit: WorkUnit) -> RunRows:
 
 
 def _slide_times(unit: WorkUnit, found: Outcomes) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """When runs first slide, followed once more with their samples, and which cannot be followed to their rest."""
+    """Simulate runs again with samples; return when each first slides [s], and which have no complete history."""
     runs = unit.runs
     times, lost = np.full(len(runs), np.nan), np.zeros(len(runs), dtype=bool)
     checks: dict[tuple[int, float | None], Contacts] = {}
@@ -115,7 +115,7 @@ def units(
     *,
     checked: bool = False,
 ) -> Iterator[WorkUnit]:
-    """The runs that are still to do, in units made one at a time.
+    """Yield the runs that are still to be simulated, in units made one at a time.
 
     Parameters
     ----------
@@ -128,11 +128,11 @@ def units(
     model : {"nonlinear", "linear1", "linear2"}
         The equation of motion.
     finished : callable
-        Gives the numbers of the finished runs from one to before another.
+        Returns the numbers of the finished runs from one number to before another.
     size : int
-        Runs of a unit, at most.
+        Largest number of runs of a unit.
     checked : bool
-        Whether they are checked for sliding.
+        Whether the runs are checked for sliding.
     """
     models = _Models(samples, plan.etas, model)
     size = min(size, CHECKED) if checked else size
@@ -157,7 +157,7 @@ def units(
 def _parts(
     plan: Plan, finished: Callable[[int, int], Integers], size: int
 ) -> Iterator[tuple[int, int, Integers]]:  # fmt: skip
-    """The runs to do of each sample under each record that can be used, so many at a time at most."""
+    """Yield the runs to simulate of each sample under each usable record, at most `size` at a time."""
     records, levels = len(plan.records), len(plan.levels)
     there = [np.broadcast_to(plan.of_sets.there(r, levels)[:, None], plan.shape[2:]).ravel() for r in range(records)]
     for k, trial in enumerate(plan.trials):
@@ -174,7 +174,7 @@ def _parts(
 
 
 def unit_size(runs: int, workers: int) -> int:
-    """Runs of a unit, for so many runs on so many workers."""
+    """Return the number of runs of a unit, for a number of runs and of workers."""
     return min(max(ceil(runs / (SHARE * workers)), SMALLEST), LARGEST)
 
 
@@ -200,7 +200,7 @@ def _unit(plan: Plan, runs: Integers, models: _Models, motions: KeptMotions, *, 
 
 
 class _Models:
-    """Models of samples, the last few kept: samples that differ in their restitution only share one."""
+    """Models of samples; the last ones are kept, as samples that differ only in restitution share a model."""
 
     KEPT = 64
 

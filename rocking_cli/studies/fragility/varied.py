@@ -1,4 +1,4 @@
-"""Distributions given with units: `width: {uniform: {low: 800 mm, high: 1 m}}`, in numbers of the field that varies."""
+"""Distributions with units, such as `width: {uniform: {low: 800 mm, high: 1 m}}`, converted to units of fields."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ PURE = ("dispersion",)  # what a distribution is given by and has no unit
 
 
 def in_units_of_fields(document: Document, folder: Path) -> list[Problem]:
-    """Replace texts with units in what varies by numbers; what is wrong with them.
+    """Convert texts with units in the distributions of a study to numbers; return the problems with them.
 
     Parameters
     ----------
     document : Document
-        The study; its data are changed. What is no text with a unit stays as it is.
+        The study; its data are changed. Values that are not texts with a unit stay as they are.
     folder : Path
-        That of the study.
+        The folder of the study.
     """
     entries = document.data.get("structures")
     found: list[Problem] = []

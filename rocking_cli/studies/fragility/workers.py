@@ -1,4 +1,4 @@
-"""Where the units of a study are run: on the processors of this machine, or on a cluster."""
+"""Workers that simulate the units of a study: the processors of this machine, or a cluster."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ PATIENCE = 10.0  # s for an answer of the scheduler
 
 @dataclass(frozen=True)
 class Workers:
-    """Something that runs functions, so many at a time.
+    """An executor of functions, with the number of calls that it runs at a time.
 
     Parameters
     ----------
     executor : concurrent.futures.Executor
-        Takes them.
+        The executor.
     count : int
-        How many it runs at a time.
+        Number of calls that it runs at a time.
     still_there : callable
-        Called where nothing has been finished for a while; raises if nothing will be.
+        Called if no call has finished for a while; raises if none ever will.
     """
 
     executor: Executor
@@ -45,7 +45,7 @@ class Workers:
     still_there: Callable[[], None] = lambda: None
 
     def map(self, function: Callable[[A], B], items: Iterable[A]) -> Iterator[B]:
-        """What a function makes of each item, as they are finished; items are taken as there is room for them."""
+        """Yield the results of a function for each item as they finish; items are taken as there is room for them."""
         on_the_way: set[Future[B]] = set()
         try:
             for item in items:
@@ -59,7 +59,7 @@ class Workers:
                 each.cancel()
 
     def _finished(self, on_the_way: set[Future[B]]) -> Generator[B, None, set[Future[B]]]:
-        """Yield what is finished next; returns what is still on its way."""
+        """Yield the next finished results; return the calls that are still running."""
         done, rest = wait(on_the_way, QUIET, return_when=FIRST_COMPLETED)
         if not done:
             self.still_there()
@@ -69,12 +69,12 @@ class Workers:
 
 @contextmanager
 def threads(jobs: int | None = None) -> Iterator[Workers]:
-    """The processors of this machine: the history kernel leaves the interpreter to the others.
+    """Provide the processors of this machine as workers: the history kernel releases the interpreter to other threads.
 
     Parameters
     ----------
     jobs : int, optional
-        How many; without it, all.
+        Number of threads; by default one for each processor.
     """
     workers = jobs or os.cpu_count() or 1
     with ThreadPoolExecutor(workers) as executor:
@@ -89,12 +89,12 @@ class ClusterError(RockingError):
 
 @contextmanager
 def cluster(address: str) -> Iterator[Workers]:
-    """The workers of a dask.distributed cluster.
+    """Provide the workers of a dask.distributed cluster.
 
     Parameters
     ----------
     address : str
-        Of its scheduler: tcp://host:8786.
+        Address of the scheduler, such as tcp://host:8786.
 
     Raises
     ------
@@ -125,7 +125,7 @@ def cluster(address: str) -> Iterator[Workers]:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep dask from printing its own tracebacks: what goes wrong is said once."""
+    """Keep dask from printing its own tracebacks, as errors are reported once by this package."""
     logs = [logging.getLogger(name) for name in ("distributed", "distributed.client", "tornado.application")]
     levels = [log.level for log in logs]
     for log in logs:
@@ -147,7 +147,7 @@ def _client(address: str) -> distributed.Client:
 
 
 def _threads(client: distributed.Client, address: str) -> int:
-    """How many units the workers of a cluster run at a time, after making sure that they can."""
+    """Check the workers of a cluster, and return how many units they run at a time."""
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
     except TimeoutError:

@@ -1,4 +1,4 @@
-"""Verification of rocking structures by codes of practice: the frame, and all that the author of a code needs of it."""
+"""Verification of rocking structures by codes of practice: the framework, and all that the author of a code needs."""
 
 from rocking_cli.studies.fragility.together import Part as Part
 from rocking_cli.studies.verification.code import Code as Code

@@ -20,12 +20,12 @@ from rocking_cli.studies.verification.site_file import Site, SiteFile
 
 
 def read_site(path: Path) -> SiteFile:
-    """Read a site, for any code there is. Raises `InputError` with every problem of the file."""
+    """Read a site file, for any installed code. Raises `InputError` with every problem of the file."""
     return site_file.read_site(path, codes(), _fields_of)
 
 
 def site_in(document: Document) -> SiteFile:
-    """The site in a parsed file. Raises `InputError` with every problem of it."""
+    """Return the site in a parsed file. Raises `InputError` with every problem of the file."""
     return site_file.site_of(document, codes(), _fields_of)
 
 
@@ -34,12 +34,12 @@ def _fields_of(code: str) -> type[Site]:
 
 
 def code_of(site: SiteFile) -> Code:
-    """The code by which a site verifies."""
+    """Return the code that a site names."""
     return codes()[site.site.code]
 
 
 def of_each(site: SiteFile) -> SiteFile:
-    """Return the site of a survey, in which what is said of the structure itself is left to each row."""
+    """Return the site for a survey, without data of the structure itself, which are left to each row."""
     return replace(site, site=code_of(site).of_each(site.site))
 
 
@@ -67,12 +67,12 @@ def verify(
     site : SiteFile
         The site.
     control : Control, optional
-        The control point; by default what the code takes.
+        The control point; by default that of the code.
 
     Raises
     ------
     InputError
-        If the site does not give what the structure asks for, or the structure has no capacity curve.
+        If the site lacks values that the structure needs, or the structure has no capacity curve.
     MechanismError
         If the structure does not stand.
     """
@@ -106,7 +106,7 @@ def _held(found: object, code: Code, method: str) -> Verification:
 
 
 def _is_whole(each: Verified) -> bool:
-    """Whether a direction is governed by one of its methods, and its ratio and verdict, often its own, are such."""
+    """Return whether a direction is governed by one of its methods, and has a valid ratio and verdict."""
     return each.governs in each.methods and isinstance(each.ratio, Real | None) and each.passed in (None, True, False)
 
 
@@ -122,15 +122,15 @@ def with_histories(found: Verification, structure: Structure, site: SiteFile, as
     site : SiteFile
         The site.
     asked : Histories
-        The records, and to what they belong.
+        The records, with their polarities and limit state.
 
     Raises
     ------
     InputError
-        If the code has no method with time histories, there is no motion, the site does not give the limit state, it
-        has no floor on which the motions could be, or the restitution is none that a history can have.
+        If the code has no method with time histories, there is no motion, the site lacks the limit state or a floor on
+        which the motions could be, or the restitution is not valid for a time history.
     SolverError
-        If a motion cannot be followed to its end.
+        If a motion cannot be simulated to its end.
     """
     refuse(site, motions=True)
     code = code_of(site)

@@ -1,4 +1,4 @@
-"""What a code of practice is to this package: a class derived from `Code`, found through an entry point."""
+"""The interface of a code of practice: a class derived from `Code`, found through an entry point."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ class Number:
     Parameters
     ----------
     meaning : str
-        What it is, in a few words.
+        Meaning of the number, in a few words.
     of : callable, optional
-        Gives it of what was found in a direction, `of(verified)`; None where the site does not give it.
+        `of(verified)` returns the number from the result of a direction, or None if the site lacks values for it.
     of_structure : callable, optional
-        Gives it of a structure without a site instead, `of_structure(mechanism, direction)`.
+        `of_structure(mechanism, direction)` returns the number of a structure without a site instead.
     unit : str
-        Empty for a pure number.
+        Unit of the number; empty if it is dimensionless.
     """
 
     meaning: str
@@ -51,15 +51,15 @@ class Code(ABC):
     Attributes
     ----------
     key : str
-        What site files call it; its entry point of `rocking.codes` has the same name.
+        Name of the code in site files, and of its entry point of `rocking.codes`.
     name, edition : str
-        What it is, and the edition that is followed.
+        Name of the code for readers, and its edition.
     site : type of Site
         The fields of a site file for it.
     starter : str
         A commented site file that works as it is; if it is empty, it is made from the fields and their examples.
     numbers : mapping of str to Number
-        What a structure can be designed for by this code, beside the `ratio` of every code.
+        Numbers of this code for which a structure can be designed, in addition to the `ratio` of every code.
     takes_control : bool
         Whether `verify` takes a control point.
     """
@@ -73,7 +73,7 @@ class Code(ABC):
     takes_control: ClassVar[bool] = False
 
     def __init_subclass__(cls, **named: Any) -> None:
-        """Guard what a subclass answers."""
+        """Wrap the methods of a subclass, so that errors in them are reported as errors of the plugin."""
         super().__init_subclass__(**named)
         guard(cls, ANSWERS, _failed)
 
@@ -93,13 +93,13 @@ class Code(ABC):
         Raises
         ------
         InputError
-            If the site does not give what the structure asks for; a `Problem` with a `field` of the site is reported
-            with its line.
+            If the site lacks values that the structure needs; a `Problem` with a `field` of the site is reported with
+            its line.
         """
 
     @property
     def takes_motions(self) -> bool:
-        """Whether it has a method with time histories."""
+        """Whether the code has a method with time histories."""
         return type(self).with_histories is not Code.with_histories
 
     def found(self, mechanism: Mechanism, directions: Mapping[Direction, Verified], **more: Any) -> Verification:
@@ -114,7 +114,7 @@ class Code(ABC):
         raise NotImplementedError
 
     def of_each(self, site: Any) -> Any:
-        """Return the site of a survey, in which what is said of the structure itself is left to each row."""
+        """Return the site for a survey, without data of the structure itself, which are left to each row."""
         return site
 
     def showing(self) -> Any:

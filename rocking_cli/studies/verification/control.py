@@ -1,4 +1,4 @@
-"""The control point of a verification, whose displacement counts."""
+"""The control point of a verification, whose displacement is compared with the demand."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from rocking_cli.errors import InputError, Problem
 
 @dataclass(frozen=True)
 class Control:
-    """A point of a body [m]; without a body a point that the code chooses."""
+    """Position of a control point [m], and its body; without a body the code chooses the point."""
 
     at: complex
     body: str | None = None
 
 
 def control_at(mechanism: Mechanism, x: float, y: float, body: str | None) -> Control:
-    """A control point of a body, which may be left out where there is one. Raises `InputError` if it is not on it."""
+    """Return a control point of a body; one body may be left out. Raises `InputError` if the point is not on it."""
     carrier = Carrier.of(mechanism.bodies(), mechanism.sketch(), mechanism.alike(), mechanism.piece)
     try:
         spot = carrier.spot(body, complex(x, y), (), "control")

@@ -1,4 +1,4 @@
-"""The codes of practice that are installed, found through the entry points `rocking.codes`."""
+"""The installed codes of practice, found through the entry points `rocking.codes`."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from rocking_cli.studies.verification.site_file import Site
 
 
 class Codes(Plugins[Code]):
-    """Codes by what site files call them. Listing names loads nothing; looking one up loads it.
+    """Installed codes, by their names in site files. Listing names loads nothing; looking one up loads it.
 
     Raises
     ------
     InputError
         On looking up an unknown name.
     MechanismError
-        On looking up a plugin that cannot be loaded, is no code, or has a name that two packages claim.
+        On looking up a plugin that cannot be loaded, is not a code, or has a name that two packages claim.
     """
 
     group = "rocking.codes"
@@ -30,7 +30,7 @@ class Codes(Plugins[Code]):
 
     @staticmethod
     def accept(loaded: object, point: Point) -> Code:
-        """What was loaded, if it is a complete code of its name."""
+        """Return an instance of a loaded class if it is a complete code of its name. Raises `MechanismError` if not."""
         if not (isinstance(loaded, type) and issubclass(loaded, Code)) or loaded.__abstractmethods__:
             raise MechanismError(f"{origin(point)} is not a code: it must derive from Code and be complete")
         texts = [getattr(loaded, key, None) for key in ("name", "edition")]
@@ -48,5 +48,5 @@ class Codes(Plugins[Code]):
 
 @cache
 def codes() -> Codes:
-    """The codes there are."""
+    """Return the installed codes."""
     return Codes()

@@ -1,4 +1,4 @@
-"""What moves a structure in the time histories of a verification: motions of the ground, or of a floor."""
+"""Ground or floor motions in the time histories of a verification."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ the site, or to that given with the records; or motions of the floor, as the use
 
 @dataclass(frozen=True)
 class Motions:
-    """What moves the structure in histories.
+    """The kind of motions in the time histories of a verification.
 
     Parameters
     ----------
     kind : str
-        One of `Moves`.
+        The kind, one of `Moves`.
     floor : str or None
         The floor to which ground motions are carried: period [s], damping ratio, height over that of the building and
         participation factor.
@@ -34,14 +34,14 @@ class Motions:
 
 @dataclass(frozen=True)
 class Histories:
-    """The time histories that are asked for.
+    """The time histories that are requested for a verification.
 
     Parameters
     ----------
     motions : sequence of GroundMotion
-        The records, as scaled. If the site has a floor, ground motions are carried to it.
+        The scaled records. If the site has a floor, ground motions are converted to motions of this floor.
     signs : sequence of int
-        Polarities, of 1 and -1.
+        The polarities: 1, -1 or both.
     state : str, optional
         The limit state to which the records belong; by default the first one.
     on_floor : bool
@@ -58,7 +58,7 @@ class Histories:
 
 
 def where_it_stands(asked: Histories, floor: Floor | None) -> tuple[Motions, Sequence[GroundMotion]]:
-    """Return what the motions of histories are, and ground motions carried to the floor of a site.
+    """Return the kind of the motions of histories, and the motions, converted to the floor of a site if there is one.
 
     Parameters
     ----------

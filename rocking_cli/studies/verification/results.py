@@ -1,4 +1,4 @@
-"""What a verification by any code found."""
+"""Results of a verification by any code."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ ALIKE = 1e-9  # of a ratio: of directions that differ by less none governs
 
 @dataclass(frozen=True)
 class Method:
-    """What a structure has, and what a code asks of it, by one method of verification.
+    """Capacity and demand of a structure by one method of verification.
 
     Parameters
     ----------
     title : str
-        What to call it.
+        Name of the method.
     capacity, demand : float or None
-        Both in the same unit; None if the site does not give what it depends on.
+        Capacity and demand in the same unit; None if the site lacks values on which they depend.
     clause : str
-        Where in the code.
+        The clause of the code.
     unit : str
-        Of both.
+        Unit of capacity and demand.
     """
 
     title: str
@@ -38,14 +38,14 @@ class Method:
 
     @property
     def ratio(self) -> float | None:
-        """Capacity over demand; infinity where nothing is asked, None where one of them is not known."""
+        """Capacity over demand; infinity if the demand is zero, None if either is not known."""
         if self.capacity is None or self.demand is None:
             return None
         return self.capacity / self.demand if self.demand else inf
 
     @property
     def passed(self) -> bool | None:
-        """Whether the capacity meets the demand; None where one of them is not known."""
+        """Whether the capacity meets the demand; None if either is not known."""
         return None if self.ratio is None else self.ratio >= 1 - CLOSE
 
 
@@ -56,22 +56,22 @@ def governing(methods: Mapping[str, Method]) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Verified:
-    """What was found in one direction of rocking.
+    """Result of a verification in one direction of rocking.
 
-    A code whose acceptance is another than that of the method that governs overrides `ratio` and `passed`. Both must
+    A code whose acceptance differs from that of the method that governs overrides `ratio` and `passed`. Both must
     agree: surveys and designs compare the ratio with 1.
 
     Parameters
     ----------
     direction : Direction
     methods : mapping of str to Method
-        What each method of the code found, by its key.
+        Result of each method of the code, by its key.
     governs : str
         The key of the method that decides, such as `governing(methods)`.
     workings : sequence of Working
-        How the numbers came about.
+        The lines of the calculation.
     remarks : sequence of str
-        Sentences on what to know of them.
+        Remarks on the results, as sentences.
     """
 
     direction: Direction
@@ -87,16 +87,16 @@ class Verified:
 
     @property
     def ratio(self) -> float | None:
-        """What the code allows over what it asks for, by what governs; None where the site does not give it."""
+        """Capacity over demand of the method that governs; None if the site lacks values for it."""
         return self.counts.ratio
 
     @property
     def passed(self) -> bool | None:
-        """Whether the code is satisfied; None where the site does not give what is asked for."""
+        """Whether the code is satisfied; None if the site lacks values for it."""
         return self.counts.passed
 
     def is_like(self, other: Verified) -> bool:
-        """Whether another direction has the same numbers, so that one need be shown."""
+        """Return whether another direction has the same numbers, so that only one needs to be shown."""
         if self.methods.keys() != other.methods.keys() or self.governs != other.governs:
             return False
         pairs = [(each, other.methods[key]) for key, each in self.methods.items()]
@@ -116,15 +116,15 @@ class Verification:
     mechanism : Mechanism
         The structure.
     code, name, edition : str
-        By which code, as site files call it and as people do, and which edition of it.
+        The code: its key in site files, its name, and its edition.
     directions : mapping of Direction to Verified
-        What was found in each direction that it can rock in.
+        Result in each direction in which the structure can rock.
     workings : sequence of Working
-        Of what is the same in both, such as the ground.
+        Lines of the calculation that are common to both directions, such as the ground.
     remarks : sequence of str
-        Sentences on the whole.
+        Remarks on the verification, as sentences.
     taken_otherwise : sequence of str
-        Those of them on what was taken otherwise than the structure gives it.
+        Those remarks that name values for which the code used others than the structure gives.
     """
 
     mechanism: Mechanism
@@ -138,23 +138,23 @@ class Verification:
 
     @property
     def governs(self) -> Direction:
-        """The direction that is nearer to failure; the first of those that are alike."""
+        """The direction with the smaller ratio; the first if both are equal."""
         return next(direction for direction, ratio in self._ratios.items() if ratio <= self._least)
 
     @property
     def alike(self) -> bool:
-        """Whether no direction is nearer to failure than the other."""
+        """Whether both directions have the same ratio."""
         return max(self._ratios.values()) <= self._least
 
     @property
     def distinct(self) -> Sequence[Any]:
-        """What was found in each direction; of two that have the same numbers in the first."""
+        """Results of the directions; only the first if both have the same numbers."""
         each = list(self.directions.values())
         return each[:1] if len(each) == 2 and each[0].is_like(each[1]) else each
 
     @property
     def ratio(self) -> float:
-        """What the code allows over what it asks for, in the direction that governs; NaN where it is not known."""
+        """Capacity over demand in the direction that governs; NaN if it is not known."""
         found = self.directions[self.governs].ratio
         return nan if found is None else found
 
@@ -164,7 +164,7 @@ class Verification:
 
     @property
     def _least(self) -> float:
-        """The smallest ratio, with what rounding may add to it."""
+        """The smallest ratio, plus a tolerance for rounding."""
         least = min(self._ratios.values())
         return least + ALIKE * abs(least)
 

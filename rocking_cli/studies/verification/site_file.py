@@ -1,4 +1,4 @@
-"""A site from its YAML file, by the fields that its code asks for, with every problem placed at file:line:column."""
+"""Reading of a site file by the fields of its code, with every problem placed at file:line:column."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ USUAL = "NTC2018"
 
 
 class Site(Part):
-    """What every site file may hold; a code adds what it needs."""
+    """Fields of a site file for every code; a code adds its own."""
 
     code: str = Field(USUAL, description="the code to verify by")
     name: Name | None = Field(None, description="what to call the site")
@@ -30,12 +30,12 @@ class Site(Part):
 
 @dataclass(frozen=True)
 class SiteFile:
-    """A site, and where everything in it stands.
+    """A site, and the file with the lines on which its values stand.
 
     Parameters
     ----------
     site : Site
-        What it says.
+        The site.
     document : Document
         The file.
     """
@@ -44,7 +44,7 @@ class SiteFile:
     document: Document
 
     def placed(self, error: InputError) -> InputError:
-        """The same problems, those of fields of the site with their place in the file."""
+        """Return an error with its problems; those of fields of the site get their place in the file."""
         return InputError(*(self._placed(each) for each in error.problems))
 
     def _placed(self, problem: Problem) -> Problem:
@@ -62,20 +62,20 @@ def read_site(path: Path, codes: Collection[str], fields_of: Callable[[str], typ
     path : Path
         The file.
     codes : collection of str
-        The codes there are.
+        Keys of the installed codes.
     fields_of : callable
-        Gives the fields of a site for one of them.
+        Returns the class of a site for a key of a code.
 
     Raises
     ------
     InputError
-        With every problem of the file: place, field, and what would be right.
+        With every problem of the file: place, field, and valid values.
     """
     return site_of(parse(read_text(path, "site"), str(path), "site", HINT), codes, fields_of)
 
 
 def site_of(document: Document, codes: Collection[str], fields_of: Callable[[str], type[Site]]) -> SiteFile:
-    """The site in a parsed file. Raises as `read_site`."""
+    """Return the site in a parsed file. Raises as `read_site`."""
     code = document.data.get("code", USUAL)
     if isinstance(code, str) and code not in codes:
         problem = document.at(("code",), f"there is no code {code!r}", did_you_mean(code, list(codes)))

@@ -1,4 +1,4 @@
-"""Sentences that are known in several languages: English as they stand, and others on request."""
+"""Sentences in English that can be translated to other languages."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ WITH_COMMA = frozenset({"it"})
 
 
 class _Comma(float):
-    """A number that is written with a decimal comma, whatever its format."""
+    """A number that is written with a decimal comma, in any format."""
 
     def __format__(self, spec: str) -> str:
         return super().__format__(spec).replace(".", ",")
 
 
 def filled(text: str, language: str, values: Mapping[str, Any]) -> str:
-    """A text with its slots filled, numbers as the language writes them."""
+    """Fill the slots of a text, with numbers as the language writes them."""
     if language in WITH_COMMA:
         values = {name: _Comma(value) if isinstance(value, float) else value for name, value in values.items()}
     return text.format(**values)
 
 
 class Told(str):
-    """A sentence in English, which it is as a string, that can be had in other languages."""
+    """A sentence in English, as a string, that can be translated to other languages."""
 
     __slots__ = ("_key", "_texts", "_values")
     _key: str
@@ -35,7 +35,7 @@ class Told(str):
 
     @classmethod
     def of(cls, texts: Texts, key: str, **values: Any) -> Self:
-        """The sentence of a key; values that are sentences too are said in the same language."""
+        """Return the sentence of a key with its slots filled; values that are sentences are translated with it."""
         told = cls(filled(texts["en"][key], "en", values))
         told._key, told._texts, told._values = key, texts, values
         return told

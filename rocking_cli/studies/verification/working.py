@@ -1,4 +1,4 @@
-"""How a number of a verification came about: its formula, what was put in, its clause, and how far that was checked."""
+"""Lines of a calculation in a verification: formula, numbers, clause, and how far the formula was checked."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ PLAIN = {
 
 
 class Clause(str):
-    """A place in a code; transcribed if what it says was checked against a transcription of the text."""
+    """A clause of a code; `transcribed` if it was checked against a transcription of the text."""
 
     __slots__ = ("transcribed",)
     transcribed: bool
 
     def __new__(cls, place: str, *, transcribed: bool = False) -> Self:
-        """Make a clause of a place."""
+        """Create a clause from its place in the code."""
         clause = super().__new__(cls, place)
         clause.transcribed = transcribed
         return clause
@@ -44,21 +44,21 @@ class Working:
     Parameters
     ----------
     symbol : str
-        What is computed, as the code calls it.
+        Symbol of the result, as in the code.
     meaning : str
-        What it is, in a few words.
+        Meaning of the result, in a few words.
     formula : str
-        By which formula.
+        The formula.
     numbers : str
-        The same with numbers put in; empty where they are many.
+        The formula with numbers in place of symbols; empty if they are too many.
     value : float
         The result.
     unit : str
-        Its unit; empty for a pure number.
+        Unit of the result; empty if it is dimensionless.
     clause : str
-        Where in the code.
+        The clause of the code.
     standing : {"print", "transcription", "code", "ours", "plain"}
-        How far the formula was checked, see `Standing`; of a formula of the code its clause decides.
+        How far the formula was checked, see `Standing`; for a formula of the code, its clause decides.
     state : str
         The limit state to which it belongs; empty if it belongs to none alone.
     section : str
@@ -81,7 +81,7 @@ class Working:
             object.__setattr__(self, "standing", "transcription")
 
     def in_plain(self, section: str | None = None) -> Working:
-        """The same in plain characters; `section` says in which part of the calculation, if that is not known yet."""
+        """Return the line in plain characters; `section` names its part of the calculation, if not known yet."""
         texts: dict[str, Any] = {
             key: in_plain(getattr(self, key)) for key in ("symbol", "meaning", "formula", "numbers", "unit")
         }
@@ -89,31 +89,31 @@ class Working:
 
 
 def as_written(value: float) -> str:
-    """A number in a formula."""
+    """Return a number as it is written in a formula."""
     return f"{value + 0.0:.6g}"
 
 
 @dataclass(frozen=True)
 class Formula:
-    """A formula of a code, written once for every printout.
+    """A formula of a code, from which all outputs of a calculation are made.
 
     Parameters
     ----------
     symbol : str
-        What it gives; subscripts and superscripts as in `d_[0]^[*]`, names that differ from use to use in slots, as in
-        `T_[{state}]`.
+        Symbol of the result; subscripts and superscripts as in `d_[0]^[*]`, names that differ between uses in slots, as
+        in `T_[{state}]`.
     text : str
-        Its right-hand side, in symbols, with the same marks and slots.
+        The right-hand side in symbols, with the same marks and slots.
     numbers : str
-        The same with a slot for each number; `{P} · {x} + …` is a sum over several.
+        The right-hand side with a slot for each number; `{P} · {x} + …` is a sum over several.
     unit : str
-        Of the result.
+        Unit of the result.
     clause : str
-        Where in the code.
+        The clause of the code.
     meaning : str
-        What it is, in a few words; of a code with a sheet, the key of its texts.
+        Meaning of the result, in a few words; for a code with a calculation sheet, the key of its texts.
     standing : {"code", "print", "ours", "plain"}
-        How far it was checked, see `Standing`.
+        How far the formula was checked, see `Standing`.
     """
 
     symbol: str
@@ -133,20 +133,20 @@ class Formula:
         marks: Callable[[str], str] = str,
         **numbers: Any,
     ) -> Working:
-        """A line of a calculation by this formula.
+        """Return a line of a calculation by this formula.
 
         Parameters
         ----------
         value : float
             The result.
         names : mapping of str to str, optional
-            What is in the slots of symbol, text, unit and meaning; `state` is the limit state of the line.
+            Names for the slots of symbol, text, unit and meaning; `state` is the limit state of the line.
         write : callable
-            How a number is written.
+            Function that writes a number.
         marks : callable
-            How a formula is written with the decimal marks of a language.
+            Function that writes a formula with the decimal marks of a language.
         **numbers
-            What is in the slots of the numbers: a number, several for a sum, or a text as it is.
+            Values for the slots of the numbers: a number, several for a sum, or a text.
 
         Raises
         ------
@@ -177,7 +177,7 @@ class Formula:
 
 
 def put(numbers: str, given: Mapping[str, Any], write: Callable[[float], str]) -> str:
-    """A formula with numbers in its slots, those below zero and with a power of ten in parentheses."""
+    """Fill the slots of a formula with numbers; negative ones and those with a power of ten in parentheses."""
 
     def held(value: Any) -> str:
         text = value if isinstance(value, str) else write(value)
@@ -195,7 +195,7 @@ def put(numbers: str, given: Mapping[str, Any], write: Callable[[float], str]) -
 
 
 def in_plain(text: str) -> str:
-    """A formula, or a text with symbols, in plain characters: `alpha0 g/(e* FC)`, `T_SLV`."""
+    """Return a formula, or a text with symbols, in plain characters: `alpha0 g/(e* FC)`, `T_SLV`."""
 
     def mark(found: re.Match[str]) -> str:
         below, what = found[1] == "_", found[2]
@@ -205,7 +205,7 @@ def in_plain(text: str) -> str:
 
 
 def _spelled(sign: str) -> str:
-    """A Greek letter by its name; another sign as it is."""
+    """Return the name of a Greek letter; any other sign unchanged."""
     if sign.isascii() or not (named := name(sign, "")).startswith("GREEK"):
         return sign
     letter = named.rpartition(" ")[2]
@@ -213,7 +213,7 @@ def _spelled(sign: str) -> str:
 
 
 class Later(Sequence[Working]):
-    """Workings that are written when they are first looked at."""
+    """Lines of a calculation that are made when they are first accessed."""
 
     def __init__(self, write: Callable[[], Sequence[Working]]) -> None:
         self._write = write

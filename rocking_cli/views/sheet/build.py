@@ -1,4 +1,4 @@
-"""The sheet of a verification: its head, what its code says, and what it was made from."""
+"""Assembly of the calculation sheet of a verification: its heading, the parts of its code, and its sources."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ MOST = 200  # lines of a file that are printed
 
 @dataclass(frozen=True)
 class SheetSources:
-    """What a sheet was made from.
+    """Sources of a calculation sheet.
 
     Parameters
     ----------
     structure, site : File
-        The two files.
+        The files of the structure and of the site.
     records : mapping of str to File or None
-        Of each ground motion its file; None for a pulse.
+        File of each ground motion; None for a pulse.
     versions : mapping of str to str
     """
 
@@ -39,16 +39,16 @@ class SheetSources:
 
 @dataclass(frozen=True)
 class SheetOfCode:
-    """What a code says on its sheet.
+    """The texts and parts that a code contributes to its calculation sheet.
 
     Parameters
     ----------
     texts : mapping of str to mapping
-        Of each language its texts by their keys, among them `subtitle`, `reading_digits` and `reading_marks`.
+        For each language, the texts by their keys, including `subtitle`, `reading_digits` and `reading_marks`.
     spelled : mapping of str to str
-        How the symbols of plain sentences are printed.
+        Printed forms of the symbols in plain sentences.
     parts : callable
-        Gives the parts of the sheet, the summary first: `parts(language, verification, site)`.
+        `parts(language, verification, site)` returns the parts of the sheet, the summary first.
     """
 
     texts: Mapping[str, Mapping[str, str]]
@@ -56,7 +56,7 @@ class SheetOfCode:
     parts: Callable[[Language, Any, Any], Iterable[SheetPart]]
 
     def language(self, key: str) -> Language:
-        """A language with the texts of the code. Raises `InputError` if there are none."""
+        """Return a language with the texts of the code. Raises `InputError` if there are none."""
         if key not in self.texts:
             known = ", ".join(self.texts)
             raise InputError(
@@ -66,7 +66,7 @@ class SheetOfCode:
 
 
 def sheet_of(site: SiteFile) -> SheetOfCode:
-    """The sheet of the code of a site. Raises `InputError` if it has none."""
+    """Return the sheet of the code of a site. Raises `InputError` if it has none."""
     found = code_of(site).sheet()
     if found is None:
         hint = "`rocking verify` prints the result without one"
@@ -77,20 +77,20 @@ def sheet_of(site: SiteFile) -> SheetOfCode:
 
 
 def sheet(found: Verification, site: SiteFile, language: Language, title: TitleBlock, made: SheetSources) -> Sheet:
-    """The sheet of a verification, in a language.
+    """Build the calculation sheet of a verification, in a language.
 
     Parameters
     ----------
     found : Verification
-        What was found.
+        The verification.
     site : SiteFile
-        By which site.
+        The site.
     language : Language
-        In which it is told.
+        Language of the sheet.
     title : TitleBlock
-        For whom, by whom, when and by which command.
+        Heading: project, author, date and command.
     made : SheetSources
-        Files and versions.
+        Source files and versions.
 
     Raises
     ------
@@ -142,7 +142,7 @@ def _inputs(say: Language, found: Verification, title: TitleBlock, made: SheetSo
 
 
 def _text(say: Language, file: File) -> Iterator[Item]:
-    """What is in a file, as far as it goes on paper."""
+    """Yield the content of a file, cut if it is too long for a printed page."""
     lines: Sequence[str] = file.text.splitlines()
     yield Listing("\n".join(lines[:MOST]))
     if len(lines) > MOST:

@@ -1,4 +1,4 @@
-"""A sheet before it is a page or a document: headings, sentences, tables and steps, in one language."""
+"""Structure of a calculation sheet, independent of its output format: headings, sentences, tables and steps."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rocking_cli.views.sheet.language import Language
 
 @dataclass(frozen=True)
 class Sentence:
-    """A paragraph; the answer of the sheet stands out, and says whether it is a bad one."""
+    """A paragraph; `answers` marks the answer of the sheet, `fails` a negative one."""
 
     text: str
     answers: bool = False
@@ -20,7 +20,7 @@ class Sentence:
 
 @dataclass(frozen=True)
 class Grid:
-    """A table: its caption, headings and cells, and which columns hold numbers."""
+    """A table: caption, headings, cells, and indices of the columns with numbers."""
 
     caption: str
     columns: Sequence[str]
@@ -37,7 +37,7 @@ class Steps:
 
 @dataclass(frozen=True)
 class Drawing:
-    """The picture of the structure: what it shows."""
+    """The drawing of the structure, with a label of its content."""
 
     label: str
 
@@ -54,17 +54,17 @@ Item = Sentence | Grid | Steps | Drawing | Listing
 
 @dataclass(frozen=True)
 class SheetPart:
-    """A section, or a part of one.
+    """A section of a sheet, or a subsection.
 
     Parameters
     ----------
     key : str
-        Its address on a page.
+        Anchor of the section on a page.
     heading : str
     items : sequence
-        What is in it.
+        Content of the section.
     parts : sequence of SheetPart
-        And below it.
+        Subsections.
     """
 
     key: str
@@ -74,7 +74,7 @@ class SheetPart:
 
 
 def workings(parts: Iterable[SheetPart]) -> Iterator[Working]:
-    """The steps of parts in plain characters, each with the heading under which it stands."""
+    """Yield the steps of parts in plain characters, each with the heading of its section."""
     for part in parts:
         for item in part.items:
             if isinstance(item, Steps):
@@ -94,7 +94,7 @@ class Sheet:
         Project, place, author, date, ...
     parts : sequence of SheetPart
     logo : str, optional
-        The address of a picture that holds the picture itself.
+        The logo as a data URL.
     """
 
     language: Language

@@ -1,4 +1,4 @@
-"""The language of a sheet: its texts, and how it writes numbers."""
+"""The language of a sheet: its texts, and its number format."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ABSENT = "–"
 
 
 class LanguageTexts(NamedTuple):
-    """The texts of a language, its months, what it calls mechanisms and says of them, and the words of pictures."""
+    """Words of a language: texts, names of months, titles and cautions of mechanisms, and words in drawings."""
 
     texts: Mapping[str, str]
     months: Sequence[str]
@@ -43,9 +43,9 @@ class Language:
     key : str
         "en" or "it".
     own : mapping of str to str
-        The texts of a code, beside those of every sheet.
+        The texts of a code, in addition to those of every sheet.
     spelled : mapping of str to str
-        How the symbols of plain sentences are printed.
+        Printed forms of the symbols in plain sentences.
     """
 
     key: str
@@ -54,21 +54,21 @@ class Language:
 
     @cached_property
     def texts(self) -> Mapping[str, str]:
-        """Its texts."""
+        """Texts of the language, by key."""
         return {**TABLES[self.key].texts, **self.own}
 
     def say(self, key: str, **values: Any) -> str:
-        """A text with its slots filled: numbers are written, and texts of others kept from being formulas."""
+        """Return a text with its slots filled; marks of formulas in values are escaped."""
         ready = {name: plain(value) if isinstance(value, str) else value for name, value in values.items()}
         return filled(self.texts[key], self.key, ready)
 
     def remark(self, text: str) -> str:
-        """A sentence of the study, in this language where it knows it, with its symbols as they are printed."""
+        """Return a sentence of the study in this language, if translated, with its symbols as printed."""
         said, marks = said_in(self.key, text), "|".join(map(re.escape, self.spelled))
         return re.sub(marks, lambda found: self.spelled[found[0]], said) if marks else said
 
     def number(self, value: float | None, digits: int = DIGITS) -> str:
-        """A number as it is printed."""
+        """Return a number as it is printed."""
         if value is None or isnan(value):
             return ABSENT
         mantissa, _, power = f"{value + 0.0:.{digits}g}".partition("e")
@@ -80,7 +80,7 @@ class Language:
     def step(
         self, formula: Formula, value: float, names: Mapping[str, Any] | None = None, /, **numbers: Any
     ) -> Working:
-        """A line of a calculation by a formula of the code, in this language; see `Formula.working`."""
+        """Return a line of a calculation by a formula of the code, in this language; see `Formula.working`."""
         found = formula.working(value, names, write=self.number, marks=self.formula, **numbers)
         return replace(
             found,
@@ -90,27 +90,27 @@ class Language:
         )
 
     def formula(self, formula: str) -> str:
-        """The numbers that a formula itself has, such as 1.68, as the language writes them."""
+        """Return a formula with the decimal marks of its constants, such as 1.68, as the language writes them."""
         return re.sub(r"(?<=\d)\.(?=\d)", ",", formula) if self.key in WITH_COMMA else formula
 
     def day(self, when: date) -> str:
-        """A date."""
+        """Return a date in words."""
         return f"{when.day} {TABLES[self.key].months[when.month - 1]} {when.year}"
 
     @property
     def words_of_pictures(self) -> Mapping[str, str]:
-        """The lines of pictures, by what they are in English."""
+        """Translations of the words in drawings, by their English form."""
         return TABLES[self.key].pictures
 
     def mechanism(self, key: str, title: str) -> str:
-        """What a mechanism is; one that is not known here by its own words."""
+        """Return the title of a mechanism in this language; the given title if there is no translation."""
         return TABLES[self.key].mechanisms.get(key, plain(title))
 
     def caution(self, key: str, text: str) -> str:
-        """What to beware of in a mechanism."""
+        """Return the caution about a mechanism in this language; the given text if there is no translation."""
         return TABLES[self.key].cautions.get(key, plain(text))
 
 
 def plain(text: str) -> str:
-    """A text of others, in which nothing is taken for a sub- or superscript."""
+    """Escape a text so that nothing in it is read as a sub- or superscript."""
     return re.sub(r"([_^])\[", "\\1\N{WORD JOINER}[", text)

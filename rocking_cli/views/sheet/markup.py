@@ -11,14 +11,14 @@ Place = Literal["", "sub", "sup"]
 
 
 class Run(NamedTuple):
-    """A piece of text, and where it stands."""
+    """A piece of text, and whether it is a subscript, a superscript or neither."""
 
     text: str
     place: Place = ""
 
 
 def runs(text: str) -> Iterator[Run]:
-    """The pieces of a text."""
+    """Yield the pieces of a text with sub- and superscripts."""
     end = 0
     for mark in MARK.finditer(text):
         if mark.start() > end:

@@ -1,1 +1,1 @@
-"""The sheet of a verification by the Italian code: its steps, from the site to the capacity by each method."""
+"""The calculation sheet of a verification by the Italian code: steps from the site to the capacity by each method."""

@@ -1,4 +1,4 @@
-"""All parts of the sheet that the Italian code decides."""
+"""The parts of a calculation sheet that depend on the Italian code."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rocking_cli.views.sheet.language import Language
 
 
 def parts(say: Language, found: ItalianVerification, given: ItalianSite) -> Iterator[SheetPart]:
-    """Summary, drawing, site, and each direction that has numbers of its own."""
+    """Yield summary, drawing, site, and each direction; one direction if both have the same numbers."""
     shown, ground = _shown(say, found), SiteGround(of_structure(given, found.mechanism))
     yield summary.part(say, found, shown)
     yield SheetPart("drawing", say.say("drawing"), [Drawing(say.say("drawing_label", name=found.mechanism.name))])
@@ -30,7 +30,7 @@ def parts(say: Language, found: ItalianVerification, given: ItalianSite) -> Iter
 
 
 def _shown(say: Language, found: ItalianVerification) -> Mapping[str, ItalianVerified]:
-    """The directions that differ, by what they are called."""
+    """Return the directions that differ, by their names."""
     if len(found.distinct) < len(found.directions):
         return {say.say("both"): found.distinct[0]}
     return {say.say(one.direction.label): one for one in found.distinct}

@@ -1,4 +1,4 @@
-"""Steps of the chain: weights, virtual displacements, what holds it back; at rest and displaced."""
+"""Steps of the chain in the sheet: weights, virtual displacements and restraints, at rest and displaced."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ NONE = 1e-9  # of what makes up a sum: what is left of it is none
 
 @dataclass(frozen=True)
 class Scale:
-    """What weights are printed in: kN, or newton for each kilogram of a structure without masses.
+    """Unit of printed weights: kN, or N per kg for a structure without masses.
 
     Parameters
     ----------
     size : float
-        Of one [N].
+        Size of one unit [N].
     unit : str
     length : float
         Size of the structure [m].
@@ -37,21 +37,21 @@ class Scale:
 
     @classmethod
     def of(cls, chain: Chain) -> Scale:
-        """That of a structure."""
+        """Return the scale of a structure."""
         length = max(abs(each.spot.at) for each in chain.weights)
         return cls(1e3, "kN", length) if chain.mechanism.has_mass else cls(1.0, "N/kg", length)
 
     def weight(self, value: float) -> float:
-        """A weight as it is printed."""
+        """Convert a weight [N] to the printed unit."""
         return value / self.size
 
     def near(self, value: float) -> float:
-        """A length without rounding about zero."""
+        """Return a length, with rounding errors about zero removed [m]."""
         return 0.0 if abs(value) < ROUNDING * self.length else value
 
 
 def part(say: Language, curve: ExactCurve, key: str) -> SheetPart:
-    """The chain at rest, to alpha0, e* and M*."""
+    """Return the part on the chain at rest, up to alpha0, e* and M*."""
     chain = curve.chain
     scale, rest = Scale.of(chain), DisplacedChain(curve, 0.0)
     items: list[Item] = [
@@ -65,7 +65,7 @@ def part(say: Language, curve: ExactCurve, key: str) -> SheetPart:
 
 
 def _weights(say: Language, chain: Chain, scale: Scale) -> Grid:
-    """Every mass that moves, and what of it counts."""
+    """Return a table of every mass that moves, with its shares in P and in P + Q."""
     mechanism, moving = chain.mechanism, {name for block in chain.blocks for name in block.bodies}
     named = [(body.name, body.mass, 1.0, 1.0) for body in mechanism.weighed() if body.name in moving]
     named += [
@@ -85,7 +85,7 @@ def _weights(say: Language, chain: Chain, scale: Scale) -> Grid:
 
 
 def _of_blocks(say: Language, chain: Chain, scale: Scale) -> Iterator[Working]:
-    """The weight of each block, and where it acts."""
+    """Yield steps for the weight of each block and its point of action."""
     for k, block in enumerate(chain.blocks, 1):
         own = [each for each in chain.weights if each.spot.body in block.bodies]
         carried, inertial = ([scale.weight(getattr(each, key)) for each in own] for key in ("carried", "inertial"))
@@ -102,7 +102,7 @@ def _of_blocks(say: Language, chain: Chain, scale: Scale) -> Iterator[Working]:
 
 
 def at_work(say: Language, position: DisplacedChain, scale: Scale) -> Grid:
-    """How each block goes on there: its centre of rotation, barycentres and virtual displacements."""
+    """Return a table of the motion of each block in a position: centre of rotation, barycentres, displacements."""
     rows = []
     for k, each in enumerate(position.blocks, 1):
         centre = ["–", "–"] if each.centre is None else [say.number(scale.near(z)) for z in _xy(each.centre)]
@@ -123,7 +123,7 @@ def _virtual(each: Moved, scale: Scale) -> tuple[float, float]:
 
 
 def _x_of_P(position: DisplacedChain, each: Moved, scale: Scale) -> float:
-    """Where the barycentre of what a block carries is sideways [m]; that of P + Q where it carries nothing."""
+    """Return the horizontal position of the barycentre of P of a block [m]; of P + Q if it carries nothing."""
     if each.centre is None or not each.block.P:
         return scale.near(each.at.real)
     return scale.near(each.centre.real - position.chain.direction * each.dy / each.turns)
@@ -134,7 +134,7 @@ def _xy(z: complex) -> tuple[float, float]:
 
 
 def held(say: Language, position: DisplacedChain, scale: Scale) -> list[Item]:
-    """What forces and ties do there, if there are any."""
+    """Return a table of forces and ties in a position; empty if there are none."""
     if not position.held:
         return []
     rows = [
@@ -149,13 +149,13 @@ def held(say: Language, position: DisplacedChain, scale: Scale) -> list[Item]:
 
 
 def _printed(position: DisplacedChain, scale: Scale, total: float, kind: str) -> float:
-    """A sum over the weights P or PQ of the blocks as it is printed: without rounding about zero."""
+    """Return a sum over the weights P or PQ of the blocks in printed units, without rounding errors about zero."""
     value, most = scale.weight(total), sum(abs(getattr(each.block, kind)) for each in position.blocks)
     return 0.0 if abs(value) < NONE * scale.weight(most) * scale.length else value
 
 
 def multiplier(say: Language, position: DisplacedChain, scale: Scale, symbol: str) -> Iterator[Working]:
-    """Steps to alpha at a position."""
+    """Yield the steps to alpha in a position."""
     unit, blocks = {"unit": scale.unit}, position.blocks
     over = {F.PY.text: _printed(position, scale, position.lifted, "P")}
     under = {F.PQX.text: _printed(position, scale, position.driven, "PQ")}

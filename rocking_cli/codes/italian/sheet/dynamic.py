@@ -10,7 +10,7 @@ from rocking_cli.views.sheet.language import Language
 
 
 def part(say: Language, each: ItalianVerified, found: Dynamic, key: str) -> SheetPart:
-    """The dynamic method in a direction."""
+    """Return the part on the dynamic method in a direction."""
     rows = [
         [record.name, *(_peak(say, record, found.d0, confident=confident) for confident in (True, False))]
         for record in found.records

@@ -22,7 +22,7 @@ RULE = {OF_STATE[rule.state][1]: rule for rule in RULES}
 
 
 def title(say: Language, key: str) -> str:
-    """What a method is called: by a text of its own, or by that of its kind at any limit state."""
+    """Return the name of a method: by its own text, or by the text of its kind at a limit state."""
     own = f"method_{key}"
     return say.say(own) if own in say.texts else say.say(f"method_{_kind(key)}_at", state=STATE[key])
 
@@ -33,14 +33,14 @@ def _kind(key: str) -> str:
 
 @dataclass(frozen=True)
 class MethodComparison:
-    """What a method compares.
+    """The capacity and the demand that a method compares.
 
     Parameters
     ----------
     state : str
-        By whose ground.
+        Limit state whose ground gives the demand.
     name, capacity : str, float
-        What the structure has.
+        Symbol and value of the capacity.
     demand : str
         The demand of the ground, in symbols.
     at : At or None
@@ -56,14 +56,14 @@ class MethodComparison:
 
 @dataclass(frozen=True)
 class Methods:
-    """The methods of a direction, and the language they are told in."""
+    """The methods of a direction, written in a language."""
 
     say: Language
     ground: SiteGround
     found: ItalianVerified
 
     def parts(self, key: str) -> Iterator[SheetPart]:
-        """A part for each method whose limit state the site gives."""
+        """Yield a part for each method whose limit state the site gives."""
         for name, method in self.found.methods.items():
             if method.a_g is None:
                 continue
@@ -90,7 +90,7 @@ class Methods:
         return self._activation(STATE[name])
 
     def _activation(self, state: str) -> MethodComparison:
-        """The onset of rocking, by the ground of a limit state."""
+        """Return capacity and demand of the onset of rocking, under the ground of a limit state."""
         return MethodComparison(state, "a_[0]^[*]", self.found.a0, self._peak())
 
     def _peak(self) -> str:
@@ -150,7 +150,7 @@ class Methods:
         yield from self._lasts(method, MethodComparison("SLV", "a_[g,linear]", method.a_g, "a_[g]"), "")
 
     def _checked(self, spectrum: DemandSpectrum, asked: MethodComparison) -> Iterator[Working]:
-        """Yield the steps to the demand under another ground, to be checked against the capacity."""
+        """Yield the steps to the demand for the a_g or TR found by iteration, as a check against the capacity."""
         say = self.say
         ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
         if asked.at is None or isinstance(spectrum, FloorSpectrum):

@@ -1,4 +1,4 @@
-"""Steps to the ground at each limit state: what the site file gives, hazard, spectra, floor."""
+"""Steps to the ground motion at each limit state in the sheet: values of the site file, hazard, spectra, floor."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ OF_FLOOR = {"z": ("z", "m"), "H": ("H", "m"), "n": ("n", "")}
 
 
 def part(say: Language, ground: SiteGround) -> SheetPart:
-    """What the site does, a part for each limit state that it gives."""
+    """Return the part on the site, with a part for each limit state that it gives."""
     states = [each for each in STATES if ground.spectrum(each) is not None]
     return SheetPart("site", say.say("site"), [_given(say, ground)], [_of_state(say, ground, each) for each in states])
 
 
 def given(say: Language, ground: SiteGround) -> Iterator[Working]:
-    """What the file says that has a place in the code."""
+    """Yield the values of the site file that belong to a clause of the code."""
     site = ground.site
     yield say.step(F.FC, site.FC)
     yield say.step(F.Q, site.q)
@@ -52,7 +52,7 @@ def given(say: Language, ground: SiteGround) -> Iterator[Working]:
 
 
 def _given(say: Language, ground: SiteGround) -> Grid:
-    """What the file says, beside tables."""
+    """Return a table of the values of the site file, without its tables."""
     site = ground.site
     FC, q, *modes = ([each.symbol, each.meaning, say.number(each.value), each.unit] for each in given(say, ground))
     rows = [FC, q]
@@ -96,13 +96,13 @@ def _of_state(say: Language, ground: SiteGround, state: str) -> SheetPart:
 
 
 def _own_period(say: Language, one: VibratingElement) -> Working:
-    """The period of an element that is free to vibrate."""
+    """Return the step for the period of an element that is free to vibrate."""
     L, t = one.size
     return say.step(F.OWN_PERIOD, one.period, kappa=one.kappa, L=L, t=t, w=one.w, E=one.E, g=STANDARD_GRAVITY)
 
 
 def _of_life(say: Language, ground: SiteGround, state: str) -> Iterator[Working]:
-    """The return period of a limit state, and the ground at it."""
+    """Yield the steps to the return period of a limit state, and to the ground at this period."""
     site, TR, hazard = ground.site, ground.return_period(state), ground.hazard
     if hazard is None or TR is None or site.VN is None or site.CU is None:
         return
@@ -115,12 +115,12 @@ def _of_life(say: Language, ground: SiteGround, state: str) -> Iterator[Working]
 
 
 def is_close(one: float, other: float) -> bool:
-    """Whether two numbers are one but for rounding."""
+    """Return whether two numbers are equal within rounding."""
     return abs(one - other) <= 1e-9 * abs(other)
 
 
 def hazard_at(say: Language, hazard: Hazard, TR: float) -> Iterator[Working]:
-    """The ground at a return period, from the rows of the table on either side."""
+    """Yield the steps to the ground at a return period, from the adjacent rows of the table."""
     last = len(hazard.table) - 2
     k = min(next((k for k, row in enumerate(hazard.table[1:]) if row[0] >= TR), last), last)
     low, high = hazard.table[k], hazard.table[k + 1]
@@ -147,7 +147,7 @@ def _on_soil(say: Language, hazard: Hazard, spectrum: GroundSpectrum, TC_star: f
 
 
 def amplifications(say: Language, ground: SiteGround) -> Iterator[Working]:
-    """A of a floor at each limit state that the site gives."""
+    """Yield the step for the amplification A of a floor at each limit state that the site gives."""
     damping = {rule.state: rule.damping for rule in RULES}
     for state in STATES:
         spectrum = ground.spectrum(state)

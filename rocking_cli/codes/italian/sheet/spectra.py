@@ -1,4 +1,4 @@
-"""Steps to the demand of the ground, or of a floor, at a period: spectra of acceleration and displacement."""
+"""Steps to the demand on the ground or on a floor at a period: spectra of acceleration and displacement."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ G = STANDARD_GRAVITY
 
 @dataclass(frozen=True)
 class At:
-    """A period at which a spectrum is asked: what it is called [s], its value, and the damping, a ratio."""
+    """A period at which a spectrum is evaluated: its symbol, its value [s], and the damping ratio with its symbol."""
 
     name: str
     T: float
@@ -37,12 +37,12 @@ class At:
 
 
 def corrected(say: Language, at: At) -> Working:
-    """eta."""
+    """Return the step for the damping correction eta."""
     return say.step(F.ETA, correction(at.damping), {"xi": at.xi}, xi=100 * at.damping)
 
 
 def peaks(say: Language, spectrum: DemandSpectrum, state: str) -> Iterator[Working]:
-    """What the ground does at once: corners of its spectrum, its peak, and that of the floor."""
+    """Yield the steps for the corners of the ground spectrum, its peak, and the peak of the floor."""
     ground = spectrum.ground if isinstance(spectrum, FloorSpectrum) else spectrum
     if isinstance(ground, GroundSpectrum):
         yield say.step(F.TB, ground.TB, {"state": state}, T=ground.TC)
@@ -65,7 +65,7 @@ def _peak_of_floor(say: Language, floor: FloorSpectrum) -> Iterator[Working]:
 
 
 def acceleration(say: Language, spectrum: GroundSpectrum | TableSpectrum, at: At) -> Iterator[Working]:
-    """S_e at a period, after its eta."""
+    """Yield the step for S_e at a period; its eta comes before."""
     if isinstance(spectrum, TableSpectrum):
         yield from _of_table(say, spectrum, at)
         return
@@ -74,7 +74,7 @@ def acceleration(say: Language, spectrum: GroundSpectrum | TableSpectrum, at: At
 
 
 def _branch(spectrum: GroundSpectrum, T: float) -> Formula:
-    """The formula of the branch that a period is on."""
+    """Return the formula of the branch of the spectrum at a period."""
     if spectrum.TB > T:
         return F.S_E_RISING
     if spectrum.TC > T:
@@ -83,7 +83,7 @@ def _branch(spectrum: GroundSpectrum, T: float) -> Formula:
 
 
 def _of_ground_motion(ground: GroundSpectrum, at: At) -> dict[str, float]:
-    """What may be in the slots of its spectrum."""
+    """Return values for the slots of the formulas of the ground spectrum."""
     sizes = {"ag": ground.ag, "S": ground.S, "g": G, "F0": ground.F0, "eta": correction(at.damping)}
     return {**sizes, "TB": ground.TB, "TC": ground.TC, "TD": ground.TD}
 
@@ -102,7 +102,7 @@ def _of_table(say: Language, spectrum: TableSpectrum, at: At) -> Iterator[Workin
 
 
 def displacement(say: Language, spectrum: DemandSpectrum, at: At) -> Iterator[Working]:
-    """S_De at a period, with all that leads there."""
+    """Yield the steps to S_De at a period."""
     yield corrected(say, at)
     if isinstance(spectrum, FloorSpectrum):
         yield from _of_floor(say, spectrum, at)
@@ -111,7 +111,7 @@ def displacement(say: Language, spectrum: DemandSpectrum, at: At) -> Iterator[Wo
 
 
 def _undisturbed(say: Language, spectrum: DemandSpectrum, at: At, symbol: str) -> Iterator[Working]:
-    """The displacement of the ground at a period, under a symbol."""
+    """Yield the steps to the displacement spectrum of the ground at a period, under a symbol."""
     value, formula, by = spectrum.displacement(at.T, at.damping), F.S_DE, at
     if isinstance(spectrum, TableSpectrum):
         by, formula = At("t", spectrum.governing(at.T, at.damping), at.damping), F.S_DE_TABLE
@@ -130,12 +130,12 @@ def _undisturbed(say: Language, spectrum: DemandSpectrum, at: At, symbol: str) -
 
 
 def amplified(say: Language, floor: FloorSpectrum, damping: float, state: str = "") -> Working:
-    """A, the amplification by a floor."""
+    """Return the step for the amplification A of a floor."""
     return say.step(F.AMPLIFIED, floor.amplification(damping), {"state": state}, eta=correction(damping), xi=floor.xi1)
 
 
 def _alone(say: Language, floor: FloorSpectrum, T: float, damping: float, symbol: str) -> Working:
-    """S_eZ without the bound by the ground."""
+    """Return the step for S_eZ without the lower bound by the ground."""
     low, high = BELOW * floor.T1, ABOVE * floor.T1
     formula = F.S_EZ_BELOW if low > T else F.S_EZ_LEVEL if high >= T else F.S_EZ_ABOVE
     given = {"A": floor.amplification(damping), "S": floor.peak, "T": T, "low": low, "high": high}
@@ -156,7 +156,7 @@ def _of_floor(say: Language, floor: FloorSpectrum, at: At) -> Iterator[Working]:
 
 
 def at_own_period(say: Language, spectrum: DemandSpectrum, T0: float, damping: float) -> Iterator[Working]:
-    """S_e, or S_eZ, at the period of an element that vibrates freely."""
+    """Yield the steps to S_e, or S_eZ, at the period of an element that is free to vibrate."""
     at = At("T_[0]", T0, damping)
     yield corrected(say, at)
     if not isinstance(spectrum, FloorSpectrum):

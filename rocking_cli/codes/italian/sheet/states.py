@@ -27,7 +27,7 @@ LINE = "lin"  # in subscripts: on the straight line
 
 @dataclass(frozen=True)
 class Writer:
-    """A direction at a site, and the language it is told in."""
+    """A direction at a site, written in a language."""
 
     say: Language
     ground: SiteGround
@@ -40,11 +40,11 @@ class Writer:
 
     @property
     def scale(self) -> Scale:
-        """What weights are printed in."""
+        """Unit of printed weights."""
         return Scale.of(self.curve.chain)
 
     def parts(self, key: str) -> Iterator[SheetPart]:
-        """The chain, the curve's ends, and each limit state."""
+        """Yield the parts on the chain, on the ends of the curve, and on each limit state."""
         say = self.say
         yield chains.part(say, self.curve, key)
         yield SheetPart(f"{key}-curve", say.say("curve"), list(self._ends()))
@@ -56,7 +56,7 @@ class Writer:
             yield SheetPart(f"{key}-{rule.state}-line", heading, [Sentence(say.say("line_is")), Steps(line)])
 
     def _ends(self) -> Iterator[Item]:
-        """a0* and d0*."""
+        """Yield the steps to a0* and d0*."""
         say, curve = self.say, self.curve
         a0 = say.step(F.A0, curve.a0, **self._accelerated(curve.chain.alpha0))
         yield Steps([a0, self._control()])
@@ -68,12 +68,12 @@ class Writer:
         yield Steps([*rows, *self._moved(end, {"at": "φ_[0]", "symbol": "d_[0]^[*]", "what": "d0"})])
 
     def _accelerated(self, alpha: float) -> dict[str, float]:
-        """What a* is computed from, by a multiplier."""
+        """Return values for the slots of the formula of a*, for a multiplier."""
         chain, FC = self.curve.chain, self.curve.confidence
         return {"alpha": alpha, "g": chain.mechanism.gravity, "e": chain.e_star, "FC": FC}
 
     def _control(self) -> Working:
-        """x_C' of the control point."""
+        """Return the step for x_C' of the control point."""
         say, scale, control = self.say, self.scale, self.curve.control
         chain = self.curve.chain
         dx = chain.sideways(control)
@@ -86,7 +86,7 @@ class Writer:
         return say.step(F.X_C_TURNS, dx, names, turns=own.turns, y=control.at.imag, O=scale.near(own.centre.imag))
 
     def _moved(self, position: DisplacedChain, names: Mapping[str, str]) -> Iterator[Working]:
-        """d_C and d at a position."""
+        """Yield the steps to d_C and d in a position."""
         say, curve, scale = self.say, self.curve, self.scale
         chain, control = curve.chain, curve.control
         d_C, total = chain.displacement_of_control(position.phi, control), scale.weight(chain.inertial)
@@ -103,7 +103,7 @@ class Writer:
         yield say.step(F.D, d, names, d=d_C, second=second, x=chain.sideways(control), first=first)
 
     def _state(self, rule: Rule) -> Iterator[Item]:
-        """A limit state on the exact curve."""
+        """Yield the steps of a limit state on the exact curve."""
         say, s, at = self.say, rule.state, self.found.states[rule.state]
         names = {"state": s, "on": s, "at": f"φ_[{s}]", "symbol": f"d(φ_[{s}])", "what": "d_again"}
         yield Steps([self._allowed(rule, at)])
@@ -133,7 +133,7 @@ class Writer:
             yield Grid(say.say("ties_at", state=rule.state), heads, rows, (1, 2, 3))
 
     def _allowed(self, rule: Rule, at: LimitState) -> Working:
-        """The displacement that a limit state allows."""
+        """Return the step for the displacement capacity at a limit state."""
         curve = self.curve
         ends = {"t": curve.broken if rule.at_breaks else None, "a": curve.seat.d if curve.seat is not None else None}
         known = {f"d_[{name}]": d for name, d in ends.items() if d is not None}
@@ -142,7 +142,7 @@ class Writer:
         return self.say.step(formula, at.d, names, share=rule.share, d0=curve.d0, d=[*known.values()])
 
     def _period_and_demand(self, rule: Rule, at: LimitState, name: str, a: float) -> Iterator[Working]:
-        """T, S_De there and the ratio; `a` is a* of the curve that `name` is on [m/s2]."""
+        """Yield the steps for T, S_De and the ratio; `a` is a* of the curve that `name` denotes [m/s2]."""
         say, s, T0 = self.say, rule.state, self.ground.site.own_period
         names = {"state": s, "on": name, "a": f"a^[*]_[{name}]" if T0 is None else f"a_[{name}]"}
         if T0 is not None:
@@ -157,7 +157,7 @@ class Writer:
         yield say.step(F.RHO, at.ratio, names, d=at.d, demand=at.demand)
 
     def _on_line(self, rule: Rule) -> Iterator[Working]:
-        """The same limit state on the straight line."""
+        """Yield the steps of a limit state on the straight line."""
         s, at, curve = rule.state, self.found.straight_states[rule.state], self.curve
         a, name = StraightCurve(curve.a0, curve.d0).acceleration(at.d), f"{rule.state},{LINE}"
         yield self.say.step(F.A_LINE, a, {"state": s, "on": name}, a0=curve.a0, d=at.d, d0=curve.d0)

@@ -1,4 +1,4 @@
-"""The steps of a verification, which the sheet shows in a language and `workings` in plain characters."""
+"""The steps of a verification: in a language for the sheet, and in plain characters for `workings`."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ ENGLISH = Language("en", texts_en.TEXTS)
 
 
 def of_direction(say: Language, ground: SiteGround, found: ItalianVerified) -> Iterator[SheetPart]:
-    """The parts of a direction: chain, curve, limit states, methods."""
+    """Yield the parts of a direction: chain, curve, limit states, methods."""
     key = found.direction.label
     yield from Writer(say, ground, found).parts(key)
     yield from Methods(say, ground, found).parts(key)
 
 
 def workings_of_direction(ground: SiteGround, found: ItalianVerified) -> list[Working]:
-    """The steps of a direction."""
+    """Return the steps of a direction in plain characters."""
     return list(workings(of_direction(ENGLISH, ground, found)))
 
 
 def workings_of_site(ground: SiteGround) -> list[Working]:
-    """What the site file says, and the steps to the ground at each limit state, with the amplification by a floor."""
+    """Return the values of the site file and the steps to the ground at each limit state, in plain characters."""
     whole = site.part(ENGLISH, ground)
     found = [each.in_plain(whole.heading) for each in site.given(ENGLISH, ground)]
     for part in whole.parts:

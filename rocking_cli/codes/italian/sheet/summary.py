@@ -1,4 +1,4 @@
-"""The head of the sheet: whether it passes in each direction and at each limit state, by how much, what governs."""
+"""Summary of the sheet: whether each direction passes at each limit state, by which margin, and what governs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rocking_cli.views.sheet.language import Language, plain
 
 
 def part(say: Language, found: ItalianVerification, shown: Mapping[str, ItalianVerified]) -> SheetPart:
-    """The summary."""
+    """Return the part with the summary."""
     items: list[Item] = [verdict(say, found.first, where, each) for where, each in shown.items()]
     for where, each in shown.items():
         items += _starts_later(say, found.first, where, each)
@@ -33,7 +33,7 @@ def part(say: Language, found: ItalianVerification, shown: Mapping[str, ItalianV
 
 
 def verdict(say: Language, first: str, where: str, each: ItalianVerified) -> Sentence:
-    """The answer of a direction."""
+    """Return the sentence with the verdict on a direction."""
     at, counts, passes = each.states[first], each.counts, each.passes(first)
     if passes is None or at.demand is None or at.ratio is None or counts.a_g is None or counts.demand is None:
         return Sentence(say.say("no_state", where=where, state=first), answers=True)
@@ -50,7 +50,7 @@ def verdict(say: Language, first: str, where: str, each: ItalianVerified) -> Sen
 
 
 def _starts_later(say: Language, first: str, where: str, each: ItalianVerified) -> Iterator[Item]:
-    """The other limit states at which the damage method governs: their ratio of displacements does not decide."""
+    """Yield remarks on further limit states at which the onset of rocking governs, not the displacement ratio."""
     for state in each.states:
         (damage, nonlinear), counts = OF_STATE[state], each.methods[each.governing[state]]
         if state != first and each.governing[state] == damage and each.passes(state) is not None:
@@ -61,7 +61,7 @@ def _starts_later(say: Language, first: str, where: str, each: ItalianVerified) 
 
 
 def _which(say: Language, found: ItalianVerification) -> Iterator[Item]:
-    """Which direction governs."""
+    """Yield a sentence on which direction governs."""
     least = found.governs
     ratio, rest = (found.compared(each) for each in (least, least.opposite))
     if ratio is not None and rest is not None and not found.alike:

@@ -1,4 +1,4 @@
-"""The Italian texts of the calculation sheet, in the words of the code where it has them."""
+"""The Italian texts of the calculation sheet, in the terms of the code where it has them."""
 
 from __future__ import annotations
 
