@@ -1,1 +1,1 @@
-"""The built-in mechanisms. They come in through the entry points `rocking.mechanisms`, like anybody's."""
+"""The built-in mechanisms, found by the entry points `rocking.mechanisms` as those of other packages are."""

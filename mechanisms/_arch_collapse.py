@@ -1,9 +1,9 @@
-"""Where a circular arch hinges when the ground throws it to the right: the quasi-static collapse mechanism.
+"""Collapse mechanism of a circular arch under horizontal ground acceleration: its hinges and its multiplier.
 
-The least multiplier lambda of horizontal inertia over all admissible mechanisms (kinematic theorem) is the greatest
-for which a line of thrust stays inside the ring (static theorem). The search uses both: it goes from mechanism to
-mechanism, each time draws the line of thrust through the hinges, and moves a hinge to the joint where that line
-leaves the ring most, until it stays inside. The result is then proven, not only found: false minima cannot pass.
+The least multiplier lambda of horizontal inertia over all admissible mechanisms (kinematic theorem) is the greatest for
+which a line of thrust stays inside the ring (static theorem). The search uses both theorems: for each mechanism it
+finds the line of thrust through the hinges, and moves a hinge to the joint where this line is furthest outside the
+ring, until the line stays inside. As both theorems then hold, the result is the global minimum.
 
 Everything is per unit radius, weight density and depth; angles run from the left springing.
 """
@@ -28,18 +28,21 @@ FACES = np.array([-1.0, 1.0, -1.0, 1.0])  # of A, B, C, D: intrados -1, extrados
 
 
 class ArchCannotStand(Exception):
-    """No line of thrust of the arch's own weight stays inside it."""
+    """Error: no line of thrust of the arch's own weight stays inside the arch."""
 
 
 @dataclass(frozen=True)
 class Ring:
-    """A circular ring of centre-line radius 1: thickness over radius, and inclusion angle [rad]."""
+    """A circular ring of centre-line radius 1, with its thickness over the radius and its inclusion angle [rad]."""
 
     thickness: float
     beta: float
 
     def joint(self, angle: Reals, face: int) -> tuple[NDArray[np.complex128], Reals, NDArray[np.complex128]]:
-        """Point on a face (-1 intrados, +1 extrados) of the joint at `angle`; area and first moment left of it."""
+        """Return a point of the joint at `angle` on a face (-1 intrados, +1 extrados), and the ring left of the joint.
+
+        The latter by its area and its first moment of area.
+        """
         inner, outer = 1 - self.thickness / 2, 1 + self.thickness / 2
         left = np.exp(1j * (np.pi + self.beta) / 2)
         point = (1 + face * self.thickness / 2) * left * np.exp(-1j * angle)
@@ -47,7 +50,7 @@ class Ring:
         return point, (outer**2 - inner**2) / 2 * angle, moment
 
     def balance(self, angle: Reals, face: int) -> tuple[Reals, Reals]:
-        """Moment about a joint's face of all that acts left of it, as rows . (M0, Fx, Fy, lambda) - weight.
+        """Return the moment about a joint's face of all loads left of it, as rows . (M0, Fx, Fy, lambda) - weight.
 
         (Fx, Fy, M0) is the reaction at the left springing, its moment about the centre; lambda times the weight
         acts to the right.
@@ -58,7 +61,7 @@ class Ring:
         return rows, lever.real
 
     def thrust_radius(self, angle: Reals, state: Reals) -> Reals:
-        """Where on the radial joints at `angle` the line of thrust passes: the radius at which no moment acts."""
+        """Return the radius at which the line of thrust crosses the radial joints at `angle`."""
         M0, Fx, Fy, lam = state
         point, area, moment = self.joint(angle, 0)
         return np.asarray(
@@ -66,12 +69,12 @@ class Ring:
         )
 
     def excess(self, angle: Reals, face: int, state: Reals) -> Reals:
-        """How far the line of thrust passes outside a face of the joints, as a moment; negative inside."""
+        """Return how far the line of thrust is outside a face of the joints, as a moment; negative inside."""
         rows, weight = self.balance(angle, face)
         return -face * np.asarray(rows @ state - weight)
 
     def worst(self, angle: Reals, face: int, state: Reals) -> Reals:
-        """The local maximum of `excess` nearest to each of `angle`, inside the ring."""
+        """Return the angle of the local maximum of `excess` nearest to each `angle`, within the ring."""
         inner, outer = 1 - self.thickness / 2, 1 + self.thickness / 2
         force, pull = complex(state[1], -state[2]), 1 - 1j * state[3]
         for _ in range(3):  # Newton on the derivative; angles start within a scan step of the maximum
@@ -87,21 +90,21 @@ class Ring:
 
 
 def collapse_hinges(ring: Ring, voussoirs: int | None) -> Hinges:
-    """Angles of the hinges A (intrados), B (extrados), C (intrados) and D (extrados) [rad].
+    """Return the angles of the hinges A (intrados), B (extrados), C (intrados) and D (extrados) [rad].
 
     Parameters
     ----------
     ring : Ring
         The arch, of centre-line radius 1.
     voussoirs : int or None
-        Number of equal voussoirs, whose joints are the only places for a hinge; None: anywhere.
+        Number of equal voussoirs, whose joints are the only places for a hinge; None if hinges may be anywhere.
 
     Raises
     ------
     ArchCannotStand
         If the arch is too thin to stand under its own weight.
     MechanismError
-        If it does not collapse on four hinges, because it is too thick.
+        If the arch does not collapse on four hinges, because it is too thick.
     """
     joints = np.linspace(0.0, ring.beta, (voussoirs or SCAN_JOINTS - 1) + 1)
     multiplier, hinges, faces = _collapse(ring, joints)
@@ -117,10 +120,10 @@ def collapse_hinges(ring: Ring, voussoirs: int | None) -> Hinges:
 
 
 def _collapse(ring: Ring, joints: Reals) -> tuple[float, Reals, Reals]:
-    """The least lambda with hinges on given joints, and angles and faces of its hinges in order along the ring.
+    """Return the least lambda with hinges at given joints, and the angles and faces of these hinges, in order.
 
     Dual simplex: four constraints a . v >= c carry the state v = (M0, Fx, Fy, lambda), and their multipliers y >= 0 are
-    the rotations of the hinges, so that every step is to another mechanism that opens its hinges.
+    the rotations of the hinges, so that every step leads to another mechanism whose hinges open.
     """
     a: list[Reals] = []
     c: list[Reals] = []
@@ -160,7 +163,7 @@ def _collapse(ring: Ring, joints: Reals) -> tuple[float, Reals, Reals]:
 
 
 def _settle(ring: Ring, hinges: Reals, joints: Reals) -> Reals:
-    """Move hinges from the joints of a scan to where the line of thrust touches the ring."""
+    """Return the hinges moved from the joints of a scan to where the line of thrust touches the ring."""
     for _ in range(ROUNDS):
         state = thrust(ring, hinges)
         moved = np.array([float(ring.worst(np.array(h), int(f), state)) for h, f in zip(hinges, FACES, strict=True)])
@@ -176,7 +179,7 @@ def _settle(ring: Ring, hinges: Reals, joints: Reals) -> Reals:
 
 
 def least_thickness(beta: float, voussoirs: int | None) -> float:
-    """The least t/r with which the arch stands under its own weight, rounded up."""
+    """Return the least t/r with which the arch stands under its own weight, rounded up."""
     low, high = 0.0, 1.0
     while high - low > 1e-6:
         middle = (low + high) / 2
@@ -191,6 +194,9 @@ def least_thickness(beta: float, voussoirs: int | None) -> float:
 
 
 def thrust(ring: Ring, hinges: Reals | Hinges) -> Reals:
-    """Reaction at the left springing and lambda (M0, Fx, Fy, lambda) of the line of thrust through the hinges."""
+    """Return the state (M0, Fx, Fy, lambda) of the line of thrust through the hinges.
+
+    (Fx, Fy) and M0 are force and moment of the reaction at the left springing.
+    """
     balances = [ring.balance(np.array(angle), int(face)) for angle, face in zip(hinges, FACES, strict=True)]
     return np.linalg.solve(np.stack([rows for rows, _ in balances]), np.array([weight for _, weight in balances]))

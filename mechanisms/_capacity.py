@@ -1,4 +1,4 @@
-"""Capacity curves: points of a curve, checked, read from a file, and joined by a cubic that keeps their sense."""
+"""Capacity curves: points read from a file, checked, and interpolated by a monotone cubic."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Point = list[float]
 
 
 def read_curve(path: Path) -> tuple[list[Point], list[int]]:
-    """The two columns of a file, and the line of each row. Raises `InputError`, or `ValueError` with the line."""
+    """Return the two columns of a file, and the line of each row. Raises `InputError`, or `ValueError` with a line."""
     text = read_bytes(path, "capacity curve", LARGEST).decode("utf-8-sig", "replace")
     points: list[Point] = []
     lines: list[int] = []
@@ -46,7 +46,10 @@ LEAST = 1e-12  # of displacements and ratios that are not zero: slopes of smalle
 
 
 def fault_of(points: Sequence[Point]) -> tuple[int, str] | None:
-    """What keeps points [displacement, ratio] from being the curve of a rocking structure, and at which of them."""
+    """Return why points [displacement, ratio] are not a capacity curve, and the index of the first bad one.
+
+    None if they are a capacity curve.
+    """
     if not np.isfinite(points).all():
         return int(np.argmin(np.isfinite(points).all(axis=1))), "must be finite numbers"
     for k, values in enumerate(points):
@@ -77,7 +80,7 @@ def fault_of(points: Sequence[Point]) -> tuple[int, str] | None:
 
 
 class MonotoneCubic:
-    """A curve through points which rises and falls only where they do, and goes on straight after the last.
+    """A cubic interpolation that rises and falls only where its points do, and is linear after the last.
 
     Parameters
     ----------
@@ -102,7 +105,7 @@ class MonotoneCubic:
                 self.slope[end] = s[near] * np.clip(three / s[near], 0.1, 3.0) if s[near] else 0.0
 
     def __call__(self, x: Reals) -> tuple[Reals, Reals]:
-        """Value and slope at places of any shape."""
+        """Return value and slope at `x`, an array of any shape."""
         k = np.clip(np.searchsorted(self.x, x, side="right") - 1, 0, len(self.x) - 2)
         h = self.x[k + 1] - self.x[k]
         u = np.minimum((x - self.x[k]) / h, 1.0)

@@ -1,4 +1,4 @@
-"""Bodies that crack where it takes least: where they may be cut, and what becomes of them."""
+"""Cracks whose position the analysis finds: where bodies may be cut, and the structure with cut bodies."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FINE = 1e-9  # of its line: how near to the least it is sought
 
 
 class Crack(Described):
-    """A cut through a body that may be anywhere along a line."""
+    """A cut through a body at any position along a line."""
 
     body: Name = Field(description="the body that it cuts, a polygon")
     along: Annotated[list[Vertex], Field(min_length=2, max_length=2)] = quantity(
@@ -39,26 +39,26 @@ class Crack(Described):
         return self
 
     def level_of(self, z: complex) -> float:
-        """How high, or how far to the right, a point is [m]."""
+        """Return the coordinate of a point across the crack [m]: its height, or its x for a vertical cut."""
         return z.imag if self.cut == "horizontal" else z.real
 
     def level(self, share: float) -> float:
-        """Where it is at a share of its line [m]."""
+        """Return the height or x of the crack [m] at a fraction of its line."""
         one, other = (self.level_of(complex(*point)) for point in self.along)
         return one + share * (other - one)
 
     @property
     def sides(self) -> tuple[str, str]:
-        """What its pieces are called."""
+        """Words for the two pieces, relative to the crack."""
         return ("below", "above") if self.cut == "horizontal" else ("left of", "right of")
 
     @property
     def ends(self) -> tuple[str, str]:
-        """What its ends are called, in the order of x or y."""
+        """Words for the two ends of the crack, in the order of x or y."""
         return ("left", "right") if self.cut == "horizontal" else ("bottom", "top")
 
     def enlarged(self, factor: float) -> Crack:
-        """The same crack of a structure of another size."""
+        """Return the crack in a structure of another size."""
         return self.model_copy(update={"along": [[factor * each for each in point] for point in self.along]})
 
 
@@ -71,7 +71,7 @@ class Halves(NamedTuple):
 
 
 def halves(corners: Points, level: float, *, level_cut: bool) -> Halves | None:
-    """A polygon cut in two at a height, or at an x; None where the cut does not go through it once."""
+    """Cut a polygon in two at a height, or at an x; None if the cut does not pass through it exactly once."""
     height: Reals = (corners.imag if level_cut else corners.real) - level
     low: list[complex] = []
     high: list[complex] = []
@@ -94,16 +94,16 @@ def halves(corners: Points, level: float, *, level_cut: bool) -> Halves | None:
 
 
 class Cracked(NamedTuple):
-    """A structure whose cracks are somewhere.
+    """A structure with its cracks at given positions.
 
     Parameters
     ----------
     shapes : mapping of str to Shape
-        The bodies, with the pieces of those that are cut.
+        The bodies, with cut bodies replaced by their pieces.
     sides : mapping of Direction to LinkageSide
-        The joints, which name pieces and points.
+        The joints of each direction, which name pieces and points.
     pieces : mapping of str to sequence of str
-        The pieces of each body that is cut.
+        Names of the pieces of each cut body.
     """
 
     shapes: Mapping[str, Shape]
@@ -111,7 +111,7 @@ class Cracked(NamedTuple):
     pieces: Mapping[str, Sequence[str]]
 
     def piece(self, body: str, at: complex) -> str:
-        """The piece of a body that a point is on, or nearest to; the body itself where it is whole."""
+        """Return the piece of a body on which a point lies, or the nearest one; the body itself if it is not cut."""
         z = np.array([at])
         names = self.pieces.get(body, [body])
         return (
@@ -120,7 +120,7 @@ class Cracked(NamedTuple):
 
 
 def active(side: LinkageSide, cracks: Mapping[str, Crack]) -> list[str]:
-    """The cracks that a side speaks of; the others are closed in its direction."""
+    """Return the cracks that a side names; all others are closed in its direction."""
     words = [side.lead, *(each.at for each in side.joints.values() if isinstance(each.at, str))]
     words += [name for each in side.joints.values() for name in each.bodies]
     return [
@@ -134,7 +134,10 @@ def cracked(
     cracks: Mapping[str, Crack],
     shares: Mapping[Direction, Mapping[str, float]],
 ) -> Cracked:
-    """A structure with its cracks at shares of their lines, in each direction. Raises the error of a field."""
+    """Return a structure with its cracks at fractions of their lines, in each direction.
+
+    Raises a geometry error at the field at fault.
+    """
     levels = {d: {name: cracks[name].level(share) for name, share in of.items()} for d, of in shares.items()}
     _join_equal(levels, cracks)
     made, pieces, ends = dict(shapes), dict[str, Sequence[str]](), dict[tuple[str, float], tuple[complex, complex]]()
@@ -166,7 +169,7 @@ def cracked(
 
 
 def _join_equal(levels: dict[Direction, dict[str, float]], cracks: Mapping[str, Crack]) -> None:
-    """Cracks of both directions at one place but for rounding are at one place."""
+    """Make cracks of both directions at the same place, to rounding error, have exactly the same level."""
     known: dict[str, list[float]] = {}
     for of in levels.values():
         for name, level in of.items():
@@ -186,7 +189,7 @@ def _piece(shape: Shape, corners: Points, whole: float) -> Shape:
 
 
 class _Names(NamedTuple):
-    """What the names of a side mean where the cracks are."""
+    """Meaning of the names in a side, with the cracks at given positions."""
 
     direction: Direction
     cracks: Mapping[str, Crack]
@@ -195,7 +198,7 @@ class _Names(NamedTuple):
     ends: Mapping[tuple[str, float], tuple[complex, complex]]
 
     def side(self, side: LinkageSide) -> LinkageSide:
-        """The side with pieces and points, and what is closed in its direction."""
+        """Return the side with the names of pieces and points, and with the closed cracks as fixed joints."""
         joints: dict[str, Connection] = {}
         for name, each in side.joints.items():
             changed: dict[str, object] = {}
@@ -218,7 +221,7 @@ class _Names(NamedTuple):
         return side.model_copy(update={"lead": self._piece(side.lead, None), "joints": joints})
 
     def _point(self, text: str, joint: str) -> list[float]:
-        """The end of a crack."""
+        """Return the point [x, y] of the end of a crack."""
         for name, level in self.levels.items():
             crack = self.cracks[name]
             for end, at in zip(crack.ends, self.ends[crack.body, level], strict=True):
@@ -229,7 +232,7 @@ class _Names(NamedTuple):
         raise geometry_error((self.direction.label, "joints", joint, "at"), f"is {what}; got {text!r}")
 
     def _piece(self, name: str, at: object) -> str:
-        """A piece by its name: `wall below K`; a body that is cut, by where its joint is."""
+        """Return a piece by its name, such as `wall below K`; for the name of a cut body, the piece at its joint."""
         for crack, level in self.levels.items():
             body = self.cracks[crack].body
             for k, side in enumerate(self.cracks[crack].sides):
@@ -243,17 +246,17 @@ class _Names(NamedTuple):
 
 
 def _away(z: Points, corners: Points) -> float:
-    """How far a point is from a polygon; 0 within."""
+    """Return the distance of a point from a polygon [m]; 0 inside."""
     return 0.0 if inside(z, corners)[0] else float(distance(z, corners)[0])
 
 
 def weakest(lambda_at: Callable[[Mapping[str, float]], float], names: Sequence[str]) -> dict[str, float]:
-    """The shares along their lines at which one or two cracks give the least lambda.
+    """Return the fractions along their lines at which one or two cracks give the least lambda.
 
     Parameters
     ----------
     lambda_at : callable
-        Uplift acceleration with the cracks at some shares; infinite where they leave no mechanism.
+        Function that returns the uplift acceleration with cracks at given fractions; infinite if there is no mechanism.
     names : sequence of str
         The cracks.
     """

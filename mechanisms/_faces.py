@@ -1,4 +1,4 @@
-"""The face on which two bodies bear at a point: which way it looks, how far it goes, and which of them is borne."""
+"""The face on which two bodies bear at a point: its normal, its extent, and which body is supported."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ PARALLEL = 1e-3  # sine of the angle between two sides that lie on one another
 
 
 class BearingFace(NamedTuple):
-    """What bears at a point.
+    """The face between two bodies at a point, or between a body and the ground.
 
     Parameters
     ----------
     normal : complex
-        Out of the first body, into the other; of one body alone, into it.
+        Unit normal out of the first body into the other; for one body alone, into this body.
     far : complex
-        The other end of what both have in common; the point itself where a corner stands on a side.
+        The other end of the common part of both sides; the point itself if a corner stands on a side.
     inside : int or None
-        Of which of them the point is inside a side, 0 or 1: the other has a corner there.
+        The body, 0 or 1, in one of whose sides the point is; the other body has a corner there.
     """
 
     normal: complex
@@ -33,7 +33,7 @@ class BearingFace(NamedTuple):
 
 
 def between(one: Sequence[Outline], other: Sequence[Outline], at: complex) -> BearingFace | None:
-    """The face between two bodies at a point; None where they do not touch there, or a shape is not known."""
+    """Return the face between two bodies at a point; None if they do not touch there, or a shape is not known."""
     size = _size([*one, *other])
     best: BearingFace | None = None
     for p, q in _sides_at(one, at, size):
@@ -52,7 +52,7 @@ def between(one: Sequence[Outline], other: Sequence[Outline], at: complex) -> Be
 
 
 def under(body: Sequence[Outline], at: complex) -> BearingFace | None:
-    """The side on which a body stands at a point; None where its shape is not known or has no corner there."""
+    """Return the side on which a body stands at a point; None if its shape is not known or has no corner there."""
     size, best = _size(body), None
     for p, q in _sides_at(body, at, size):
         inwards = 1j * (q - p) / abs(q - p)
@@ -63,7 +63,7 @@ def under(body: Sequence[Outline], at: complex) -> BearingFace | None:
 
 
 def _on_a_side(one: Sequence[Outline], other: Sequence[Outline], at: complex, size: float) -> BearingFace | None:
-    """A corner of one body on a side of the other."""
+    """Return the face of a corner of one body on a side of the other; None if there is none."""
     for k, shapes in enumerate((one, other)):
         for p, q in _sides_at(shapes, at, size):
             if _is_inside(p, q, at, size):
@@ -78,7 +78,7 @@ def _size(shapes: Sequence[Outline]) -> float:
 
 
 def _sides_at(shapes: Sequence[Outline], at: complex, size: float) -> Iterator[tuple[complex, complex]]:
-    """The sides that a point is on, anticlockwise: the body is on their left."""
+    """Yield the sides on which a point lies, in anticlockwise order, so that the body is on their left."""
     for shape in shapes:
         z: Points = np.asarray(shape, dtype=np.complex128)
         z = z if area_of(z) > 0 else z[::-1]

@@ -1,4 +1,4 @@
-"""Whether the joints of a linkage are where bodies touch, and open as it rocks."""
+"""Checks that the joints of a linkage are where bodies touch, and open as the structure rocks."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ CLOSES = 1e-9  # of the fastest point: how fast a face may close by rounding
 
 
 def face_at(members: Mapping[str, Member], bodies: Sequence[str], at: complex) -> faces.BearingFace | None:
-    """The face on which bodies bear on one another, or one on the ground; None where their shapes do not say."""
+    """Return the face between two bodies, or one body and the ground; None if it does not follow from their shapes."""
     shapes: list[Sequence[Outline]] = [members[name].outlines for name in bodies]
     return faces.under(shapes[0], at) if len(shapes) == 1 else faces.between(shapes[0], shapes[1], at)
 
 
 def beside(members: Mapping[str, Member], held: PlacedSide) -> tuple[str, str] | None:
-    """A joint that is beside a body which it joins, where the shape of that is known, and what is wrong with it."""
+    """Return a joint outside a body that it joins, and the reason in words; None if all joints are on their bodies."""
     for joint in held.joints:
         at = np.array([joint.at])
         for name in joint.bodies if isinstance(joint, Pin) else joint.bodies[:1]:
@@ -40,7 +40,7 @@ def beside(members: Mapping[str, Member], held: PlacedSide) -> tuple[str, str] |
 def closing(
     members: Mapping[str, Member], held: PlacedSide, motions: Mapping[str, RigidMotion]
 ) -> tuple[str, str] | None:
-    """A joint whose face closes as it begins to rock, and what is wrong with it."""
+    """Return a joint whose face closes as rocking begins, and the reason in words; None if there is none."""
     fastest = max(
         float(abs(motions[name].carry(z)[1][0])) for name, each in members.items()
         for z in (each.body.centroid, *(z for shape in each.outlines for z in shape))
@@ -63,7 +63,7 @@ def closing(
 def turns_the_wrong_way(
     members: Mapping[str, Member], lead: str, motions: Mapping[str, RigidMotion], direction: Direction
 ) -> str | None:
-    """What is wrong with a lead as which turns the whole goes down, and the other way; None if nothing is."""
+    """Return why a lead turns the wrong way, so that the structure descends, in words; None if it does not."""
     velocities = [(each.body.mass, complex(motions[n].carry(each.body.centroid)[1][0])) for n, each in members.items()]
     lifted = sum(mass * dz.imag for mass, dz in velocities)
     driven = direction * sum(mass * dz.real for mass, dz in velocities)

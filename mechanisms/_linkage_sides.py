@@ -1,4 +1,4 @@
-"""The joints of a linkage in one direction as users give them, and their mirror images."""
+"""Joints of a linkage in one direction as users give them, and their mirror images."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Pair = Annotated[list[Name], Field(min_length=2, max_length=2)]
 
 
 class Connection(Described):
-    """A joint: what it joins, and where."""
+    """A joint: the bodies it joins, and its point."""
 
     pivot: Name | None = Field(None, description="the body that turns about a point of the ground")
     hinge: Pair | None = Field(None, description="two bodies that share a point")
@@ -46,14 +46,14 @@ class Connection(Described):
 
     @property
     def bodies(self) -> tuple[str, ...]:
-        """What it joins, in the order of the file."""
+        """Bodies that it joins, in the order of the file."""
         for each in (self.pivot, self.slide):
             if isinstance(each, str):
                 return (each,)
         return tuple(self.hinge or self.fixed or self.slide or ())
 
     def enlarged(self, factor: float) -> Connection:
-        """The same joint of a structure of another size."""
+        """Return the joint in a structure of another size."""
         if not isinstance(self.at, list):
             return self
         return self.model_copy(update={"at": [factor * each for each in self.at]})
@@ -70,26 +70,26 @@ class LinkageSide(Described):
     )  # fmt: skip
 
     def enlarged(self, factor: float) -> LinkageSide:
-        """The same side of a structure of another size."""
+        """Return the side of a structure of another size."""
         return self.model_copy(update={"joints": {key: each.enlarged(factor) for key, each in self.joints.items()}})
 
 
 @dataclass(frozen=True)
 class PlacedSide:
-    """A side with all of its points known.
+    """A side in which the points of all joints are known.
 
     Parameters
     ----------
     lead : str
-        The body whose rotation phi is.
+        The body whose rotation is phi.
     joints : sequence of Pin or Guide
-        What holds the bodies.
+        Joints of the bodies.
     fixed : sequence of pairs of str
-        Bodies that are one.
+        Pairs of bodies that move as one.
     ground : sequence of str
-        Bodies that rest.
+        Bodies at rest.
     end : float or None
-        Where the motion ends at the latest [rad].
+        Largest rotation of the motion [rad]; None if not given.
     """
 
     lead: str
@@ -100,7 +100,7 @@ class PlacedSide:
 
     @classmethod
     def of(cls, side: LinkageSide) -> PlacedSide:
-        """A side of which every joint says where it is by numbers."""
+        """Return a side whose joints all have their points as numbers."""
         joints: list[Pin | Guide] = []
         fixed: list[tuple[str, str]] = []
         ground: list[str] = []
@@ -121,7 +121,10 @@ class PlacedSide:
 
 
 def mirrored(side: LinkageSide, middle: float, images: Mapping[str, str]) -> LinkageSide:
-    """The joints of the other direction: about a vertical line, of the images of its bodies."""
+    """Return the joints of the other direction, mirrored about the vertical line x = `middle`.
+
+    `images` has the mirror image of each body.
+    """
 
     def image(point: Sequence[float]) -> list[float]:
         return [2 * middle - point[0], point[1]]

@@ -1,4 +1,4 @@
-"""What mechanisms have in common whose bodies are given one by one: their masses, and that they move as a linkage."""
+"""Base class of mechanisms whose bodies are given one by one and move as a linkage."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from rocking_cli.core import Body, Direction, LinkageMotion, Mechanism, Reals, R
 
 
 class LinkedBodies(Mechanism):
-    """A mechanism of bodies that are given one by one."""
+    """A mechanism whose bodies are given one by one."""
 
     @property
     @abstractmethod
     def _members(self) -> Mapping[str, Member]:
-        """The bodies with the masses that the file gives, or relative ones."""
+        """The bodies by name, with the masses of the file, or relative ones."""
 
     @abstractmethod
     def _linkage(self, direction: Direction) -> LinkageMotion:
-        """How they move in a direction in which it can rock. Raises `MechanismError` if they do not."""
+        """Return the motion of the bodies in a direction. Raises `MechanismError` if there is none."""
 
     def _check_masses(self, field: str) -> None:
-        """Refuse bodies of which some have masses and others have not; `field` is where they are."""
+        """Raise a geometry error at `field`, that of the bodies, if only some of them have masses."""
         weighs = {name: each.weighs for name, each in self._members.items()}
         if self.mass is not None or all(weighs.values()):
             return
@@ -41,7 +41,7 @@ class LinkedBodies(Mechanism):
         return self.mass is not None or all(each.weighs for each in self._members.values())
 
     def total_mass(self) -> float | None:
-        """Its bodies have the masses of their density, or their own."""
+        """Return the given mass of the structure; None if the bodies have the masses of density, or their own."""
         return self.mass
 
     def bodies(self) -> Sequence[Body]:

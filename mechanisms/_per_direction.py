@@ -1,4 +1,4 @@
-"""Answers that a mechanism works out once for each direction of rocking, and keeps."""
+"""Results that a mechanism computes once for each direction of rocking, and keeps."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ KEPT = "kept for each direction"
 
 
 def per_direction(method: Callable[[Any, Direction], T]) -> Callable[[Any, Direction], T]:
-    """A method of a mechanism whose answer for a direction is kept, as `cached_property` keeps that of a property."""
+    """Decorate a method of a mechanism so that its result for each direction is kept, as by `cached_property`."""
 
     @wraps(method)
     def answer(self: Any, direction: Direction) -> T:

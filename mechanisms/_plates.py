@@ -1,4 +1,4 @@
-"""Plates that make one rigid body: what they weigh together, what is cut out of them, and their rounded feet."""
+"""Rigid bodies made of several plates, with openings and rounded feet: their mass and shape."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ ARC = 24  # sides of a rounded corner as it is drawn
 
 
 class BodyPart(Described):
-    """A plate of a body, or an opening in one."""
+    """A plate of a body, or an opening in a plate."""
 
     polygon: list[Vertex] = quantity(
         "corners [x, y] in order around it", unit="m", example=[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], min_length=3,
@@ -53,11 +53,11 @@ class BodyPart(Described):
 
     @property
     def corners(self) -> Points:
-        """Its corners, x + iy [m]."""
+        """Corners of the part, x + iy [m]."""
         return np.array([complex(*vertex) for vertex in self.polygon])
 
     def enlarged(self, factor: float) -> BodyPart:
-        """The same part of a body of another size."""
+        """Return the part in a body of another size."""
         moved = [[factor * each for each in vertex] for vertex in self.polygon]
         depth = None if self.depth is None else factor * self.depth
         return self.model_copy(update={"polygon": moved, "depth": depth})
@@ -65,7 +65,7 @@ class BodyPart(Described):
 
 @dataclass(frozen=True)
 class Plate:
-    """A part with what is cut out of it, and its mass per area [kg/m2]."""
+    """A part with its openings, and its mass per area [kg/m2]."""
 
     corners: Points
     holes: Sequence[Points]
@@ -73,18 +73,18 @@ class Plate:
 
     @property
     def outline(self) -> Outline:
-        """Its shape as one line [m]."""
+        """Outline as one closed line, which includes the openings [m]."""
         found: list[complex] = pierced(self.corners, self.holes).tolist()
         return found
 
     @property
     def pieces(self) -> list[tuple[int, Body]]:
-        """What it is the sum of: itself, less its openings."""
+        """Signed pieces whose sum is the plate: the part (+1) and its openings (-1)."""
         return [(sign, _weighed(z, self.per_area)) for sign, z in [(1, self.corners), *((-1, z) for z in self.holes)]]
 
 
 def plates(parts: Sequence[BodyPart], per_area: Sequence[float]) -> list[Plate]:
-    """The parts of a body, each with the openings in it. Raises the error of a field where they do not fit together."""
+    """Return the plates of a body, each with its openings. Raises a geometry error if parts do not fit together."""
     solids = [k for k, part in enumerate(parts) if not part.opening]
     openings = [k for k, part in enumerate(parts) if part.opening]
     z = [part.corners for part in parts]
@@ -109,7 +109,7 @@ def plates(parts: Sequence[BodyPart], per_area: Sequence[float]) -> list[Plate]:
 
 
 def _check_joined(z: Sequence[Points], names: Sequence[int], touch: float) -> None:
-    """Refuse parts that hang on nothing."""
+    """Raise a geometry error if a part is not connected to the others."""
     joined, left = {0}, set(range(1, len(z)))
     while left:
         gaps = {k: min(gap(z[k], z[j]) for j in joined) for k in left}
@@ -122,7 +122,7 @@ def _check_joined(z: Sequence[Points], names: Sequence[int], touch: float) -> No
 
 
 def united(name: str, pieces: Sequence[tuple[int, Body]], outline: Outline = ()) -> Body:
-    """One body of others, some of which are taken away (sign -1)."""
+    """Return one body as the sum of pieces, of which those of sign -1 are subtracted."""
     mass = sum(sign * piece.mass for sign, piece in pieces)
     centroid = sum(sign * piece.mass * piece.centroid for sign, piece in pieces) / mass
     inertia = sum(sign * (piece.inertia + piece.mass * abs(piece.centroid - centroid) ** 2) for sign, piece in pieces)
@@ -136,11 +136,11 @@ class Fillet:
     Parameters
     ----------
     corner, start, end : complex
-        The corner, and where the circle leaves the base and joins the other side [m].
+        The corner, and the points at which the circle touches the base and the other side [m].
     centre : complex
-        Of the circle [m].
+        Centre of the circle [m].
     radius : float
-        [m].
+        Radius of the circle [m].
     """
 
     corner: complex
@@ -151,13 +151,13 @@ class Fillet:
 
     @property
     def arc(self) -> Points:
-        """Points of the circle, from the base on."""
+        """Points of the circle, starting at the base [m]."""
         turn = np.angle((self.end - self.centre) / (self.start - self.centre))
         found: Points = self.centre + (self.start - self.centre) * np.exp(1j * turn * np.linspace(0, 1, ARC + 1))
         return found
 
     def pieces(self, per_area: float) -> list[tuple[int, Body]]:
-        """What the plate loses: the kite between both sides and the centre, less the sector of the circle."""
+        """Return the pieces cut off the plate: the kite between both sides and the centre, less the sector."""
         kite = np.array([self.corner, self.start, self.centre, self.end])
         angles = np.angle(self.start - self.centre), np.angle((self.end - self.centre) / (self.start - self.centre))
         start, turn = (float(angle) for angle in angles)
@@ -166,7 +166,7 @@ class Fillet:
         return [(-1, _weighed(kite, per_area)), (1, moved)]
 
     def rounded(self, outline: Outline) -> Outline:
-        """An outline that has the corner, with the arc in its place."""
+        """Return an outline with the arc in place of the corner."""
         z = np.asarray(outline)
         k = int(np.abs(z - self.corner).argmin())
         from_base, from_side = (
@@ -178,7 +178,10 @@ class Fillet:
 
 
 def fillet(z: Points, foot: complex, inwards: int, radius: float) -> Fillet:
-    """The rounded foot corner of a polygon; `inwards` is the sign of x towards its other foot. Raises `ValueError`."""
+    """Return the fillet of a foot corner of a polygon. Raises `ValueError` if the radius does not fit.
+
+    `inwards` is the sign of x towards the other foot.
+    """
     k = int(np.abs(z - foot).argmin())
     sides = z[k - 1] - z[k], z[(k + 1) % len(z)] - z[k]
     base, other = sorted(sides, key=lambda side: abs(side.imag) - inwards * side.real)
@@ -195,7 +198,7 @@ def fillet(z: Points, foot: complex, inwards: int, radius: float) -> Fillet:
 
 
 def foot_is_cut(foot: complex, holes: Sequence[Points], tolerance: float) -> bool:
-    """Whether an opening takes the foot of a body away."""
+    """Return whether an opening removes the foot of a body."""
     at = np.array([foot])
     return any(bool(inside(at, z)[0]) or distance(at, z)[0] <= tolerance for z in holes)
 

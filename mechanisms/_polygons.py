@@ -1,4 +1,4 @@
-"""Polygons of the plane: whether they are simple, touch, overlap or lie within each other; with holes in them.
+"""Polygons of the plane: whether they are simple, touch, overlap or contain one another; polygons with holes.
 
 Corners are complex numbers x + iy [m], in order around the polygon, the last joined to the first.
 """
@@ -20,25 +20,25 @@ Bools = NDArray[np.bool_]
 
 
 def size_of(z: Points) -> float:
-    """Width and height of a polygon together [m]."""
+    """Return the sum of width and height of a polygon [m]."""
     return float(np.ptp(z.real) + np.ptp(z.imag))
 
 
 def area_of(z: Points) -> float:
-    """Its area [m2], negative if its corners go clockwise."""
+    """Return the area of a polygon [m2], negative if its corners are clockwise."""
     z = z - z[0]
     return float((z.conj() * np.roll(z, -1)).imag.sum() / 2)
 
 
 def thickness_of(z: Points) -> float:
-    """The least extent of a polygon across one of its sides [m]."""
+    """Return the least extent of a polygon perpendicular to one of its sides [m]."""
     side = np.roll(z, -1) - z
     across = (z[None, :] * (1j * side / np.abs(side))[:, None].conj()).real
     return float(np.ptp(across, axis=1).min())
 
 
 def fault_of(z: Points) -> str | None:
-    """Why its corners are no simple polygon, a sentence without a full stop; None if they are one."""
+    """Return why corners do not form a simple polygon, a sentence without a full stop; None if they do."""
     size = size_of(z)
     if any_alike(z, SAME * size):
         return "two corners are the same point; the last need not repeat the first"
@@ -48,7 +48,7 @@ def fault_of(z: Points) -> str | None:
 
 
 def distance(points: Points, z: Points) -> Reals:
-    """How far points are from the sides of a polygon [m]."""
+    """Return the distances of points from the sides of a polygon [m]."""
     side = np.roll(z, -1) - z
     away = points[:, None] - z
     along = np.clip((away * side.conj()).real / _squared(side), 0.0, 1.0)
@@ -57,7 +57,7 @@ def distance(points: Points, z: Points) -> Reals:
 
 
 def inside(points: Points, z: Points) -> Bools:
-    """Whether points are inside a polygon; of those on a side either may be said."""
+    """Return whether points are inside a polygon; for points on a side, either result is possible."""
     w = np.roll(z, -1)
     y = points.imag[:, None]
     spans = (z.imag > y) != (w.imag > y)
@@ -68,7 +68,7 @@ def inside(points: Points, z: Points) -> Bools:
 
 
 def overlap(one: Points, other: Points, tolerance: float) -> bool:
-    """Whether two polygons have more in common than sides and corners, to a tolerance [m]."""
+    """Return whether two polygons have more in common than sides and corners, to a tolerance [m]."""
     if not _boxes_meet(one, other, -tolerance) or _beside(one, other, tolerance):
         return False
     for first, second in ((one, other), (other, one)):
@@ -79,18 +79,18 @@ def overlap(one: Points, other: Points, tolerance: float) -> bool:
 
 
 def lies_within(inner: Points, outer: Points, tolerance: float) -> bool:
-    """Whether a polygon lies within another, to a tolerance [m]; they may share sides."""
+    """Return whether a polygon lies within another, to a tolerance [m]; they may share sides."""
     points = np.append(_middles(inner, outer), inner)
     return bool((inside(points, outer) | (distance(points, outer) <= tolerance)).all())
 
 
 def gap(one: Points, other: Points) -> float:
-    """The distance of two polygons that do not overlap [m]."""
+    """Return the distance of two polygons that do not overlap [m]."""
     return float(min(distance(one, other).min(), distance(other, one).min()))
 
 
 def pierced(outline: Points, holes: Sequence[Points]) -> Points:
-    """An outline with holes as one closed line, which goes to each hole and back the same way."""
+    """Return an outline with holes as one closed line, which goes to each hole and back on the same path."""
     outline = outline if area_of(outline) > 0 else outline[::-1]
     left = [hole if area_of(hole) < 0 else hole[::-1] for hole in holes]
     while left:
@@ -101,7 +101,7 @@ def pierced(outline: Points, holes: Sequence[Points]) -> Points:
 
 
 def _joined(outline: Points, hole: Points) -> Points:
-    """Two closed lines as one, joined where they are nearest."""
+    """Return two closed lines as one, joined where they are nearest."""
     if distance(outline, hole).min() < distance(hole, outline).min():
         k, other, at = _nearest(outline, hole)
         return np.concatenate([outline[: k + 1], [at], np.roll(hole, -other - 1), [at], outline[k:]])
@@ -111,7 +111,7 @@ def _joined(outline: Points, hole: Points) -> Points:
 
 
 def _nearest(corners: Points, z: Points) -> tuple[int, int, complex]:
-    """Of the corner that is nearest to a polygon: which it is, the side it is near to, and the point on that side."""
+    """Return the corner nearest to a polygon, the side nearest to this corner, and the point on this side."""
     k = int(distance(corners, z).argmin())
     side = np.roll(z, -1) - z
     along = np.clip(((corners[k] - z) * side.conj()).real / _squared(side), 0.0, 1.0)
@@ -121,7 +121,7 @@ def _nearest(corners: Points, z: Points) -> tuple[int, int, complex]:
 
 
 def _squared(side: Points) -> Reals:
-    """Squared lengths, of no length one."""
+    """Return the squared lengths of sides, with 1 for sides of zero length."""
     found: Reals = np.where(side == 0, 1.0, np.abs(side) ** 2)
     return found
 
@@ -135,7 +135,7 @@ def _boxes_meet(one: Points, other: Points, margin: float) -> bool:
 
 
 def _beside(one: Points, other: Points, tolerance: float) -> bool:
-    """Whether a side of either, made longer, has the one on this side of it and the other on that, to a tolerance."""
+    """Return whether a line along a side of either polygon separates the two, to a tolerance."""
     for first, second in ((one, other), (other, one)):
         side = np.roll(first, -1) - first
         across = (1j * side / np.where(side == 0, 1.0, np.abs(side)))[:, None].conj()
@@ -147,7 +147,7 @@ def _beside(one: Points, other: Points, tolerance: float) -> bool:
 
 
 def _middles(z: Points, other: Points) -> Points:
-    """Middles of the pieces into which another polygon cuts the sides of one."""
+    """Return the midpoints of the pieces into which another polygon cuts the sides of a polygon."""
     found = []
     far = np.roll(other, -1) - other
     for start, end in zip(z, np.roll(z, -1), strict=True):
@@ -163,7 +163,7 @@ def _middles(z: Points, other: Points) -> Points:
 
 
 def _within(z: Points) -> complex:
-    """A point inside a polygon: on a level line between two of its heights, in the middle of its longest chord."""
+    """Return a point inside a polygon: the midpoint of its longest chord on a horizontal line between two corners."""
     heights = np.unique(z.imag)
     k = int(np.diff(heights).argmax())
     y, w = (heights[k] + heights[k + 1]) / 2, np.roll(z, -1)
@@ -175,9 +175,9 @@ def _within(z: Points) -> complex:
 
 
 def nearby(low: Points, high: Points) -> Iterator[tuple[Indices, Indices]]:
-    """Pairs of boxes that overlap or touch, given their lower left and upper right corners, many at a time.
+    """Yield pairs of boxes that overlap or touch, from their lower left and upper right corners, in batches.
 
-    A sweep along the axis on which fewer boxes overlap; those already begun are compared at once.
+    The boxes are swept along the axis on which fewer of them overlap.
     """
     ways = []
     for a, b in ((low.real, high.real), (low.imag, high.imag)):
@@ -198,13 +198,13 @@ def nearby(low: Points, high: Points) -> Iterator[tuple[Indices, Indices]]:
 
 
 def any_alike(z: Points, tolerance: float) -> bool:
-    """Whether two points are within a tolerance of each other."""
+    """Return whether any two points are within a tolerance of each other."""
     around = tolerance * (1 + 1j)
     return any((np.abs(z[i] - z[j]) <= tolerance).any() for i, j in nearby(z, z + around))
 
 
 def any_meet(z: Points) -> bool:
-    """Whether two sides of a polygon cross or touch; neighbours share a corner, and only neighbours do."""
+    """Return whether two sides of a polygon cross or touch, other than neighbours at their common corner."""
     w = np.roll(z, -1)
     low = np.minimum(z.real, w.real) + 1j * np.minimum(z.imag, w.imag)
     high = np.maximum(z.real, w.real) + 1j * np.maximum(z.imag, w.imag)
@@ -216,7 +216,7 @@ def any_meet(z: Points) -> bool:
 
 
 def _meet(a: Points, b: Points, c: Points, d: Points) -> Bools:
-    """Whether sides ab and cd, which share no corner, cross or touch."""
+    """Return whether sides ab and cd, which share no corner, cross or touch."""
 
     def side(p: Points, q: Points, r: Points) -> Reals:
         u, v = q - p, r - p

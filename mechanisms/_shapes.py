@@ -19,14 +19,14 @@ SHAPES = ("polygon", "parts", "disc", "masses")
 
 
 class Disc(Described):
-    """A round plate."""
+    """A circular plate."""
 
     centre: Vertex = point("its centre")
     radius: float = quantity("its radius", unit="m", example=0.5, gt=0, le=1e6)
 
 
 class Mass(Described):
-    """A mass at a point."""
+    """A point mass."""
 
     mass: float = quantity("its mass", unit="kg", example=100.0, gt=0, le=1e15)
     at: Vertex = point("where it is")
@@ -34,7 +34,7 @@ class Mass(Described):
 
 @dataclass(frozen=True)
 class Member:
-    """A body with its shapes, and whether its mass is in kilograms or relative to those of others."""
+    """A body with its shapes, and whether its mass is in kilograms or relative to those of other bodies."""
 
     body: Body
     outlines: Sequence[Outline]
@@ -42,7 +42,7 @@ class Member:
 
 
 class Shape(Described):
-    """A rigid body: by one of its shapes, or by mass, centroid and inertia."""
+    """A rigid body, given by a shape, or by mass, centroid and inertia."""
 
     polygon: list[Vertex] | None = quantity(
         "corners [x, y] in order around it", unit="m", example=[[0.0, 0.0], [1.0, 0.0], [1.0, 3.0], [0.0, 3.0]],
@@ -91,11 +91,11 @@ class Shape(Described):
 
     @property
     def corners(self) -> Outline:
-        """The corners of its polygon, x + iy [m]; none of other shapes."""
+        """Corners of the polygon, x + iy [m]; empty for other shapes."""
         return [complex(*vertex) for vertex in self.polygon or []]
 
     def member(self, name: str, density: float | None, depth: float | None) -> Member:
-        """The body, with density and depth of the structure where it has none of its own."""
+        """Return the body, with the density and depth of the structure unless the body has its own."""
         if self.inertia is not None and self.mass is not None and self.centroid is not None:
             body = Body(name, self.mass, self.inertia, complex(*self.centroid), tuple(self.corners))
             return Member(body, [self.corners] if self.polygon else [], True)
@@ -128,12 +128,12 @@ class Shape(Described):
         return [part for part in self.parts or [] if not part.opening]
 
     def _is_weighed(self, own: Sequence[float | None]) -> bool:
-        """Whether density and depth are known, its own or of all of its parts."""
+        """Return whether density and depth are known, for the body or for all of its parts."""
         parts = [(part.density or own[0], part.depth or own[1]) for part in self._solids] or [(own[0], own[1])]
         return all(None not in each for each in parts)
 
     def enlarged(self, factor: float) -> Shape:
-        """The same body of a structure of another size: what has a length grows, masses and densities stay."""
+        """Return the body in a structure of another size: lengths are multiplied, masses and densities stay."""
         changed: dict[str, Any] = {}
         if self.polygon is not None:
             changed["polygon"] = [[factor * each for each in vertex] for vertex in self.polygon]

@@ -1,4 +1,4 @@
-"""What every single rigid body shares: it turns about the foot corner on the side it rocks to."""
+"""Base class of single rigid bodies, which rotate about the foot corner on the side to which they rock."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ class SingleBody(Mechanism):
     """A rigid body on two foot corners; a subclass gives its one body, its feet and its limit."""
 
     def feet(self) -> tuple[complex, complex]:
-        """Left and right foot corner [m], by default symmetric about the centroid at x = 0."""
+        """Return the left and right foot corner [m], by default symmetric about the centroid at x = 0."""
         raise NotImplementedError
 
     def rolls(self, direction: Direction) -> float:
-        """The radius of the edge it rolls on, if it is rounded [m]."""
+        """Return the radius of the rounded edge on which the body rolls [m]; 0 if it is not rounded."""
         return 0.0
 
     def pivot(self, direction: Direction) -> complex:
-        """Where it meets the ground as it begins to rock [m]: its foot, or inwards of it where that crushes."""
+        """Return the ground contact at the start of rocking [m]: the foot, moved inwards if the foot crushes."""
         left, right = self.feet()
         return (right if direction > 0 else left) - direction * self.inwards(direction, "foot")
 
@@ -41,15 +41,15 @@ class SingleBody(Mechanism):
         return {"foot": self.borne(direction)}
 
     def centre(self, direction: Direction) -> complex:
-        """What it turns about [m]: its pivot, or the centre of the circle on which it rolls."""
+        """Return the centre of rotation at rest [m]: the pivot, or the centre of the circle on which the body rolls."""
         return self.pivot(direction) + 1j * self.rolls(direction)
 
     def arm(self, direction: Direction) -> complex:
-        """From what it turns about to the centroid [m]; its length is R."""
+        """Return the vector from the centre of rotation to the centroid [m]; its length is R."""
         return self.bodies()[0].centroid - self.centre(direction)
 
     def alpha(self, direction: Direction) -> float:
-        """Angle of R from the vertical at rest [rad]."""
+        """Return the angle of R from the vertical at rest [rad]."""
         arm = self.arm(direction)
         return atan2(-direction * arm.real, arm.imag)
 
@@ -73,11 +73,11 @@ class SingleBody(Mechanism):
         return self.alpha(direction)  # the centroid stands over the pivot
 
     def outlines(self) -> Sequence[Outline]:
-        """The shapes of the body; none where they are not known."""
+        """Return the shapes of the body; empty if they are not known."""
         return ()
 
     def lengths(self) -> Sequence[Length]:
-        """The fields that are lengths, to show beside R and alpha."""
+        """Return the fields that are lengths, which drawings show beside R and alpha."""
         return ()
 
     def sketch(self) -> Sketch:

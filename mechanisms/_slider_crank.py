@@ -1,4 +1,4 @@
-"""A slider-crank: AB turns about A, BC follows, and C is held sideways [extends the paper's Section 4]."""
+"""Slider-crank mechanism: AB turns about A, BC follows, and C only moves vertically [extends the paper's Section 4]."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from rocking_cli.core import Direction, Reals, RigidMotion, rotation
 def slider_crank(
     phi: Reals, direction: Direction, a: complex, b: complex, c: complex
 ) -> tuple[RigidMotion, RigidMotion]:
-    """Motions of the links AB, which turns by -s phi about A, and BC, whose C moves up and down only.
+    """Return the motions of the links AB, which turns by -s phi about A, and BC, whose C moves vertically only.
 
     Parameters
     ----------
     phi : ndarray, shape (n,)
-        Rotations of AB inside the direction [rad], from 0 to less than `slider_crank_limit`.
+        Rotations of AB in this direction [rad], from 0 to less than `slider_crank_limit`.
     direction : Direction
         Clockwise (positive) or anticlockwise (negative) rotation of AB.
     a, b, c : complex
@@ -26,7 +26,7 @@ def slider_crank(
     Returns
     -------
     tuple of RigidMotion
-        AB and BC.
+        Motions of AB and BC.
 
     Notes
     -----
@@ -44,7 +44,7 @@ def slider_crank(
 
 
 def slider_crank_limit(direction: Direction, a: complex, b: complex, c: complex) -> float:
-    """Rotation phi of AB at which it lies flat, or BC does and the linkage locks [rad]."""
+    """Return the rotation of AB at which AB lies flat, or BC does so that the linkage locks [rad]."""
     s = int(direction)
     crank, span = hypot(s * (b - a).real, (b - a).imag), abs(c - b)
     # In the positive direction B goes to the right until it is |BC| away from the line on which C is held.

@@ -44,7 +44,7 @@ DRAWN = 200  # voussoirs of a picture, at most
 
 
 class Arch(Mechanism):
-    """A ring of constant thickness on fixed springings; its hinges are those of the least ground acceleration."""
+    """A ring of constant thickness on fixed springings, with the hinges of the least ground acceleration."""
 
     mechanism: ClassVar[str] = "arch"
     title: ClassVar[str] = "circular masonry arch, four hinges"
@@ -90,11 +90,11 @@ class Arch(Mechanism):
 
     @cached_property
     def hinge_angles(self) -> tuple[float, float, float, float]:
-        """Angles of A, B, C and D from the springing on the left (positive) or right (negative) [rad]."""
+        """Angles of A, B, C and D from the left springing (positive direction) or the right one (negative) [rad]."""
         return collapse_hinges(Ring(self.thickness / self.radius, self._beta), self.voussoirs)
 
     def hinges(self, direction: Direction) -> tuple[complex, complex, complex, complex]:
-        """Rest positions of A, B, C and D [m]; the centre of the ring is the origin."""
+        """Return the positions of A, B, C and D at rest [m]; the centre of the ring is the origin."""
         half = self.thickness / 2
         radii = (self.radius - half, self.radius + half) * 2  # intrados, extrados, intrados, extrados
         a, b, c, d = (
@@ -129,7 +129,7 @@ class Arch(Mechanism):
         return tuple(links[k] for k in np.searchsorted(self.hinge_angles, along))
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
-        """With the segments on either side, and the face of the lower; at a springing there is one, and the ground."""
+        """Return the hinges with the segments on either side, or the ground, and the face of the lower segment."""
         cuts, joints = np.array(self._cuts), []
         for letter, point, angle in zip("ABCD", self.hinges(direction), self.hinge_angles, strict=True):
             cut = int(np.abs(cuts - (angle if direction > 0 else self._beta - angle)).argmin())
@@ -147,7 +147,7 @@ class Arch(Mechanism):
 
     @cached_property
     def _joint_angles(self) -> Sequence[float]:
-        """Angles of the joints from the left springing [rad]: those of its voussoirs, or cuts where it may open."""
+        """Angles of the joints from the left springing [rad]: those between voussoirs, or possible cuts."""
         even = np.linspace(0.0, self._beta, (self.voussoirs or CUTS) + 1)
         hinges = np.array(self._cuts)
         apart = np.abs(even[:, None] - hinges).min(axis=1) > NEAR * self._beta / (len(even) - 1)
@@ -155,11 +155,11 @@ class Arch(Mechanism):
 
     @property
     def _part(self) -> str:
-        """What a piece is called."""
+        """Word for one piece of the arch."""
         return "voussoir" if self.voussoirs else "piece"
 
     def pieces(self, direction: Direction) -> Sequence[Piece]:
-        """Its voussoirs, or the pieces between its cuts; those beyond the hinges rest."""
+        """Return the voussoirs, or the pieces between cuts; those beyond the outer hinges are at rest."""
         half, left = self.thickness / 2, pi / 2 + self._beta / 2
         bodies, found = self.weighed(), []
         density = bodies[0].mass / (self._cuts[1] - self._cuts[0])  # per angle
@@ -245,13 +245,13 @@ class Arch(Mechanism):
         )
 
     def _sector(self, start: float, end: float) -> Outline:
-        """The part of the ring between two angles from the left springing."""
+        """Return the outline of the ring between two angles from the left springing."""
         half = self.thickness / 2
         turns = np.exp(1j * ((pi + self._beta) / 2 - np.linspace(start, end, max(2, ceil((end - start) / FINE) + 1))))
         return [*((self.radius + half) * turns).tolist(), *((self.radius - half) * turns[::-1]).tolist()]
 
     def _links(self) -> list[tuple[str, complex, complex, complex]]:
-        """Each link of the positive direction: name, hinge it is measured from, hinge at its other end, centroid."""
+        """Return each link of the positive direction: name, reference hinge, hinge at its other end, centroid."""
         A, B, C, D = self.hinges(Direction.POSITIVE)
         half = self.thickness / 2
         left = (pi + self._beta) / 2
@@ -281,6 +281,6 @@ class Arch(Mechanism):
 
 
 def _round_up(value: float, digits: int) -> float:
-    """A positive number rounded up to some digits, so that what an error recommends is accepted."""
+    """Return a positive number rounded up to some digits, so that a value recommended by an error is accepted."""
     unit = 10.0 ** (floor(log10(value)) - digits + 1)
     return ceil(value / unit) * unit

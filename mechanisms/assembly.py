@@ -1,4 +1,4 @@
-"""An assembly of rigid blocks on the ground: its weakest mechanism in either direction, found and then rocked."""
+"""An assembly of rigid blocks on the ground, which rocks in its weakest mechanism of each direction."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ EXAMPLE_GROUND = {"floor": {"polygon": [[-1.0, -0.5], [5.0, -0.5], [5.0, 0.0], [
 
 
 class AssemblyGround(Described):
-    """What cannot move."""
+    """A part of the ground, which does not move."""
 
     polygon: list[Vertex] = quantity(
         "corners [x, y] in order around it", unit="m", example=[[0.0, -1.0], [1.0, -1.0], [1.0, 0.0], [0.0, 0.0]],
@@ -76,16 +76,16 @@ class AssemblyGround(Described):
 
     @property
     def corners(self) -> tuple[complex, ...]:
-        """x + iy [m]."""
+        """Corners, x + iy [m]."""
         return tuple(complex(*vertex) for vertex in self.polygon)
 
     def enlarged(self, factor: float) -> AssemblyGround:
-        """The same of a structure of another size."""
+        """Return the part of the ground for a structure of another size."""
         return self.model_copy(update={"polygon": [[factor * each for each in vertex] for vertex in self.polygon]})
 
 
 class Support(Described):
-    """What holds a point of a block sideways, both ways, such as a floor that a wall's top is tied to."""
+    """A support that restrains a point of a block sideways, in both senses, such as a floor tied to a wall's top."""
 
     slide: Name = Field(description="the block")
     at: Vertex = point("the point of it")
@@ -98,19 +98,19 @@ class Support(Described):
         return self
 
     def enlarged(self, factor: float) -> Support:
-        """The same of a structure of another size."""
+        """Return the support of a structure of another size."""
         return self.model_copy(update={"at": [factor * each for each in self.at]})
 
 
 class Leads(Described):
-    """The blocks whose rotation phi is."""
+    """The blocks whose rotation is phi."""
 
     positive: Name | None = Field(None, description="in the positive direction")
     negative: Name | None = Field(None, description="in the negative one")
 
 
 class Assembly(LinkedBodies):
-    """Rigid blocks that touch along joints without tension, on ground that does not move."""
+    """Rigid blocks in contact along joints without tension, on ground that does not move."""
 
     mechanism: ClassVar[str] = "assembly"
     title: ClassVar[str] = "assembly of rigid blocks, by its weakest mechanism"
@@ -227,7 +227,7 @@ class Assembly(LinkedBodies):
             raise StructureError(str(error)) from None
 
     def _check_lead(self, direction: Direction) -> None:
-        """Refuse a block that cannot lead."""
+        """Raise a geometry error if a given block cannot lead a mechanism."""
         told = getattr(self.lead, direction.label, None)
         if told is None or (found := self._groups(direction)).slides:
             return
@@ -252,7 +252,7 @@ class Assembly(LinkedBodies):
         return as_validation_error([RefusedFields(field[:-1], field[-1], reason)], Assembly.mechanism)
 
     def _check_stands(self) -> None:
-        """The limit analysis sees whether it stands."""
+        """Check nothing: the limit analysis finds whether the assembly stands."""
 
     # What there is
 
@@ -288,7 +288,7 @@ class Assembly(LinkedBodies):
         return self.friction_of or {}
 
     def _pair(self, words: str) -> tuple[str, str]:
-        """The two bodies that a joint is of, whose names may have an `and` of their own."""
+        """Return the two bodies of a joint from words such as `a and b`; their names may contain `and` too."""
         parts = words.split(" and ")
         ways = [(" and ".join(parts[:k]), " and ".join(parts[k:])) for k in range(1, len(parts))]
         names = {*self.blocks, *self.ground}
@@ -332,7 +332,7 @@ class Assembly(LinkedBodies):
         return _name(self._contacts[k])
 
     def _lead(self, direction: Direction) -> str:
-        """The block whose rotation phi is: as told, or one of the leading group, on the ground if one is."""
+        """Return the block whose rotation is phi: as given, or one of the leading group, on the ground if one is."""
         told = getattr(self.lead, direction.label, None)
         if told is not None:
             return str(told)
@@ -392,7 +392,7 @@ class Assembly(LinkedBodies):
         return linkage
 
     def _check_slips_off(self, direction: Direction, linkage: LinkageMotion) -> None:
-        """Refuse a mechanism in which a corner that slips along a face without friction does not leave it."""
+        """Raise an error if a corner that slips along a frictionless face does not lift off this face."""
         found, phi = self._groups(direction), np.array([SLIPS * linkage.limit])
         motions = linkage.motions(phi)
 
@@ -415,7 +415,7 @@ class Assembly(LinkedBodies):
                     )
 
     def _hinges(self, direction: Direction) -> list[tuple[str, analysis.AssemblyContact, complex]]:
-        """Letter, joint and point of each hinge, from the left."""
+        """Return letter, joint and point of each hinge, from the left."""
         hinges = self._groups(direction).hinges
         order = from_the_left([hinge.point for hinge in hinges])
         return [
@@ -462,7 +462,7 @@ class Assembly(LinkedBodies):
     # What is said of it
 
     def own_caution(self) -> str:
-        """By how much joints that never slide raise lambda, if by more than 1 %; and what is too light to be seen."""
+        """Return cautions: by how much joints that never slide raise lambda, if above 1 %; and blocks too light."""
         raised = []
         for direction in self.directions:
             lambda_, usual = self._collapse(direction).multiplier, self._with_usual(direction)
@@ -477,7 +477,7 @@ class Assembly(LinkedBodies):
         return " ".join(filter(None, said))
 
     def _of_grains(self) -> str:
-        """Which blocks are too light for the analysis, as a sentence."""
+        """Return a sentence on blocks that are too light for the analysis."""
         masses = [block.mass for block in self._blocks]
         grains = [block.name for block in self._blocks if block.mass <= LIGHT * sum(masses)]
         if not grains:
@@ -491,12 +491,12 @@ class Assembly(LinkedBodies):
 
     @per_direction
     def _with_usual(self, direction: Direction) -> float | None:
-        """Lambda with the usual friction in joints without any; None if all have some."""
+        """Return lambda with the usual friction in joints without given friction; None if all have one."""
         return analysis.with_usual(self._collapse(direction))
 
     @per_direction
     def _no_model(self, direction: Direction) -> str:
-        """Why its mechanism cannot be followed, as a sentence without a full stop; empty if it can."""
+        """Return why the mechanism cannot be simulated, a sentence without a full stop; empty if it can."""
         try:
             self._linkage(direction)
         except MechanismError as error:
@@ -504,7 +504,7 @@ class Assembly(LinkedBodies):
         return ""
 
     def collapse(self, direction: Direction) -> CollapseMechanism:
-        """The weakest mechanism of a direction. Raises `StructureError` where there is none."""
+        """Return the weakest mechanism of a direction. Raises `StructureError` if there is none."""
         found = self._groups(direction)
         state = self._collapse(direction)
         friction, thrust = self._needed(direction), self._thrust(direction)
@@ -541,9 +541,10 @@ class Assembly(LinkedBodies):
         )
 
     def _held(self, direction: Direction, phi: Reals) -> list[tuple[analysis.DisplacedAssembly, Reals, float]]:
-        """At each rotation the displaced assembly, the forces on its blocks, and the acceleration over g that holds it.
+        """Return the displaced assembly at each rotation, the forces on its blocks, and G/B.
 
-        All rotations at once, because each body takes as long for many as for one.
+        G/B is the acceleration over g of displaced equilibrium. All rotations are computed in one call, which takes as
+        long as a single one.
         """
         there = self.coefficients(phi, direction)
         shares: Reals = there.restoring(self.gravity) / there.B
@@ -561,12 +562,15 @@ class Assembly(LinkedBodies):
 
     @per_direction
     def _remaining(self, direction: Direction) -> analysis.Bearings:
-        """What is left of its joints once they open."""
+        """Return the joints that still bear in the mechanism of a direction."""
         return analysis.remaining(self._blocks, self._contacts, self._guides, self._groups(direction).states)
 
     @per_direction
     def _valid_to(self, direction: Direction) -> tuple[float, int, float] | None:
-        """The rotation at which another joint opens as it is held displaced, which, and by what acceleration over g."""
+        """Return the rotation at which another joint opens in displaced equilibrium, this joint, and G/B there.
+
+        None if no joint opens.
+        """
         try:
             end = self.critical_rotation(direction)
         except NoCriticalRotation:
@@ -655,7 +659,7 @@ class Assembly(LinkedBodies):
         return Line(name, [each.point for each in found.passages], direction)
 
     def _joint_forces(self, direction: Direction) -> Forces | None:
-        """The forces of one state at uplift where no line joins them."""
+        """Return the joint forces of one state at uplift, if they do not form a line of thrust; else None."""
         found = self._thrust(direction)
         if found.chain:
             return None
@@ -665,7 +669,7 @@ class Assembly(LinkedBodies):
 
 
 def from_the_left(points: Sequence[complex]) -> list[int]:
-    """The order of points from the left, of those above one another from below, whatever their last bits."""
+    """Return the order of points from left to right, and from bottom to top at equal x, up to rounding."""
     x = np.array([each.real for each in points])
     order = np.argsort(x, kind="stable")
     columns = np.cumsum(np.diff(x[order], prepend=x[order][:1]) > ABOVE * np.ptp(x)) if x.size else x
@@ -674,7 +678,7 @@ def from_the_left(points: Sequence[complex]) -> list[int]:
 
 
 def _name(contact: analysis.AssemblyContact) -> str:
-    """A joint by the two that it is of."""
+    """Return the name of a joint from its two bodies."""
     return f"{contact.a} and {contact.b}"
 
 

@@ -83,7 +83,7 @@ class AsymmetricFrame(Mechanism):
         return self
 
     def total_mass(self) -> float | None:
-        """Its bodies have the masses of their density, or their own."""
+        """Return the given mass of the structure; None if its bodies have the masses of density, or their own."""
         return self.mass
 
     def bodies(self) -> Sequence[Body]:
@@ -101,7 +101,7 @@ class AsymmetricFrame(Mechanism):
         )
 
     def hinges(self, direction: Direction) -> tuple[complex, complex, complex, complex]:
-        """Rest positions of A, B, C and D [m]; the left column's axis is x = 0, its foot y = 0."""
+        """Return the positions of A, B, C and D at rest [m]; the left column's axis is x = 0, its foot y = 0."""
         sb, top, span = direction * self.column_width / 2, 1j * self.left_height, self.spacing
         return sb + 0j, -sb + top, span - sb + top, span + sb + top - 1j * self.right_height
 

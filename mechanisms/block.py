@@ -32,7 +32,10 @@ class Block(SingleBody):
         return pi / 2  # it lies on its side
 
     def rebound_from_impacts(self) -> float | None:
-        """Housner's impacts in sequence [Sorrentino, Al Shawa and Decanini 2011]; none with masses on it."""
+        """Return the rebound by Housner's impacts in sequence; None with masses on the block.
+
+        See Sorrentino, Al Shawa and Decanini (2011).
+        """
         if self.crushing is not None or any(load.mass is not None for load in self.loads or ()):
             return None
         sine, cosine = sin(self.alpha(Direction.POSITIVE)), cos(self.alpha(Direction.POSITIVE))

@@ -1,4 +1,4 @@
-"""Cones, shell to solid: the model of a masonry spire [paper, Table I; DeJong 2012]."""
+"""Cones, from thin shell to solid: the model of a masonry spire [paper, Table I; DeJong 2012]."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Cone(SingleBody):
         return (Body("cone", 1.0, about_base - level**2, 1j * level),)
 
     def volume(self) -> float:
-        """Of the solid it is, whatever its depth; a shell has none without its thickness."""
+        """Return the volume of a solid or hollow cone [m3], without regard to `depth`; a thin shell has none."""
         if self.kind == "shell":
             return super().volume()
         return pi * self.base_radius**2 * self.height / 3 * (1 - (self.inner_ratio or 0.0) ** 3)

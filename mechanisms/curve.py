@@ -1,4 +1,4 @@
-"""A structure that is known by its capacity curve, as from a discrete or finite element analysis."""
+"""A structure given by its capacity curve, as from a discrete or finite element analysis."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ WHERE = {"points": "file", "negative_points": "negative_file"}
 
 
 class Curve(Mechanism):
-    """One rigid body that stands for the structure: its centroid moves in the direction that the curve says.
+    """One rigid body that represents the structure: its centroid moves in the direction that the curve gives.
 
     With the ratio r(phi), G = m R sin(beta), B = m R cos(beta), tan(beta) = r, R constant: G/B is the curve, and the
-    inertia stays as it is at rest, in both directions. For a single rigid body on two feet that is exact. Where R
-    differs, the body turns the less in the direction of the larger one: what it moves by is in the curve.
+    inertia is constant, in both directions. This is exact for a single rigid body on two feet. If R differs between the
+    directions, the body rotates less in the direction of the larger R, so that the inertia is the given one in both.
     """
 
     mechanism: ClassVar[str] = "curve"
@@ -80,7 +80,7 @@ class Curve(Mechanism):
     @model_validator(mode="before")
     @classmethod
     def _read_files(cls, data: Any, info: ValidationInfo) -> Any:
-        """Points instead of files: the structure is then whole without them."""
+        """Replace the files of curves by their points, so that the structure does not depend on the files."""
         if not isinstance(data, dict):
             return data
         data = dict(data)
@@ -131,7 +131,7 @@ class Curve(Mechanism):
 
     @cached_property
     def _ratios(self) -> dict[Direction, MonotoneCubic]:
-        """r over phi, of both directions."""
+        """The ratio r as a function of phi, for each direction."""
         curves = [np.array(points) for points in (self.points, self.negative_points or self.points)]
         return {
             direction: MonotoneCubic(curve[:, 0] / self.control_height, curve[:, 1])
@@ -139,7 +139,7 @@ class Curve(Mechanism):
         }
 
     def _arm(self, direction: Direction) -> float:
-        """R: how far the centroid moves per rad [m]."""
+        """Return R, the displacement of the centroid per rad [m]."""
         return self.centroid_height * hypot(1.0, float(self._ratios[direction].y[0]))
 
     @property
@@ -155,11 +155,11 @@ class Curve(Mechanism):
         return (Body("structure", self.mass, central, 1j * self.centroid_height),)
 
     def _central(self, direction: Direction) -> float:
-        """What the turning body needs about its centroid for the inertia given [kg m2]."""
+        """Return the moment of inertia about the centroid that gives the total inertia [kg m2]."""
         return max(self.inertia - self.mass * self._arm(direction) ** 2, 0.0)
 
     def _turning(self, direction: Direction) -> float:
-        """By how much the body turns over phi."""
+        """Return the ratio of the body's rotation to phi."""
         most = max(self._central(each) for each in Direction)
         return sqrt(self._central(direction) / most) if most > 0 else 1.0
 
@@ -174,7 +174,7 @@ class Curve(Mechanism):
         return (RigidMotion(rest, rest + arm * path, speed, change, turns * phi, none + turns, none),)
 
     def _way(self, phi: Reals, direction: Direction) -> Points:
-        """The integral of cos(beta) + i sin(beta) from rest, the first times s."""
+        """Return the integral of s cos(beta) + i sin(beta) over phi, starting at rest."""
         ratio = self._ratios[direction]
 
         def between(start: Reals, end: Reals) -> Points:
@@ -189,7 +189,7 @@ class Curve(Mechanism):
         return sums[k] + between(knots[k], phi)
 
     def enlarged(self, factor: float) -> Self:
-        """Of another size: displacements grow with it, ratios stay."""
+        """Return a structure of another size: displacements of the curve are multiplied, ratios stay."""
         moved = {
             key: [[factor * d, r] for d, r in points] for key in WHERE if (points := getattr(self, key)) is not None
         }
@@ -204,5 +204,5 @@ class Curve(Mechanism):
 
 
 def _along(r: Reals, direction: Direction) -> Points:
-    """The direction of the ratio r, of length one."""
+    """Return the unit vector whose direction has the ratio r."""
     return np.asarray((direction + 1j * r) * (1 / np.sqrt(1 + r**2)), np.complex128)

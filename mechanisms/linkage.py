@@ -1,4 +1,4 @@
-"""A linkage of any rigid bodies, given in the file: no code needed."""
+"""A linkage of any rigid bodies, described in the file without code."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ EXAMPLE_SIDE = {
 
 
 class Linkage(LinkedBodies):
-    """Bodies and, for each direction, the joints that hold them."""
+    """Bodies, and their joints for each direction."""
 
     mechanism: ClassVar[str] = "linkage"
     title: ClassVar[str] = "linkage of any rigid bodies"
@@ -145,7 +145,7 @@ class Linkage(LinkedBodies):
                 raise geometry_error((*where, "at"), f"must be a point [x, y], got {each.at!r}")
 
     def _check_moves(self, direction: Direction) -> None:
-        """Refuse joints that leave no motion, one the wrong way, or one that closes a face."""
+        """Raise an error if the joints allow no motion, a motion the wrong way, or one that closes a face."""
         try:
             linkage = self._linkages[direction]
         except NoMotion as error:
@@ -158,7 +158,7 @@ class Linkage(LinkedBodies):
                 raise self._refused(direction, *found)
 
     def _refused(self, direction: Direction, joint: str | None, reason: str) -> PydanticCustomError:
-        """The error of a joint, where the file has it: in a mirror it has none."""
+        """Return the error of a joint at its place in the file; a mirrored joint has no place of its own."""
         has_joints = joint is not None and isinstance(getattr(self, direction.label), LinkageSide)
         return geometry_error((direction.label, "joints", joint or "") if has_joints else direction.label, reason)
 
@@ -166,12 +166,12 @@ class Linkage(LinkedBodies):
 
     @cached_property
     def _whole(self) -> Mapping[str, Member]:
-        """The bodies before they crack."""
+        """The bodies without cracks."""
         return {name: shape.member(name, self.density, self.depth) for name, shape in self.members.items()}
 
     @cached_property
     def _members(self) -> Mapping[str, Member]:
-        """The bodies with the masses that the file gives, or relative ones."""
+        """The bodies by name, with the masses of the file, or relative ones."""
         shapes = self._cracked.shapes
         return {name: shape.member(name, self.density, self.depth) for name, shape in shapes.items()}
 
@@ -179,7 +179,7 @@ class Linkage(LinkedBodies):
 
     @cached_property
     def _sides(self) -> Mapping[Direction, LinkageSide]:
-        """The joints of the directions in which it can rock, as the file or its mirror has them."""
+        """The joints of the directions of rocking, as given or mirrored."""
         found = {}
         for direction in self.directions:
             side, other = (getattr(self, each.label) for each in (direction, direction.opposite))
@@ -191,7 +191,7 @@ class Linkage(LinkedBodies):
 
     @cached_property
     def _cracked(self) -> Cracked:
-        """Bodies and joints with the cracks where they are weakest."""
+        """Bodies and joints, with the cracks where lambda is least."""
         cracks = self.cracks or {}
         return cracked(self.members, self._sides, cracks, self._shares)
 
@@ -200,7 +200,7 @@ class Linkage(LinkedBodies):
         return {direction: self._weakest(direction, side) for direction, side in self._sides.items()}
 
     def _weakest(self, direction: Direction, side: LinkageSide) -> Mapping[str, float]:
-        """The shares along their lines at which the cracks of a direction give the least lambda."""
+        """Return the fractions along their lines at which the cracks of a direction give the least lambda."""
         cracks = {name: (self.cracks or {})[name] for name in active(side, self.cracks or {})}
         if not cracks:
             return {}
@@ -236,13 +236,13 @@ class Linkage(LinkedBodies):
 
     @property
     def _middle(self) -> float:
-        """Half way between the outermost points [m]."""
+        """x of the vertical line halfway between the outermost points [m]."""
         x = [z.real for each in self._whole.values() for shape in each.outlines for z in shape]
         x += [each.body.centroid.real for each in self._whole.values()]
         return (min(x) + max(x)) / 2
 
     def _images(self, direction: Direction) -> Mapping[str, str]:
-        """The mirror image of each body among them."""
+        """Return the mirror image of each body, which is another body or the same."""
         bodies = [each.body for each in self._whole.values()]
         points = [z for each in self._whole.values() for shape in each.outlines for z in shape]
         size = max(abs(z - self._middle) for z in [*points, *(body.centroid for body in bodies)])
@@ -309,7 +309,7 @@ class Linkage(LinkedBodies):
         return [self._joint(each, direction) for each in held]
 
     def _joint(self, each: Pin | Guide, direction: Direction) -> Joint:
-        """A hinge with its face, or a guide of the ground."""
+        """Return a hinge with its face, or a guide of the ground."""
         names, letter = each.bodies, self._letter(each.name, direction)
         if isinstance(each, Guide):
             return Joint(letter, each.at, names, slide=each.along / abs(each.along))
@@ -326,7 +326,7 @@ class Linkage(LinkedBodies):
         return Joint(letter, each.at, names, normal=normal, face=flat or names[0])
 
     def pieces(self, direction: Direction) -> Sequence[Piece]:
-        """Its bodies, but those that rest."""
+        """Return the bodies, without those at rest."""
         return [each for each in super().pieces(direction) if each.of not in self._linkages[direction].resting]
 
     def contacts(self, direction: Direction) -> Sequence[Contact] | None:
@@ -347,7 +347,7 @@ class Linkage(LinkedBodies):
         return found
 
     def _letter(self, name: str, direction: Direction) -> str:
-        """What a joint is called; of a mirror image with a prime."""
+        """Return the letter of a joint, with a prime for a mirror image."""
         return f"{name}{direction.prime}" if getattr(self, direction.label) == "mirror" else name
 
     def sketch(self) -> Sketch:
@@ -358,7 +358,7 @@ class Linkage(LinkedBodies):
         )
 
     def _under_what_rests(self) -> Sequence[Sequence[complex]]:
-        """The ground under bodies that are fixed to it; of others it is drawn under their pivots."""
+        """Return the ground lines under bodies fixed to the ground; under others it is drawn at their pivots."""
         names = {name for held in self._held.values() for name in held.ground}
         points = [z for name in names for shape in self._members[name].outlines for z in shape]
         if not points:
@@ -376,7 +376,7 @@ class Linkage(LinkedBodies):
 
 
 def _on_pieces(tie: Tie, found: Cracked) -> Tie:
-    """A tie between pieces of bodies that are cut."""
+    """Return a tie whose ends are on the pieces of cut bodies."""
 
     def moved(place: Place) -> Place:
         return place.model_copy(update={"body": found.piece(place.body, place.point)}) if place.body else place

@@ -39,7 +39,7 @@ class PointMass(SingleBody):
 
     @property
     def _thin(self) -> float:
-        """How thick the base is drawn [m]; the disc of the mass is five times as wide, and stays above the ground."""
+        """Thickness of the base in drawings [m]; the disc of the mass is five times as wide, and above the ground."""
         return min(0.02 * max(self.height, self.base_width), 0.3 * self.height)
 
     def lengths(self) -> Sequence[Length]:

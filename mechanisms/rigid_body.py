@@ -1,4 +1,4 @@
-"""Any rigid body: by its numbers, as a uniform polygon, or as the sum of its parts [paper, Section 2.2]."""
+"""Any rigid body, given by its numbers, as a uniform polygon, or as the sum of its parts [paper, Section 2.2]."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ WAYS = (
 
 
 class RigidBody(SingleBody):
-    """A rigid body; where its centroid is not above the middle of its feet, its two directions differ."""
+    """A rigid body; if its centroid is not above the middle of its feet, its two directions differ."""
 
     mechanism: ClassVar[str] = "rigid_body"
     title: ClassVar[str] = "any rigid body: by its inertia, as a polygon, or of parts"
@@ -111,7 +111,7 @@ class RigidBody(SingleBody):
 
     @cached_property
     def _way(self) -> str:
-        """The field that says how it is described."""
+        """Name of the field that describes the body."""
         begun = [way for way in WAYS if any(getattr(self, key) is not None for key in way if key != "mass")]
         if not begun:
             raise geometry_error(
@@ -190,7 +190,7 @@ class RigidBody(SingleBody):
         return self.total_mass() is not None
 
     def total_mass(self) -> float | None:
-        """Parts have the mass of their densities and depths, or of those of the body."""
+        """Return the mass of the structure: as given, or by densities and depths of its parts; None if not known."""
         weighed = self.parts is not None and all(
             each is not None for each in (*self._of_parts("density"), *self._of_parts("depth"))
         )
@@ -199,13 +199,13 @@ class RigidBody(SingleBody):
         return super().total_mass()
 
     def volume(self) -> float:
-        """Of a polygon the area that its inertia has too: arcs of rounded feet are exact, however they are drawn."""
+        """Return the volume [m3]; the arcs of rounded feet of a polygon are exact, as in its inertia."""
         if self._way != "polygon":
             return super().volume()
         return self.given_depth * sum(sign * piece.mass for sign, piece in self._pieces)
 
     def _of_parts(self, key: str) -> list[float | None]:
-        """Density or depth of every plate among the parts: its own, or that of the body."""
+        """Return density or depth of every plate among the parts: its own, or else that of the body."""
         own = [getattr(part, key) for part in self.parts or () if not part.opening]
         return [each if each is not None else getattr(self, key) for each in own]
 
@@ -227,7 +227,7 @@ class RigidBody(SingleBody):
 
     @cached_property
     def _fillets(self) -> dict[Direction, tuple[Plate, Fillet]]:
-        """The rounded feet of its plates."""
+        """Rounded feet of the plates, by direction."""
         found: dict[Direction, tuple[Plate, Fillet]] = {}
         for direction, foot in zip(Direction, reversed(self._feet), strict=True):
             if self.corner_radius is None:
@@ -243,7 +243,7 @@ class RigidBody(SingleBody):
 
     @cached_property
     def _pieces(self) -> list[tuple[int, Body]]:
-        """What it is the sum of."""
+        """Signed pieces whose sum is the body."""
         pieces = [piece for plate in self._plates for piece in plate.pieces]
         return pieces + [piece for plate, cut in self._fillets.values() for piece in cut.pieces(plate.per_area)]
 
@@ -257,13 +257,13 @@ class RigidBody(SingleBody):
 
     @property
     def _stands(self) -> Bools:
-        """Which corners are on the ground at rest."""
+        """Whether each corner is on the ground at rest."""
         level: Bools = self._corners.imag <= self._corners.imag.min() + self._level
         return level
 
     @property
     def _level(self) -> float:
-        """Height up to which a corner is on the ground [m]."""
+        """Height up to which a corner counts as on the ground [m]."""
         narrow = min(np.ptp(self._corners.real), np.ptp(self._corners.imag))
         return float(max(LEVEL * narrow, SAME * size_of(self._corners)))
 
@@ -301,7 +301,7 @@ class RigidBody(SingleBody):
         return self.corner_radius or 0.0
 
     def pivot(self, direction: Direction) -> complex:
-        """Where its flat base ends: of a foot without known sides, one radius inside of it."""
+        """Return the end of the flat base [m]; if the sides of a rounded foot are not known, one radius inside it."""
         if self.corner_radius is not None and self._way in ("polygon", "parts"):
             return self._fillets[direction][1].start
         return super().pivot(direction) - direction * self.rolls(direction)
@@ -312,7 +312,10 @@ class RigidBody(SingleBody):
         return self._meets_the_ground(self._corners[~self._stands] - self.centre(direction), direction)
 
     def _meets_the_ground(self, away: Points, direction: Direction) -> float:
-        """The rotation at which the first of points, given from what it turns about, is on the ground [rad]."""
+        """Return the rotation at which the first of some points reaches the ground [rad].
+
+        The points are given relative to the centre of rotation.
+        """
         turns = np.angle(away) if direction > 0 else pi - np.angle(away)
         if r := self.rolls(direction):
             turns = turns + np.array([asin(min(r / abs(each), 1.0)) for each in away])

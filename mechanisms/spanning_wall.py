@@ -1,4 +1,4 @@
-"""A wall that spans between floors, with a load on top and its hinge anywhere."""
+"""A wall that spans between floors, with a load on top and a hinge whose height is found."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ TOP = 1e-9  # of the height: a hinge so near the top is at it, and a load of so 
 
 
 class SpanningWall(Mechanism):
-    """A one-way spanning wall that carries a floor, hinged at its foot and above it, its top held sideways."""
+    """A one-way spanning wall that carries a floor, hinged at its foot and above, with its top held sideways."""
 
     mechanism: ClassVar[str] = "spanning_wall"
     title: ClassVar[str] = "wall spanning between floors, with a load on top"
@@ -111,16 +111,16 @@ class SpanningWall(Mechanism):
 
     @property
     def _load_ratio(self) -> float:
-        """rho: the load over the weight of the wall."""
+        """rho, the load over the weight of the wall."""
         return self.overburden / (self.gravity * (self.total_mass() or 1.0)) if self.overburden else 0.0
 
     def _lever(self, direction: Direction) -> float:
-        """k: from the face of the hinge to the load, over the thickness."""
+        """Return k, the distance from the face of the hinge to the load, over the thickness."""
         return 0.5 + direction * self.overburden_eccentricity / self.thickness
 
     @cached_property
     def _hinges(self) -> dict[Direction, float]:
-        """xi: the heights of the hinges of both directions over that of the wall."""
+        """xi, the height of the hinge over that of the wall, for each direction."""
         if isinstance(self.hinge, float):
             return dict.fromkeys(Direction, self.hinge)
         rho = self._load_ratio
@@ -130,11 +130,11 @@ class SpanningWall(Mechanism):
 
     @cached_property
     def _cuts(self) -> list[float]:
-        """Where the wall is cut, from the foot to the top [m]."""
+        """Heights at which the wall is cut, from the foot to the top [m]."""
         return [0.0, *sorted({xi * self.height for xi in self._hinges.values()}), self.height]
 
     def hinges(self, direction: Direction) -> tuple[complex, complex, complex]:
-        """Rest positions of the foot pivot A, the hinge B and the top support C [m]."""
+        """Return the positions of the foot pivot A, the hinge B and the top support C at rest [m]."""
         face = direction * self.thickness / 2
         held = {"load": self.overburden_eccentricity, "pivot": face}
         x = self.support if isinstance(self.support, float) else held[self.support]
@@ -147,7 +147,7 @@ class SpanningWall(Mechanism):
         return {"foot": self.borne(direction), "hinge": self.borne(direction, *above)}
 
     def volume(self) -> float:
-        """Of the wall; its cuts may depend on its weight."""
+        """Return the volume of the wall [m3], without its cuts, which may depend on its weight."""
         return self.thickness * self.height * self.given_depth
 
     def bodies(self) -> Sequence[Body]:

@@ -31,7 +31,7 @@ DRAWN = 6  # columns of a picture, at most
 
 
 class SymmetricFrame(Mechanism):
-    """Columns that all turn alike about their corners while the beam stays level."""
+    """Columns that all rotate equally about their corners while the beam stays level."""
 
     mechanism: ClassVar[str] = "symmetric_frame"
     title: ClassVar[str] = "equal columns under a freely supported beam"
@@ -64,7 +64,7 @@ class SymmetricFrame(Mechanism):
         return {"columns": self.columns}
 
     def volume(self) -> float:
-        """Of columns as deep as `depth`, and of a beam of the same density."""
+        """Return the volume [m3] of columns with depth `depth`, and of a beam of the same density."""
         return self.given_depth * self.column_width * self.column_height * self.columns * (1 + self.mass_ratio)
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
@@ -93,7 +93,7 @@ class SymmetricFrame(Mechanism):
 
     @property
     def _axes(self) -> list[complex]:
-        """Where columns are drawn: their spacing is not given, and changes nothing."""
+        """Positions of the columns in drawings [m]; their spacing is not given, and has no effect."""
         spacing = max(3 * self.column_width, 0.6 * self.column_height)
         return [complex(k * spacing) for k in range(min(self.columns, DRAWN))]
 

@@ -1,4 +1,4 @@
-"""A wall that bends out of plane: two equal blocks, a slider-crank [paper, Section 4]."""
+"""A wall that bends out of plane: two equal blocks that form a slider-crank [paper, Section 4]."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Wall(Mechanism):
         return slider_crank(phi, direction, *self.hinges(direction))
 
     def hinges(self, direction: Direction) -> tuple[complex, complex, complex]:
-        """Rest positions of the foot pivot A, the mid hinge B and the top support C [m]."""
+        """Return the positions of the foot pivot A, the mid hinge B and the top support C at rest [m]."""
         face, h = direction * self.thickness / 2, self.height / 4
         a, b = (face - direction * self.inwards(direction, joint) for joint in ("foot", "hinge"))
         return a + 0j, complex(-b, 2 * h), complex(face, 4 * h)

@@ -68,9 +68,9 @@ _MODULES = {name: module for module, names in _HOME.items() for name in names}
 
 
 def _own_mechanisms() -> dict[str, str]:
-    """Return the names of the mechanisms of this package, by their classes, which can be imported from it.
+    """Return the mechanism classes that `rocking_cli` exports, each with the name of its mechanism.
 
-    Those of other packages are found in `mechanisms`, by their names.
+    Mechanisms of other packages are in `mechanisms`, by name.
     """
     from rocking_cli.plugins.points import entry_points
 

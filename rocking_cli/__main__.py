@@ -1,4 +1,4 @@
-"""The command `rocking`, also as `python -m rocking_cli`: it ends in order from the first import on."""
+"""Entry point of the command `rocking` and of `python -m rocking_cli`; handles interrupts from the first import on."""
 
 import gc
 import sys
@@ -8,7 +8,7 @@ RARELY = 100_000
 
 
 def run() -> None:
-    """Run the program."""
+    """Run the command line."""
     gc.set_threshold(RARELY)
     try:
         from rocking_cli.cli.main import main

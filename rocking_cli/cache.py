@@ -1,4 +1,4 @@
-"""Files in the user's cache folder: what could be made again, and is kept to save time."""
+"""Files in the user's cache folder, which can be made again and are kept to save time."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from pathlib import Path
 
 
 def folder() -> Path:
-    """Return the folder, which need not exist."""
+    """Return the cache folder, which need not exist."""
     from platformdirs import user_cache_path
 
     return user_cache_path("rocking-cli")
 
 
 def keep(file: Path, content: bytes) -> None:
-    """Write a file whole or not at all; where it cannot be written it is left out."""
+    """Write a file to the cache whole or not at all; an error of the file system is ignored."""
     temporary = None
     try:
         file.parent.mkdir(parents=True, exist_ok=True)

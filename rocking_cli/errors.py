@@ -1,4 +1,4 @@
-"""What can go wrong, as exceptions a person can read.
+"""Exceptions of the package, with messages for users.
 
 Every error the package raises on purpose is a `RockingError`; the command line turns it into a message and
 the exit code of its class. An overturned structure is a result, not an error.
@@ -27,22 +27,22 @@ INCOMPLETE = 5
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing wrong with an input: what, where, and what to do.
+    """One thing wrong with an input: what is wrong, where, and what to do.
 
     Parameters
     ----------
     message : str
         What is wrong, one sentence without a full stop.
     file : str, optional
-        The file it was found in.
+        The file that has the problem.
     line, column : int, optional
-        Its place there, counted from 1.
+        Place of the problem in the file, counted from 1.
     field : str, optional
         The field or option concerned.
     excerpt : str, optional
         The offending line of the file.
     hint : str, optional
-        What to do about it.
+        Remedy.
     """
 
     message: str
@@ -73,7 +73,7 @@ class RockingError(Exception):
 
 
 class InputError(RockingError):
-    """A file, field or option that cannot be used; it lists every `Problem` found.
+    """A file, field or option that cannot be used, with every `Problem` found.
 
     Parameters
     ----------
@@ -89,23 +89,23 @@ class InputError(RockingError):
 
 
 class FieldError(InputError, ValueError):
-    """Fields that a mechanism made in Python does not have, or values that they cannot have; a `ValueError` too."""
+    """Unknown fields or invalid values given to a mechanism in Python; also a `ValueError`."""
 
 
 def renamed(error: InputError, arguments: Mapping[str, str]) -> InputError:
-    """The same problems, with other names for the arguments of a function, which stand in backticks: `dt`.
+    """Return an error with other names for the arguments that its messages quote in backticks, such as `dt`.
 
     Parameters
     ----------
     error : InputError
-        What a function says of its arguments.
+        The error, whose messages name arguments of a function.
     arguments : mapping of str to str
-        The name it knows an argument by, and the one it has for the caller.
+        The name of each argument in the messages, and its new name.
 
     Returns
     -------
     InputError
-        A new one.
+        A new error with the renamed arguments.
     """
     return InputError(
         *(
@@ -121,35 +121,35 @@ def renamed(error: InputError, arguments: Mapping[str, str]) -> InputError:
 
 
 def with_arguments(text: str, arguments: Mapping[str, str]) -> str:
-    """A text in which arguments stand in backticks, with other names for some of them."""
+    """Return a text in which arguments in backticks have other names, where `arguments` gives one."""
     return re.sub(r"`(\w+)`", lambda match: f"`{arguments.get(match[1], match[1])}`", text)
 
 
 class Refused(RockingError):
-    """What the system does not let us do: a full disk."""
+    """An operation that the operating system refuses, such as a write to a full disk."""
 
 
 class MechanismError(RockingError):
-    """A mechanism or plugin that does not hold its side of the contract."""
+    """A mechanism or plugin that breaks the contract of `Mechanism`."""
 
     exit_code = 3
 
 
 class StructureError(MechanismError):
-    """A structure for which its mechanism has no answer, such as one that cannot stand: its file is to be changed."""
+    """A structure that its mechanism cannot analyse, such as one that cannot stand: change its file."""
 
     exit_code = InputError.exit_code
 
 
 def of_structure(error: MechanismError, name: str) -> MechanismError:
-    """Return an error of the same kind whose message begins with the name of the structure, once.
+    """Return an error of the same class whose message begins with the name of the structure, only once.
 
     Parameters
     ----------
     error : MechanismError
-        What its mechanism says.
+        The error of the mechanism.
     name : str
-        What to call the structure.
+        Name of the structure.
     """
     said, begins = str(error), f"{name}: "
     kind = type(error) if isinstance(error, StructureError) else MechanismError
@@ -157,22 +157,22 @@ def of_structure(error: MechanismError, name: str) -> MechanismError:
 
 
 class PluginError(MechanismError):
-    """An error of a plugin's own, raised from whatever its code raised; it says whose it is and where."""
+    """An error inside a plugin's code; the message names the plugin and the place."""
 
 
 class PluginWarning(UserWarning):
-    """A plugin that cannot be used and is left out, while all others go on."""
+    """Warning of a plugin that cannot be used and is left out; the others remain available."""
 
 
 class CacheWarning(UserWarning):
-    """Compiled kernels that cannot be used, and are compiled anew."""
+    """Warning of compiled kernels that cannot be used and are compiled again."""
 
 
 class KernelWarning(UserWarning):
-    """Kernels that run far slower than they could."""
+    """Warning of kernels that run far slower than possible."""
 
 
 class SolverError(RockingError):
-    """A solver that could not reach an answer it can stand behind."""
+    """A numerical solution that did not converge to a reliable result."""
 
     exit_code = 4

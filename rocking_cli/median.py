@@ -1,4 +1,4 @@
-"""The median; that of numpy imports its masked arrays, which takes as long as a short history."""
+"""Median without `numpy.median`, which imports masked arrays and so takes as long as a short time history."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 
 def median(values: NDArray[np.float64]) -> float:
-    """Return what `numpy.median` would, to the last bit, of one or more numbers."""
+    """Return the median of one or more numbers, equal to that of `numpy.median` to the last bit."""
     ordered = np.sort(values)
     if np.isnan(ordered[-1]):  # they come last
         return np.nan

@@ -54,5 +54,8 @@ def percent(share: float) -> str:
 
 
 def peaks_over(free: list[bool] | tuple[bool, ...]) -> str:
-    """What a peak is over, in words; `free` says of each direction whether it has no critical rotation."""
+    """Return what peak rotations are divided by, in words.
+
+    `free` states for each direction whether it has no critical rotation.
+    """
     return "of the limit" if all(free) else "of phi_cr or the limit" if any(free) else "phi_cr"

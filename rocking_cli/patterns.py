@@ -7,7 +7,7 @@ from typing import Any, AnyStr, cast
 
 
 def regex(text: AnyStr, flags: int = 0) -> re.Pattern[AnyStr]:
-    """Return what behaves as `re.compile(text, flags)` does."""
+    """Return an object that acts as `re.compile(text, flags)` and compiles the expression when first used."""
     return cast("re.Pattern[AnyStr]", _Pattern(text, flags))
 
 

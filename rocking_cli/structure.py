@@ -1,4 +1,4 @@
-"""A structure: what is derived from its mechanism, its equivalent blocks and its models, each once and kept."""
+"""A structure with the statics, equivalent blocks and models derived from its mechanism, each computed once."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ from rocking_cli.text import cut, did_you_mean
 
 
 def with_restitution(mechanism: Mechanism, eta: float) -> Mechanism:
-    """A structure with another restitution of every impact: the rebound of one that rocks to one side only.
+    """Return a mechanism with another restitution of all impacts (the rebound, if it rocks to one side only).
 
-    Raises `InputError` if it cannot have it.
+    Raises `InputError` if the mechanism does not accept this restitution.
     """
     field = "restitution" if mechanism.rocks_both_ways else "rebound"
     try:
@@ -41,20 +41,20 @@ def with_restitution(mechanism: Mechanism, eta: float) -> Mechanism:
 
 
 def build_models(mechanism: Mechanism, names: Sequence[ModelName] = MODELS) -> list[Model]:
-    """Prepare models of a structure: `Structure(mechanism).models(names)`. Raises `InputError` or `MechanismError`."""
+    """Build models of a mechanism: `Structure(mechanism).models(names)`. Raises `InputError` or `MechanismError`."""
     return Structure(mechanism).models(names)
 
 
 @dataclass(frozen=True, eq=False)
 class Structure:
-    """A structure, and all that is derived from its mechanism, computed when first requested.
+    """A structure, with all that is derived from its mechanism, computed when first requested.
 
     Parameters
     ----------
     mechanism : Mechanism
-        What it is, with what is attached to it.
+        Mechanism, with its loads and ties.
     file : str, optional
-        Where it stands, for errors of its fields that show only when they are used.
+        File of the structure, for messages on fields whose errors show only when they are used.
     """
 
     mechanism: Mechanism
@@ -63,24 +63,24 @@ class Structure:
 
     @property
     def name(self) -> str:
-        """What to call it."""
+        """Name of the structure, or of its mechanism if it has none."""
         return self.mechanism.name or self.mechanism.mechanism
 
     @cached_property
     def equivalence(self) -> Equivalence:
-        """Its equivalent blocks. Raises `MechanismError`, naming it, if it has none."""
+        """Equivalent blocks of both directions. Raises `MechanismError`, with the structure's name, if none exist."""
         with self._named():
             return equivalent_block(self.mechanism, self.statics)
 
     @cached_property
     def statics(self) -> tuple[Statics, Statics]:
-        """Its moments in both directions, also where no block is equivalent. Raises `MechanismError`, naming it."""
+        """Statics of both directions; needs no equivalent block. Raises `MechanismError` with the structure's name."""
         with self._named():
             return both_statics(self.mechanism)
 
     @cached_property
     def why_no_block(self) -> str | None:
-        """Why no single block is equivalent to it, as a sentence; None if there is one in each direction."""
+        """Reason why the structure has no equivalent block, a sentence; None if it has one in each direction."""
         try:
             self.equivalence  # noqa: B018 - it is kept
         except NoEquivalentBlock as error:
@@ -89,9 +89,9 @@ class Structure:
 
     @cached_property
     def misleading(self) -> str | None:
-        """Why its linear models mislead though there is a block, as a sentence; None if they do not, or there is none.
+        """Reason why the linear models mislead, a sentence; None if they do not, or if there is no equivalent block.
 
-        Only for structures that something is attached to: for a bare one, the error is given with each kappa.
+        Only for structures with loads or ties: for a bare mechanism, the error is given with each kappa.
         """
         if self.why_no_block is not None or not self.mechanism.bends:
             return None
@@ -112,45 +112,45 @@ class Structure:
         return None
 
     def refuses(self, question: Question) -> str | None:
-        """Return why its elements leave a question without an answer, as a sentence; None if they do not."""
+        """Return why the structure's elements prevent an answer to a question, a sentence; None if they do not."""
         return self.mechanism.hung.refuses(question)
 
     def ask(self, question: Question) -> None:
-        """Raise `InputError`, with its file, if its elements leave a question without an answer."""
+        """Raise `InputError`, with the structure's file, if its elements prevent an answer to a question."""
         with self._named():
             self.mechanism.hung.ask(question)
 
     @property
     def default_models(self) -> tuple[ModelName, ...]:
-        """The models to follow where nobody asks for some: the linear ones only where they do not mislead."""
+        """Models to simulate by default: all, or the nonlinear one alone if the linear ones mislead."""
         return MODELS if self.why_no_block is None and self.misleading is None else ("nonlinear",)
 
     @cached_property
     def etas(self) -> tuple[float, float]:
-        """Restitution of an impact that ends positive and negative motion; the rebound where it rocks to one side."""
+        """Restitution of the impacts that end positive and negative motion; for one-sided rocking, the rebound."""
         with self._named():
             return self.mechanism.eta(self.mechanism.sides[0]), self.mechanism.eta(self.mechanism.sides[1])
 
     @property
     def p(self) -> float:
-        """Frequency parameter [rad/s], of two different directions the larger; without a block, how fast it moves."""
+        """Frequency parameter [rad/s]: the larger of both directions; without a block, of the nonlinear model."""
         if self.why_no_block is None:
             return max(self.equivalence.positive.p, self.equivalence.negative.p)
         return self.model("nonlinear").p
 
     @property
     def growth(self) -> float:
-        """How fast a tilt near the critical one grows [1/s]; 0 where none is critical."""
+        """Rate at which a rotation near the critical one diverges [1/s]; 0 without an equivalent block."""
         return self.p if self.why_no_block is None else 0.0
 
     @property
     def uplift(self) -> tuple[float, float]:
-        """The ground acceleration that lifts it to the positive and the negative direction [standard gravity]."""
+        """Uplift acceleration of the ground in the positive and in the negative direction [standard gravity]."""
         unit = self.mechanism.gravity / STANDARD_GRAVITY
         return self.statics[0].lambda_ * unit, self.statics[1].lambda_ * unit
 
     def model(self, name: ModelName) -> Model:
-        """One of its models. Raises `InputError` or `MechanismError` if it cannot be built."""
+        """Return a model of the structure. Raises `InputError` or `MechanismError` if it cannot be built."""
         if name not in self._models:
             statics, equivalence = self.statics, self.equivalence if name != "nonlinear" else None
             with self._named():
@@ -158,22 +158,22 @@ class Structure:
         return self._models[name]
 
     def models(self, names: Sequence[ModelName] = MODELS) -> list[Model]:
-        """Some of its models."""
+        """Return several models of the structure, in the order of `names`."""
         return [self.model(name) for name in names]
 
     def with_eta(self, eta: float) -> Structure:
-        """The same structure with another restitution of every impact. Raises `InputError` if it cannot have it."""
+        """Return the structure with another restitution of all impacts. Raises `InputError` if it is not valid."""
         return Structure(with_restitution(self.mechanism, eta), self.file)
 
     def unit_of(self, field: str) -> str:
-        """Unit of a numeric field, empty if it is dimensionless. Raises `InputError` if it has no such field.
+        """Return the unit of a numeric field, empty if dimensionless. Raises `InputError` if the field does not exist.
 
         A field is named by its path, with dots, and entries of lists by name or number: `ties.bar.prestress`.
         """
         return unit_at(type(self.mechanism), self._place_of(field))
 
     def value_of(self, field: str) -> float | None:
-        """Value of a numeric field; None if it is not given. Raises as `unit_of`."""
+        """Return the value of a numeric field; None if it is not given. Raises as `unit_of`."""
         here: Any = self._data
         for part in self._place_of(field):
             here = here.get(part) if isinstance(here, dict) else here[part]
@@ -182,7 +182,7 @@ class Structure:
         return float(here) if isinstance(here, int | float) else None
 
     def varied(self, field: str, value: float) -> Structure:
-        """The same structure with another value of a field. Raises `InputError` if it cannot be built."""
+        """Return the structure with another value of a field. Raises `InputError` if it cannot be built."""
         data, cls = copied(self._data), type(self.mechanism)
         put(data, words(field), value, is_list=partial(lists_models, cls), grow=False)
         folder = Path(self.file).parent if self.file is not None else None
@@ -196,7 +196,10 @@ class Structure:
         return self.mechanism.model_dump(by_alias=True, exclude_unset=True)
 
     def _place_of(self, field: str) -> Place:
-        """Where a numeric field is in the data. Raises `InputError` if it is not there, or not numeric."""
+        """Return the path of a numeric field in the structure's data.
+
+        Raises `InputError` if the field does not exist or is not numeric.
+        """
         cls, path = type(self.mechanism), words(field)
         place = put(copied(self._data), path, 1.0, is_list=partial(lists_models, cls), grow=False)
         found: Place = ()
@@ -215,7 +218,7 @@ class Structure:
         return place
 
     def _entries(self, place: Place) -> list[str]:
-        """Return the names that the user chose at a place."""
+        """Return the names that the user gave to the entries at a place of the data, such as ties."""
         here: Any = self._data
         for part in place:
             here = (here or {}).get(part) if isinstance(part, str) else here[part]
@@ -223,7 +226,7 @@ class Structure:
 
     @contextmanager
     def _named(self) -> Iterator[None]:
-        """Have errors of the mechanics begin with the name of the structure, and those of its fields with its file."""
+        """Prefix mechanics errors with the structure's name, and add its file to errors of its fields."""
         try:
             yield
         except MechanismError as error:

@@ -45,13 +45,13 @@ def load_structure(path: str | Path, registry: Registry | None = None) -> Mechan
 
 
 def parse_structure(text: str, file: str, default_name: str, registry: Registry | None = None) -> Mechanism:
-    """Read a structure from YAML text; errors name it `file`. Raises as `load_structure`."""
+    """Read a structure from YAML text; `file` is its name in messages. Raises as `load_structure`."""
     document = parse(text, file, "structure", HINT)
     return of_document(document, default_name, Path(file).parent, registry)
 
 
 def of_document(document: Document, default_name: str, folder: Path, registry: Registry | None = None) -> Mechanism:
-    """Make a structure from a document that was read; it names files in `folder`. Raises as `load_structure`."""
+    """Make a structure from a parsed document whose file names are relative to `folder`. Raises as `load_structure`."""
     cls = _mechanism(document, registry if registry is not None else Registry())
     fields = {key: value for key, value in document.data.items() if key != "mechanism"}
     if cls is not None:
@@ -66,7 +66,7 @@ def of_document(document: Document, default_name: str, folder: Path, registry: R
 
 
 def _mechanism(document: Document, registry: Registry) -> type[Mechanism] | None:
-    """Return the class of the mechanism in the file; None, with a problem added, if it does not exist."""
+    """Return the class of the mechanism that the file names; None, and a problem added, if it does not exist."""
     data = document.data
     if "mechanism" not in data:
         known = ", ".join(registry)

@@ -1,4 +1,4 @@
-"""Make foreign text (names, keys, lines of files) fit for a terminal, a plot or a page."""
+"""Make text from files and plugins (names, keys, lines) safe to show in a terminal, a plot or a page."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ def _spelled(found: re.Match[str]) -> str:
 
 
 def seen(text: str) -> str:
-    """Return a text without the characters that `printable` spells out, in one line with single blanks."""
+    """Return a text in one line with single spaces, without the characters that `printable` spells out."""
     return " ".join(_UNSEEN.sub("", " ".join(text.split())).split())
 
 
 def one_line(text: str) -> str:
-    """Spell out a text as `printable` does, with its tabs and line feeds too: file names may contain any."""
+    """Spell out a text as `printable` does, including tabs and line feeds, which file names may contain."""
     return printable(text).replace("\t", r"\t").replace("\n", r"\n")
 
 
@@ -51,12 +51,12 @@ def is_one_line(text: str) -> bool:
 
 
 def cut(text: str, most: int = LONGEST) -> str:
-    """Cut a text to this length at most, with dots at the end if it was longer."""
+    """Shorten a text to at most `most` characters, with dots at the end if it was longer."""
     return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
 def in_short(names: Sequence[str], between: str = ", ", most: int = LISTED) -> str:
-    """Return names in a row, of many the first ones and how many more there are.
+    """Return names joined in one text: at most `most` of them, and how many more there are.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def in_short(names: Sequence[str], between: str = ", ", most: int = LISTED) -> s
 
 
 def quoted_line(line: str, column: int | None) -> list[str]:
-    """Return a quoted line of a file, cut around a column counted from 1, and a mark below this column."""
+    """Return two lines of output: a line of a file, cut around a column (from 1), and a mark below this column."""
     start = (column or 1) - 1
     before, after = printable(line[:start]), printable(line[start:])
     if len(before) > BEFORE:

@@ -67,12 +67,12 @@ class UnitError(ValueError):
 
 
 def kind_of(unit: str) -> str | None:
-    """Return what a unit measures: "length" for `mm`; None for an unknown unit, or for none."""
+    """Return the quantity that a unit measures, such as "length" for `mm`; None for an unknown or empty unit."""
     return next((kind for kind, units in KINDS.items() if unit in units), None)
 
 
 def units_of(unit: str) -> tuple[str, ...]:
-    """Return the units in which a field of this unit may be given: all of its kind, or this one only."""
+    """Return the units in which a field of this unit may be given: those of its quantity, or this one only."""
     kind = kind_of(unit)
     return tuple(KINDS[kind]) if kind is not None else (unit,) if unit else ()
 
@@ -150,6 +150,6 @@ def _a(kind: str) -> str:
 
 
 def _factor(kind: str, unit: str) -> Decimal:
-    """Return a unit in SI units."""
+    """Return the factor from a unit of a quantity to its SI unit."""
     above, _, below = KINDS[kind][unit].partition("/")
     return _EXACT.divide(Decimal(above), Decimal(below or "1"))

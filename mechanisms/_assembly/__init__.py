@@ -1,8 +1,8 @@
-"""The limit analysis of an assembly of rigid blocks: its weakest mechanism, and how far that one is valid.
+"""Limit analysis of an assembly of rigid blocks: its weakest mechanism, and up to which rotation this is valid.
 
-Blocks touch along joints that bear no tension. `contacts` finds the joints, `collapse` the multiplier of the weakest
-mechanism and its velocities, `friction` what friction that needs, `linkage` its groups and hinges, `thrust` the line of
-thrust, and `DisplacedAssembly` whether the joints still carry the forces once it has moved.
+Blocks touch along joints without tension. `contacts` finds the joints, `collapse` the multiplier and the velocities of
+the weakest mechanism, `friction` the coefficient of friction that it requires, `linkage` its groups and hinges, and
+`thrust` the line of thrust. `DisplacedAssembly` checks whether the joints still carry the forces once displaced.
 """
 
 from mechanisms._assembly.blocks import AssemblyBlock as AssemblyBlock

@@ -1,4 +1,4 @@
-"""What an assembly is made of: rigid blocks, the joints between them, and guides that hold a point sideways."""
+"""Parts of an assembly: rigid blocks, the joints between them, and guides that restrain a point sideways."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ class AssemblyBlock:
     Parameters
     ----------
     name : str
-        What it is called; no two blocks have the same name.
+        Name of the block, unique in the assembly.
     corners : tuple of complex
-        Its outline x + iy [m], a simple polygon in either order.
+        Outline x + iy [m], a simple polygon in either order.
     mass : float
-        Mass [kg]; of no matter where it is ground.
+        Mass [kg]; not used for a part of the ground.
     centroid : complex
-        Where its mass is [m].
+        Position of the centroid [m].
     """
 
     name: str
@@ -32,7 +32,7 @@ class AssemblyBlock:
 
     @property
     def outline(self) -> Points:
-        """Its corners anticlockwise."""
+        """Corners in anticlockwise order."""
         z = np.asarray(self.corners, np.complex128)
         return z if area_of(z) > 0 else z[::-1]
 
@@ -44,15 +44,15 @@ class AssemblyContact:
     Parameters
     ----------
     a, b : str
-        The two bodies: `a` is ground, or the one that bears the other.
+        The two bodies: `a` is the ground or the supporting body.
     start, end : complex
-        Its two ends [m]; `b` lies on the left of the way from one to the other.
+        The two ends of the joint [m]; `b` is on the left of the line from start to end.
     normal : complex
         Unit vector from `a` into `b`, along which a positive normal force pushes `b`.
     friction : float, optional
-        Coefficient of friction; None: it never slides.
+        Coefficient of friction; None if the joint never slides.
     faces : tuple of str
-        At each end the body whose face a corner of the other would bear on, if it hinged there; empty means `a`.
+        For each end, the body on whose face a corner of the other bears if the joint hinges there; empty means `a`.
     """
 
     a: str
@@ -70,15 +70,15 @@ class AssemblyContact:
 
     @property
     def length(self) -> float:
-        """How far its ends are apart [m]."""
+        """Length of the joint [m]."""
         return abs(self.end - self.start)
 
     def face_at(self, end: int) -> str:
-        """The body whose face bears the corner of the other at an end, 0 or 1."""
+        """Return the body whose face supports the corner of the other at an end, 0 or 1."""
         return self.faces[end] or self.a
 
     def turned(self) -> AssemblyContact:
-        """The same joint seen from the other body."""
+        """Return the joint with its two bodies exchanged."""
         return replace(
             self, a=self.b, b=self.a, start=self.end, end=self.start, normal=-self.normal, faces=self.faces[::-1]
         )
@@ -86,18 +86,18 @@ class AssemblyContact:
 
 @dataclass(frozen=True)
 class AssemblyGuide:
-    """A support that holds a point of a block sideways to a line of the ground, both ways and without friction.
+    """A support without friction that restrains a point of a block to a line of the ground, in both senses.
 
     Parameters
     ----------
     name : str
-        What it is called.
+        Name of the guide.
     body : str
-        The block it holds.
+        The restrained block.
     at : complex
-        The point that is held [m].
+        The restrained point [m].
     along : complex
-        The direction in which that point may move.
+        The direction in which the point may move.
     """
 
     name: str

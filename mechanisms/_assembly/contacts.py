@@ -1,7 +1,7 @@
-"""Where blocks touch: the common parts of their edges.
+"""Joints of an assembly: the common parts of the edges of its blocks.
 
-A gap counts relative to the smaller of the two blocks: a drawing in millimetres must keep its joints, and a building
-of many blocks must not be joined across what is an open gap to each of them. The ground may be drawn at any size.
+A gap is measured relative to the smaller of the two blocks, so that the joints do not depend on the unit of the
+drawing, and blocks of a large building are not joined across an open gap. The ground may have any size.
 """
 
 from __future__ import annotations
@@ -34,28 +34,28 @@ def contacts(
     friction: float | None = None,
     per_pair: Mapping[tuple[str, str], float | None] | None = None,
 ) -> list[AssemblyContact]:
-    """All joints of an assembly.
+    """Return all joints of an assembly.
 
     Parameters
     ----------
     blocks : sequence of AssemblyBlock
-        What can move.
+        Blocks that can move.
     ground : sequence of AssemblyBlock
-        What cannot; parts of the ground may overlap each other.
+        Parts of the ground, which do not move and may overlap each other.
     gap : float
-        How far edges that touch may be apart, over width and height together of the smaller block.
+        Largest distance of edges in contact, over the sum of width and height of the smaller block.
     within : float, optional
-        The same for all blocks [m], instead.
+        Largest distance of edges in contact for all blocks [m], instead of `gap`.
     friction : float, optional
-        Coefficient of friction of every joint; None: none slides.
+        Coefficient of friction of every joint; None if no joint slides.
     per_pair : mapping, optional
-        The same of the joints of two bodies, named in either order.
+        Coefficient of friction of the joints of two bodies, named in either order.
 
     Returns
     -------
     list of AssemblyContact
-        In the order of the bodies, the ground last. Collinear parts between the same two bodies are one joint, from
-        the first end to the last; a corner on an edge is none.
+        Joints in the order of the bodies, the ground last. Collinear parts between the same two bodies are one joint,
+        from the first end to the last; a single corner on an edge is not a joint.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def contacts(
 
 
 def _none_thinner(blocks: Sequence[AssemblyBlock], thick: Mapping[str, float], reach: Reals) -> None:
-    """Refuse a block no thicker than what its faces may be apart from others."""
+    """Raise `ContactFault` if a block is not thicker than the largest distance of its faces in contact."""
     for block, tolerance in zip(blocks, reach.tolist(), strict=False):
         if thick[block.name] <= tolerance:
             raise _thin(block.name, thick[block.name], tolerance)
@@ -109,7 +109,7 @@ def _none_thinner(blocks: Sequence[AssemblyBlock], thick: Mapping[str, float], r
 def _none_bridged(
     found: Sequence[AssemblyContact], bodies: Mapping[str, Points], thick: Mapping[str, float], gap: Gap
 ) -> None:
-    """Refuse a block across which its neighbours are joined."""
+    """Raise `ContactFault` if two neighbours of a block are joined across the block."""
     touch: dict[str, set[str]] = {name: set() for name in bodies}
     for joint in found:
         touch[joint.a].add(joint.b)
@@ -129,7 +129,7 @@ def _thin(name: str, thick: float, tolerance: float) -> ContactFault:
 
 
 def _near(outlines: Sequence[Points], reach: Reals) -> list[tuple[int, int]]:
-    """Pairs of outlines whose boxes meet, each larger on all sides by what it may be apart, in order."""
+    """Return the pairs of outlines whose boxes, enlarged by the largest distance in contact, overlap."""
     around = reach * (1 + 1j)
     low = np.array([complex(z.real.min(), z.imag.min()) for z in outlines]) - around
     high = np.array([complex(z.real.max(), z.imag.max()) for z in outlines]) + around
@@ -140,7 +140,7 @@ def _near(outlines: Sequence[Points], reach: Reals) -> list[tuple[int, int]]:
 
 
 def _pieces(one: Points, other: Points, tolerance: float) -> list[Piece]:
-    """The common parts of edges of two outlines, halfway between where they are drawn."""
+    """Return the common parts of the edges of two outlines, halfway between the edges."""
     da, db = np.roll(one, -1) - one, np.roll(other, -1) - other
     ua, ub = da / np.abs(da), db / np.abs(db)
     product = ua.conj()[:, None] * ub
@@ -161,7 +161,7 @@ def _pieces(one: Points, other: Points, tolerance: float) -> list[Piece]:
 
 
 def _merged(pieces: list[Piece], tolerance: float) -> list[Piece]:
-    """Pieces that lie on one line as one, from the first end to the last: what is rigid bears at both."""
+    """Return pieces with collinear ones merged to one, from the first end to the last, as rigid bodies bear at both."""
     joined: dict[int, Piece] = {}
     # The longest first, because it says best where the line lies; the order they come out in is that of the edges.
     for n, piece in sorted(enumerate(pieces), key=lambda p: -abs(p[1][1] - p[1][0])):
@@ -180,7 +180,7 @@ def _merged(pieces: list[Piece], tolerance: float) -> list[Piece]:
 
 
 def _faces(joint: AssemblyContact, one: Points, other: Points, tolerance: float) -> tuple[str, str]:
-    """At each end the body whose face goes on beyond it; empty where both or neither do."""
+    """Return for each end the body whose face continues beyond it; empty if both or neither do."""
     along = 3 * tolerance * (joint.end - joint.start) / joint.length
     beyond = np.array([joint.start - along, joint.end + along])
     on = [distance(beyond, z) <= tolerance for z in (one, other)]

@@ -1,8 +1,8 @@
-"""Whether the forces of a displaced mechanism can pass through the joints that are left.
+"""Check whether the remaining joints of a displaced mechanism can carry the forces.
 
-A joint that stays closed bears at both its ends, one that hinges at one, one that opens at none. The forces on the
-blocks, inertia among them, must be balanced by normal forces that are at least zero and by shear; where they are not,
-another joint would have opened, and the mechanism is no longer the one that moves.
+A joint that stays closed bears at both ends, a hinge at one, and an open joint at none. Normal forces of at least zero,
+and shear forces, must balance the forces on the blocks, which include inertia. If this is not possible, another joint
+would open, and the mechanism is no longer valid.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def remaining(
     guides: Sequence[AssemblyGuide],
     states: Sequence[Opening],
 ) -> Bearings:
-    """The joints that a mechanism leaves, where they are at rest: what `states` say of each; none may slide."""
+    """Return the joints that a mechanism leaves, in their position at rest, from the state of each; none may slide."""
     for contact, state in zip(contacts, states, strict=True):
         if state is Opening.SLIDES:
             raise ValueError(f"the joint of {contact.a!r} and {contact.b!r} slides")
@@ -47,17 +47,17 @@ def remaining(
 
 @dataclass(frozen=True)
 class Admissible:
-    """Whether forces can be carried.
+    """Result of the check whether joints can carry forces.
 
     Parameters
     ----------
     margin : float
-        The greatest share of the weight that each normal force, and with friction each edge of a cone, can at least
-        have at once, at most 1; below zero it is the tension that is missing.
+        Largest value that all normal forces over the weight (with friction, all edges of cones) can exceed at once, at
+        most 1. If negative, its size is the tension required.
     contact : int or None
-        The joint that decides it: the one that opens first; None if none does.
+        The joint that limits the margin, and would open first; None if there is none.
     forces : ndarray or None
-        Multipliers of the rays that have this margin; None if statics alone says what they are.
+        Multipliers of the rays with this margin; None if statics alone determines them.
     """
 
     margin: float
@@ -66,20 +66,20 @@ class Admissible:
 
     @property
     def holds(self) -> bool:
-        """Whether there is no tension."""
+        """Whether no tension is required."""
         return self.margin >= -HELD
 
 
 @dataclass(frozen=True, eq=False)
 class DisplacedAssembly:
-    """An assembly whose mechanism has moved.
+    """An assembly in a displaced position of its mechanism.
 
     Parameters
     ----------
     bearings : Bearings
-        What is left of its joints, where they are; see `remaining`.
+        The remaining joints in the displaced position; see `remaining`.
     weight : float
-        The force that margins are shares of [N].
+        Force by which margins are divided [N].
     """
 
     bearings: Bearings
@@ -87,16 +87,16 @@ class DisplacedAssembly:
 
     @property
     def frame(self) -> Frame:
-        """The blocks where they are."""
+        """The blocks in the displaced position."""
         return self.bearings.frame
 
     @cached_property
     def _free(self) -> Reals:
-        """Velocities that the joints leave, orthogonal, by columns: forces that do work on them none can balance."""
+        """Velocities that the joints allow, as orthonormal columns; forces that do work on them cannot be balanced."""
         return np.linalg.qr(velocity_space(self.bearings.rates, self.frame))[0]
 
     def multiplier(self, dead: Reals, live: Reals) -> float:
-        """The multiplier of `live` that holds the mechanism here, by virtual work; the two as of `collapse`."""
+        """Return the multiplier of `live` in displaced equilibrium, by virtual work; see `collapse` for the loads."""
         free = self._free
         if free.shape[1] != 1:
             raise NoAnswer(f"the mechanism can move in {free.shape[1]} independent ways where it is, not in one")
@@ -104,23 +104,22 @@ class DisplacedAssembly:
         return -work[0] / work[1]
 
     def admissible(self, forces: Reals) -> list[Admissible]:
-        """Whether joints carry forces on the blocks.
+        """Check whether the joints can carry forces on the blocks, for several cases.
 
         Parameters
         ----------
         forces : ndarray, shape (..., blocks, 3)
-            Forces [N] and moments about the displaced centroid [N m] on each block, those of inertia among them; one
-            case after the other.
+            Forces [N] and moments about the displaced centroid [N m] on each block, with inertia, for each case.
 
         Returns
         -------
         list of Admissible
-            One for each case.
+            Result of each case.
 
         Raises
         ------
         NoAnswer
-            If the forces do work on the mechanism: they are not in balance.
+            If the forces do work on the mechanism, so that they are not in equilibrium.
         """
         n = len(self.frame.names)
         cases = np.array([scaled(each, self.frame, self.weight) for each in forces.reshape(-1, n, 3)])
@@ -153,17 +152,18 @@ class DisplacedAssembly:
         return answers
 
     def near(self, forces: Reals, state: Reals) -> Reals | None:
-        """Multipliers of the rays that balance forces on the blocks, by changing those of a state beside this one.
+        """Return forces in the joints that balance forces on the blocks, from those of a similar state.
 
-        None if that takes tension: then it is not known whether others do. It costs one system of equations where the
-        margin is a programme. Each multiplier changes in proportion to its square, so that small ones hardly do.
+        Forces in the joints are given as multipliers of rays, see `Rays`. None if this gives tension, although other
+        multipliers might not. The method solves systems of equations, and no linear programme as the margin does. Each
+        multiplier changes in proportion to its square, so that small ones hardly change.
 
         Parameters
         ----------
         forces : ndarray, shape (blocks, 3)
-            As of `admissible`.
+            Forces and moments as in `admissible`.
         state : ndarray, shape (rays,)
-            Multipliers that are greater than nothing.
+            Positive multipliers of the similar state.
         """
         rays = self.bearings.rays()
         case = scaled(forces, self.frame, self.weight)
@@ -186,10 +186,10 @@ class DisplacedAssembly:
 def first_violation(
     margin: Callable[[float], float], steps: Reals, *, holds: Callable[[float], bool] | None = None
 ) -> float | None:
-    """Where a margin first falls below zero, from rest to the last of some increasing steps; None if it does not.
+    """Return the step at which a margin first falls below zero, to 1e-8 of the last step; None if it does not.
 
-    Looked for at these, where `holds` may say without the margin that there is no tension, and then to 1e-8 of the
-    last by the secant of what is missing, or in halves where that is slow: an excursion between two steps is not seen.
+    The margin is evaluated at increasing steps from rest, unless `holds` shows without it that there is no tension;
+    then the secant method or bisection finds the root. A violation that begins and ends between two steps is not found.
     """
     low, missing = 0.0, 0.0
     high: float

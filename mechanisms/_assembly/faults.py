@@ -1,4 +1,4 @@
-"""What can be wrong with an assembly of blocks, as sentences a person can read."""
+"""Errors of assemblies of blocks, with messages for users."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ NAMED = 5  # blocks that a sentence names at most
 
 
 class AssemblyFault(Exception):
-    """What is wrong with an assembly: one sentence without a full stop.
+    """Error in an assembly, in one sentence without a full stop.
 
     Parameters
     ----------
     message : str
         The sentence.
     blocks : sequence of str
-        The blocks it is about.
+        Names of the blocks concerned.
     """
 
     def __init__(self, message: str, blocks: Sequence[str] = ()) -> None:
@@ -24,23 +24,23 @@ class AssemblyFault(Exception):
 
 
 class ContactFault(AssemblyFault):
-    """Blocks that overlap or touch nothing, or named joints that do not exist."""
+    """Error: blocks overlap or touch nothing, or a named joint does not exist."""
 
 
 class DoesNotStand(AssemblyFault):
-    """No contact forces carry what acts on the assembly at rest."""
+    """Error: no contact forces balance the loads on the assembly at rest."""
 
 
 class NothingMoves(AssemblyFault):
-    """Contact forces carry any acceleration: no mechanism is found."""
+    """Error: contact forces balance any acceleration, so that there is no mechanism."""
 
 
 class NoAnswer(AssemblyFault):
-    """The solver could not reach an answer that it can stand behind."""
+    """Error: the solver did not reach a reliable result."""
 
 
 def listed(names: Sequence[str]) -> str:
-    """Names in quotes, joined by commas and a last `and`; of many only the first."""
+    """Return names in quotes, joined by commas and a last `and`; of many names only the first ones."""
     quoted = [repr(name) for name in names[:NAMED]]
     if len(names) > NAMED:
         quoted.append(f"{len(names) - NAMED} more")

@@ -1,7 +1,7 @@
-"""How much friction a multiplier needs, and a state of the forces that needs no more.
+"""Friction required by a multiplier, and a state of forces that requires no more.
 
-Where friction is not given a joint never slides, which glues it: its shear is free even where it carries no normal
-force. Such a joint is named, because no friction at all would do.
+A joint without a given coefficient of friction never slides, as if it were glued: it may carry shear without a normal
+force. Joints that do so are reported, because no coefficient of friction would suffice.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ FINE = 1e-6  # of the coefficient of friction
 
 @dataclass(frozen=True, eq=False)
 class Friction:
-    """The least friction of all joints that leaves a multiplier as it is.
+    """The least coefficient of friction of all joints at which a multiplier stays the same.
 
     Parameters
     ----------
     needed : float or None
-        The coefficient, rounded up by less than 1e-6 of itself; None: none up to 10 does.
+        The coefficient, rounded up by less than 1e-6 of its value; None if it is larger than 10.
     glued : tuple of int
-        Joints that carry shear without a normal force in the state shown, if there is no such coefficient.
+        Joints that carry shear without a normal force in this state, if there is no such coefficient.
     normal, shear, guide : ndarray
-        The state shown, which needs no more: as of `Collapse`.
+        Forces of a state that requires no more friction, as in `Collapse`.
     """
 
     needed: float | None
@@ -48,11 +48,11 @@ class Friction:
 
 
 def friction(found: Collapse) -> Friction:
-    """The friction that a mechanism needs: the root of its multiplier with less friction in every joint, by Newton.
+    """Return the friction that a mechanism requires: the root of its multiplier as a function of friction.
 
-    The work that a mechanism of too little friction loses as it slides is how its multiplier grows with the friction.
-    Each guess is a programme that carries the multiplier or does not, so that what is returned is a bracket of both
-    kinds whatever the guesses are.
+    By Newton's method: the derivative of the multiplier by the friction follows from the work that the mechanism with
+    too little friction dissipates in sliding. Each guess is a linear programme that carries the multiplier or does not,
+    so that the root is always bracketed.
     """
     problem, multiplier = found.problem, found.multiplier * found.problem.strength
     search = _FrictionSearch(problem, multiplier)
@@ -73,7 +73,10 @@ def friction(found: Collapse) -> Friction:
 
 
 def _roots(known: Sequence[tuple[float, float, float]]) -> Iterator[float]:
-    """Where what is lacking would be nothing, a little beyond: by the last two points and their slopes, then by one."""
+    """Yield estimates, slightly too large, of the friction at which the missing multiplier is zero.
+
+    The first is from the last two points with their slopes, the second from the last point alone.
+    """
     mu, lacks, growth = known[-1]
     if len(known) > 1 and growth > 0 and known[-2][2] > 0 and known[-2][1] > lacks:
         # The friction as a cubic of what is lacking, extrapolated to nothing.
@@ -87,7 +90,7 @@ def _roots(known: Sequence[tuple[float, float, float]]) -> Iterator[float]:
 
 
 class _FrictionSearch:
-    """A bracket of the friction that a multiplier needs: `high` carries it with `state`, `low` does not."""
+    """Bracket of the friction that a multiplier requires: `high`, with its `state`, suffices, and `low` does not."""
 
     def __init__(self, problem: AssemblyProblem, multiplier: float) -> None:
         self.problem, self.multiplier = problem, multiplier
@@ -98,11 +101,11 @@ class _FrictionSearch:
         self._carried = 0  # guesses in a row that carried the multiplier
 
     def bound(self, mu: float, state: Reals) -> None:
-        """A state that carries the multiplier with a friction of `mu`."""
+        """Set the upper end of the bracket to `mu`, with a state that carries the multiplier with this friction."""
         self.high, self.state = mu, state
 
     def carries(self, mu: float) -> bool:
-        """Whether the multiplier is carried with no more friction than `mu` in every joint; narrows the bracket."""
+        """Return whether joints with at most the friction `mu` carry the multiplier; narrows the bracket."""
         rays = self.problem.bearings.rays(mu)
         reached, forces, raw = self.problem.greatest(rays)
         state = rays.mix.T @ forces
@@ -124,12 +127,12 @@ class _FrictionSearch:
 
     @property
     def below(self) -> float:
-        """Just below the greatest friction that is known to do, near enough to end the search."""
+        """A value just below the upper end of the bracket, near enough to end the search."""
         return self.high * (1 - 0.9 * FINE)
 
     @property
     def guess(self) -> float:
-        """Where to look next."""
+        """Next value to try."""
         middle = (self.low + self.high) / 2
         if self._carried == 1:
             return max(self.below, middle)
@@ -138,7 +141,7 @@ class _FrictionSearch:
         return next((min(root, self.below) for root in _roots(self._lows) if root > self.low * (1 + FINE / 2)), middle)
 
     def uses(self, state: Reals) -> float:
-        """The largest share of the normal force that is shear, of all joints of a state; infinite if glued."""
+        """Return the largest ratio of shear to normal force over all joints of a state; infinite for a glued joint."""
         normal, shear, _ = self.problem.by_contact(state)
         pressed = np.maximum(normal.sum(axis=1), 0.0)
         slipping = np.abs(shear) > SAME * np.abs(normal).max(initial=0.0)
@@ -146,7 +149,7 @@ class _FrictionSearch:
             return float((np.abs(shear)[slipping] / pressed[slipping]).max(initial=0.0))
 
     def _growth(self, mu: float, state: Reals, raw: Reals) -> float:
-        """How the greatest multiplier grows with the friction of the joints that have no less."""
+        """Return the derivative of the greatest multiplier by the friction of the joints that are limited to `mu`."""
         bearings = self.problem.bearings
         normal, _, _ = self.problem.by_contact(state)
         slides = np.abs(self.problem.by_contact(bearings.rates @ raw)[1])
@@ -154,7 +157,10 @@ class _FrictionSearch:
 
 
 def with_usual(found: Collapse) -> float | None:
-    """The multiplier with the usual friction in joints without any; None if there are none, 0 if it does not stand."""
+    """Return the multiplier if joints without given friction have the usual one; 0 if the assembly then falls.
+
+    None if all joints have a given friction.
+    """
     problem = found.problem
     if not np.isnan(problem.bearings.friction).any():
         return None
@@ -163,17 +169,17 @@ def with_usual(found: Collapse) -> float | None:
 
 
 def sheared(found: Friction, contacts: Sequence[AssemblyContact]) -> tuple[int, ...]:
-    """Joints without friction that carry more shear in the state shown than the usual friction would let them."""
+    """Return the joints without given friction whose shear, in the shown state, exceeds the usual friction."""
     least = SAME * float(np.abs(found.normal).max(initial=0.0))
     beyond = np.abs(found.shear) > MASONRY * np.maximum(found.normal.sum(axis=1), 0.0) + least
     return tuple(k for k, each in enumerate(contacts) if each.friction is None and beyond[k])
 
 
 def _may_carry(found: Collapse, search: _FrictionSearch) -> bool:
-    """Whether just less friction than joints slide with carries their multiplier.
+    """Return whether the multiplier may be carried with slightly less friction than that of the sliding joints.
 
-    They open faster than they slide along a cone of less friction, and so bear nothing. Mostly there is no balance
-    without them, which is seen at once; if there is one, the programme decides.
+    With less friction, joints open faster than they slide along the cone, and so carry no force. Mostly there is no
+    equilibrium without them, which is found quickly; otherwise a linear programme decides.
     """
     problem, rays = found.problem, found.problem.bearings.rays(search.below)
     low, high = np.append(rays.low, -np.inf), np.append(_most(found, rays), np.inf)
@@ -182,13 +188,13 @@ def _may_carry(found: Collapse, search: _FrictionSearch) -> bool:
 
 
 def _most(found: Collapse, rays: Rays) -> Reals:
-    """Upper bounds of the rays in a state of the greatest multiplier: what does work on the mechanism bears nothing."""
+    """Return upper bounds of the rays at the greatest multiplier: zero for rays that do work on the mechanism."""
     field = (found.velocity * np.array([1.0, 1.0, found.problem.frame.size])).ravel()
     return np.where(rays.one_sided & (rays.rates @ field > STILL * np.abs(field).max()), 0.0, np.inf)
 
 
 def _glued(found: Collapse, multiplier: float) -> tuple[Reals, tuple[int, ...]]:
-    """A state with as little shear beyond the greatest friction as there can be, and the joints that have it."""
+    """Return a state with the least shear beyond the greatest friction, and the joints that have such shear."""
     most = _most(found, found.problem.bearings.rays(MOST))
     state, beyond, _ = _beyond(found.problem, multiplier, MOST, most)
     return state, tuple(int(k) for k in np.flatnonzero(np.abs(beyond) > SAME))
@@ -197,10 +203,10 @@ def _glued(found: Collapse, multiplier: float) -> tuple[Reals, tuple[int, ...]]:
 def _beyond(
     problem: AssemblyProblem, multiplier: float, mu: float, most: Reals | None = None
 ) -> tuple[Reals, Reals, Reals]:
-    """A state with as little shear beyond a friction as there can be, that shear by joints, and the velocities.
+    """Return a state with the least shear beyond a friction, this shear for each joint, and the velocities.
 
-    The shear may be beyond `mu` in joints whose own friction is more, or not given: so far as that. With `most`, upper
-    bounds of the rays, there are points inside all bounds, of which the solver needs some.
+    The shear may exceed `mu` in joints whose own friction is larger, up to that friction, or not given. `most` has
+    upper bounds of the rays, inside which the solver requires some points.
     """
     rays = problem.bearings.rays(mu)
     free: Rays = problem.bearings.rays()

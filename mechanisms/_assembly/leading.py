@@ -1,4 +1,4 @@
-"""By which group to measure a mechanism."""
+"""Choice of the group of blocks whose rotation measures a mechanism."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from rocking_cli.core import Direction
 
 
 def leading(found: AssemblyLinkage, direction: Direction) -> int | None:
-    """The group by which to measure a mechanism: on the ground, turning the right way, the fastest; None if none turns.
+    """Return the group whose rotation measures a mechanism; None if no group rotates.
 
-    Those that hinge on what rests come first, of them those that turn clockwise in the positive direction; of groups
-    that turn equally fast the first.
+    Groups that hinge on blocks at rest are preferred, then those that turn clockwise in the positive direction, then
+    the fastest one; of groups that turn equally fast, the first.
     """
     turns = -int(direction) * found.velocity[:, 2]
     most = float(np.abs(turns).max(initial=0.0))

@@ -1,9 +1,9 @@
-"""The least horizontal acceleration that sets an assembly in motion, and how it then moves.
+"""The least horizontal acceleration that sets an assembly in motion, and the mechanism of this motion.
 
-The multiplier lambda is the greatest for which forces in the joints balance every block (static theorem); the prices
-of that linear programme are the velocities of a mechanism of the same multiplier (kinematic theorem). Joints bear no
-tension. With friction, flow is associated: a joint that slides also opens, which over-estimates lambda. Between parts
-that never slide elsewhere the least friction can so jam a joint; `friction` then needs more than any joint has.
+The multiplier lambda is the greatest for which forces in the joints balance every block (static theorem); the prices of
+that linear programme are the velocities of a mechanism of the same multiplier (kinematic theorem). Joints carry no
+tension. Friction is associated: a joint that slides also opens, which overestimates lambda. Even a small friction can
+thus lock a joint between parts that cannot move apart; `friction` then requires more than any joint has.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ class Shared:
     Parameters
     ----------
     multiplier : float
-        Of its own; not a number if the live forces do no work on it, so that it moves by chance.
+        Multiplier of this mechanism alone; NaN if the live forces do no work on it.
     velocity : ndarray, shape (blocks, 3)
-        See `Collapse`.
+        Velocities of the blocks, as in `Collapse`.
     moves : tuple of str
-        The blocks that move in it.
+        Names of the blocks that move.
     """
 
     multiplier: float
@@ -45,21 +45,21 @@ class Shared:
 
 @dataclass(frozen=True, eq=False)
 class Collapse:
-    """The weakest mechanism of an assembly.
+    """Weakest mechanism of an assembly.
 
     Parameters
     ----------
     multiplier : float
         The greatest multiplier that forces in the joints carry.
     kinematic : float
-        The same from the work on the velocities.
+        The same multiplier, from the work of the forces on the velocities.
     velocity : ndarray, shape (blocks, 3)
-        vx, vy of the centroid [m/s] and omega, anticlockwise [rad/s]; the fastest block turns by 1 rad/s, and where
-        none turns the fastest moves by 1 m/s.
+        vx, vy of the centroid [m/s] and omega, anticlockwise [rad/s]; the fastest block turns by 1 rad/s, and if none
+        turns, the fastest moves by 1 m/s.
     opening : ndarray, shape (contacts, 2)
-        How fast each joint opens at its start and its end [m/s].
+        Opening velocity of each joint at its start and its end [m/s].
     sliding : ndarray, shape (contacts,)
-        How fast `b` slides from start to end [m/s].
+        Sliding velocity of `b`, from start to end [m/s].
     normal : ndarray, shape (contacts, 2)
         Normal forces at both ends [N] in one of the states that carry the multiplier.
     shear : ndarray, shape (contacts,)
@@ -69,11 +69,11 @@ class Collapse:
     unique : bool
         Whether no other mechanism has this multiplier, but for idle blocks.
     several : tuple of Shared
-        If not unique: mechanisms that have it, of which the others are mixtures.
+        If not unique, mechanisms with this multiplier, whose combinations are all others.
     idle : tuple of str
-        Blocks that rest here and may move along at no cost, see `smallest`.
+        Blocks at rest that may also move at the same multiplier, see `smallest`.
     problem : AssemblyProblem
-        What was solved.
+        The linear programme that was solved.
     """
 
     multiplier: float
@@ -100,35 +100,35 @@ def collapse(
     live: Reals | None = None,
     gravity: float = 9.80665,
 ) -> Collapse:
-    """The weakest mechanism of an assembly, and the multiplier that starts it.
+    """Return the weakest mechanism of an assembly, and the multiplier at which it starts.
 
     Parameters
     ----------
     blocks : sequence of AssemblyBlock
-        What can move.
+        Blocks that can move.
     contacts : sequence of AssemblyContact
-        Its joints.
+        Joints of the assembly.
     guides : sequence of AssemblyGuide
-        Its supports that hold both ways.
+        Supports that restrain a point in both senses.
     direction : Direction
-        Where it is thrown: positive to +x.
+        Direction of the live forces: positive towards +x.
     dead, live : ndarray, shape (blocks, 3), optional
-        Forces [N] and moments about the centroid [N m] on each block that are always there, and those per unit of the
-        multiplier; without, the weights, and the same to the side.
+        Permanent forces [N] and moments about the centroid [N m] on each block, and those per unit of the multiplier;
+        by default, the weights, and the weights acting horizontally.
     gravity : float
-        [m/s2].
+        Gravitational acceleration [m/s2].
 
     Returns
     -------
     Collapse
-        With the velocities scaled, and one state of the forces.
+        The mechanism, with scaled velocities and one state of forces.
 
     Raises
     ------
     DoesNotStand
-        If no forces carry the dead forces alone, or nothing more than them.
+        If the joints cannot balance the dead forces alone, or cannot balance any multiplier above zero.
     NothingMoves
-        If they carry any multiplier.
+        If the joints can balance any multiplier.
     NoAnswer
         If the solver fails.
     """
@@ -176,12 +176,15 @@ def _kinematic(problem: AssemblyProblem, field: Reals) -> float:
 
 
 def _worked_on(problem: AssemblyProblem, field: Reals) -> bool:
-    """Whether the live forces do work on a mechanism; else it moves without any."""
+    """Return whether the live forces do work on a mechanism."""
     return abs(float(problem.live @ field)) > NOTHING * float(np.abs(field).max())
 
 
 def _sized(problem: AssemblyProblem, field: Reals) -> Reals:
-    """Velocities with units from those without, the fastest rotation 1."""
+    """Return velocities with units from dimensionless ones, scaled so that the fastest rotation is 1 rad/s.
+
+    If nothing rotates, the fastest block moves by 1 m/s.
+    """
     velocity = field.reshape(-1, 3) * np.array([problem.frame.size, problem.frame.size, 1.0])
     turns = np.abs(velocity[:, 2]).max()
     most = turns if turns > NOTHING * np.abs(field).max() else np.abs(velocity).max()
@@ -189,7 +192,7 @@ def _sized(problem: AssemblyProblem, field: Reals) -> Reals:
 
 
 def _rates(problem: AssemblyProblem, velocity: Reals) -> Reals:
-    """How fast each joint opens and slides; what is rounding is nothing."""
+    """Return the opening and sliding velocities of each joint, with rounding errors set to zero."""
     field = (velocity * np.array([1.0, 1.0, problem.frame.size])).ravel()
     rates: Reals = problem.bearings.rates @ field
     return np.asarray(np.where(np.abs(rates) > NOISE * np.abs(field).max(), rates, 0.0))

@@ -1,4 +1,4 @@
-"""Loads on each block of an assembly: weights and inertia of the block and of what is attached to it."""
+"""Loads on each block of an assembly: weight and inertia of the block and of the loads and ties on it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rocking_cli.core.kinematics import Points
 
 @dataclass(frozen=True, eq=False)
 class Going:
-    """How a mechanism goes in some states, shape (n,) each.
+    """State of motion of a mechanism, in n states, shape (n,) each.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class Going:
 def at_rest(
     bodies: Sequence[Body], attached: Sequence[Attached], direction: Direction, gravity: float
 ) -> tuple[Reals, Reals]:
-    """Forces and moments about the centroids always there, and those of 1 g sideways, shape (bodies, 3) each."""
+    """Return permanent forces and moments about the centroids, and those of 1 g horizontally, each (bodies, 3)."""
 
     def follow(spot: Spot) -> Path:
         still = np.zeros(1, np.complex128)
@@ -53,19 +53,19 @@ def under_way(
     bodies: Sequence[Body], motions: Sequence[RigidMotion], attached: Sequence[Attached], direction: Direction,
     gravity: float, going: Going,
 ) -> Reals:  # fmt: skip
-    """Forces and moments about the displaced centroids, inertia among them, shape (n, bodies, 3)."""
+    """Return forces and moments about the displaced centroids, with inertia, shape (n, bodies, 3)."""
     by_name: Mapping[str, RigidMotion | _Resting] = {b.name: m for b, m in zip(bodies, motions, strict=True)}
     follow = followed(bodies, motions, going.rate.shape)
     return _forces(bodies, by_name, attached, direction, gravity, going, follow)
 
 
 class _Resting:
-    """A body that does not move."""
+    """Motion of a body at rest."""
 
     dpsi = ddpsi = 0.0
 
     def carry(self, point: complex) -> tuple[complex, complex, complex]:
-        """A point of it."""
+        """Return the position of a point, and its first two derivatives, which are zero."""
         return point, 0j, 0j
 
 

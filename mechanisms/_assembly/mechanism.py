@@ -1,4 +1,4 @@
-"""From velocities to a mechanism: which blocks move as one, which rest, and about which points they hinge."""
+"""From velocities to a mechanism: groups of blocks that move as one, blocks at rest, and hinges."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SAME_PLACE = 1e-6  # of the size of the whole: hinges that are one
 
 
 class Opening(Enum):
-    """What a joint does in a mechanism."""
+    """State of a joint in a mechanism."""
 
     CLOSED = "stays closed"
     START = "hinges at its start"
@@ -31,16 +31,16 @@ class Opening(Enum):
 
 @dataclass(frozen=True)
 class AssemblyHinge:
-    """A point that two groups share, or a group and what rests.
+    """A point about which two groups, or a group and the blocks at rest, rotate relative to one another.
 
     Parameters
     ----------
     one, other : int or None
-        The two groups by their numbers, the one that bears the other first; None: what rests.
+        Numbers of the two groups, the supporting one first; None for blocks at rest.
     point : complex
-        Where it is at rest [m].
+        Position at rest [m].
     contact : int
-        The joint that opens about it.
+        The joint that opens about this point.
     """
 
     one: int | None
@@ -64,12 +64,12 @@ class AssemblyLinkage:
     hinges : tuple of AssemblyHinge
         A point shared by k groups is k - 1 of them.
     guides : tuple of AssemblyGuide
-        Those of groups that move.
+        Guides of groups that move.
     states : tuple of Opening
-        What each joint does.
+        State of each joint.
     freedom : int
-        In how many independent ways its hinges and guides let it move at first: 1 if they alone say how. More where
-        joints slide, or where parts that no longer touch would have to move as if they did.
+        Number of independent motions that hinges and guides allow at first: 1 if they determine the motion. More if
+        joints slide, or if parts that no longer touch would have to move together.
     """
 
     groups: tuple[tuple[str, ...], ...]
@@ -87,7 +87,7 @@ class AssemblyLinkage:
 
     @property
     def slides(self) -> tuple[int, ...]:
-        """Joints that slide: there is no rocking model of the mechanism."""
+        """Joints that slide; with any of them, the mechanism has no rocking model."""
         return tuple(k for k, state in enumerate(self.states) if state is Opening.SLIDES)
 
 
@@ -97,19 +97,19 @@ def linkage(
     guides: Sequence[AssemblyGuide],
     found: Collapse,
 ) -> AssemblyLinkage:
-    """The groups, hinges and guides of a mechanism.
+    """Return the groups, hinges and guides of a mechanism.
 
     Parameters
     ----------
     blocks, contacts, guides
-        The assembly.
+        Blocks, joints and guides of the assembly.
     found : Collapse
-        Its mechanism; where it is not unique, the first of the several.
+        Weakest mechanism; if it is not unique, the first one is used.
 
     Returns
     -------
     AssemblyLinkage
-        Its groups in the order of their first blocks.
+        The linkage, with its groups in the order of their first blocks.
     """
     size = Frame.of(blocks).size
     speed = np.abs(found.velocity * np.array([1.0, 1.0, size])).max(axis=1)
@@ -146,7 +146,7 @@ def linkage(
 
 
 def _state(start: float, end: float, slide: float, contact: AssemblyContact, still: float) -> Opening:
-    """What a joint does, by its rates; one with friction opens as it slides, by no more than that friction."""
+    """Return the state of a joint from its rates; with friction, a sliding joint opens by at most that friction."""
     dilates = (contact.friction or 0.0) * slide
     if slide > still and min(start, end) <= dilates + still:
         slips = contact.friction == 0 and max(start, end) > still
@@ -161,7 +161,7 @@ def _state(start: float, end: float, slide: float, contact: AssemblyContact, sti
 def _hinges(
     contacts: Sequence[AssemblyContact], states: Sequence[Opening], number: dict[str, int], near: float
 ) -> tuple[AssemblyHinge, ...]:
-    """One hinge for each joint that opens about an end, but none that others at its place make already."""
+    """Return a hinge for each joint that opens about an end, without those that other hinges at the point imply."""
     places: list[tuple[complex, JoinedNames]] = []
     found = []
     for k, (contact, state) in enumerate(zip(contacts, states, strict=True)):
@@ -184,7 +184,7 @@ def _freedom(
     number: dict[str, int],
     size: float,
 ) -> int:
-    """Dimension of the velocities that keep hinges and guides."""
+    """Return the number of independent velocities that hinges and guides allow."""
     frame = Frame(tuple(str(k) for k in range(len(groups))), (0j,) * len(groups), size)
     still = -1
     rows = [

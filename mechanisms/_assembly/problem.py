@@ -1,4 +1,4 @@
-"""An assembly as a linear programme: what its joints can exert, and what acts on its blocks."""
+"""An assembly as a linear programme: the forces of its joints, and the loads on its blocks."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ NOTHING = 1e-9  # of the weight: a force that is none; of the multiplier: what i
 
 @dataclass(frozen=True, eq=False)
 class AssemblyProblem:
-    """An assembly and what acts on it, without units: moments over the size, forces over the weight.
+    """An assembly and its loads without units: moments over the size, forces over the weight.
 
-    The live forces have a sum of 1, so that their unit, which may be any, decides nothing; `strength` is what it was.
+    The live forces are divided by the sum of their sizes, `strength`, so that their unit does not matter.
     """
 
     frame: Frame
@@ -44,7 +44,7 @@ class AssemblyProblem:
         live: Reals | None = None,
         gravity: float = 9.80665,
     ) -> AssemblyProblem:
-        """The programme of blocks; see `collapse`."""
+        """Return the linear programme of an assembly; arguments are those of `collapse`."""
         weights = np.array([block.mass for block in blocks]) * gravity
         nothing = np.zeros_like(weights)
         frame = Frame.of(blocks)
@@ -61,7 +61,7 @@ class AssemblyProblem:
         return cls(frame, bearings, scaled(dead, frame, weight), pull / strength, weight, strength)
 
     def greatest(self, rays: Rays, *, exact: bool = False) -> tuple[float, Reals, Reals]:
-        """The greatest multiplier of `live`, forces of the rays that carry it, and velocities they do no work on."""
+        """Return the greatest multiplier of `live`, the forces of the rays that carry it, and the velocities."""
         found = least(
             np.append(np.zeros(rays.count), -1.0),
             beside([rays.rates.T, self.live]),
@@ -75,7 +75,7 @@ class AssemblyProblem:
         return -found.value, found.x[:-1], -found.prices
 
     def why_not(self, rays: Rays) -> tuple[str, ...]:
-        """The blocks that no forces hold at rest; none if it stands."""
+        """Return the names of the blocks that no forces hold at rest; empty if the assembly stands."""
         unbounded = np.full(rays.count, np.inf)
         if least(np.zeros(rays.count), rays.rates.T.tocsc(), -self.dead, rays.low, unbounded) is not None:
             return ()
@@ -83,7 +83,7 @@ class AssemblyProblem:
         return names if missing > NOTHING else ()
 
     def unheld(self, rays: Rays) -> tuple[float, tuple[str, ...]]:
-        """The least forces beside those of the joints that hold everything at rest, and the blocks that need them."""
+        """Return the least additional forces that hold all blocks at rest, and the blocks that need them."""
         n = len(self.dead)
         extra = unit_columns(np.arange(n), n)
         found = least(
@@ -97,7 +97,7 @@ class AssemblyProblem:
         return found.value, moving(self.frame.names, found.prices, 1e-6)
 
     def by_contact(self, values: Reals) -> tuple[Reals, Reals, Reals]:
-        """What belongs to the two ends of every joint, to its shear, and to the guides."""
+        """Split values of all forces into those of the two ends of each joint, of its shear, and of the guides."""
         n = len(self.bearings.contact)
         joints = values[: 3 * n].reshape(n, 3)
         return joints[:, :2], joints[:, 2], values[3 * n :]

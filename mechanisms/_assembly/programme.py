@@ -1,9 +1,9 @@
-"""Linear programmes, by HiGHS: the dual simplex for small ones, interior points and a crossover for large ones.
+"""Linear programmes, by HiGHS: dual simplex for small ones, interior points and a crossover for large ones.
 
-A crossover ends at a vertex as the simplex does, and of a thousand blocks it takes a fifth of the time. Neither is
-exact to more than it tolerates, and errors add up from course to course of a wall: so the answer of a large programme
-may be refined. What is left of its equations, bounds and prices is a programme of the same matrix for the correction,
-magnified until the solver's tolerance is small beside it (Gleixner, Steffy and Wolter, 2012).
+A crossover ends at a vertex as the simplex does, and for a thousand blocks takes a fifth of the time. Both are only
+exact to their tolerance, and errors add up from course to course of a wall, so that the result of a large programme may
+be refined. The residuals of equations, bounds and prices define a programme with the same matrix for the correction,
+magnified until the solver's tolerance is small in comparison (Gleixner, Steffy and Wolter, 2012).
 """
 
 from __future__ import annotations
@@ -32,18 +32,18 @@ ROUNDS, FINEST = 4, 1e7  # corrections, and by how much what is left is magnifie
 
 @dataclass(frozen=True)
 class Optimum:
-    """The least of cost . x over equal . x = right within bounds.
+    """Minimum of cost . x subject to equal . x = right and bounds.
 
     Parameters
     ----------
     x : ndarray
-        Where it is.
+        The variables at the minimum.
     value : float
-        Cost there.
+        The minimum cost.
     prices : ndarray
-        How the least cost grows with each of `right`.
+        Derivatives of the minimum cost by `right`.
     at_lower : ndarray
-        How it grows with each lower bound.
+        Derivatives of the minimum cost by the lower bounds.
     """
 
     x: Reals
@@ -53,21 +53,21 @@ class Optimum:
 
 
 def least(cost: Reals, equal: Sparse, right: Reals, low: Reals, high: Reals, *, exact: bool = False) -> Optimum | None:
-    """The optimum of a programme that has a bounded cost; None if nothing satisfies it.
+    """Return the optimum of a programme whose cost is bounded; None if it has no feasible point.
 
     Parameters
     ----------
     cost, right, low, high : ndarray
         The costs, the right sides of the equations, and the bounds.
     equal : sparse array
-        The left sides.
+        Matrix of the equations.
     exact : bool
-        Whether a large programme is refined until its errors are rounding.
+        Whether to refine the result of a large programme until its errors are rounding errors.
 
     Raises
     ------
     NoAnswer
-        If the solver comes to no end.
+        If the solver does not converge.
     """
     programme = _Programme(cost, equal, right, low, high)
     ways: list[Callable[[], Optimum | None]] = [
@@ -86,12 +86,12 @@ def least(cost: Reals, equal: Sparse, right: Reals, low: Reals, high: Reals, *, 
 
 
 class _NotFound(Exception):
-    """The solver came to no end."""
+    """Error: the solver did not converge."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Programme:
-    """What `least` is asked."""
+    """A linear programme with the arguments of `least`."""
 
     cost: Reals
     equal: Sparse
@@ -100,7 +100,7 @@ class _Programme:
     high: Reals
 
     def solve(self, method: str, **options: float) -> Optimum | None:
-        """What the solver finds, None if nothing satisfies it."""
+        """Return the optimum that the solver finds; None if there is no feasible point."""
         from scipy.optimize import linprog  # slow to import, and only an assembly needs it
 
         solve = partial(
@@ -115,7 +115,10 @@ class _Programme:
         return Optimum(found.x, float(found.fun), found.eqlin.marginals, found.lower.marginals)
 
     def refined(self) -> Optimum | None:
-        """The same by corrections of nothing, until its errors are rounding or the solver finds no more."""
+        """Return the optimum by repeated corrections, from zero, until its errors are rounding errors.
+
+        The corrections end earlier if the solver finds no further one.
+        """
         nothing = np.zeros(len(self.cost))
         found = Optimum(nothing, 0.0, np.zeros(len(self.right)), nothing)
         for _ in range(ROUNDS):
@@ -143,7 +146,7 @@ class _Programme:
         return np.asarray(self.cost - self.equal.T @ found.prices)
 
     def _errors(self, found: Optimum) -> tuple[float, float]:
-        """What is left of equations and bounds, and of the prices, of the largest."""
+        """Return the largest relative residuals: of equations and bounds, and of the prices."""
         x, rates = found.x, self._rates(found)
         size = max(1.0, np.abs(x).max())
         off = max(np.abs(self.equal @ x - self.right).max(), (self.low - x).max(), (x - self.high).max())
@@ -154,7 +157,7 @@ class _Programme:
 
 
 def _beside(solve: Callable[[], Any]) -> Any:
-    """Solve in a thread of its own, because one that waits can be interrupted and the solver cannot."""
+    """Solve in a separate thread, so that the user can interrupt the wait for the solver."""
     found: list[Any] = []
     failed: list[BaseException] = []
 

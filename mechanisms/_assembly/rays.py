@@ -1,10 +1,10 @@
-"""The forces that joints can exert, and the velocities that they resist: one matrix for both theorems.
+"""Forces that joints can exert, and the velocities on which they do work, in one matrix for both theorems.
 
-A joint bears at its points along its normal and along itself. Each row of `Bearings.rates` is the velocity of the
-second body relative to the first that one such unit force does work on, as a combination of the velocities of all
-blocks: its transpose gives the forces and moments on the blocks. With friction the forces of a point lie between two
-edges of a cone; such a ray, as every normal force, is at least zero, and its velocity too. All other forces are free,
-and their velocities zero.
+A joint exerts normal forces at its points, and a shear force along its face. Each row of `Bearings.rates` is the
+relative velocity of the two bodies on which one such unit force does work, as a combination of the velocities of all
+blocks; the transpose gives the forces and moments on the blocks. With friction, the force at a point lies between two
+edges of a cone, which are rays. Rays and normal forces are at least zero, and so are their velocities; all other forces
+are free, and their velocities are zero.
 
 Unknowns have no units: velocities (vx, vy, omega size) of each block about its centroid, moments over `size`. All
 matrices are sparse, because a row has entries of two blocks at most.
@@ -30,12 +30,12 @@ Indices = NDArray[np.intp]
 
 @dataclass(frozen=True, eq=False)
 class VelocityRows:
-    """Relative velocities, one a row: that of a point of one body relative to another, along a direction.
+    """Relative velocities, one in each row: of a point of one body relative to another body, along a direction.
 
     Parameters
     ----------
     one, other : ndarray of int
-        The two bodies by their numbers, -1 for what does not move; it is the other that moves relative to the one.
+        Numbers of the two bodies, -1 for the ground; the velocity is that of `other` relative to `one`.
     points : ndarray of complex
         The points [m].
     ways : ndarray of complex
@@ -50,7 +50,7 @@ class VelocityRows:
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """The blocks in the order of the unknowns, where their centroids are [m], and the size of the whole [m]."""
+    """The blocks in the order of the unknowns, with their centroids [m] and the size of the assembly [m]."""
 
     names: tuple[str, ...]
     centroids: tuple[complex, ...]
@@ -83,22 +83,22 @@ class Frame:
 
 @dataclass(frozen=True, eq=False)
 class Bearings:
-    """The forces of all joints and guides, by points: rows of `rates` are their velocities.
+    """Forces of all joints and guides, by points; the rows of `rates` are the velocities on which they do work.
 
     Parameters
     ----------
     frame : Frame
         The blocks.
     rows : VelocityRows
-        The normals of the points of each joint and its shear, joint after joint; then the guides.
+        Normal at each point and shear of each joint, joint after joint; then the guides.
     carried, turned : ndarray of int
-        Of each row the body that its point is carried by, and the one that its direction turns with.
+        For each row, the body that carries its point, and the body with which its direction turns.
     contact : ndarray of int
-        Of each joint that bears the contact that it is.
+        Number of the contact, for each joint that bears.
     count : ndarray of int
-        At how many points each bears.
+        Number of points at which each joint bears.
     friction : ndarray
-        Their coefficients of friction; not a number if they never slide.
+        Coefficient of friction of each joint; NaN if it never slides.
     """
 
     frame: Frame
@@ -117,7 +117,7 @@ class Bearings:
         guides: Sequence[AssemblyGuide],
         ends: Sequence[tuple[int, ...]] | None = None,
     ) -> Bearings:
-        """Of joints that bear at some of their ends, or not at all, and of guides; without `ends`, at both."""
+        """Return the forces of guides, and of joints that bear at the given `ends`; by default at both ends."""
         rows: list[tuple[int, int, complex, complex, int, int]] = []
         bear = [(k, (0, 1) if ends is None else ends[k]) for k in range(len(contacts)) if ends is None or ends[k]]
         number = frame.index
@@ -145,7 +145,7 @@ class Bearings:
         )
 
     def moved(self, centroids: Points, turns: Points) -> Bearings:
-        """The same where the blocks have moved: their centroids [m], and how far each has turned as a factor."""
+        """Return the forces of joints in a displaced position: centroids [m], and rotations as unit complex factors."""
         # What does not move is the last of each, which -1 finds.
         before, after = (np.append(np.asarray(z, np.complex128), 0) for z in (self.frame.centroids, centroids))
         turn, by = np.append(turns, 1), self.carried
@@ -155,16 +155,19 @@ class Bearings:
 
     @cached_property
     def rates(self) -> Sparse:
-        """Velocities that the forces do work on, shape (forces, 3 blocks)."""
+        """Velocities on which the forces do work, shape (forces, 3 blocks)."""
         return self.frame.rates(self.rows)
 
     @cached_property
     def shears(self) -> Indices:
-        """Of each joint the row of its shear, after those of its normals."""
+        """Row of the shear of each joint, after the rows of its normals."""
         return np.asarray(np.cumsum(self.count + 1) - 1, np.intp)
 
     def rays(self, most: float | None = None, *, usual: float | None = None) -> Rays:
-        """The rays of its forces; no joint may have more friction than `most`, and one without has `usual`."""
+        """Return the rays of the forces.
+
+        The friction of joints is limited to `most`; joints without given friction have `usual`.
+        """
         mu = self.friction if usual is None else np.where(np.isnan(self.friction), usual, self.friction)
         mu = mu if most is None else np.fmin(mu, most)
         # Two edges of a cone at each point with friction, else its normal alone.
@@ -194,18 +197,18 @@ def _indices(numbers: Sequence[int]) -> Indices:
 
 @dataclass(frozen=True, eq=False)
 class Rays:
-    """What each joint can exert, as multiples of rays.
+    """Forces that each joint can exert, as multiples of rays: normal forces, edges of friction cones, or free forces.
 
     Parameters
     ----------
     rates : sparse array, shape (rays, 3 blocks)
-        The velocity that each does work on.
+        Velocity on which each ray does work.
     mix : sparse array, shape (rays, forces)
-        The forces of each.
+        Forces of each ray.
     one_sided : ndarray of bool
-        Which are at least zero.
+        Which multipliers must be at least zero.
     contact : ndarray of int
-        The contact of each, -1 for guides.
+        Contact of each ray, -1 for guides.
     """
 
     rates: Sparse
@@ -225,11 +228,11 @@ class Rays:
 
 
 def scaled(forces: Reals, frame: Frame, weight: float) -> Reals:
-    """Forces and moments (Fx, Fy, M) of each block without units, in one row."""
+    """Return forces and moments (Fx, Fy, M) of all blocks without units, as a vector."""
     return np.asarray(forces / np.array([1.0, 1.0, frame.size]) / weight).ravel()
 
 
 def moving(names: Sequence[str], velocity: Reals, tolerance: float) -> tuple[str, ...]:
-    """The blocks whose velocities are more than nothing, of one row of all."""
+    """Return the names of the blocks whose velocities exceed a tolerance, from a vector of all velocities."""
     fast = np.abs(velocity.reshape(-1, 3)).max(axis=1)
     return tuple(name for name, speed in zip(names, fast, strict=True) if speed > tolerance * fast.max())

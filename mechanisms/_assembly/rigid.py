@@ -1,8 +1,8 @@
-"""What kept joints make rigid: blocks that can only move as one, and the few parts that are left.
+"""Blocks that kept joints make rigid: they move as one, so that only a few parts are left.
 
-Two parts are one where the rates that are kept between them leave no motion of the one relative to the other. They are
-joined until nothing more joins, and what is one with the ground rests. A part that three others hold as a triangle is
-not seen here: joining fewer than could be joined costs time and is never wrong.
+Two parts are joined if the kept rates between them allow no relative motion. This is repeated until no more parts can
+be joined; parts joined to the ground are at rest. A part that three others hold as a triangle is not detected: joining
+fewer parts than possible costs time, but is never wrong.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ APART = 1e-9  # of the size of the whole: lines of action that do not pass one p
 
 @dataclass(frozen=True, eq=False)
 class RigidParts:
-    """Blocks joined to parts.
+    """Blocks joined to rigid parts.
 
     Parameters
     ----------
     of : ndarray of int, shape (blocks,)
-        Part of each block; -1 if it rests.
+        Part of each block; -1 for blocks at rest.
     count : int
-        Number of parts that do not rest.
+        Number of parts that are not at rest.
     basis : sparse array, shape (3 blocks, 3 count)
         Velocities of the blocks by those of the parts.
     between : ndarray of bool
-        The rows that are rates between two parts; all others are zero by now.
+        Rows that are rates between two parts; all other rates are zero.
     """
 
     of: Indices
@@ -43,7 +43,7 @@ class RigidParts:
 
 
 def rigid_parts(rates: Sparse, frame: Frame) -> RigidParts:
-    """Join the blocks that some rates, of which none may occur, make rigid.
+    """Join the blocks that move as one if all of the given rates are zero.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def rigid_parts(rates: Sparse, frame: Frame) -> RigidParts:
 
 
 def _wrenches(rates: Sparse, ground: int) -> tuple[Indices, Indices, Reals]:
-    """Of each row its two bodies, and what it is of the first: direction and moment about its centroid."""
+    """Return the two bodies of each row, and the direction and moment of its unit force about the first's centroid."""
     entries = rates.tocoo()
     block, component = np.divmod(entries.col, 3)
     one = np.full(rates.shape[0], -1)
@@ -85,7 +85,7 @@ def _wrenches(rates: Sparse, ground: int) -> tuple[Indices, Indices, Reals]:
 
 
 def _holds(number: Indices, count: int, wrench: Reals, place: Points) -> Bools:
-    """Which pairs of parts the wrenches of their rows hold in both directions and against turning."""
+    """Return which pairs of parts their rows hold in both directions and against rotation."""
     first = np.zeros(count, np.intp)
     first[number[::-1]] = np.arange(len(number))[::-1]
     arm = place - place[first[number]]  # moments about one point for each pair, near its joints
@@ -94,7 +94,7 @@ def _holds(number: Indices, count: int, wrench: Reals, place: Points) -> Bools:
         return np.asarray(np.bincount(number, one * two, count), np.float64)
 
     def without(one: Reals, two: Reals) -> Reals:
-        """The part of a column that is orthogonal to another, pair by pair."""
+        """Return the component of a column orthogonal to another, pair by pair."""
         square = dot(two, two)
         return one - (dot(one, two) / np.where(square > 0, square, 1.0))[number] * two
 
@@ -110,7 +110,7 @@ def _holds(number: Indices, count: int, wrench: Reals, place: Points) -> Bools:
 
 
 def _parts(label: Indices, place: Points, between: Bools) -> RigidParts:
-    """Number the parts in the order of their first blocks, and build their velocities."""
+    """Return the parts, numbered in the order of their first blocks, with their velocities."""
     label, ground = label[:-1], label[-1]
     moves = np.flatnonzero(label != ground)
     _, first, number = np.unique(label[moves], return_index=True, return_inverse=True)

@@ -1,10 +1,11 @@
-"""The smallest of several mechanisms that are the same motion, with idle blocks that may move along.
+"""The smallest of several mechanisms that are the same motion, but for idle blocks that may also move.
 
 Mechanisms of one multiplier are the same motion if all of them move the same blocks in the same way up to a common
 factor, if those alone are one of the mechanisms, and if every other block that moves in any of them is idle: either no
-force does work on it at all, or it can only turn with one of the moving groups, about the same point, at no cost.
-Then no hinge of the smallest mechanism is another in the larger ones. Two towers side by side, or a stack that may turn
-about its own foot or that of its plinth, are not the same motion, although each costs as little.
+force does work on it at all, or the block can only turn with one of the moving groups, about the same point, at the
+same multiplier. Then the hinges of the smallest mechanism are the same in the larger ones. Two equal towers side by
+side, or a stack that may turn about its own foot or that of its plinth, have mechanisms of the same multiplier that are
+not the same motion.
 """
 
 from __future__ import annotations
@@ -22,18 +23,18 @@ MOST = 30  # dimensions of the velocities: more are several mechanisms
 
 
 def smallest(problem: AssemblyProblem, rays: Rays, kept: Bools, space: Reals) -> tuple[Reals, tuple[str, ...]] | None:
-    """The mechanism that moves the fewest blocks, and those idle; None if the mechanisms are not the same motion.
+    """Return the mechanism that moves the fewest blocks, and the idle blocks; None if they are not the same motion.
 
     Parameters
     ----------
     problem : AssemblyProblem
         The assembly.
     rays : Rays
-        What its joints can exert.
+        Forces that its joints can exert.
     kept : ndarray of bool
         The rays that no mechanism opens.
     space : ndarray, shape (3 blocks, dimensions)
-        Velocities that open none of these.
+        Velocities that open none of the kept rays.
 
     Returns
     -------
@@ -71,14 +72,14 @@ def smallest(problem: AssemblyProblem, rays: Rays, kept: Bools, space: Reals) ->
 
 
 def _does_work(problem: AssemblyProblem, by_block: Reals) -> Bools:
-    """On which blocks the forces do work in some velocity."""
+    """Return on which blocks the forces do work, in any of the velocities."""
     work = [np.abs(np.einsum("bi,bid->bd", each.reshape(-1, 3), by_block)).max(axis=1)
             for each in (problem.dead, problem.live)]  # fmt: skip
     return np.asarray(np.maximum(*work) > NOTHING * np.abs(by_block).max(axis=(1, 2)))
 
 
 def _candidates(share: Reals, blocks: Indices) -> list[int]:
-    """One block of each kind that moves in proportion, those of the most blocks first."""
+    """Return one block of each set of blocks that move in proportion, the largest set first."""
     found: dict[int, int] = {}
     for j in blocks.tolist():
         same = next((k for k in found if abs(share[k] @ share[j]) > 1 - SAME**2), j)
@@ -87,7 +88,7 @@ def _candidates(share: Reals, blocks: Indices) -> list[int]:
 
 
 def _reaches(opening: Reals, still: Reals, moves: Reals) -> bool:
-    """Whether a velocity in which no ray closes and one kind of blocks rests can move another."""
+    """Return whether some velocity closes no ray, keeps one set of blocks at rest and moves another."""
     n, d = opening.shape
     equal = from_blocks([[opening, -np.eye(n)], [still[None, :], None]])
     found = least(
@@ -98,7 +99,10 @@ def _reaches(opening: Reals, still: Reals, moves: Reals) -> bool:
 
 
 def _least_motion(opening: Reals, space: Reals, by_block: Reals, able: Bools, share: Reals) -> Reals | None:
-    """The velocities of least sum in which one kind of blocks moves; None if they cannot."""
+    """Return velocities in which one set of blocks moves and the sum of all absolute velocities is least.
+
+    None if this set cannot move.
+    """
     rows = space[np.repeat(able, 3)]
     (n, d), m = opening.shape, len(rows)
     for sign in (1.0, -1.0):
@@ -115,7 +119,7 @@ def _least_motion(opening: Reals, space: Reals, by_block: Reals, able: Bools, sh
 
 
 def _turns_with(problem: AssemblyProblem, field: Reals, moves: Bools, block: int, way: Reals) -> bool:
-    """Whether a block's one way is to move as if it belonged to a block that moves."""
+    """Return whether the only motion of a block is to move as a part of some moving block."""
     place = np.array(problem.frame.centroids) / problem.frame.size
     for k in np.flatnonzero(moves):
         vx, vy, turn = field[3 * k : 3 * k + 3]

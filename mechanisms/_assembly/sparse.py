@@ -1,4 +1,4 @@
-"""Sparse matrices: made from their entries, and joined; scipy is loaded with the first."""
+"""Sparse matrices: building and joining them; scipy is imported when the first one is built."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def solved(matrix: Sparse, right: Reals) -> Reals:
 
 
 def solver(squares: Sparse) -> Callable[[Reals], Reals]:
-    """Factorise a symmetric matrix without negative squares, and return what solves it for a column."""
+    """Factorise a positive semidefinite symmetric matrix, and return a function that solves it for a vector."""
     from scipy.sparse.linalg import splu
 
     # In the order of its pattern, and without exchanging rows: such a matrix needs none, and fills in less.
@@ -53,7 +53,7 @@ def solver(squares: Sparse) -> Callable[[Reals], Reals]:
 
 
 def weighted_squares(matrix: Sparse, weights: Reals) -> Sparse:
-    """Build the transpose times weights times a matrix, plus so little of the unit matrix that it can be solved."""
+    """Return M^T W M of a matrix M and weights W, plus a small multiple of the unit matrix for regularity."""
     from scipy.sparse import diags_array, eye_array
 
     squares = matrix.T @ diags_array(weights) @ matrix
@@ -61,7 +61,7 @@ def weighted_squares(matrix: Sparse, weights: Reals) -> Sparse:
 
 
 def components(one: ArrayLike, other: ArrayLike, count: int) -> Indices:
-    """Label each of some nodes by the component of the graph that it is in, given its edges."""
+    """Return the number of the connected component of each node of a graph, given its edges."""
     from scipy.sparse.csgraph import connected_components
 
     graph = from_entries(one, other, np.ones(len(np.asarray(one))), (count, count))
@@ -69,7 +69,7 @@ def components(one: ArrayLike, other: ArrayLike, count: int) -> Indices:
 
 
 def from_blocks(blocks: Sequence[Sequence[Any]]) -> Sparse:
-    """Build a matrix from rows of matrices, dense ones among them; None is nothing."""
+    """Build a matrix from rows of matrices, which may be dense; None is a block of zeros."""
     from scipy.sparse import block_array, csr_array
 
     return block_array([[None if each is None else csr_array(each) for each in row] for row in blocks], format="csc")

@@ -1,4 +1,4 @@
-"""Where the forces of a state pass through the joints: the line of thrust of what is a chain."""
+"""Points at which the forces of a state pass through the joints: a line of thrust, if the blocks are a chain."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class Passage:
     contact : int
         The joint.
     point : complex
-        Where the resultant passes through it [m].
+        Point at which the resultant passes through the joint [m].
     force : complex
-        On body `b` of the joint [N].
+        Force on body `b` of the joint [N].
     """
 
     contact: int
@@ -34,14 +34,14 @@ class Passage:
 
 @dataclass(frozen=True, eq=False)
 class Thrust:
-    """The forces in all joints that carry a normal force.
+    """Forces in all joints that carry a normal force.
 
     Parameters
     ----------
     passages : tuple of Passage
-        In the order of the chain from the joint that comes first, or of the joints.
+        Forces in the order of the chain, or else of the joints.
     chain : bool
-        Whether they are one line, from one joint to the next across a block.
+        Whether they form one line, from joint to joint across the blocks.
     """
 
     passages: tuple[Passage, ...]
@@ -49,22 +49,22 @@ class Thrust:
 
 
 def thrust(contacts: Sequence[AssemblyContact], blocks: Sequence[str], normal: Reals, shear: Reals) -> Thrust:
-    """The points at which the forces of a state pass through the joints.
+    """Return the points at which the forces of a state pass through the joints.
 
     Parameters
     ----------
     contacts : sequence of AssemblyContact
         The joints.
     blocks : sequence of str
-        Names of what can move.
+        Names of the blocks that can move.
     normal, shear : ndarray, shape (contacts, 2) and (contacts,)
-        A state, as of `Collapse`.
+        Forces of the state, as in `Collapse`.
 
     Returns
     -------
     Thrust
-        A line where each block has at most two joints and all are one chain. It is that of this state: where parts
-        rest there are others.
+        Forces and points; a line if each block has at most two joints and all form one chain. The line is that of this
+        state; others exist if blocks stay at rest.
     """
     total = normal.sum(axis=1)
     least = NONE * max(float(np.abs(total).max(initial=0.0)), float(np.abs(shear).max(initial=0.0)))
@@ -80,7 +80,7 @@ def thrust(contacts: Sequence[AssemblyContact], blocks: Sequence[str], normal: R
 
 
 def _chain(contacts: Sequence[AssemblyContact], blocks: Sequence[str]) -> list[int] | None:
-    """Joints in order along a chain of blocks; None if the assembly is none."""
+    """Return the joints in order along a chain of blocks; None if the assembly is not a chain."""
     of: dict[str, list[int]] = {name: [] for name in blocks}
     for k, contact in enumerate(contacts):
         for name in (contact.a, contact.b):

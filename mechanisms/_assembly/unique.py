@@ -1,8 +1,9 @@
-"""Whether a weakest mechanism is the only one, and which others share its multiplier.
+"""Check whether a weakest mechanism is unique, and find the others with the same multiplier.
 
-A vertex of the programme always looks like one degree of freedom. So ask which rays can carry force in *any* state of
-the greatest multiplier: those must keep their contact in every mechanism of that multiplier, and each other one opens
-in some (strict complementarity). The velocities that keep the first are a space; one dimension is one mechanism.
+A vertex of the linear programme always has one degree of freedom. Rays that can carry force in *any* state of the
+greatest multiplier keep their contact in every mechanism of that multiplier, and each other ray opens in some mechanism
+(strict complementarity). The velocities that keep these contacts are a vector space; if its dimension is one, the
+mechanism is unique.
 """
 
 from __future__ import annotations
@@ -26,12 +27,12 @@ MOST = 8  # mechanisms that are named
 
 
 def kept_rays(rays: Rays, dead: Reals, live: Reals, raw: Reals) -> Bools:
-    """The rays that keep their contact in every mechanism of the greatest multiplier; the free ones among them.
+    """Return the rays, among them the free ones, that keep their contact in every mechanism of the greatest multiplier.
 
-    `raw` is one such mechanism. Forces that do no work on it are those of the states of the greatest multiplier, so
-    the multiplier need not be prescribed to its last digit. States are looked for at any size, at which all forces that
-    are possible reach what counts at once: one programme finds them (Freund, Roundy and Todd, 1985). Only where the
-    size is at its bound, forces that are very small may be left for another.
+    `raw` is one such mechanism. Forces that do no work on it are the states of the greatest multiplier, so that the
+    multiplier need not be exact. As states are searched for without a limit of their size, one linear programme finds
+    all rays with force at once (Freund, Roundy and Todd, 1985); only if the size is at its bound, rays with very small
+    forces may need another one.
     """
     rate = rays.rates @ raw
     shut = np.abs(rate) <= OPENS * np.abs(rate).max()
@@ -62,7 +63,10 @@ def kept_rays(rays: Rays, dead: Reals, live: Reals, raw: Reals) -> Bools:
 
 
 def velocity_space(rates: Sparse, frame: Frame) -> Reals:
-    """Columns that span the velocities of the blocks without any of some rates, shape (3 blocks, dimensions)."""
+    """Return columns that span the velocities of the blocks at which the given rates are zero.
+
+    Their shape is (3 blocks, dimensions).
+    """
     parts = rigid_parts(rates, frame)
     left = (rates[parts.between] @ parts.basis).tocsr()
     # Parts that no rate ties to each other are independent.
@@ -80,14 +84,14 @@ def velocity_space(rates: Sparse, frame: Frame) -> Reals:
 
 
 def _members(label: Indices) -> dict[int, Indices]:
-    """The places of each label, in order."""
+    """Return the indices of the nodes with each label, in order."""
     order = np.argsort(label, kind="stable")
     names, starts = np.unique(label[order], return_index=True)
     return dict(zip(names.tolist(), np.split(order, starts[1:]), strict=True)) if len(names) else {}
 
 
 def null_space(rows: Reals) -> Reals:
-    """Orthogonal columns that span what is orthogonal to some rows."""
+    """Return orthonormal columns that span the null space of some rows."""
     if len(rows) == 0:
         return np.eye(rows.shape[1])
     if len(rows) > rows.shape[1]:
@@ -98,7 +102,10 @@ def null_space(rows: Reals) -> Reals:
 
 
 def mechanisms_of(rays: Rays, kept: Bools, space: Reals, raw: Reals) -> list[Reals]:
-    """The mechanism in a space of one dimension, or extreme ones of a larger space, in which no ray closes."""
+    """Return the mechanism of a space of one dimension, or extreme mechanisms of a larger one.
+
+    No ray closes in any of them.
+    """
     if space.shape[1] == 0:
         return [_clean(raw)]
     if space.shape[1] == 1:
@@ -107,9 +114,9 @@ def mechanisms_of(rays: Rays, kept: Bools, space: Reals, raw: Reals) -> list[Rea
 
 
 def _extremes(opening: Reals, space: Reals) -> list[Reals]:
-    """Extreme rays of the cone of z with opening z >= 0, and last what moves both ways and opens nothing.
+    """Return extreme rays of the cone of z with opening z >= 0, and last the motions that open nothing.
 
-    One velocity of one block at a time decides which ray is looked for.
+    The component of one velocity of one block at a time decides which ray is found.
     """
     neutral = null_space(opening)
     both_ways = [_clean(space @ z) for z in neutral.T]

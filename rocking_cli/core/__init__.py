@@ -1,4 +1,4 @@
-"""Pure mechanics: where the bodies of a mechanism are, and what follows from it."""
+"""Mechanics of rigid bodies: positions of the bodies of a mechanism, equation of motion, equivalent block."""
 
 from rocking_cli.core.bodies import Body as Body
 from rocking_cli.core.bodies import annular_sector as annular_sector

@@ -1,9 +1,9 @@
-"""How far the equivalent block is to be trusted with either kappa: one rule and one vocabulary for every command.
+"""Grade an equivalent block by its errors, and prefer one of its scalings (kappa): one rule for all commands.
 
-What is known decides how much is compared. Without an amplitude there is the uplift acceleration, which kappa2 keeps
-and kappa1 does not; at an amplitude, the free period and the overturning time too; under a ground motion, the motions.
-Each comparison is a relative error, and the largest gives the grade. A kappa whose uplift alone is out by more than
-`LARGE` is to be disregarded whatever else agrees: where it does, that is chance.
+Without an amplitude, the uplift acceleration is compared, which kappa2 keeps and kappa1 does not; at an amplitude, the
+free period and the overturning time as well; under a ground motion, the time histories. Each comparison is a relative
+error, and the largest error gives the grade. If the uplift acceleration of a kappa is in error by more than `LARGE`,
+that kappa is to be disregarded: any other agreement is chance.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ SMALL, LARGE = 0.05, 0.15  # errors up to which a block agrees with its structur
 
 
 class Grade(IntEnum):
-    """What an equivalent block is good for."""
+    """Grade of an equivalent block, from good to bad."""
 
     AGREES = 0
     ESTIMATE = 1
@@ -31,19 +31,19 @@ class Grade(IntEnum):
 
     @property
     def key(self) -> str:
-        """The grade in JSON."""
+        """Name of the grade in JSON."""
         return ("agrees", "first_estimate", "disregard")[self]
 
 
 def grade(error: float, small: float = SMALL, large: float = LARGE) -> Grade:
-    """What an error of this size leaves a block good for; NaN counts as too large.
+    """Return the grade of an equivalent block with this error; NaN counts as too large.
 
     Parameters
     ----------
     error : float
         Relative error of either sign.
     small, large : float
-        Up to which it agrees, and serves a first estimate.
+        Largest errors at which the block agrees, and is good for a first estimate.
 
     Examples
     --------
@@ -55,22 +55,22 @@ def grade(error: float, small: float = SMALL, large: float = LARGE) -> Grade:
 
 
 def uplift_error(equivalence: Equivalence) -> float:
-    """By how much kappa1 misses the uplift acceleration, relative, in the direction where it misses it more.
+    """Return the relative error of the uplift acceleration with kappa1, in the direction where it is larger.
 
-    kappa2 keeps it: its error is zero.
+    With kappa2 this error is zero.
     """
     errors = [equivalence[each].lambda_lin / equivalence[each].lambda_ - 1 for each in Direction]
     return max(errors, key=abs)
 
 
 def uplift_in_words(error: float) -> str:
-    """The error of an uplift acceleration, after "its uplift acceleration is"."""
+    """Return the error of an uplift acceleration in words, which follow "its uplift acceleration is"."""
     return f"{percent(abs(error))} too {'low' if error < 0 else 'high'}"
 
 
 @dataclass(frozen=True)
 class Advice:
-    """A preferred scaling by what is known without an amplitude: the uplift acceleration.
+    """Preferred scaling of an equivalent block, judged by its uplift acceleration alone.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ class Advice:
     why : str
         The reason, in a sentence.
     kappa1 : Grade
-        What its uplift acceleration leaves kappa1 good for.
+        Grade of kappa1 by its uplift acceleration.
     """
 
     prefer: Literal["kappa2", "either"]
@@ -91,7 +91,7 @@ class Advice:
 
 
 def preferred_kappa(block: EquivalentBlock) -> Advice:
-    """Which kappa to use for a structure, judged by how well the linearised mechanism keeps its uplift."""
+    """Return which kappa to use for an equivalent block, judged by the uplift of the linearised mechanism."""
     ratio = block.lambda_lin / block.lambda_
     error, found = ratio - 1, grade(ratio - 1)
     off = f"with kappa1 the uplift acceleration is {uplift_in_words(error)}, with kappa2 it is kept"

@@ -1,4 +1,4 @@
-"""Rigid bodies: mass, central moment of inertia and rest centroid of the shapes structures are made of."""
+"""Rigid bodies: mass, moment of inertia about the centroid and position at rest, for common shapes."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Body:
-    """One rigid body of a mechanism, rigid in both directions of rocking.
+    """One rigid body of a mechanism.
 
     Parameters
     ----------
     name : str
-        What it is.
+        Name of the body.
     mass : float
         Mass [kg].
     inertia : float
-        Moment of inertia about its centroid [kg m2].
+        Moment of inertia about the centroid [kg m2].
     centroid : complex
-        Rest position of its centroid, x + iy [m].
+        Position of the centroid at rest, x + iy [m].
     outline : sequence of complex
-        Its corners in that position [m], for pictures only; empty if its shape is not known.
+        Corners of the body at rest [m], for drawings only; empty if the shape is not known.
 
     Raises
     ------
@@ -48,32 +48,35 @@ class Body:
             raise ValueError(f"the centroid of body {self.name!r} is at {self.centroid:g} m: it must be finite")
 
     def shapes(self, drawn: Mapping[str, Sequence[Sequence[complex]]]) -> Sequence[Sequence[complex]]:
-        """Its outline, else the polygons that are drawn for it, by its name; none if its shape is not known."""
+        """Return the outline of the body, or else the polygons in `drawn` under its name; empty if it has neither."""
         return [self.outline] if self.outline else drawn.get(self.name, ())
 
 
 def area_of(corners: Sequence[complex]) -> float:
-    """Signed area of a polygon [m2]."""
+    """Return the signed area of a polygon [m2], positive if its corners are anticlockwise."""
     z = np.asarray(corners) - corners[0]
     return float((z.conj() * np.roll(z, -1)).imag.sum() / 2)
 
 
 def weighed(bodies: Sequence[Body], factor: float) -> Sequence[Body]:
-    """The same bodies with all masses and inertias multiplied."""
+    """Return the bodies with all masses and inertias multiplied by a factor."""
     if factor == 1.0:
         return bodies
     return [replace(body, mass=factor * body.mass, inertia=factor * body.inertia) for body in bodies]
 
 
 def box(name: str, mass: float, width: float, height: float, centroid: complex) -> Body:
-    """A uniform rectangle `width` by `height` [m]."""
+    """Return a uniform rectangle of `width` by `height` [m] as a body."""
     across, up = width / 2, 1j * height / 2
     outline = tuple(centroid + corner for corner in (-across - up, across - up, across + up, up - across))
     return Body(name, mass, mass * (width**2 + height**2) / 12, centroid, outline)
 
 
 def polygon(name: str, mass: float, vertices: Sequence[complex]) -> Body:
-    """A uniform simple polygon with `vertices` x + iy [m] in either order; its area must not be zero."""
+    """Return a uniform simple polygon as a body.
+
+    `vertices` x + iy [m] are in either order; the area must not be zero.
+    """
     # Triangles from one vertex rather than from the origin: no cancellation for a polygon far away.
     origin = vertices[0]
     z = np.asarray(vertices) - origin
@@ -87,12 +90,12 @@ def polygon(name: str, mass: float, vertices: Sequence[complex]) -> Body:
 
 
 def annular_sector(name: str, density: float, inner: float, outer: float, start: float, end: float) -> Body:
-    """A sector of a ring about the origin between two polar angles.
+    """Return a sector of a ring about the origin, between two polar angles, as a body.
 
     Parameters
     ----------
     name : str
-        What it is.
+        Name of the body.
     density : float
         Mass per area [kg/m2].
     inner, outer : float
@@ -103,7 +106,7 @@ def annular_sector(name: str, density: float, inner: float, outer: float, start:
     Returns
     -------
     Body
-        With exact mass, inertia and centroid.
+        The sector, with exact mass, inertia and centroid.
     """
     half = abs(end - start) / 2
     mass = density * (outer**2 - inner**2) * half

@@ -1,4 +1,4 @@
-"""Whether the fields of a structure fit together: each check raises `RefusedFields` at the field that does not."""
+"""Check that the fields of a structure fit together; each check raises `RefusedFields` with the field at fault."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ AtRest = Mapping[Direction, Coefficients]
 
 
 def check_masses(given: Given) -> None:
-    """Refuse two ways to give the masses."""
+    """Refuse a structure that has both `mass` and `density`."""
     if given.mass is not None and given.density is not None:
         raise RefusedFields((), "mass", "give mass, or density and depth: one of them")
 
 
 def check_crushed(moved: Mapping[Direction, Mapping[str, float]], rest: AtRest, gravity: float) -> None:
-    """Refuse crushing that can move no joint inwards, or by `moved` [m] so far that the structure does not stand."""
+    """Refuse `crushing` if it moves no joint, or moves joints (by `moved` [m]) so far that nothing stands."""
     if not moved:
         reason = "its pivots cannot be moved in this version, only those of single bodies and of walls: leave it out"
         raise RefusedFields((), "crushing", reason)
@@ -35,7 +35,11 @@ def check_crushed(moved: Mapping[Direction, Mapping[str, float]], rest: AtRest, 
 
 
 def check_one_sided(given: Given, from_impacts: Callable[[], float | None]) -> None:
-    """Refuse a rebound without a side, a restitution beside one, and `kinematic` where the shape gives no rebound."""
+    """Check `one_sided`, `rebound` and `restitution` against one another.
+
+    Refused are a rebound of a structure that rocks to both sides, a restitution of one that rocks to one side only, and
+    `kinematic` if no rebound follows from the shape.
+    """
     if given.one_sided is None and given.rebound is not None:
         raise RefusedFields((), "rebound", NEEDS_A_SIDE)
     if given.one_sided is not None and given.restitution is not None:
@@ -61,7 +65,7 @@ def check_restitution(given: Given, eta: Callable[[Direction], float], greatest:
 
 
 def check_strength(given: Given) -> None:
-    """Refuse a strength that no contact can be held to."""
+    """Refuse a contact strength if the structure has no masses or no depth."""
     if not isinstance(given.strength, Strength):  # None, or a field of a plugin of that name
         return
     if not given.has_mass:
@@ -71,14 +75,14 @@ def check_strength(given: Given) -> None:
 
 
 def check_weighs(given: Given) -> None:
-    """Refuse loads and ties on a structure without masses."""
+    """Refuse loads, ties and crossing walls on a structure without masses."""
     if not given.has_mass:
         key = "loads" if given.loads else "ties" if given.ties else "interlock"
         raise RefusedFields((), key, "the structure has no masses: give density and depth, or its mass")
 
 
 def check_stands(given: Given, hung: Hung, mass: float, rest: AtRest, bare: AtRest) -> None:
-    """Refuse loads and ties under which a structure does not stand though it stands by itself.
+    """Refuse loads and ties under which the structure does not stand, if it stands without them.
 
     Parameters
     ----------
@@ -87,9 +91,9 @@ def check_stands(given: Given, hung: Hung, mass: float, rest: AtRest, bare: AtRe
     hung : Hung
         What is attached to it.
     mass : float
-        Of its own bodies [kg].
+        Mass of the bodies of the mechanism [kg].
     rest, bare : mapping
-        Its coefficients at rest, with what is attached to it and without.
+        Coefficients at rest of each direction, with loads and ties and without them.
     """
     weight = given.gravity * (mass + hung.carried)
     if hung.lifting >= weight:

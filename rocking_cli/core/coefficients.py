@@ -1,8 +1,8 @@
-"""The coefficients of the equation of motion of any mechanism, from its bodies and their motions.
+"""Coefficients of the equation of motion of a mechanism, from its bodies and their motions.
 
 I phi.. + J phi.^2 + g G + Q = -s B u_g''        [paper, Eq. 8, with the signs of Lagrange's equation]
 
-Q is the moment of what does not scale with g, such as a tie; a bare mechanism has none.
+Q is the moment of the forces that do not scale with g, such as those of ties; it is zero for a bare mechanism.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ JUMP = 1e-5  # of the size of a coefficient: what its derivative may miss of its
 
 @dataclass(frozen=True)
 class Coefficients:
-    """Coefficients over an array of rotations, each an ndarray of shape (n,).
+    """Coefficients of the equation of motion over an array of rotations, each an ndarray of shape (n,).
 
     Parameters
     ----------
@@ -63,18 +63,18 @@ class Coefficients:
                 object.__setattr__(self, name, np.zeros_like(self.phi))
 
     def restoring(self, gravity: float) -> Reals:
-        """V'/g = G + Q/g [kg m]."""
+        """Return the restoring moment over g, V'/g = G + Q/g [kg m]."""
         return self.G + self.Q / gravity
 
     def stiffness(self, gravity: float) -> Reals:
-        """V''/g = G' + Q'/g [kg m/rad]."""
+        """Return the derivative of the restoring moment over g, V''/g = G' + Q'/g [kg m/rad]."""
         return self.dG + self.dQ / gravity
 
 
 def coefficients(
     phi: Reals, direction: Direction, bodies: Sequence[Body], motions: Sequence[RigidMotion]
 ) -> Coefficients:
-    """Sum the bodies' shares of T and V over the rotations `phi`, shape (n,) [rad].
+    """Sum the kinetic energy T and the potential energy V of the bodies, over rotations `phi` [rad].
 
     Parameters
     ----------
@@ -111,16 +111,16 @@ def coefficients(
 
 
 def check_continuous(mechanism: str, direction: Direction, at: Coefficients) -> None:
-    """Refuse a mechanism whose bodies jump from one place, or from one velocity, to another.
+    """Raise `MechanismError` if the positions or velocities of the bodies jump between two rotations.
 
     Parameters
     ----------
     mechanism : str
-        Its name.
+        Name of the mechanism.
     direction : Direction
         The direction of rocking.
     at : Coefficients
-        Over increasing rotations, near enough to each other that slopes change evenly between them.
+        Coefficients at increasing rotations, so close that slopes change evenly between them.
 
     Raises
     ------
@@ -140,10 +140,10 @@ def check_continuous(mechanism: str, direction: Direction, at: Coefficients) -> 
 
 
 def jump(phi: Reals, value: Reals, slope: Reals, size: float) -> float:
-    """The first of the rotations `phi` [rad] after which a value does not follow its slope; infinity without any.
+    """Return the rotation [rad] after which a value first changes by more than its slope explains; infinity if none.
 
-    Where a value has no jump and its slope changes evenly over a step, its change is between those that the slopes at
-    both ends would make of it.
+    If a value has no jump and its slope changes evenly over a step, its change lies between the changes that the slopes
+    at both ends of the step give.
     """
     step = np.diff(phi)
     missed = np.abs(np.diff(value) - step / 2 * (slope[:-1] + slope[1:])) - step * np.abs(np.diff(slope))

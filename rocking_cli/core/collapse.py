@@ -1,4 +1,4 @@
-"""The weakest mechanism that a structure of blocks was found to have, as a mechanism tells it."""
+"""Result of a search for the weakest mechanism of a structure of blocks."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class CollapseHinge:
-    """A point about which two groups of blocks turn: what they are called, where it is at rest [m], and its joint.
+    """A hinge between two groups of blocks: its name, its point at rest [m] and its joint.
 
-    The joint is named by the two blocks that touch there.
+    The joint is the pair of blocks that touch at the hinge.
     """
 
     letter: str
@@ -21,40 +21,41 @@ class CollapseHinge:
 
 @dataclass(frozen=True)
 class CollapseMechanism:
-    """The weakest mechanism of one direction.
+    """Weakest mechanism of one direction.
 
     Parameters
     ----------
     lambda_ : float
         Ground acceleration over g that starts it.
     lead : str
-        The block whose rotation phi is; empty where it slides.
+        The block whose rotation is phi; empty if it slides.
     hinges : sequence of CollapseHinge
         In order from the left.
     groups : sequence of sequence of str
         Blocks that move as one.
     rest, lifted, slides, glued : sequence of str
-        What does not move; joints that open at both ends, that slide, and that carry shear without a normal force in
-        the state shown, each by the two that it is of.
+        Blocks that do not move; joints that open at both ends; joints that slide; joints that carry shear without a
+        normal force in the state shown. A joint is named by its two blocks.
     with_usual : float or None
-        Lambda with the friction of masonry in joints that have none; None if all have some.
+        Lambda if the joints without a coefficient of friction have that usual of masonry; None if all have one.
     no_model : str
-        Why it cannot be followed further than its start, as a sentence without a full stop; empty if it can.
+        Why its motion cannot be simulated beyond its start, a sentence without a full stop; empty if it can.
     friction_needed : float or None
-        The least coefficient of friction in every joint that leaves lambda as it is; None: no such.
+        The least coefficient of friction of all joints at which lambda stays the same; None if there is none.
     valid_to : float or None
-        The rotation at which, held displaced, another joint opens [rad]; None: none does before the critical rotation.
+        Rotation at which another joint opens in displaced equilibrium [rad]; None if none opens before the critical
+        rotation.
     opens : str
-        Which joint that is.
+        The joint that opens at `valid_to`.
     held_by : float or None
-        G/B there, the acceleration over g that holds it.
+        G/B at `valid_to`, the acceleration over g of displaced equilibrium.
     thrust : sequence of (str, complex, complex)
-        Joint, point [m] and force [N] of one state of the forces as it starts.
+        Joint, point [m] and force [N] of one possible state of forces at the start of motion.
     velocities : sequence of (complex, float)
-        Of each group as it starts: of the point (0, 0) [m/s], and its rotation, anticlockwise [rad/s], at any speed.
-        Without them a mechanism that has no rocking model is not drawn.
+        Velocity of each group at the start of motion, up to a common factor: of its point at (0, 0) [m/s], and its
+        rotation rate, anticlockwise [rad/s]. Without them a mechanism that has no rocking model is not drawn.
     idle : sequence of str
-        Blocks at rest that may move along at no cost: other mechanisms of this multiplier are this one with them.
+        Blocks at rest that may also move at the same lambda: then the mechanism is not the only one with this lambda.
     """
 
     lambda_: float

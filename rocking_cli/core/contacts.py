@@ -1,4 +1,4 @@
-"""The joints of a mechanism as contacts: which pieces bear on one another, at which points, and with what friction."""
+"""Joints of a mechanism as contacts: the pieces in contact, the contact points and the friction."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from rocking_cli.core.joints import Joint
 
 @dataclass(frozen=True)
 class Piece:
-    """A rigid block between joints: a whole body, or a part of one that other parts of it stay in contact with.
+    """A rigid block between joints: a whole body, or a part of a body that stays in contact with its other parts.
 
     Parameters
     ----------
     body : Body
-        Its mass, inertia and centroid, under a name of its own.
+        Mass, inertia and centroid of the piece, with the name of the piece.
     of : str or None
-        The body of the mechanism that it moves with; None: it rests.
+        The body of the mechanism with which the piece moves; None if it stays at rest.
     """
 
     body: Body
@@ -33,31 +33,31 @@ Held = Literal["slide", "level", "fixed"]
 
 @dataclass(frozen=True)
 class Contact:
-    """A joint as it bears in one direction of rocking.
+    """A contact, or another joint, in one direction of rocking.
 
     Parameters
     ----------
     pieces : tuple of str or None
-        The piece that bears, and the one that it bears; None: the ground, or what rests.
+        The supporting piece, and the piece that it supports; None for the ground, or a body at rest.
     points : tuple of complex
-        Where it bears, at rest [m]: the one point of a hinge, or both ends of a joint that stays closed. The joint has
-        another role in the other direction of rocking if it bears at other points there.
+        Contact points at rest [m]: the one point of a hinge, or both ends of a joint that stays closed. A joint may
+        have other contact points in the other direction of rocking.
     normal : complex
-        Unit normal of its face at rest, from the first piece into the second. Of a guide: the direction in which it
-        holds its point.
+        Unit normal of the contact face at rest, from the first piece into the second. For a guide: the direction in
+        which it restrains its point.
     face : str, optional
-        The piece with which the normal turns; None: it does not turn.
+        The piece with which the normal rotates; None if the normal is fixed.
     friction : float, optional
-        Coefficient of friction; None: it never slides.
+        Coefficient of friction; None if the contact never slides.
     roll : float
-        Radius of a rounded edge, about the centre of which `points` is [m]: the piece bears below that centre.
+        Radius of a rounded edge [m]; `points` has the centre of the edge, and the contact is below this centre.
     held : {"slide", "level", "fixed"}, optional
-        What is no contact, and can neither open nor slide: a guide that holds its point along the normal, what keeps
-        the second piece level, or what makes the two pieces one.
+        A joint other than a contact, which can neither open nor slide: a guide that restrains its point along the
+        normal, a restraint that keeps the second piece level, or a rigid connection of the two pieces.
     name : str
-        What to call it; by default the names of both pieces. The same joint has one name in both directions.
+        Name of the contact; by default the names of both pieces. A joint has the same name in both directions.
     letter : str
-        The letter of a hinge in drawings, see `Joint`; empty if it has none.
+        Letter of the hinge in drawings, see `Joint`; empty if it has none.
     """
 
     pieces: tuple[str | None, str | None]
@@ -72,24 +72,24 @@ class Contact:
 
     @property
     def label(self) -> str:
-        """What messages call it."""
+        """Name of the contact in messages."""
         return self.name or " and ".join(name or "the ground" for name in self.pieces)
 
     @property
     def forces(self) -> int:
-        """How many forces it can exert: one at each point and one along its face, or what it holds."""
+        """Number of force components of the joint: of a contact, one at each point and one along its face."""
         return len(self.points) + 1 if self.held is None else {"slide": 1, "level": 1, "fixed": 3}[self.held]
 
 
 def of_joints(joints: Sequence[Joint], friction: float | None) -> list[Contact]:
-    """Return the hinges and guides of a direction as contacts.
+    """Return the hinges and guides of a direction of rocking as contacts.
 
     Parameters
     ----------
     joints : sequence of Joint
-        See `Mechanism.joints`.
+        Joints of the direction, as `Mechanism.joints` gives them.
     friction : float or None
-        Coefficient of friction of all of them.
+        Coefficient of friction of all joints.
     """
     found = []
     for joint in joints:

@@ -1,4 +1,4 @@
-"""What a check of the contract of mechanisms says."""
+"""Result of a check of the contract of mechanisms."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether a structure passes one check.
+    """Result of one check of a structure.
 
     Parameters
     ----------
     check : str
         Name of the check.
     meaning : str
-        What it holds the structure to, one sentence.
+        What the check requires of the structure, one sentence.
     why : str or None
         Why it fails; None if it passes.
     trace : str or None
-        The traceback of an error that the plugin made, if it is one.
+        Traceback of the plugin's error, if the check failed by one.
     """
 
     check: str
@@ -28,5 +28,5 @@ class Verdict:
 
     @property
     def passed(self) -> bool:
-        """Whether it passes."""
+        """Whether the structure passes the check."""
         return self.why is None

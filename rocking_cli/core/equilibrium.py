@@ -1,4 +1,4 @@
-"""The two static answers of a mechanism: when it uplifts and where it is in unstable equilibrium."""
+"""Static properties of a mechanism: uplift acceleration and critical rotation."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ SCAN_POINTS = 513  # where the first sign change of G is looked for; far finer t
 
 
 class NoCriticalRotation(StructureError):
-    """The motion reaches its kinematic limit before the structure is in unstable equilibrium."""
+    """Error: the mechanism reaches its kinematic limit before unstable equilibrium."""
 
 
 def uplift_acceleration(at: Callable[[Reals], Coefficients], gravity: float) -> float:
-    """Uplift acceleration over g, lambda = V'(0)/(g B(0)) [paper, Eq. 10, where V' = g G].
+    """Return the uplift acceleration over g, lambda = V'(0)/(g B(0)) [paper, Eq. 10, where V' = g G].
 
     Parameters
     ----------
     at : callable
-        Coefficients over an array of rotations.
+        Function that gives the coefficients at an array of rotations [rad].
     gravity : float
-        [m/s2].
+        Gravitational acceleration [m/s2].
 
     Raises
     ------
@@ -42,16 +42,16 @@ def uplift_acceleration(at: Callable[[Reals], Coefficients], gravity: float) -> 
 
 
 def critical_rotation(at: Callable[[Reals], Coefficients], limit: float, gravity: float) -> float:
-    """First rotation of unstable equilibrium: V' = 0 with V'' < 0 [rad; paper, Eq. 9].
+    """Return the first rotation of unstable equilibrium, V' = 0 with V'' < 0 [rad; paper, Eq. 9].
 
     Parameters
     ----------
     at : callable
-        Coefficients over an array of rotations.
+        Function that gives the coefficients at an array of rotations [rad].
     limit : float
         Kinematic limit of the mechanism [rad].
     gravity : float
-        [m/s2].
+        Gravitational acceleration [m/s2].
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The single rocking block that a mechanism is locally equivalent to [paper, Section 3]."""
+"""Equivalent single rocking block of a mechanism [paper, Section 3]."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ AGREEMENT = 1e-9  # relative difference below which the two directions count as 
 
 
 class NoEquivalentBlock(StructureError):
-    """A structure that stands and rocks, but as no single block does."""
+    """Error: the structure stands and rocks, but no single block is equivalent to it."""
 
 
 @dataclass(frozen=True)
@@ -33,11 +33,11 @@ class EquivalentBlock:
     phi_cr : float
         Critical rotation of the mechanism [rad].
     lambda_ : float
-        Uplift acceleration over g; the scaling kappa2 keeps it.
+        Uplift acceleration over g of the mechanism; the block scaled by kappa2 has the same.
     lambda_lin : float
-        Uplift acceleration over g of the linearised mechanism; the scaling kappa1 keeps it.
+        Uplift acceleration over g of the linearised mechanism; the block scaled by kappa1 has the same.
     kappa1, kappa2 : float
-        phi over the rotation theta of the equivalent block.
+        Ratio of phi to the rotation theta of the equivalent block.
     theta_cr1, theta_cr2 : float
         Critical rotation of the equivalent block [rad], with either kappa.
     eta : float
@@ -45,7 +45,7 @@ class EquivalentBlock:
     I_eq, G_eq, B_eq : float
         Linearised inertia [kg m2], restoring moment over g and per rad [kg m], and drive [kg m].
     v_imp : float
-        The velocity step of the ground that just overturns it from rest, without linearisation [m/s].
+        Velocity step of the ground that just overturns the mechanism from rest, without linearisation [m/s].
     """
 
     p: float
@@ -63,13 +63,13 @@ class EquivalentBlock:
     v_imp: float
 
     def as_dict(self) -> dict[str, float]:
-        """The parameters under their public names (`lambda` for `lambda_`)."""
+        """Return the parameters by their public names (`lambda` for `lambda_`)."""
         return {key.rstrip("_"): value for key, value in asdict(self).items()}
 
 
 @dataclass(frozen=True)
 class Equivalence:
-    """The equivalent blocks of both directions; of a structure that rocks to one side only, that of this side twice."""
+    """Equivalent blocks of both directions; of a structure that rocks to one side only, the same block twice."""
 
     positive: EquivalentBlock
     negative: EquivalentBlock
@@ -79,12 +79,12 @@ class Equivalence:
 
     @property
     def symmetric(self) -> bool:
-        """Whether the two directions agree to rounding error."""
+        """Whether the blocks of the two directions are equal, to rounding error."""
         return alike(self.positive, self.negative)
 
 
 def alike(one: EquivalentBlock | Statics, other: EquivalentBlock | Statics) -> bool:
-    """Whether two directions agree to rounding error."""
+    """Return whether the parameters of two directions are equal, to rounding error."""
     pairs = zip(asdict(one).values(), asdict(other).values(), strict=True)
     return all(_agree(a, b) for a, b in pairs)
 
@@ -96,14 +96,14 @@ def _agree(one: float | str | None, other: float | str | None) -> bool:
 
 
 def equivalent_block(mechanism: Mechanism, known: Sequence[Statics] = ()) -> Equivalence:
-    """The equivalent single rocking block of a mechanism, in both directions.
+    """Return the equivalent single rocking blocks of a mechanism, in both directions.
 
     Parameters
     ----------
     mechanism : Mechanism
         Any plugin.
     known : sequence of Statics, optional
-        Its moments in both directions, where they are known already: see `both_statics`.
+        Statics of both directions, if they are already computed: see `both_statics`.
 
     Returns
     -------
@@ -114,7 +114,8 @@ def equivalent_block(mechanism: Mechanism, known: Sequence[Statics] = ()) -> Equ
     MechanismError
         If the structure does not stand or is beyond the range of numbers, or the plugin fails.
     NoEquivalentBlock
-        If a tie leaves it no critical rotation, or a restoring moment that does not fall all the way to it.
+        If, because of a tie, there is no critical rotation, or the restoring moment does not decrease all the way to
+        it.
 
     Notes
     -----
@@ -127,13 +128,13 @@ def equivalent_block(mechanism: Mechanism, known: Sequence[Statics] = ()) -> Equ
 
 
 def one_block(mechanism: Mechanism, direction: Direction, known: Statics) -> EquivalentBlock:
-    """The equivalent block of one direction, whose moments are known. Raises as `equivalent_block`."""
+    """Return the equivalent block of one direction from its statics. Raises as `equivalent_block`."""
     with _held_to_numbers(mechanism):
         return _one_direction(mechanism, direction, known)
 
 
 def both_statics(mechanism: Mechanism) -> tuple[Statics, Statics]:
-    """The moments of both directions, positive first. Raises as `equivalent_block`, without need of one."""
+    """Return the statics of both directions, positive first; needs no equivalent block. Raises `MechanismError`."""
     with _held_to_numbers(mechanism):
         found = [statics(mechanism, direction) for direction in mechanism.directions]
         return found[0], found[-1]
@@ -141,7 +142,7 @@ def both_statics(mechanism: Mechanism) -> tuple[Statics, Statics]:
 
 @contextmanager
 def _held_to_numbers(mechanism: Mechanism) -> Iterator[None]:
-    """Say of an error of arithmetic whose it is: of sizes beyond the range of numbers, or of the plugin."""
+    """Turn arithmetic errors into an error of the structure's sizes (overflow), or else of the plugin."""
     try:
         with np.errstate(all="raise", under="ignore"):
             yield
@@ -165,7 +166,7 @@ def _beyond_range(error: BaseException | None) -> StructureError:
 
 
 def _too_large(error: BaseException | None) -> bool:
-    """Whether an error is of sizes that are too large, and of no mistake in the plugin."""
+    """Return whether an error is an overflow, caused by sizes that are too large and not by the plugin."""
     return isinstance(error, OverflowError) or (isinstance(error, FloatingPointError) and "overflow" in str(error))
 
 
@@ -199,9 +200,10 @@ def _one_direction(mechanism: Mechanism, direction: Direction, found: Statics) -
 
 
 def impulse_velocity(mechanism: Mechanism, direction: Direction, phi_cr: float) -> float:
-    """The velocity step of the ground that just overturns a structure from rest [m/s].
+    """Return the velocity step of the ground that just overturns a structure from rest [m/s].
 
-    The step gives it the rate B(0) v/I(0), and its energy just reaches phi_cr.
+    The step v gives the structure the rotation rate B(0) v/I(0), with which its kinetic energy just suffices to reach
+    phi_cr.
     """
     at = mechanism.coefficients(np.array([0.0, phi_cr]), direction)
     stored = mechanism.gravity * at.V[1] + at.U[1]

@@ -1,4 +1,4 @@
-"""What a mechanism found beside the parameters of its equivalent block."""
+"""Further results of a mechanism, beside the parameters of its equivalent block."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Extra:
-    """A number of one direction of rocking, such as where a wall hinges.
+    """A result of one direction of rocking, such as the height of the hinge of a wall.
 
     Parameters
     ----------
     key : str
-        Its name in JSON; no parameter of the equivalent block may have it.
+        Name of the result in JSON, other than those of the parameters of the equivalent block.
     value : float
-        The number.
+        Value, in `unit`.
     unit : str
-        Its unit; empty for a pure number.
+        Unit; empty if dimensionless.
     meaning : str
-        What it is, in a few words.
+        Description, in a few words.
     """
 
     key: str

@@ -1,4 +1,4 @@
-"""Fields of what users describe: quantities with units, lengths and names, and errors that point at a field."""
+"""Field types of structure files: quantities with units, lengths and names, and errors that point at a field."""
 
 from __future__ import annotations
 
@@ -34,19 +34,19 @@ LEAST = {
 
 
 def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any = None, **bounds: Any) -> Any:
-    """A field of a mechanism: what it is, its unit and symbol, an example for `rocking new`, and its bounds.
+    """Declare a numeric field of a mechanism: its description, unit, symbol, example and bounds.
 
     Parameters
     ----------
     description : str
         What the field is, a few words.
     unit : str
-        Its SI unit, or degrees where the field's name says so; empty for a pure number. A bare number is in this
-        unit, and a text such as `800 mm` may be in any of the same kind, see `rocking_cli.units`.
+        SI unit of the field, or degrees if its name says so; empty if dimensionless. A plain number is in this unit,
+        and a text such as `800 mm` may have any unit of the same quantity, see `rocking_cli.units`.
     symbol : str
         The paper's symbol.
     example : any
-        A value that works, printed by `rocking new`.
+        A valid value, printed by `rocking new`.
     **bounds
         Passed to `pydantic.Field`: `gt`, `ge`, `lt`, `le`, `default`, ...
     """
@@ -56,20 +56,20 @@ def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any
 
 
 def length(description: str, *, symbol: str = "", example: Any = None, **bounds: Any) -> Any:
-    """A `quantity` in metres: more than 0, and at most a million, so that nothing overflows.
+    """Declare a field in metres: positive, and at most a million, so that nothing overflows.
 
-    Metres that were meant as millimetres pass: see `rocking_cli.core.size`.
+    Values in metres that were meant as millimetres are not found here: see `rocking_cli.core.size`.
     """
     return quantity(description, unit="m", symbol=symbol, example=example, gt=0, le=1e6, **bounds)
 
 
 def geometry_error(field: str | tuple[str | int, ...], message: str) -> PydanticCustomError:
-    """An error for a validator to raise when fields that are fine one by one do not fit together.
+    """Return an error that a validator raises if fields are valid one by one but do not fit together.
 
     Parameters
     ----------
     field : str or tuple
-        The field to point at, or the way to one within it: `("parts", 2, "polygon")`.
+        The field at fault, or the path to an entry in it: `("parts", 2, "polygon")`.
     message : str
         What is wrong and what would be right.
     """
@@ -80,9 +80,9 @@ def geometry_error(field: str | tuple[str | int, ...], message: str) -> Pydantic
 
 
 def in_unit(value: Any, unit: str) -> Any:
-    """A value, or lists of them, with every text such as `800 mm` replaced by its number in a unit.
+    """Return a value, or nested lists of values, with each text such as `800 mm` replaced by its number in `unit`.
 
-    What is no such text stays as it is. Raises `ValidationError` with every text whose unit is wrong, and its place.
+    Other values stay as they are. Raises `ValidationError` with the places of all texts whose unit is wrong.
     """
     wrong: list[InitErrorDetails] = []
 
@@ -114,18 +114,18 @@ def least(field: FieldInfo) -> float:
 
 
 class Described(BaseModel):
-    """What a user describes by fields: unknown ones are refused, and one that has a unit takes texts with units."""
+    """Base class of what users describe by fields: refuses unknown fields, and reads texts with units."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
     def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
-        """What was given; the rest is as it is by default."""
+        """Yield the fields that were given, without those at their defaults."""
         return ((key, getattr(self, key)) for key in type(self).model_fields if key in self.model_fields_set)
 
     @field_validator("*", mode="before")
     @classmethod
     def _with_a_unit(cls, value: Any, info: ValidationInfo) -> Any:
-        """Every field that has a unit takes texts with units; tuples and arrays are lists."""
+        """Convert texts with units to numbers in every field that has a unit, and tuples and arrays to lists."""
         value = value.tolist() if hasattr(value, "tolist") else value
         if isinstance(value, tuple) and "list[" in str(cls.model_fields[info.field_name or ""].annotation):
             value = list(value)
@@ -137,7 +137,7 @@ class Described(BaseModel):
     @field_validator("*", mode="after")
     @classmethod
     def _not_too_small(cls, value: Any, info: ValidationInfo) -> Any:
-        """Refuse a positive quantity so small that what follows from it vanishes."""
+        """Refuse a positive quantity so small that quantities derived from it would underflow to zero."""
         if isinstance(value, float) and 0 < value < least(cls.model_fields[info.field_name or ""]):
             raise PydanticKnownError("greater_than_equal", {"ge": least(cls.model_fields[info.field_name or ""])})
         return value
@@ -149,5 +149,5 @@ Vertex = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
 
 
 def point(description: str, **bounds: Any) -> Any:
-    """A `quantity` for a point [x, y] in metres, in the coordinates of the picture of the structure."""
+    """Declare a field for a point [x, y] in metres, in the coordinates of the structure's drawing."""
     return quantity(description, unit="m", example=[0.0, 0.0], **bounds)

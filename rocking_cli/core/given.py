@@ -1,4 +1,4 @@
-"""What a file may say of every structure, whatever its mechanism, and how a structure is made of it."""
+"""Fields that every structure may have, whatever its mechanism, and how a structure is made from fields."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _is_mass(unit: object) -> bool:
 
 
 def _multiplied(value: Any, factor: float) -> Any:
-    """A number, or every number of a list, times a factor; what is no number stays."""
+    """Return a number, or every number of nested lists, times a factor; other values are returned unchanged."""
     if isinstance(value, (list, tuple)):
         return type(value)(_multiplied(each, factor) for each in value)
     return value * factor if isinstance(value, float) else value
@@ -44,14 +44,14 @@ Eta = Annotated[float, Field(gt=0, le=5)]  # how much it may be at most depends 
 
 
 class DirectionalRestitution(Described):
-    """Coefficients of restitution that differ between the two impacts."""
+    """Coefficients of restitution that differ between impacts ending positive and negative rotation."""
 
     positive_to_negative: Eta = Field(description="eta of an impact that ends positive rotation")
     negative_to_positive: Eta = Field(description="eta of an impact that ends negative rotation")
 
 
 class Given(Described):
-    """The fields that every structure may have beside those of its mechanism, and what follows from them alone."""
+    """Fields that every structure may have beside those of its mechanism, and properties that follow from them."""
 
     mechanism: ClassVar[str]
     """The name of the mechanism, that of its entry point."""
@@ -139,7 +139,7 @@ class Given(Described):
     @model_validator(mode="before")
     @classmethod
     def _rebound_from_impacts(cls, data: Any) -> Any:
-        """Leave `rebound: kinematic` to the theory of impacts, as if it were not given."""
+        """Treat `rebound: kinematic` as a rebound that is not given, so that the theory of impacts gives it."""
         if not isinstance(data, dict) or data.get("rebound") != KINEMATIC:
             return data
         if data.get("one_sided") is None:
@@ -167,25 +167,25 @@ class Given(Described):
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """A copy with some fields changed, validated anew: what was derived from the old ones must not survive."""
+        """Return a copy with some fields changed, validated again, without values derived from the old fields."""
         kept = {key: getattr(self, key) for key in self.model_fields_set}
         return type(self).from_fields({**kept, **(update or {})})
 
     @classmethod
     def from_fields(cls, fields: Mapping[str, Any], folder: Path | None = None) -> Self:
-        """The mechanism with these fields.
+        """Make a structure of this mechanism from its fields.
 
         Parameters
         ----------
         fields : mapping
-            Names and values.
+            Names and values of the fields.
         folder : Path, optional
-            Where files that fields name are, by default here: `folder` in the context of the validation.
+            Folder of the files that fields name, by default the current one; `folder` in the context of the validation.
 
         Raises
         ------
         pydantic.ValidationError
-            If they are not fields of this mechanism, or do not fit together.
+            If they are not valid fields of this mechanism, or do not fit together.
         PluginError
             If a validator of the plugin fails in any other way.
         """
@@ -195,34 +195,34 @@ class Given(Described):
             return made
 
     def _hold_together(self) -> None:
-        """Raise `ValidationError` of the fields that do not fit together."""
+        """Raise `ValidationError` with the fields that do not fit together; here, none."""
 
     @property
     def restitution_is_kinematic(self) -> bool:
-        """Whether no restitution is given, so that it follows from the shape."""
+        """Whether the restitution follows from the shape, as none is given (of one-sided rocking: the rebound)."""
         return (self.restitution if self.rocks_both_ways else self.rebound) is None
 
     @property
     def directions(self) -> Sequence[Direction]:
-        """The directions it can rock in."""
+        """Directions in which the structure can rock."""
         return list(Direction) if self.one_sided is None else [Direction[self.one_sided.upper()]]
 
     @property
     def sides(self) -> tuple[Direction, Direction]:
-        """The directions that stand for positive and negative motion; where there is one only, it does for both."""
+        """Directions of positive and of negative motion; the same direction twice if it rocks to one side only."""
         return self.directions[0], self.directions[-1]
 
     @property
     def rocks_both_ways(self) -> bool:
-        """Whether no support keeps it to one side."""
+        """Whether the structure rocks to both sides, without a support that prevents one."""
         return self.one_sided is None
 
     @property
     def has_mass(self) -> bool:
-        """Whether the file gives masses. Without them, moments and inertias are per kilogram of the whole structure.
+        """Whether the structure has masses; without them, moments and inertias are per kilogram of its total mass.
 
-        By default: whether a field is given whose unit is of mass, such as kg or kg/m3. A mechanism that knows its
-        masses otherwise overrides this.
+        By default, whether a field with a unit of mass, such as kg or kg/m3, is given. A mechanism that has its masses
+        from elsewhere overrides this property.
         """
         extras = {key: info.json_schema_extra for key, info in type(self).model_fields.items()}
         of_mass = [key for key, extra in extras.items() if isinstance(extra, dict) and _is_mass(extra.get("unit"))]
@@ -235,24 +235,24 @@ class Given(Described):
 
     @property
     def given_depth(self) -> float:
-        """Size out of plane that `density` needs [m]. Raises `RefusedFields` if the file gives none."""
+        """Size out of plane [m], which `density` requires. Raises `RefusedFields` if it is not given."""
         if self.depth is None:
             raise RefusedFields((), "depth", "is missing: density needs the size out of plane")
         return self.depth
 
     def enlarged(self, factor: float) -> Self:
-        """A structure of another size: every field in m, m2, m3 or kg m2 is multiplied, all else stays.
+        """Return a structure of another size: every field in m, m2, m3 or kg m2 is multiplied, the others stay.
 
         Parameters
         ----------
         factor : float
-            On every length, > 0.
+            Factor on every length, > 0.
 
         Returns
         -------
         Mechanism
-            Masses and loads that are given as such do not grow with it, so that it need not behave alike; where loads
-            and ties are is multiplied.
+            The structure of the new size. Given masses and loads stay the same, so that its behaviour need not scale;
+            the positions of loads and ties are multiplied.
 
         Raises
         ------

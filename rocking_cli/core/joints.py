@@ -1,4 +1,4 @@
-"""Where the bodies of a mechanism bear on one another and on the ground, and on which face."""
+"""Joints of a mechanism: where bodies bear on one another and on the ground, and on which face."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from rocking_cli.core.sketch import Hinge
 
 @dataclass(frozen=True)
 class Joint(Hinge):
-    """A hinge at which a corner bears on a face, or a guide that holds a point sideways.
+    """A hinge at which a corner bears on a face, or a guide that restrains a point sideways.
 
     Parameters
     ----------
     letter : str
-        What it is called.
+        Letter of the joint.
     point : complex
-        Where it is at rest [m].
+        Position at rest [m].
     bodies : tuple of str
-        The two bodies it joins, the one that bears the other first; or the one that the ground bears.
+        The two bodies it joins, the supporting one first; or the one that the ground supports.
     slide : complex
-        Of a guide: the direction in which it lets its point move. It has no face, and there is nothing to check.
+        For a guide, the direction in which its point may move. A guide has no face, and is not checked.
     normal : complex
-        The normal of the face at rest, as it pushes the last of `bodies`: up where something stands on it.
+        Normal of the face at rest, towards the last of `bodies`: upwards under a body that stands on the face.
     face : str, optional
-        The body that the face turns with; None: it stays as it is, such as the ground.
+        The body with which the face rotates; None if the face does not rotate, as that of the ground.
     level : bool
-        Whether it stands for several alike, at places not known, which keep level what they bear: forces here are sums
-        over all of them, and what would turn the last of `bodies` is shared out among them.
+        Whether it represents several identical joints, at unknown places, that keep the body they support level. Forces
+        are then sums over all of them, and moments on the last of `bodies` are distributed among them.
     """
 
     normal: complex = 1j
@@ -36,5 +36,5 @@ class Joint(Hinge):
 
     @property
     def is_guide(self) -> bool:
-        """Whether it only holds a point sideways."""
+        """Whether the joint is a guide, which only restrains a point sideways."""
         return self.slide != 0

@@ -19,37 +19,37 @@ Points = NDArray[np.complex128]
 
 
 class Direction(IntEnum):
-    """The sense in which a mechanism rocks; its value is the sign s of the signed rotation."""
+    """Direction of rocking; its value is the sign s of the signed rotation."""
 
     POSITIVE = 1  # clockwise
     NEGATIVE = -1  # anticlockwise
 
     @property
     def label(self) -> str:
-        """`"positive"` or `"negative"`."""
+        """Name of the direction, `"positive"` or `"negative"`."""
         return self.name.lower()
 
     @property
     def prime(self) -> str:
-        """What a hinge of this direction has after its letter, as A' of the negative one beside A of the positive."""
+        """Mark after the letter of a hinge: empty in the positive direction, ' in the negative one (A and A')."""
         return "" if self > 0 else "'"
 
     @property
     def opposite(self) -> Direction:
-        """The other direction."""
+        """The opposite direction."""
         return Direction(-self)
 
 
 @dataclass(frozen=True)
 class RigidMotion:
-    """The motion of one rigid body, or of the link it belongs to, over an array of rotations phi.
+    """Motion of one rigid body, or of the link of which it is a part, over an array of rotations phi.
 
     Parameters
     ----------
     rest : complex
         Rest position of a reference point of the link [m].
     q, dq, ddq : ndarray of complex, shape (n,)
-        Position of that point [m] and its first two derivatives in phi.
+        Position of the reference point [m] and its first two derivatives in phi.
     psi, dpsi, ddpsi : ndarray, shape (n,)
         Rotation of the link [rad, anticlockwise] and its first two derivatives in phi.
     """
@@ -63,7 +63,7 @@ class RigidMotion:
     ddpsi: Reals
 
     def carry(self, point: complex) -> tuple[Points, Points, Points]:
-        """Position, first and second derivative of the point of the link that rests at `point`, each shape (n,)."""
+        """Return position, first and second derivative of the point that is at `point` at rest, each shape (n,)."""
         arm = self._turned * (point - self.rest)
         return (
             self.q + arm,
@@ -77,7 +77,7 @@ class RigidMotion:
 
 
 def rotation(phi: Reals, pivot: complex, rate: float) -> RigidMotion:
-    """Rotation by `rate` * phi about a fixed `pivot`; rate 0 is a body at rest."""
+    """Return the rotation by `rate` * phi about a fixed `pivot`; rate 0 is a body at rest."""
     zero, still = np.zeros_like(phi), np.zeros(phi.shape, np.complex128)
     return RigidMotion(pivot, still + pivot, still, still, rate * phi, zero + rate, zero)
 
@@ -85,12 +85,12 @@ def rotation(phi: Reals, pivot: complex, rate: float) -> RigidMotion:
 def four_bar(
     phi: Reals, direction: Direction, a: complex, b: complex, c: complex, d: complex
 ) -> tuple[RigidMotion, RigidMotion, RigidMotion]:
-    """Motions of the links AB, BC and CD of a four-bar linkage whose AB turns by -s phi about A.
+    """Return the motions of the links AB, BC and CD of a four-bar linkage whose AB turns by -s phi about A.
 
     Parameters
     ----------
     phi : ndarray, shape (n,)
-        Rotations of AB inside the direction [rad], from 0 to less than `four_bar_limit`.
+        Rotations of AB in this direction [rad], from 0 to less than `four_bar_limit`.
     direction : Direction
         Clockwise (positive) or anticlockwise (negative) rotation of AB.
     a, b, c, d : complex
@@ -99,7 +99,7 @@ def four_bar(
     Returns
     -------
     tuple of RigidMotion
-        AB, BC, CD. The branch of the linkage is that of the rest geometry.
+        Motions of AB, BC and CD, on the branch of the linkage that contains the position at rest.
 
     Notes
     -----
@@ -129,7 +129,7 @@ def four_bar(
 
 
 def four_bar_limit(direction: Direction, a: complex, b: complex, c: complex, d: complex) -> float:
-    """Rotation phi of AB at which B, C and D fall in line and the linkage locks [rad]; 2 pi if it never does."""
+    """Return the rotation of AB at which B, C and D are in line and the linkage locks [rad]; 2 pi if it never does."""
     ab, ad = abs(b - a), abs(d - a)
     start = float(np.angle((b - a) / (d - a)))
     turns = [2 * np.pi]
@@ -141,7 +141,7 @@ def four_bar_limit(direction: Direction, a: complex, b: complex, c: complex, d: 
 
 
 def _angle(ratio: Points) -> Reals:
-    """The angle of a number that turns, without jumps."""
+    """Return the continuous angle [rad] of a rotating complex number, without jumps of 2 pi."""
     angle: Reals = np.angle(ratio)
     jumps = np.abs(np.diff(angle)).max(initial=0.0) >= np.pi
     return np.unwrap(angle) if jumps else angle  # which costs as much as all the rest

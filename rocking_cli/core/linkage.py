@@ -1,7 +1,8 @@
-"""Linkages of any rigid bodies: where hinges, pivots, slides and the turn of one body put all others, exactly.
+"""Exact motion of linkages of rigid bodies with hinges, pivots and guides, driven by the rotation of one body.
 
-With the loops of `rocking_cli.core.loops` and "the leading body turns by -s phi", c(x, phi) = 0: Newton from rest,
-continued in phi, gives x; x' and x'' follow from c_x x' = -c_phi and its derivative, so that all are exact.
+The loop equations of `rocking_cli.core.loops` and "the leading body turns by -s phi" are c(x, phi) = 0. Newton's
+method, continued in phi from rest, gives x; x' and x'' follow from c_x x' = -c_phi and its derivative, so that all are
+exact.
 """
 
 from __future__ import annotations
@@ -32,14 +33,14 @@ AT_ONCE = 4_000_000  # entries of the matrices that are solved at once: 64 MB of
 
 
 class NoMotion(ValueError):
-    """Why joints leave no motion, or more than one.
+    """Error: the joints leave no motion, or more than one.
 
     Parameters
     ----------
     reason : str
-        A sentence without a full stop.
+        Reason, a sentence without a full stop.
     joint : str, optional
-        Which it is about.
+        Name of the joint concerned.
     """
 
     def __init__(self, reason: str, *, joint: str | None = None) -> None:
@@ -48,7 +49,7 @@ class NoMotion(ValueError):
 
 
 class _Node(NamedTuple):
-    """A rotation at which all is known."""
+    """A state of the motion at one rotation: the unknowns and their first two derivatives."""
 
     phi: float
     x: Reals
@@ -57,24 +58,24 @@ class _Node(NamedTuple):
 
 
 class LinkageMotion:
-    """Bodies and the joints of one direction of rocking.
+    """Motion of a linkage of bodies and joints in one direction of rocking.
 
     Parameters
     ----------
     bodies : mapping of str to complex
-        A reference point of each, such as its centroid [m].
+        Reference point of each body, such as its centroid [m].
     joints : iterable of Pin or Guide
-        What holds them.
+        Joints between the bodies, and with the ground.
     lead : str
-        The body whose rotation phi is.
+        Name of the leading body, whose rotation is phi.
     direction : Direction
-        In which it turns.
+        Direction in which the leading body turns.
     fixed : iterable of pairs of str, optional
         Bodies that move as one in this direction.
     ground : iterable of str, optional
-        Bodies that stay where they are.
+        Bodies that stay at rest.
     end : float, optional
-        Where the motion ends at the latest [rad]; by default where the leading body lies flat.
+        Largest rotation of the motion [rad]; by default that at which the leading body lies flat.
 
     Raises
     ------
@@ -144,7 +145,7 @@ class LinkageMotion:
     # Whether it moves
 
     def _independent(self) -> NDArray[np.intp]:
-        """As many independent equations as there are unknowns; the last is that of the leading body."""
+        """Return the rows of as many independent equations as unknowns; the last is that of the leading body."""
         held = self._loops.matrix(np.zeros((1, self._loops.unknowns)))[0]
         matrix = np.vstack([held, self._turn_of_lead])
         self._check_rank(held, matrix)
@@ -163,7 +164,7 @@ class LinkageMotion:
         return row
 
     def _check_rank(self, held: Reals, matrix: Reals) -> None:
-        """Raise `NoMotion` if at rest the joints hold everything, or leave more than the turn of the leading body."""
+        """Raise `NoMotion` if the joints at rest prevent all motion, or leave more than one degree of freedom."""
         free = _free(held)
         if not len(free):
             raise self._nothing_moves()
@@ -177,7 +178,7 @@ class LinkageMotion:
             )
 
     def _nothing_moves(self) -> NoMotion:
-        """That nothing can move, and without which one joint it could."""
+        """Return the error that nothing can move, with the joints of which one must be removed."""
         able = []
         for joint in self.joints:
             loops = self._of([each for each in self.joints if each is not joint])
@@ -189,12 +190,12 @@ class LinkageMotion:
         return NoMotion(f"nothing can move: {which} it could", joint=able[-1])
 
     def _movers(self, free: Reals) -> str:
-        """The bodies that move in some of a set of directions."""
+        """Return the names of the bodies that move in any of the given directions of motion, joined by "and"."""
         moved = self._loops.moving(free)
         return " and ".join(name for name, link in self._link_of.items() if link is not None and moved[link])
 
     def _check_closes(self) -> None:
-        """Raise `NoMotion` if the loops do not close a little further on."""
+        """Raise `NoMotion` if the loops cannot close at a small rotation from rest."""
         phi = np.array([min(SURE, self._end / 2)])
         if self._stepped(self._first, float(phi[0])) is None:
             gaps = np.abs(self._residuals(self._newton(self._predicted(self._first, phi), phi), phi)[0][:-1])
@@ -210,12 +211,12 @@ class LinkageMotion:
         return np.column_stack([self._loops.residuals(x), x[:, self._lead] + self.direction * phi])
 
     def _matrix(self, x: Reals) -> Reals:
-        """Derivatives of the equations that were chosen, shape (n, unknowns, unknowns)."""
+        """Return the Jacobian of the chosen independent equations, shape (n, unknowns, unknowns)."""
         lead = np.broadcast_to(self._turn_of_lead, (len(x), 1, self._loops.unknowns))
         return np.concatenate([self._loops.matrix(x), lead], axis=1)[:, self._rows]
 
     def _newton(self, x: Reals, phi: Reals) -> Reals:
-        """Positions from guesses, shape (n, unknowns)."""
+        """Return the unknowns that solve the equations at `phi`, from guesses `x`, shape (n, unknowns)."""
         for _ in range(ROUNDS):
             step = _solved(self._matrix(x), self._residuals(x, phi)[:, self._rows])
             x = x - step
@@ -224,7 +225,7 @@ class LinkageMotion:
         return x
 
     def _derivatives(self, x: Reals) -> tuple[Reals, Reals]:
-        """x' and x'' at positions."""
+        """Return x' and x'', the derivatives in phi of the unknowns `x`."""
         matrix = self._matrix(x)
         drive = np.zeros((len(x), len(self._rows)))
         drive[:, -1] = -self.direction
@@ -241,7 +242,7 @@ class LinkageMotion:
         return np.asarray(node.x + by * node.dx + by**2 / 2 * node.ddx)
 
     def _stepped(self, node: _Node, by: float) -> _Node | None:
-        """The next node, or None if it cannot be had by so long a step."""
+        """Return the node at a rotation larger by `by` [rad]; None if so long a step fails."""
         phi = np.array([node.phi + by])
         guess = self._predicted(node, phi)
         x = self._newton(guess, phi)
@@ -255,12 +256,12 @@ class LinkageMotion:
 
     @cached_property
     def _sign(self) -> float:
-        """On which side of a singular position it is."""
+        """Sign of the Jacobian's determinant at rest, which changes where the motion passes a singular position."""
         return float(np.linalg.slogdet(self._matrix(np.zeros((1, self._loops.unknowns)))[0])[0])
 
     @cached_property
     def _nodes(self) -> list[_Node]:
-        """The motion from rest to its end, in steps from which Newton finds all between."""
+        """Nodes of the motion from rest to its end, so close that Newton converges between them."""
         found, by = [self._first], STEP / 4
         while found[-1].phi < self._end:
             by = min(by, self._end - found[-1].phi)
@@ -275,22 +276,22 @@ class LinkageMotion:
 
     @property
     def resting(self) -> set[str]:
-        """The bodies that are fixed to the ground."""
+        """Names of the bodies that are fixed to the ground."""
         return {name for name, link in self._link_of.items() if link is None}
 
     @property
     def determinate(self) -> bool:
-        """Whether statics alone says what its joints bear: no joint is one too many."""
+        """Whether the forces at the joints follow from statics alone, without redundant joints."""
         forces = sum(2 if isinstance(joint, Pin) else 1 for joint in self.joints)
         return forces == 3 * self._loops.count - 1
 
     @property
     def limit(self) -> float:
-        """Where the motion ends [rad]: the leading body lies flat, it locks, or as it was told."""
+        """Rotation at which the motion ends [rad]: the leading body lies flat, the linkage locks, or `end`."""
         return self._nodes[-1].phi
 
     def motions(self, phi: Reals) -> dict[str, RigidMotion]:
-        """The motion of every body over rotations, shape (n,) [rad]; beyond the limit that of the limit."""
+        """Return the motion of every body at rotations, shape (n,) [rad]; beyond the limit, the motion at the limit."""
         phi = np.asarray(phi, dtype=np.float64)
         key = phi.tobytes()
         if key not in self._memory:
@@ -315,12 +316,12 @@ class LinkageMotion:
         ]
 
     def _followed(self, phi: Reals) -> tuple[Reals, Reals, Reals]:
-        """Positions and their derivatives over rotations inside the limit."""
+        """Return the unknowns and their first two derivatives at rotations up to the limit."""
         x = self._newton(self._between(phi), phi)
         return (x, *self._derivatives(x))
 
     def _between(self, phi: Reals) -> Reals:
-        """Positions that are nearly right: the polynomial with values and derivatives of the nodes on either side."""
+        """Return first guesses of the unknowns, by quintic Hermite interpolation between the nodes."""
         at = np.array([node.phi for node in self._nodes])
         if len(at) == 1:
             return np.repeat(self._first.x[None], len(phi), axis=0)
@@ -338,7 +339,7 @@ class LinkageMotion:
 
 
 def _merged(names: Sequence[str], fixed: Iterable[tuple[str, str]], ground: Iterable[str]) -> dict[str, str | None]:
-    """Of each body the first of those that it moves with; None: the ground."""
+    """Return for each body the first of the bodies with which it moves as one; None for the ground."""
     link: dict[str, str | None] = {name: name for name in names}
 
     def put(old: str | None, new: str | None) -> None:
@@ -357,7 +358,7 @@ def _merged(names: Sequence[str], fixed: Iterable[tuple[str, str]], ground: Iter
 
 
 def _free(matrix: Reals) -> Reals:
-    """The directions that a matrix takes to zero, as rows."""
+    """Return a basis of the null space of a matrix, as rows."""
     if not len(matrix):
         return np.eye(matrix.shape[1])
     _, values, ways = np.linalg.svd(matrix)
@@ -366,7 +367,7 @@ def _free(matrix: Reals) -> Reals:
 
 
 def _solved(matrix: Reals, right: Reals) -> Reals:
-    """Solutions of many systems; not a number where one has none."""
+    """Return the solutions of many linear systems; NaN for all if one is singular."""
     try:
         return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0])
     except np.linalg.LinAlgError:

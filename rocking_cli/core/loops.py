@@ -1,7 +1,8 @@
-"""The equations of a linkage: joints put bodies on one another, and what is left are the loops that must close.
+"""Equations of a linkage: a tree of hinges places the bodies, and the other joints form loops that must close.
 
-A hinge puts a body where the one before it is: along a tree of hinges from the ground every place is a sum of turned
-arms, q = a + A e^(i psi) + u, with u the free place of a tree that no hinge holds to the ground. Unknown are psi and u.
+A hinge places a body relative to the body before it: along a tree of hinges from the ground, every position is a sum of
+rotated arms, q = a + A e^(i psi) + u, with u the free position of a tree that no hinge connects to the ground. The
+unknowns are psi and u. Positions and lengths here are divided by the size of the linkage.
 """
 
 from __future__ import annotations
@@ -18,12 +19,12 @@ from rocking_cli.core.kinematics import Points, Reals
 
 @dataclass(frozen=True)
 class Pin:
-    """A point that two bodies share, or that the ground holds of one.
+    """A hinge: a point that two bodies share, or about which one body turns on the ground.
 
     Parameters
     ----------
     name : str
-        What it is called.
+        Name of the hinge.
     bodies : tuple of str
         Two bodies, or one that turns about a point of the ground.
     at : complex
@@ -37,14 +38,14 @@ class Pin:
 
 @dataclass(frozen=True)
 class Guide:
-    """A point of a body that stays on a line of the ground, or of a second body, with which the line turns.
+    """A point of a body that stays on a line of the ground, or on a line that turns with a second body.
 
     Parameters
     ----------
     name : str
-        What it is called.
+        Name of the guide.
     bodies : tuple of str
-        The body of the point, and that of the line, or none for the ground.
+        The body of the point, and the body of the line unless it is the ground.
     at : complex
         The point at rest [m].
     along : complex
@@ -61,7 +62,7 @@ LinkageJoint = Pin | Guide
 
 
 class Places(NamedTuple):
-    """Reference points of all links and their first two derivatives, shape (n, links) each."""
+    """Positions of the reference points of all links and their first two derivatives, each of shape (n, links)."""
 
     q: Points
     dq: Points
@@ -69,7 +70,7 @@ class Places(NamedTuple):
 
 
 class _Sum(NamedTuple):
-    """A point as a constant, arms that turn with each link, and shares of the free places."""
+    """A point as the sum of a constant, arms that rotate with the links, and the free positions of trees."""
 
     constant: complex
     arms: Points
@@ -77,14 +78,14 @@ class _Sum(NamedTuple):
 
 
 class Loops:
-    """What must hold between the turns of links.
+    """Equations that close the loops of a linkage.
 
     Parameters
     ----------
     centres : sequence of complex
-        A reference point of each link [over the size].
+        Reference point of each link, divided by the size of the linkage.
     joints : sequence of Pin or Guide
-        With points over the size.
+        Joints, whose points are divided by the size of the linkage.
     link_of : mapping of str to int or None
         The link of each body; None: the ground.
     """
@@ -109,7 +110,7 @@ class Loops:
         return links[0], links[1] if len(links) > 1 else None
 
     def _grown(self, pins: Sequence[Pin]) -> tuple[list[Pin], list[_Sum]]:
-        """The hinges along which links are placed, and where that puts each."""
+        """Return the hinges of the trees that place the links, and the reference point of each link."""
         near: dict[int | None, list[tuple[int | None, Pin]]] = {}
         for pin in pins:
             a, b = self._ends(pin)
@@ -150,7 +151,7 @@ class Loops:
     def _from(
         self, link: int | None, at: complex, placed: Mapping[int, tuple[complex, Points, int | None]]
     ) -> tuple[complex, Points, int | None]:
-        """A point of a link that is placed, or of the ground."""
+        """Return a point of a link already placed, or of the ground: constant, arms, and tree."""
         if link is None:
             return at, np.zeros(self.count, np.complex128), None
         constant, arms, tree = placed[link]
@@ -161,7 +162,7 @@ class Loops:
     # What is left
 
     def _gather(self, joints: Sequence[LinkageJoint], places: Sequence[_Sum]) -> None:
-        """The equations of the joints that close loops: Im(w e^(-i psi_b) gap) = 0, gap = k + C e^(i psi) + S u."""
+        """Set up the loop equations of joints: Im(w e^(-i psi_b) gap) = 0, gap = k + C e^(i psi) + S u."""
         gaps: tuple[list[complex], list[Points], list[Reals]] = [], [], []
         weights, turns, names = [], [], []
         for joint in joints:
@@ -196,34 +197,34 @@ class Loops:
 
     @property
     def unknowns(self) -> int:
-        """How many."""
+        """Number of unknowns."""
         return self.count + 2 * self.trees
 
     @property
     def size(self) -> int:
-        """Entries of the matrix at one rotation."""
+        """Number of entries of the Jacobian at one rotation."""
         return len(self.names) * self.unknowns
 
     def _parts(self, x: Reals) -> tuple[Reals, Points]:
-        """psi and u, shape (n, links) and (n, trees)."""
+        """Split the unknowns into psi, shape (n, links), and u, shape (n, trees)."""
         free = x[:, self.count :]
         return x[:, : self.count], np.asarray(free[:, : self.trees] + 1j * free[:, self.trees :])
 
     def _turned(self, e: Points) -> Points:
-        """w e^(-i psi_b) of each equation, shape (n, m)."""
+        """Return the factor w e^(-i psi_b) of each loop equation (see `_gather`), shape (n, m)."""
         body = self._turn >= 0
         found = np.broadcast_to(self._w, (len(e), len(self._w))).copy()
         found[:, body] *= np.conj(e[:, self._turn[body]])
         return found
 
     def residuals(self, x: Reals) -> Reals:
-        """How far the loops are from closed, shape (n, m) [over the size]."""
+        """Return the residuals of the loop equations, shape (n, m), divided by the size of the linkage."""
         psi, u = self._parts(x)
         e = np.exp(1j * psi)
         return np.asarray((self._turned(e) * (self._k + e @ self._C.T + u @ self._S.T)).imag)
 
     def matrix(self, x: Reals) -> Reals:
-        """Their derivatives, shape (n, m, unknowns)."""
+        """Return the Jacobian of the loop equations, shape (n, m, unknowns)."""
         psi, u = self._parts(x)
         e = np.exp(1j * psi)
         w, gap = self._turned(e), self._k + e @ self._C.T + u @ self._S.T
@@ -236,7 +237,7 @@ class Loops:
         return found
 
     def bending(self, x: Reals, dx: Reals) -> Reals:
-        """What their second derivatives are without x'', shape (n, m)."""
+        """Return the second derivatives of the loop equations in phi without the terms in x'', shape (n, m)."""
         (psi, u), (dpsi, du) = self._parts(x), self._parts(dx)
         e = np.exp(1j * psi)
         gap = self._k + e @ self._C.T + u @ self._S.T
@@ -247,7 +248,7 @@ class Loops:
         return np.asarray((self._turned(e) * (pull - 2j * spin * rate - spin**2 * gap)).imag)
 
     def places(self, x: Reals, dx: Reals, ddx: Reals) -> Places:
-        """Where the links are [over the size]."""
+        """Return the positions of the links and their derivatives, divided by the size of the linkage."""
         (psi, u), (dpsi, du), (ddpsi, ddu) = self._parts(x), self._parts(dx), self._parts(ddx)
         e = np.exp(1j * psi)
         q = self._a + e @ self._A.T + u @ self._u.T
@@ -256,7 +257,7 @@ class Loops:
         return Places(q, dq, ddq)
 
     def moving(self, ways: Reals) -> NDArray[np.bool_]:
-        """Which links move in some of a set of directions from rest, shape (links,)."""
+        """Return which links move in any of the given directions of motion from rest, shape (links,)."""
         still = np.zeros_like(ways)
         psi, _ = self._parts(ways)
         _, dq, _ = self.places(still, ways, still)

@@ -1,4 +1,4 @@
-"""The base class of every mechanism plugin: say where the bodies are, the rest follows."""
+"""Base class of all mechanism plugins: a plugin gives bodies and their motion, and all else follows from these."""
 
 from __future__ import annotations
 
@@ -55,11 +55,11 @@ OF_THE_BARE = (
 class Mechanism(Given, ABC):
     """A rocking structure with one degree of freedom.
 
-    A plugin subclasses it, declares its geometry as fields made with `quantity`, and says in `bodies`, `motion`
-    and `limit` where its rigid bodies are. Energies, uplift, critical rotation, equivalence and restitution are
-    derived here; a solver may be overridden by its closed form. `sketch` may say how its picture looks.
+    A plugin subclasses it, declares its geometry as fields made with `quantity`, and gives the motion of its rigid
+    bodies in `bodies`, `motion` and `limit`. Energies, uplift, critical rotation, equivalence and restitution are
+    derived here; a plugin may override a solver by its closed form. `sketch` may add to the drawing.
 
-    Where a structure gives no masses its total mass is 1 kg, so that inertias and moments are per kilogram.
+    If a structure gives no masses, its total mass is 1 kg, so that inertias and moments are per kilogram.
     """
 
     title: ClassVar[str]
@@ -99,7 +99,7 @@ class Mechanism(Given, ABC):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **named: Any) -> None:
-        """What a subclass says of its own mechanics is guarded: whatever fails there is an error of the plugin."""
+        """Wrap the methods of a plugin, so that any failure in them is reported as an error of the plugin."""
         super().__pydantic_init_subclass__(**named)
         guard(cls, ANSWERS, _failed, but=RefusedFields)
         for name in OF_THE_BARE:
@@ -108,93 +108,94 @@ class Mechanism(Given, ABC):
 
     @abstractmethod
     def bodies(self) -> Sequence[Body]:
-        """The rigid bodies, each rigid in both directions of rocking."""
+        """Return the rigid bodies, each rigid in both directions of rocking."""
 
     @abstractmethod
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
-        """The motion of each body, in the order of `bodies`, over rotations `phi`, shape (n,) [rad, >= 0]."""
+        """Return the motion of each body, in the order of `bodies`, over rotations `phi`, shape (n,) [rad, >= 0]."""
 
     @abstractmethod
     def limit(self, direction: Direction) -> float:
-        """Rotation phi at which the mechanism ends: it lies on the ground or locks [rad]."""
+        """Return the rotation phi [rad] at which the mechanism ends, because it lies on the ground or locks."""
 
     def sketch(self) -> Sketch:
-        """What a picture shows beside the bodies and their motion; optional, by default nothing."""
+        """Return what a drawing shows beside the bodies and their motion; by default nothing."""
         return Sketch()
 
     def _shapes(self) -> Sketch:
-        """Sketch of the shapes of its bodies, before anything is attached to them."""
+        """Return the sketch of the bodies' shapes, without anything that is attached to them."""
         return self.sketch()
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
-        """Where bodies bear on the ground and on one another, for the check of a history; by default unknown."""
+        """Return the joints between bodies and with the ground, for the check of time histories; by default none."""
         return ()
 
     def pieces(self, direction: Direction) -> Sequence[Piece]:
-        """The rigid blocks between its joints, those that stay closed among them; by default its bodies."""
+        """Return the rigid blocks between all joints, also those that stay closed; by default the bodies."""
         return [Piece(body, body.name) for body in self.weighed()]
 
     def piece_at(self, body: str, at: complex, direction: Direction) -> str:
-        """The piece on which a point of a body is; by default the body."""
+        """Return the name of the piece on which a point of a body lies; by default that of the body."""
         return body
 
     def contacts(self, direction: Direction) -> Sequence[Contact] | None:
-        """The joints between its pieces, and with the ground, as they bear in a direction; None if they are not known.
+        """Return the joints between pieces, and with the ground, in a direction; None if they are not known.
 
-        Time histories are checked against them. By default they are the `joints` of a single body: of several bodies it
-        is not known which joints stay closed, so that their histories are not checked.
+        Time histories are checked against them. By default they are the `joints` of a structure of one body; of several
+        bodies it is not known which joints stay closed, so that their histories are not checked.
         """
         joints = self.joints(direction)
         return of_joints(joints, self.friction) if joints and len(self.bodies()) == 1 else None
 
     def alike(self) -> Mapping[str, int]:
-        """Of bodies that stand for several which move alike: how many, by their names; by default none does."""
+        """Return the number of identical bodies that a body represents, by name, if more than one; by default none."""
         return {}
 
     def collapse(self, direction: Direction) -> CollapseMechanism | None:
-        """The weakest mechanism of a direction, of a structure that searched for it; by default none did."""
+        """Return the weakest mechanism of a direction, if the structure searches for it; by default None."""
         return None
 
     def piece(self, body: str, at: complex) -> str:
-        """The body that a point is on, of one that is in pieces where it cracked; by default none is."""
+        """Return the name of the part of a cracked body on which a point lies; by default that of the body."""
         return body
 
     def carries(self) -> Sequence[Attached]:
-        """Return what its own fields attach beside loads and ties, such as the floor on a wall; by default nothing."""
+        """Return what the mechanism's own fields attach beside loads and ties, such as a floor; by default nothing."""
         return ()
 
     def cautions(self) -> Sequence[str]:
-        """What to bear in mind with its results, a text each: the `caution` of its kind, and its own."""
+        """Return cautions on the results: the `caution` of the mechanism, and that of this structure."""
         return [text for text in (self.caution, self.own_caution()) if text]
 
     def own_caution(self) -> str:
-        """What to bear in mind with the results of this very structure; by default nothing."""
+        """Return a caution on the results of this structure in particular; by default an empty text."""
         return ""
 
     def extras(self, direction: Direction) -> Sequence[Extra]:
-        """What it found on the way and users want to know, such as where it hinges; shown by `equiv`."""
+        """Return further results of interest to users, such as the height of the hinge; shown by `equiv`."""
         return ()
 
     def bearing(self, direction: Direction) -> Mapping[str, float]:
-        """The normal force at rest of each joint that `crushing` moves, by its name [N]; none if it can move none.
+        """Return the normal force at rest of each joint that `crushing` moves, by name [N]; empty if it can move none.
 
-        Asked of the structure without crushing; a mechanism that gives some moves them by `inwards`.
+        This method is called on the structure without crushing. A mechanism that returns joints here moves them by
+        `inwards`.
         """
         return {}
 
     def borne(self, direction: Direction, *bodies: str) -> float:
-        """Return the weight at rest of some bodies, or of all, with what is attached to them [N]."""
+        """Return the weight at rest of some bodies, or of all, with the loads and ties on them [N]."""
         on = bodies or tuple(body.name for body in self.bodies())
         weight = self.gravity * sum(body.mass for body in self.weighed() if body.name in on)
         return weight + self.hung.pressing(on, direction, self.followed(np.zeros(1), direction), self.gravity)
 
     def inwards(self, direction: Direction, joint: str) -> float:
-        """How far crushing moves a joint inwards [m], over the whole motion."""
+        """Return the distance by which crushing moves a joint inwards [m], constant during the motion."""
         return self._inwards[direction][joint] if self.crushing is not None else 0.0
 
     @cached_property
     def _inwards(self) -> Mapping[Direction, Mapping[str, float]]:
-        """u = N/(2 strength depth) of the joints of each direction [m]; empty if there is none to move."""
+        """Distances u = N/(2 strength depth) by which joints of each direction move [m]; empty if none can move."""
         if self.crushing is None:
             return {}
         try:
@@ -207,13 +208,13 @@ class Mechanism(Given, ABC):
         return found if all(found.values()) else {}
 
     def found(self, direction: Direction) -> Sequence[Extra]:
-        """All that it found: `extras`, and how far its pivots are moved."""
+        """Return all further results: `extras`, and the distances by which crushing moves the pivots."""
         what = "how far crushing moves the {} inwards"
         moved = self._inwards.get(direction, {}).items()
         return [*self.extras(direction), *(Extra(f"inwards_{key}", u, "m", what.format(key)) for key, u in moved)]
 
     def volume(self) -> float:
-        """The volume that `density` makes the mass of [m3]: by default that of the outlines, `depth` deep."""
+        """Return the volume to which `density` applies [m3]: by default the area of the outlines times `depth`."""
         deep, sketch = self.given_depth, self.sketch()
         area = 0.0
         for body in self.bodies():
@@ -224,24 +225,24 @@ class Mechanism(Given, ABC):
         return area * deep
 
     def total_mass(self) -> float | None:
-        """The mass of the whole structure by the file [kg]; None where `bodies` have theirs, or there is none."""
+        """Return the given mass of the structure [kg]; None if not given, or if `bodies` have their own masses."""
         if self.mass is not None or self.density is None:
             return self.mass
         return self.density * self.volume()
 
     @cached_property
     def _mass_factor(self) -> float:
-        """What the masses of `bodies` are multiplied by."""
+        """Factor on the masses of `bodies` that gives the total mass."""
         total = self.total_mass()
         return 1.0 if total is None else total / sum(body.mass for body in self.bodies())
 
     def weighed(self) -> Sequence[Body]:
-        """The bodies with the masses of the file."""
+        """Return the bodies with the given masses of the structure."""
         return weighed(self.bodies(), self._mass_factor)
 
     @cached_property
     def hung(self) -> Hung:
-        """Its loads, forces and ties, and what it `carries` itself."""
+        """Loads, forces and ties of the structure, with what the mechanism `carries`."""
         found: list[tuple[Loc, Attached]] = [((), thing) for thing in self.carries()]
         if self.is_laden:
             taken = [*(thing.name for _, thing in found), *([INTERLOCK] if self.interlock is not None else [])]
@@ -256,41 +257,41 @@ class Mechanism(Given, ABC):
         return Carrier.of(self.bodies(), self._shapes(), self.alike(), self.piece)
 
     def far_off(self) -> list[str]:
-        """Return which of its loads are far off the bodies that carry them, a sentence each without a full stop."""
+        """Return a sentence, without a full stop, for each load that is far from the body that carries it."""
         return list(far_off(self._carrier, self.loads)) if self.loads else []
 
     @property
     def attached(self) -> Sequence[Attached]:
-        """All that is attached to it, as its equation of motion sees it."""
+        """All that is attached to the mechanism, as terms of its equation of motion."""
         return self.hung.things
 
     def slackness(self, phi: Reals, direction: Direction) -> Reals:
-        """For each tie that acts in one sense only: what is zero where it goes slack, shape (ties, n)."""
+        """Return a value that is zero where a tie goes slack, for each one-sided tie, shape (ties, n)."""
         return self.hung.slackness(self.followed(np.asarray(phi, dtype=np.float64), direction), np.size(phi))
 
     @property
     def bends(self) -> bool:
-        """Whether its restoring moment may have any shape, so that it is looked at whether linear models mislead."""
+        """Whether the restoring moment may have any shape, so that the linear models must be checked."""
         return bool(self.attached)
 
     @property
     def smooth(self) -> bool:
-        """Whether no derivative of its restoring moment has corners, as where a tie goes slack."""
+        """Whether the derivatives of the restoring moment have no corners, as where a tie goes slack."""
         return not self.hung.one_sided
 
     @property
     def is_bare(self) -> bool:
-        """Whether it is the mechanism alone, without masses of the file, loads and ties."""
+        """Whether the structure is the mechanism alone, without given masses, loads and ties."""
         return self.total_mass() is None and not self.hung.placed
 
     def followed(self, phi: Reals, direction: Direction) -> Follow:
-        """The paths of its points over rotations, shape (n,)."""
+        """Return a function that gives the path of a point over rotations, shape (n,) [rad]."""
         return followed(self.bodies(), self.motion(phi, direction), phi.shape)
 
     def coefficients(self, phi: Reals, direction: Direction) -> Coefficients:
-        """Coefficients I, J, G, B of the equation of motion over `phi`, shape (n,) [paper, Eq. 8].
+        """Return the coefficients I, J, G, B of the equation of motion over `phi`, shape (n,) [paper, Eq. 8].
 
-        Includes what is attached to the structure: see `rocking_cli.core.hung.attached`.
+        They include loads and ties: see `rocking_cli.core.hung.attached`.
         """
         phi = _rotations(phi)
         bodies, motions = self.weighed(), self.motion(phi, direction)
@@ -300,48 +301,51 @@ class Mechanism(Given, ABC):
         return total
 
     def kinetic_inertia(self, phi: Reals, direction: Direction) -> Reals:
-        """I(phi) [kg m2], shape (n,): the kinetic energy is I phi.^2 / 2."""
+        """Return I(phi) [kg m2], shape (n,): the kinetic energy is I phi.^2 / 2."""
         return self.coefficients(phi, direction).I
 
     def potential_energy(self, phi: Reals, direction: Direction) -> Reals:
-        """V(phi) [J], shape (n,), zero at rest; with what is stored in ties."""
+        """Return V(phi) [J], shape (n,), zero at rest; it includes the energy stored in ties."""
         here = self.coefficients(phi, direction)
         return self.gravity * here.V + here.U
 
     def uplift(self, direction: Direction) -> float:
-        """lambda: the ground acceleration that starts rocking, over g [paper, Eq. 10]."""
+        """Return lambda, the ground acceleration that starts rocking, over g [paper, Eq. 10]."""
         return equilibrium.uplift_acceleration(partial(self.coefficients, direction=direction), self.gravity)
 
     def critical_rotation(self, direction: Direction) -> float:
-        """phi_cr: the rotation of unstable equilibrium [rad; paper, Eq. 9]; `NoCriticalRotation` without one."""
+        """Return phi_cr, the rotation of unstable equilibrium [rad; paper, Eq. 9].
+
+        Raises `NoCriticalRotation` if there is none.
+        """
         return equilibrium.critical_rotation(
             partial(self.coefficients, direction=direction), self.limit(direction), self.gravity
         )
 
     def restitution_from_kinematics(self, direction: Direction) -> float:
-        """The eta of an impact that ends motion in `direction`, from the kinematics alone; it may be <= 0."""
+        """Return eta of an impact that ends motion in `direction`, from the kinematics alone; it may be <= 0."""
         motions = self.motion(np.zeros(1), direction), self.motion(np.zeros(1), direction.opposite)
         return kinematic_restitution(self.weighed(), *motions, self.hung.masses)
 
     def greatest_restitution(self, direction: Direction) -> float:
-        """The eta of an impact that ends motion in `direction` and keeps all energy.
+        """Return the eta of an impact that ends motion in `direction` and keeps all energy.
 
-        The rates before and after are of phi on either side, where the inertia I(0) differs: the energy after an impact
-        over that before is eta^2 I'(0)/I(0) with I' that of the other direction, so the bound is sqrt(I(0)/I'(0)), 1
-        for a symmetric structure.
+        The inertia at rest is I(0) before the impact and I'(0), that of the other direction, after it. The ratio of the
+        energies after and before the impact is eta^2 I'(0)/I(0), so the bound is sqrt(I(0)/I'(0)), which is 1 for a
+        symmetric structure.
         """
         before, after = (float(self.kinetic_inertia(np.zeros(1), s)[0]) for s in (direction, direction.opposite))
         return sqrt(before / after)
 
     def rebound_from_impacts(self) -> float | None:
-        """The rebound of its shape from a theory of impacts in sequence; by default there is none."""
+        """Return the rebound from a theory of impacts in sequence; by default None, as there is none for the shape."""
         return None
 
     def eta(self, direction: Direction) -> float:
-        """The eta of an impact that ends motion in `direction`: the user's, else that of the kinematics.
+        """Return eta of an impact that ends motion in `direction`: as given, or else from the kinematics.
 
-        Where it rocks to one side only, that is the rebound: NaN if it is neither given nor known from the shape, as
-        only time histories need it.
+        If the structure rocks to one side only, this is the rebound: NaN if it is neither given nor known from the
+        shape, as only time histories need it.
         """
         if not self.rocks_both_ways:
             rebound = self.rebound if self.rebound is not None else self.rebound_from_impacts()
@@ -353,7 +357,7 @@ class Mechanism(Given, ABC):
 
 
 def _rotations(phi: Any) -> Reals:
-    """Rotations as an array of reals. Raises `InputError` for what is none."""
+    """Return rotations as an array of reals. Raises `InputError` if they are not numbers in an array."""
     try:
         found = np.asarray(phi, dtype=np.float64)  # whole numbers too, which hold no sums of reals
     except (TypeError, ValueError):
@@ -364,7 +368,7 @@ def _rotations(phi: Any) -> Reals:
 
 
 def _of_the_bare(own: Callable[..., Any]) -> Callable[..., Any]:
-    """A method that answers for the bare mechanism, and leaves all else to the general solver of its name."""
+    """Return a method that uses `own` for the bare mechanism, and the general solver of its name otherwise."""
     general = getattr(Mechanism, own.__name__)
 
     @wraps(own)

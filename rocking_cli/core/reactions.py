@@ -1,7 +1,7 @@
-"""What bodies exert on one another and on the ground while a mechanism rocks, and at its impacts.
+"""Forces of bodies on one another and on the ground during rocking, and impulses at impacts.
 
-The accelerations are known from the equation of motion, so that Newton's and Euler's equations of each moving body give
-the forces at its joints. Bodies that move as one are one; those at rest are ground.
+The accelerations follow from the equation of motion, so that Newton's and Euler's equations of each moving body give
+the forces at its joints. Bodies that move as one count as one body; bodies at rest count as ground.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ WHOLE = Joint("", 0j, ())
 
 @dataclass(frozen=True, eq=False)
 class Reactions:
-    """Forces at the joints, or impulses.
+    """Forces [N] or impulses at the joints, at n states of motion.
 
     Parameters
     ----------
     joints : sequence of Joint
-        Where they act; `WHOLE` alone where the forces at the joints are not known, only their sum.
+        Joints at which the forces act; only `WHOLE` if the sum of the forces is known and the single forces are not.
     force : ndarray of complex, shape (k, n)
         Fx + i Fy on the last of the bodies of each joint [N].
     across : ndarray of complex, shape (k, n)
-        The normal of the face of each, of length 1.
+        Unit normal of the face of each joint.
     shared : bool
-        Whether there are too many joints for statics alone: then the forces are the smallest ones, in the sense of
-        least squares, of all that balance the bodies.
+        Whether the joints are redundant, so that statics alone does not determine the forces: then they are the
+        least-squares solution of the equations of equilibrium with the smallest norm.
     """
 
     joints: Sequence[Joint]
@@ -52,22 +52,22 @@ class Reactions:
 
     @property
     def normal(self) -> Reals:
-        """N, positive where the joint presses [N], shape (k, n); NaN at guides."""
+        """Normal force N, positive in compression [N], shape (k, n); NaN at guides."""
         return self._where_faced((self.across.conj() * self.force).real)
 
     @property
     def shear(self) -> Reals:
-        """T along the face, to the right where the normal is up [N], shape (k, n); NaN at guides."""
+        """Shear force T along the face, positive to the right on a level face [N], shape (k, n); NaN at guides."""
         return self._where_faced(-(self.across.conj() * self.force).imag)
 
     @property
     def is_whole(self) -> bool:
-        """Whether only the sum over all joints is known."""
+        """Whether only the sum of the forces at all joints is known."""
         return self.joints[0] is WHOLE
 
     @property
     def total(self) -> Points:
-        """Fx + i Fy of the ground, and of what rests, on all that moves [N], shape (n,)."""
+        """Sum Fx + i Fy of the forces of the ground, and of bodies at rest, on all moving bodies [N], shape (n,)."""
         alone = [self.is_whole or len(joint.bodies) == 1 for joint in self.joints]
         return np.asarray(self.force[alone].sum(axis=0))
 
@@ -79,23 +79,21 @@ class Reactions:
 def reactions(
     mechanism: Mechanism, direction: Direction, phi: Reals, rate: Reals, ground: Points | complex = 0j
 ) -> Reactions:
-    """The forces at the joints in any number of states of motion.
+    """Return the forces at the joints in any number of states of motion.
 
     Parameters
     ----------
     mechanism : Mechanism
-        Any plugin, with what is attached to it.
+        Any mechanism, with its loads and ties.
     direction : Direction
-        Which way it rocks.
+        Direction of rocking.
     phi, rate : ndarray, shape (n,)
-        Rotations inside the direction [rad], >= 0, and their rates [rad/s].
+        Rotations in this direction [rad], >= 0, and their rates [rad/s].
     ground : ndarray of complex, shape (n,)
         Ground acceleration u_g'' + i v_g'' [m/s2].
 
-    Notes
-    -----
-    The acceleration is that of Eq. 8, I phi.. + J phi.^2 + (g + v_g'') G + Q = -s B u_g''. Of a body: the sum of the
-    forces on it is m (z'' + u_g'' + i (g + v_g'')), their moment about its centroid I psi''.
+    Notes ----- The acceleration is that of Eq. 8, I phi.. + J phi.^2 + (g + v_g'') G + Q = -s B u_g''. The sum of the
+    forces on a body is m (z'' + u_g'' + i (g + v_g'')), and their moment about its centroid is I psi''.
     """
     ground = np.broadcast_to(np.asarray(ground, np.complex128), phi.shape)
     weight = ground + 1j * mechanism.gravity
@@ -127,7 +125,7 @@ def reactions(
 def acceleration(
     mechanism: Mechanism, direction: Direction, phi: Reals, rate: Reals, ground: Points | complex = 0j
 ) -> Reals:
-    """phi.. in any number of states of motion [rad/s2]; the arguments are those of `reactions`."""
+    """Return phi.. in any number of states of motion [rad/s2]; the arguments are those of `reactions`."""
     ground = np.broadcast_to(np.asarray(ground, np.complex128), phi.shape)
     at = mechanism.coefficients(phi, direction)
     weight = mechanism.gravity + ground.imag
@@ -135,32 +133,31 @@ def acceleration(
 
 
 def at_uplift(mechanism: Mechanism, direction: Direction) -> Reactions:
-    """The forces at the joints at rest while the ground is about to start rocking in a direction, n = 1."""
+    """Return the forces at the joints at rest, under the ground acceleration that starts rocking; n = 1."""
     push = -direction * mechanism.uplift(direction) * mechanism.gravity
     return reactions(mechanism, direction, np.zeros(1), np.zeros(1), push)
 
 
 def impulses(mechanism: Mechanism, ended: Direction) -> Reactions | None:
-    """The impulses at the joints at an impact, over the rate before it [N s per rad/s], n = 1.
+    """Return the impulses at the joints at an impact, over the rotation rate before it [N s per rad/s], n = 1.
 
     Parameters
     ----------
     mechanism : Mechanism
-        Any plugin, with what is attached to it.
+        Any mechanism, with its loads and ties.
     ended : Direction
         The direction that the impact ends.
 
     Returns
     -------
     Reactions or None
-        At the joints of the mechanism that follows. With a restitution that is not that of the kinematics only their
-        sum is known, where there is more than one; and where that says nothing of friction, on faces that are not level
-        or beside a guide or a wall that it is thrown back by, None.
+        Impulses at the joints of the direction that begins. If there are several joints and the restitution is not that
+        of the kinematics, only their sum is known. None if friction does not follow from this sum: on faces that are
+        not level, with a guide, or at a side wall.
 
-    Notes
-    -----
-    The momentum of a body jumps from m t_s to -m eta t_-s, t the velocity over the rate: the impulse at one joint is
-    sum m (eta t_-s + t_s), and |dP_x|/dP_y = (1 - eta)/((1 + eta) tan alpha) of a block.
+    Notes ----- The momentum of a body jumps from m t_s to -m eta t_-s, with t the velocity over the rotation rate. The
+    impulse at a single joint is the sum of m (eta t_-s + t_s); for a block, |dP_x|/dP_y = (1 - eta)/((1 + eta) tan
+    alpha).
     """
     if not mechanism.rocks_both_ways:
         return None
@@ -194,12 +191,12 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reactions | None:
 
 
 def _instead_of_joints(mechanism: Mechanism, direction: Direction) -> Sequence[Contact]:
-    """The contacts of a mechanism that names no joints, as bodies slide on others or a joint is too many."""
+    """Return the contacts of a mechanism that gives no joints, because bodies slide or joints are redundant."""
     return () if mechanism.joints(direction) else mechanism.contacts(direction) or ()
 
 
 def _at_contacts(pieces: Pieces, contacts: Sequence[Contact], demand: Reals) -> Reactions | None:
-    """The forces at the contacts from three equations for each piece; None where they do not balance what is needed."""
+    """Return the forces at the contacts by three equations for each piece; None if no forces balance `demand`."""
     rates, rows = pieces.rates(contacts)
     jacobian = rates.dense()
     balance, needed = (jacobian / pieces.scale).swapaxes(1, 2), demand / pieces.scale
@@ -224,7 +221,7 @@ def _at_contacts(pieces: Pieces, contacts: Sequence[Contact], demand: Reals) -> 
 
 
 def parts(mechanism: Mechanism, direction: Direction) -> Mapping[str, int]:
-    """Which bodies move as one in a direction: a number for each, by their names; 0 of those that stay at rest."""
+    """Return a number for each body, by name: the same number for bodies that move as one, 0 for those at rest."""
     bodies = mechanism.bodies()
     motions = mechanism.motion(np.array(LOOKED_AT) * mechanism.limit(direction), direction)
     middle = sum(body.centroid for body in bodies) / len(bodies)
@@ -244,7 +241,7 @@ def parts(mechanism: Mechanism, direction: Direction) -> Mapping[str, int]:
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """Bodies that move as one, and what its joints must exert on it: a force, and a moment about a point of it."""
+    """Bodies that move as one, with the force and the moment about a point that its joints must exert on them."""
 
     path: tuple[Points, Points, Points]  # of that point
     dpsi: Reals
@@ -253,7 +250,7 @@ class _Part:
 
 
 class _Moving:
-    """The parts of a mechanism that move, and its joints."""
+    """The moving parts of a mechanism, and its joints."""
 
     def __init__(self, mechanism: Mechanism, direction: Direction, phi: Reals) -> None:
         bodies = mechanism.bodies()
@@ -271,19 +268,19 @@ class _Moving:
             self._parts.append(_Part(path, self._by_name[name].dpsi, force, np.zeros(phi.shape)))
 
     def demand(self, body: str | None, at: Points, force: Points, couple: Reals | float = 0.0) -> None:
-        """A point of a body needs a force, and the body a couple; the ground and what is at rest need none."""
+        """Add a force at a point of a body, and a couple, to what its joints must exert; the ground needs none."""
         if body is not None and (k := self._number[body]):
             part = self._parts[k - 1]
             part.force[:] += force
             part.moment[:] += _cross(at - part.path[0], force) + couple
 
     def over_the_whole(self) -> Reactions:
-        """The sum over all joints, on level ground."""
+        """Return the sum of the forces at all joints, for level ground."""
         total = np.sum([part.force for part in self._parts], axis=0)[None]
         return Reactions((WHOLE,), total, np.full(total.shape, 1j))
 
     def at_joints(self) -> Reactions | None:
-        """The forces at the joints; None where they do not follow from the motion."""
+        """Return the forces at the joints; None if they do not follow from the motion."""
         if len(self._joints) == len(self._parts) == 1 and not self._joints[0].is_guide:
             force = self._parts[0].force[None]
         else:
@@ -299,11 +296,12 @@ class _Moving:
         return Reactions(self._joints, force, np.stack([np.broadcast_to(each, force.shape[1:]) for each in across]))
 
     def _solved(self, unknown: Sequence[tuple[int, complex]]) -> Points | None:
-        """The forces at the joints from three equations for each part.
+        """Solve three equations for each part for the forces at the joints; None if the system is singular.
 
-        Forces that balance those needed, plus as much of those that balance one another as the moments ask for: the
-        first never change with the rotation, and what is solved at each is one equation a part. There, one more unknown
-        turns the parts as they turn: none is needed where the accelerations are those of the equation of motion.
+        The forces are a particular solution of the balance of forces plus its null space: both are the same at all
+        rotations, so that only the moment equation of each part is solved at each rotation. One more unknown there, a
+        moment that acts along the rotation of the parts, is zero if the accelerations are those of the equation of
+        motion.
         """
         count, samples = len(self._parts), self._parts[0].force.size
         size = max(abs(a.point - b.point) for a in self._joints for b in self._joints) or 1.0  # for the moments
@@ -340,12 +338,12 @@ class _Moving:
         return force_at
 
     def _numbers(self, joint: Joint) -> list[int]:
-        """The parts that a joint joins; 0: the ground, or what is at rest."""
+        """Return the numbers of the parts that a joint joins; 0 for the ground, or a body at rest."""
         return [self._number[name] for name in joint.bodies]
 
 
 def _unknown(joint: Joint) -> list[complex]:
-    """The forces that a joint can exert, each along a direction, and a couple."""
+    """Return the unknown forces of a joint as unit vectors, and a couple if it keeps a body level."""
     if joint.is_guide:
         return [1j * joint.slide / abs(joint.slide)]
     return [1 + 0j, 1j, *([COUPLE] if joint.level else [])]

@@ -1,4 +1,4 @@
-"""The installed mechanisms, found through the entry points `rocking.mechanisms` and loaded on demand."""
+"""The installed mechanisms, found by the entry points `rocking.mechanisms` and loaded when they are used."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from rocking_cli.plugins.registry import Plugins
 
 
 class UnknownMechanismError(InputError, KeyError):
-    """A name that no installed package gives a mechanism."""
+    """Error: no installed package has a mechanism of this name."""
 
     __str__ = InputError.__str__  # a KeyError would show its message in quotes
 
 
 class Registry(Plugins[type[Mechanism]]):
-    """Mechanism classes by name. Listing names loads nothing; looking one up loads and checks it.
+    """Mechanism classes by name. Listing names loads nothing; looking up a name loads and checks its class.
 
     Raises
     ------
@@ -34,14 +34,14 @@ class Registry(Plugins[type[Mechanism]]):
 
     @staticmethod
     def accept(loaded: object, point: Point) -> type[Mechanism]:
-        """What was loaded, held to the contract of `Mechanism`."""
+        """Return the loaded object if it fulfils the contract of `Mechanism`."""
         if faults := conformance(loaded, point.name):
             raise MechanismError(f"{origin(point)} is not a mechanism: " + "; ".join(faults))
         return cast("type[Mechanism]", loaded)
 
 
 def conformance(plugin: object, name: str) -> list[str]:
-    """What keeps an object from being the mechanism `name`; empty if nothing does."""
+    """Return the reasons why an object is not a valid mechanism of the name `name`; empty if it is valid."""
     if not (isinstance(plugin, type) and issubclass(plugin, Mechanism)):
         return ["it must be a class derived from rocking_cli.Mechanism"]
     faults = [f"method {method} is missing" for method in sorted(plugin.__abstractmethods__)]

@@ -1,9 +1,10 @@
-"""What each joint bears while a mechanism rocks, and how fast it would open or slide if it were released alone.
+"""Forces at each joint of a rocking mechanism, and its acceleration if this joint alone were released.
 
-With the motion given, the forces at the contacts follow from the equations of motion of every piece. Where a normal
-force is negative, or a shear force beyond friction, the contact would not bear. Released alone, all others holding, it
-opens with the acceleration -c N, c = 1/(A^-1)_ii with A = J M^-1 J^T and J the velocities at the contacts over those of
-the pieces. Forces are affine in u_g'', phi.^2 and v_g'', so that tables over the rotation hold all of it.
+With the motion given, the forces at the contacts follow from the equations of motion of every piece. A contact fails if
+its normal force is negative, or its shear force exceeds friction. Released alone, with all others closed, it opens with
+the acceleration -c N, c = 1/(A^-1)_ii with A = J M^-1 J^T, M the mass matrix, and J the derivative of the velocities at
+the contacts by those of the pieces. Forces are affine in u_g'', phi.^2 and v_g'', so that tables over the rotation
+suffice.
 """
 
 from __future__ import annotations
@@ -27,19 +28,19 @@ ONE, PUSH, RATE, WEIGHT = range(4)  # what forces are affine in: 1, u_g'', phi.^
 
 @dataclass(frozen=True, eq=False)
 class Released:
-    """The rows of all contacts of one direction over rotations.
+    """Forces and compliances of all contacts of one direction, over rotations; a row for each force component.
 
     Parameters
     ----------
     contacts : sequence of Contact
-        Those that bear, guides among them.
+        Contacts of the direction, with guides.
     rows : sequence of (tuple of int, int or None)
-        Of each contact: the rows of its normal forces, one for each of its points, and that of its shear force; a guide
-        has none of either.
+        For each contact, the rows of its normal forces (one for each point) and the row of its shear force; a guide has
+        neither.
     force : ndarray, shape (n, rows, 4)
-        Force of each row [N]: the factors of 1, u_g'', phi.^2 and v_g''.
+        Force of each row [N], by its factors of 1, u_g'', phi.^2 and v_g''.
     compliance : ndarray, shape (n, rows)
-        Acceleration at a row over the force that is missing when it is released alone [1/kg].
+        Acceleration of a contact that is released alone, divided by the force it would carry if closed [1/kg].
     """
 
     contacts: Sequence[Contact]
@@ -49,12 +50,12 @@ class Released:
 
 
 class Undetermined(Exception):
-    """Statics alone does not say what the joints bear.
+    """Error: statics alone does not determine the forces at the joints.
 
     Parameters
     ----------
     redundant : bool
-        Whether there are too many joints, and not too few.
+        Whether there are too many joints (True) or too few (False).
     """
 
     def __init__(self, redundant: bool) -> None:
@@ -63,12 +64,12 @@ class Undetermined(Exception):
 
 
 def released(mechanism: Mechanism, direction: Direction, phi: Reals) -> Released | None:
-    """Tabulate what the contacts of a direction bear.
+    """Tabulate the forces at the contacts of a direction; None if the mechanism does not give its contacts.
 
     Parameters
     ----------
     mechanism : Mechanism
-        Any plugin, with loads and ties.
+        Any mechanism, with loads and ties.
     direction : Direction
         Direction of rocking.
     phi : ndarray, shape (n,)
@@ -77,7 +78,7 @@ def released(mechanism: Mechanism, direction: Direction, phi: Reals) -> Released
     Returns
     -------
     Released or None
-        None if the mechanism does not name its contacts.
+        Tables of forces and compliances; None if the mechanism does not give its contacts.
 
     Raises
     ------
@@ -100,7 +101,7 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reals | None:
     Parameters
     ----------
     mechanism : Mechanism
-        Any plugin, with loads and ties, that rocks both ways and names its contacts.
+        Any mechanism that rocks both ways and gives its contacts, with loads and ties.
     ended : Direction
         The direction that the impact ends.
 
@@ -108,7 +109,7 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reals | None:
     -------
     ndarray, shape (rows, 2), or None
         Impulse of each row of `released` in the other direction over the rate before the impact [N s per rad/s]: a
-        constant, and the factor of the restitution. None if the structure is thrown back by a wall.
+        constant, and the factor of the restitution. None if the structure rebounds from a side wall.
 
     Raises
     ------
@@ -130,17 +131,18 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reals | None:
 
 
 def _check_count(contacts: Sequence[Contact], pieces: Sequence[Piece]) -> None:
-    """Raise `Undetermined` unless the joints have as many forces as leave one way to move."""
+    """Raise `Undetermined` unless the joints have as many force components as leave one degree of freedom."""
     forces, equations = sum(contact.forces for contact in contacts), 3 * len(pieces)
     if forces != equations - 1:
         raise Undetermined(forces >= equations)
 
 
 def _solved(rates: Rates, pieces: Pieces, demand: Reals) -> tuple[Reals, Reals]:
-    """Forces that balance demands, shape (n, rows, k), and compliances, shape (n, rows).
+    """Return the forces that balance the demands, shape (n, rows, k), and the compliances, shape (n, rows).
 
-    The inverse of the rates, with the momentum of the rocking motion as one row more, holds in column i how all pieces
-    move if row i alone is released: xi. Then the force of that row is xi.b, b the demand, and (A^-1)_ii = xi.M xi.
+    The matrix of the rates, with the momentum of rocking as a further row, is inverted. Column i of the inverse has the
+    velocities xi of all pieces if row i alone is released. The force of this row is xi.b, with b the demand, and
+    (A^-1)_ii = xi.M xi.
     """
     # Each coordinate in a length of the whole, or the rotations of small pieces would count for nothing.
     scale = pieces.scale
@@ -164,12 +166,12 @@ def _solved(rates: Rates, pieces: Pieces, demand: Reals) -> tuple[Reals, Reals]:
 
 
 class Pieces:
-    """The pieces of a mechanism at some rotations: coordinates x, y and rotation of each, one after the other.
+    """The pieces of a mechanism at some rotations, with coordinates x, y and rotation of each piece in sequence.
 
     Parameters
     ----------
     mechanism : Mechanism
-        Any plugin, with loads and ties.
+        Any mechanism, with loads and ties.
     direction : Direction
         Direction of rocking.
     phi : ndarray, shape (n,)
@@ -197,7 +199,7 @@ class Pieces:
 
     @property
     def scale(self) -> Reals:
-        """Of each coordinate: 1 of a displacement, a length of the whole of a rotation, shape (1, 1, 3 pieces)."""
+        """Scale of each coordinate, shape (3 pieces,): 1 for a displacement, the structure's size for a rotation."""
         middles = np.array([each.body.centroid for each in self._parts])
         size = max(float(np.abs(middles - middles.mean()).max()), *(
             float(np.sqrt(each.body.inertia / each.body.mass)) if each.body.mass > 0 else 0.0 for each in self._parts
@@ -219,11 +221,11 @@ class Pieces:
         return self._mechanism.piece_at(spot.body or "", spot.at, self._direction)
 
     def _moves(self, spot: Spot) -> bool:
-        """Whether a point is of a piece: not of the ground, nor of a body that rests on it in this direction."""
+        """Return whether a point lies on a piece: not on the ground, nor on a body at rest in this direction."""
         return spot.body is not None and self._piece(spot) in self._column
 
     def _spread(self, spot: Spot, way: Points) -> Reals:
-        """Velocity of a point along a unit vector over the coordinates, shape (n, 3 pieces)."""
+        """Return the derivative of a point's velocity along a unit vector by all coordinates, shape (n, 3 pieces)."""
         return self._velocity(self._piece(spot), self._carried(self._piece(spot), spot.at), way)
 
     def _velocity(self, name: str, at: Points, way: Points) -> Reals:
@@ -233,12 +235,12 @@ class Pieces:
         return found
 
     def _factors(self, name: str, at: Points, way: Points) -> Reals:
-        """Velocity of a point of a piece along a unit vector over its own coordinates, shape (n, 3)."""
+        """Return the derivative of a point's velocity along a unit vector by its piece's coordinates, shape (n, 3)."""
         arm = at - self._centres[name][0]
         return np.stack([way.real, way.imag, (arm.conjugate() * way).imag], axis=1)
 
     def _mass(self) -> Reals:
-        """The mass matrix of each piece, with the loads on it, shape (n, pieces, 3, 3)."""
+        """Return the mass matrix of each piece with its loads, shape (n, pieces, 3, 3)."""
         whole = np.array([np.diag([each.body.mass, each.body.mass, each.body.inertia]) for each in self._parts])
         matrix = np.tile(whole, (self.phi.size, 1, 1, 1))
         for thing in self._masses:
@@ -252,16 +254,16 @@ class Pieces:
         return np.asarray(matrix + least * np.eye(3) * light[..., None, :])
 
     def momenta(self, rates: Reals, at: slice | Integers = slice(None)) -> Reals:
-        """Momenta of all pieces at each of several rates, both of shape (n, 3 pieces, k), at all or some rotations."""
+        """Return the momenta of all pieces for k velocities, both of shape (n, 3 pieces, k), or at some rotations."""
         each = rates.reshape(len(rates), len(self._parts), 3, -1)
         return np.asarray((self.mass[at] @ each).reshape(rates.shape))
 
     def momentum(self, rates: Reals) -> Reals:
-        """Momentum of all pieces, shape (n, 3 pieces)."""
+        """Return the momentum of all pieces for one velocity, both of shape (n, 3 pieces)."""
         return np.asarray(self.momenta(rates[..., None])[..., 0])
 
     def demands(self) -> Reals:
-        """What the contacts must exert on the coordinates of each piece: the factors of 1, u_g'', phi.^2 and v_g''."""
+        """Return the forces that contacts must exert on each coordinate: factors of 1, u_g'', phi.^2 and v_g''."""
         mechanism, direction, n = self._mechanism, self._direction, self.phi.size
         at, g = mechanism.coefficients(self.phi, direction), mechanism.gravity
         # phi.. = -(J phi.^2 + (g + v_g'') G + Q + s B u_g'')/I   [Eq. 8]
@@ -304,7 +306,7 @@ class Pieces:
         return Path(*(self._motions[self._piece(spot)] if self._moves(spot) else self._still).carry(spot.at))
 
     def rates(self, contacts: Sequence[Contact]) -> tuple[Rates, list[tuple[tuple[int, ...], int | None]]]:
-        """The velocities at contacts over those of the pieces, and the rows of each contact."""
+        """Return the velocities at contacts as functions of those of the pieces, and the rows of each contact."""
         found: list[list[VelocityTerm]] = []
         rows: list[tuple[tuple[int, ...], int | None]] = []
         for contact in contacts:
@@ -322,19 +324,19 @@ class Pieces:
         return Rates.of(found, len(self._parts), self.phi.size), rows
 
     def number(self, name: str | None) -> int:
-        """The place of a piece among all, from 0; -1 of the ground."""
+        """Return the number of a piece, from 0; -1 for the ground."""
         return -1 if name is None else self._column[name] // 3
 
     def centres(self) -> Points:
-        """Where the centroids of all pieces are, shape (n, pieces)."""
+        """Return the positions of the centroids of all pieces [m], shape (n, pieces)."""
         return np.stack([self._centres[name][0] for name in self._column], axis=1)
 
     def turned(self) -> Points:
-        """How all pieces have turned, e^(i psi), shape (n, pieces)."""
+        """Return the rotations of all pieces as e^(i psi), shape (n, pieces)."""
         return np.stack([np.exp(1j * self._motions[name].psi) for name in self._column], axis=1)
 
     def normal(self, contact: Contact) -> Points:
-        """The normal of its face as it has turned, shape (n,)."""
+        """Return the unit normal of the contact's face in its rotated position, shape (n,)."""
         turned = self._motions[contact.face].psi if contact.face is not None else np.zeros(self.phi.size)
         return np.asarray(contact.normal * np.exp(1j * turned))
 
@@ -357,7 +359,7 @@ class Pieces:
         return where - contact.roll * normal
 
     def _between(self, contact: Contact, at: Points, way: Points) -> list[VelocityTerm]:
-        """The velocity of the second piece over the first at a point, along a way."""
+        """Return the velocity of the second piece relative to the first, at a point along a direction."""
         return [
             VelocityTerm(self.number(name), sign * self._factors(name, at, way))
             for name, sign in zip(contact.pieces[::-1], (1.0, -1.0), strict=True)

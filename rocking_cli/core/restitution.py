@@ -1,4 +1,4 @@
-"""Restitution from kinematics: the impulses of an impact do no work in the motion that follows it."""
+"""Restitution from kinematics: the impulses of an impact do no work in the motion that follows."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ def kinematic_restitution(
     after: Sequence[RigidMotion],
     loads: Sequence[PointMass] = (),
 ) -> float:
-    """Ratio eta of the rotation rates after and before an impact.
+    """Return eta, the ratio of the rotation rates after and before an impact.
 
-    The velocity before the impact is projected on the mechanism that follows, in the mass inner product:
-    eta = -<t_before, t_after> / <t_after, t_after> with t the velocity fields at rest. For a block this is
-    Housner's 1 - (3/2) sin^2(alpha). It is an idealisation, measured values lie on either side of it, and it can be
-    zero or negative, which means that the new mechanism cannot start as assumed.
+    The velocity before the impact is projected on the mechanism that follows, in the mass inner product: eta =
+    -<t_before, t_after> / <t_after, t_after> with t the velocity fields at rest. For a block this is Housner's 1 -
+    (3/2) sin^2(alpha). This is an idealisation: measured values lie on either side of it. A value of zero or less means
+    that the new mechanism cannot start as assumed.
 
     Parameters
     ----------
     bodies : sequence of Body
         Bodies that are rigid in both mechanisms.
     before, after : sequence of RigidMotion
-        Their motions in the two directions; the first entry of each is at rest (phi = 0).
+        Motions of the bodies in the two directions; the first entry of each is at rest (phi = 0).
     loads : sequence of PointMass
         Masses on these bodies, whose shares enter the inner product; a tie or a force is no part of it.
 
     Returns
     -------
     float
-        eta, the same for any scale of the masses.
+        eta; it does not depend on the scale of the masses.
     """
     mixed = own = 0.0
     for body, old, new in zip(bodies, before, after, strict=True):
@@ -52,12 +52,12 @@ def kinematic_restitution(
 
 
 def why_none(eta: float) -> str:
-    """Why kinematics give no restitution to rock on with, from the sign of what they give.
+    """Return in words why the kinematics give no valid restitution, from the sign of the one that they give.
 
     Parameters
     ----------
     eta : float
-        From kinematics, not positive.
+        Restitution from kinematics, not positive.
     """
     product = "zero" if eta == 0 else "positive"
     return (
@@ -67,12 +67,12 @@ def why_none(eta: float) -> str:
 
 
 def restitution_in_words(etas: Sequence[float], *, given: bool) -> str:
-    """Which restitution a history used, and where it comes from, in a sentence.
+    """Return a sentence on the restitution that a time history used, and where it comes from.
 
     Parameters
     ----------
     etas : sequence of float
-        Of the impacts that end positive and negative motion.
+        Restitution of the impacts that end positive and negative motion.
     given : bool
         Whether the user gave it.
     """

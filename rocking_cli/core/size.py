@@ -1,4 +1,4 @@
-"""How large a structure is, and whether that looks like a slip of the unit."""
+"""Size of a structure, and warnings if it suggests a wrong unit."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ SMALLEST, LARGEST = 0.01, 100.0  # m: what lies beyond is rarely meant
 
 
 def extent(mechanism: Mechanism) -> float:
-    """The largest length of a structure [m]: of the box around its bodies, or from a pivot to a centroid.
+    """Return the largest length of a structure [m]: of the box around its bodies, or from a pivot to a centroid.
 
-    It needs nothing but the bodies and their motion, so that it holds for any mechanism.
+    Only the bodies and their motion are used, so that it works for any mechanism.
     """
     bodies = mechanism.bodies()
     z = np.array([point for body in bodies for point in (body.centroid, *body.outline)])
@@ -23,12 +23,12 @@ def extent(mechanism: Mechanism) -> float:
 
 
 def doubtful_size(mechanism: Mechanism) -> str | None:
-    """What is odd about the size of a structure, as a sentence without a full stop; None if nothing is.
+    """Return what is unusual about the size of a structure, a sentence without a full stop; None if nothing is.
 
     Parameters
     ----------
     mechanism : Mechanism
-        Any structure. One whose plugin fails here is not judged.
+        Any structure. If its plugin fails here, the size is not judged.
     """
     try:
         with np.errstate(all="ignore"):
@@ -54,6 +54,6 @@ def doubtful_size(mechanism: Mechanism) -> str | None:
 
 
 def doubts(mechanism: Mechanism) -> list[str]:
-    """Return what is odd about the size of a structure and the places of its loads, a sentence each, no full stop."""
+    """Return what is unusual about the size of a structure or the places of its loads, as sentences."""
     size = doubtful_size(mechanism)
     return [*([size] if size is not None else []), *mechanism.far_off()]

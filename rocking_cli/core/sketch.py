@@ -1,6 +1,6 @@
-"""What a mechanism may say for its picture beside its bodies and their motion: shapes, hinges, dimensions.
+"""What a mechanism adds to its drawing, beside its bodies and their motion: shapes, hinges, dimensions.
 
-Points are complex numbers x + iy [m] in the rest position. All of it is optional: a picture finds what is missing.
+Points are complex numbers x + iy [m] in the rest position. All of it is optional: a drawing derives what is missing.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ Outline = Sequence[complex]
 
 @dataclass(frozen=True)
 class Hinge:
-    """A point about which bodies turn against one another, or against the ground.
+    """A point about which bodies rotate relative to one another, or to the ground.
 
     Parameters
     ----------
     letter : str
-        What the paper calls it; may be empty.
+        Letter of the hinge in the paper; may be empty.
     point : complex
-        Where it is at rest [m].
+        Position at rest [m].
     bodies : tuple of str
         Names of the two bodies it joins, or of the one that it joins to the ground.
     slide : complex
-        Where the ground holds it on a guide only: the direction in which it may move.
+        For a guide on the ground, the direction in which the point may move.
     roll : float
-        Where the body rolls on a rounded edge instead of turning about a point: the radius of the edge [m].
+        Radius of a rounded edge on which the body rolls, instead of rotating about a point [m].
     """
 
     letter: str
@@ -44,16 +44,16 @@ class Hinge:
 
 @dataclass(frozen=True)
 class Length:
-    """A length to show, between two points; its number is the distance of the points and nothing else.
+    """A length to show between two points; its value is their distance.
 
     Parameters
     ----------
     symbol : str
         The paper's symbol.
     start, end : complex
-        [m].
+        End points [m].
     direction : Direction, optional
-        The direction it belongs to; None: both.
+        Direction of rocking in which it is shown; None for both.
     """
 
     symbol: str
@@ -63,18 +63,18 @@ class Length:
 
     @property
     def value(self) -> float:
-        """[m]."""
+        """Length [m]."""
         return abs(self.end - self.start)
 
     @property
     def text(self) -> str:
-        """Symbol, number in three digits, and unit."""
+        """Symbol, value with three digits, and unit."""
         return f"{self.symbol} = {three_digits(self.value)} m"
 
 
 @dataclass(frozen=True)
 class Angle:
-    """An angle of less than half a turn to show, at `apex` between the arms to `start` and `end`; see `Length`."""
+    """An angle of less than half a turn to show at `apex`, between the arms to `start` and `end`; see `Length`."""
 
     symbol: str
     apex: complex
@@ -84,18 +84,18 @@ class Angle:
 
     @property
     def value(self) -> float:
-        """[rad]."""
+        """Angle [rad]."""
         return abs(float(np.angle((self.end - self.apex) / (self.start - self.apex))))
 
     @property
     def text(self) -> str:
-        """Symbol, number in three digits, and unit."""
+        """Symbol, value with three digits, and unit."""
         return f"{self.symbol} = {three_digits(degrees(self.value))}°"
 
 
 @dataclass(frozen=True)
 class Line:
-    """A line over the structure at rest, such as a line of thrust, with what it is."""
+    """A line over the structure at rest, such as a line of thrust, with its meaning."""
 
     name: str
     points: Sequence[complex]
@@ -104,7 +104,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Forces:
-    """Forces in the joints at rest, with what they are: through which points [m], and how large [N]."""
+    """Forces in the joints at rest, with their meaning: points of application [m] and sizes [N]."""
 
     name: str
     points: Sequence[complex]
@@ -114,26 +114,27 @@ class Forces:
 
 @dataclass(frozen=True)
 class Sketch:
-    """What a mechanism says for its picture.
+    """What a mechanism adds to its drawing.
 
     Parameters
     ----------
     outlines : mapping of str to sequence of Outline
-        The shapes of a body, by its name. A body without one is drawn as the disc of its mass and inertia.
+        Shapes of the bodies, by name. A body without one is drawn as the disc of its mass and inertia.
     uniform : bool
-        Whether every body is a uniform plate of its outlines; the contract test then holds their inertia to it.
+        Whether every body is a uniform plate of its outlines; the contract test then checks the inertias against them.
     copies : mapping of str to sequence of complex
-        Where a body stands for several that move alike: how far each is from the body itself [m], 0 for itself.
+        For a body that represents several identical ones, the offset of each from the body [m], 0 for the body.
     hinges : mapping of Direction to sequence of Hinge
-        The hinges of each direction. Without any, they are found from the motion, without letters.
+        The hinges of each direction. If empty, they are found from the motion, without letters.
     lengths, angles, lines, forces : sequence
-        What to show at rest.
+        Items to show at rest.
     ground : sequence of sequence of complex
-        Lines of the ground, which is on the right of someone who walks along them. Without any: level under the pivots.
+        Lines of the ground surface, with the ground on the right of their direction. If empty, the ground is level
+        under the pivots.
     at_will : sequence of str
-        Names of bodies whose outlines are drawn at will.
+        Names of bodies whose outlines are only illustrative.
     notes : sequence of str
-        What to know when looking at it, such as what is not to scale because its size is not given.
+        Remarks on the drawing, such as parts that are not to scale because their size is not given.
     """
 
     outlines: Mapping[str, Sequence[Outline]] = field(default_factory=dict)
@@ -158,18 +159,18 @@ class Sketch:
 
 
 def three_digits(value: float) -> str:
-    """A positive number in three digits and at least one decimal, as many as a picture can be checked by."""
+    """Return a positive number in text with three digits, and at least one decimal."""
     if not 1e-3 <= value < 1e5:
         return f"{value:.3g}"
     return f"{round(value, max(1, 2 - floor(log10(value)))):g}"
 
 
 def rectangle(centre: complex, width: float, height: float) -> Outline:
-    """The corners of a level rectangle `width` by `height` [m], anticlockwise from the lower left."""
+    """Return the corners of a level rectangle `width` by `height` [m], anticlockwise from the lower left."""
     across, up = width / 2, 1j * height / 2
     return centre - across - up, centre + across - up, centre + across + up, centre - across + up
 
 
 def disc(centre: complex, radius: float, corners: int = 48) -> Outline:
-    """A circle [m] as a polygon."""
+    """Return a circle [m] as a polygon."""
     return tuple(complex(centre + radius * np.exp(2j * np.pi * k / corners)) for k in range(corners))

@@ -1,4 +1,4 @@
-"""What a structure does at rest and on the way from there, with or without a block that it is equivalent to."""
+"""Statics of a structure: uplift, critical rotation and restoring moment, with or without an equivalent block."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ STRAIGHT = 0.25  # of V'(0): further from the straight line 1 - phi/phi_cr the l
 
 @dataclass(frozen=True)
 class Statics:
-    """One direction of rocking of a structure, by its moments alone.
+    """Statics of a structure in one direction of rocking.
 
     Parameters
     ----------
@@ -26,14 +26,14 @@ class Statics:
     phi_cr : float or None
         Critical rotation [rad]; None if there is none before the kinematic limit.
     limit : float
-        The kinematic limit, at which the motion ends if at all [rad].
+        Kinematic limit of the motion [rad].
     stiffening : float
-        V''(0)/V'(0), how fast the restoring moment grows from rest, over itself [1/rad]; negative where it falls, as
-        that of a free block does.
+        V''(0)/V'(0), relative slope of the restoring moment at rest [1/rad]; negative if the moment decreases, as that
+        of a free block does.
     departure : float
-        How far V'/V'(0) is from the straight line 1 - phi/phi_cr, at most; NaN without a critical rotation.
+        Largest difference of V'/V'(0) from the straight line 1 - phi/phi_cr; NaN without a critical rotation.
     why_no_block : str or None
-        Why no single block is equivalent to it, a sentence without a full stop; None if there is one.
+        Why no single block is equivalent to the structure, a sentence without a full stop; None if one is.
     """
 
     lambda_: float
@@ -45,24 +45,24 @@ class Statics:
 
     @property
     def reference(self) -> float:
-        """What rotations are compared with [rad]: the critical one, or the limit where there is none."""
+        """Rotation by which rotations are divided [rad]: the critical one, or else the kinematic limit."""
         return self.limit if self.phi_cr is None else self.phi_cr
 
 
 def statics(mechanism: Mechanism, direction: Direction) -> Statics:
-    """The moments of a direction of rocking.
+    """Return the statics of a structure in one direction of rocking.
 
     Parameters
     ----------
     mechanism : Mechanism
-        Any plugin, with what is attached to it.
+        Any mechanism, with its loads and ties.
     direction : Direction
-        Which way it rocks.
+        Direction of rocking.
 
     Raises
     ------
     MechanismError
-        If the structure does not stand, the ground cannot start it, or a body jumps.
+        If the structure does not stand, no ground motion starts it, or a body jumps.
 
     Notes
     -----

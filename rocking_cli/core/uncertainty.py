@@ -1,4 +1,4 @@
-"""How well a structure is known: the scatter of what its neighbours are drawn with."""
+"""Uncertainty of the data of a structure, by which its neighbours are drawn."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from rocking_cli.core.fields import Described, quantity
 
 
 class Uncertainty(Described):
-    """Standard deviations of what was measured on a structure."""
+    """Standard deviations of the measured data of a structure."""
 
     slenderness: float | None = quantity(
         "standard deviation of ln slenderness: usually 0.05 if measured on site, 0.03 if machined; 0.10 if omitted",

@@ -1,1 +1,1 @@
-"""Rocking histories: tables and numbers in, motion and outcome out. Nothing here knows a mechanism."""
+"""Time histories: models of structures, kernels that simulate them, and the outcomes."""

@@ -1,4 +1,4 @@
-"""Many histories in one call: any selection of structures, records, scales, polarities, restitutions and sizes."""
+"""Many time histories in one call: any selection of structures, records, scale factors, restitutions and sizes."""
 
 from __future__ import annotations
 
@@ -29,22 +29,23 @@ UNIT = 256  # histories a thread takes at a time: some 50 ms of work, against 20
 
 @dataclass(frozen=True, eq=False)
 class Runs:
-    """Which histories to run, one a place; `of` and `every` make them.
+    """Time histories to run, one for each entry of the arrays; `of` and `every` make them.
 
     Parameters
     ----------
     model, record : ndarray of int, shape (n,)
-        Places in the lists of models and ground motions.
+        Indices in the lists of models and ground motions.
     scale : ndarray, shape (n,)
         Factor on both components of the ground acceleration.
     polarity : ndarray of int, shape (n,)
         1, or -1 to reverse the horizontal component.
     eta : ndarray, shape (n,)
-        Ratio of the rotation rates after and before an impact, in both directions; NaN for the structure's own.
+        Ratio of the rotation rates after and before an impact, in both directions; NaN for that of the structure.
     size : ndarray, shape (n,)
         Factor on every length of the structure.
     slender : ndarray, shape (n,)
-        Factor on its slenderness, by which the horizontal acceleration is divided; rotations in rad are multiplied.
+        Factor on the slenderness of the structure: the horizontal acceleration is divided by it, and rotations in rad
+        are multiplied.
 
     Raises
     ------
@@ -91,7 +92,7 @@ class Runs:
         size: ArrayLike = 1.0,
         slender: ArrayLike = 1.0,
     ) -> Runs:
-        """Runs from arrays of one length, or numbers that hold for all.
+        """Make runs from arrays of one length, or from numbers that apply to all runs.
 
         Raises
         ------
@@ -131,7 +132,7 @@ class Runs:
         etas: Sequence[float] = (np.nan,),
         sizes: Sequence[float] = (1.0,),
     ) -> Runs:
-        """Every combination, in the order of the arguments, the last one changing fastest."""
+        """Make runs of every combination, in the order of the arguments, the last one changing fastest."""
         grid = np.meshgrid(range(models), range(records), scales, polarities, etas, sizes, indexing="ij")
         model, record, scale, polarity, eta, size = (axis.ravel() for axis in grid)
         return cls.of(model, record, scale=scale, polarity=polarity, eta=eta, size=size)
@@ -154,39 +155,39 @@ def respond_many(
     only_peaks: bool = False,
     progress: Callable[[int], None] | None = None,
 ) -> Outcomes:
-    """Run many histories, each the same to the last bit as `respond` would run it alone.
+    """Run many time histories, each equal to that of `respond` to the last bit.
 
     Parameters
     ----------
     models : sequence of Model
-        See `Structure.model`.
+        Models of structures, as `Structure.model` gives them.
     motions : sequence of GroundMotion or None
-        The ground motions, before scaling; None for no shaking.
+        The ground motions, before scaling; None for no ground motion.
     runs : Runs
-        Which histories.
+        The time histories to run.
     release : float or ndarray, shape (n,), optional
-        Start all, or each, of them at rest, tilted by this fraction of the critical rotation; negative: anticlockwise.
+        Start all, or each, of the histories at rest, tilted by this fraction of the critical rotation; negative:
+        anticlockwise.
     threads : int, optional
-        How many at a time; without it, one for each processor.
+        Number of threads; by default, one for each processor.
     rtol : float
         Relative local error of a step of the nonlinear motions.
     only_peaks : bool
-        Whether to leave a motion, as still rocking, some impacts after its record: by then its peaks are final and it
-        is clear that it does not overturn; `impact_count` is that of that moment.
+        Whether to end a motion, as still rocking, some impacts after its record, when its peaks are final and it can no
+        longer overturn; `impact_count` is then that at its end.
     progress : callable, optional
         Called with the number of histories finished since the last call.
 
     Returns
     -------
     Outcome
-        In the order of `runs`, whatever the number of threads. A motion of unknown outcome is left where it becomes so,
-        and its `opening` is the largest until then. Samples are not kept: memory grows by some 100 bytes
-        a history.
+        Outcomes in the order of `runs`, for any number of threads. A motion whose outcome becomes unknown ends there,
+        and its `opening` is the largest until then. Samples are not kept: each history takes some 100 bytes of memory.
 
     Raises
     ------
     InputError
-        If a run names a model or a ground motion that is not there, or a value is out of range.
+        If a run has the index of a model or a ground motion that does not exist, or a value is out of range.
 
     Examples
     --------
@@ -238,10 +239,10 @@ def respond_many(
 
 
 def _etas(models: Sequence[Model], runs: Runs) -> Reals:
-    """Restitution of both directions of each run, shape (n, 2).
+    """Return the restitution of both directions for each run, shape (n, 2).
 
-    None may be above 1 and make an impact gain energy; where the inertias at rest differ even one below 1 may, which is
-    the user's to say.
+    A restitution above 1 is refused if an impact would gain energy by it. If the inertias at rest differ, even one
+    below 1 may do so, which is left to the user.
     """
     etas = np.broadcast_to(runs.eta[:, None], (len(runs), 2)) if runs.eta.ndim == 1 else runs.eta
     most = np.maximum(1.0, np.array([model.most_eta for model in models]).reshape(-1, 2))[runs.model]

@@ -1,7 +1,7 @@
-"""Compilation of the history kernel: where its machine code is kept, and whether it is there yet.
+"""Compilation of the time-history kernels by numba, and the cache of their machine code.
 
-Numba is imported only when a history is computed. Its cache must not land beside the installed source, so it goes to
-the user's cache folder unless NUMBA_CACHE_DIR says otherwise; where that cannot be written each process compiles again.
+Numba is imported only when a history is computed. Its cache is in NUMBA_CACHE_DIR, by default the user's cache folder
+and not beside the installed source. If this folder cannot be written to, each process compiles again.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from rocking_cli.errors import CacheWarning, InputError
 
 
 def cache_folder() -> Path:
-    """The folder that keeps compiled kernels."""
+    """Return the folder of compiled kernels."""
     return Path(os.environ.get("NUMBA_CACHE_DIR") or cache.folder() / "numba")
 
 
 @functools.cache
 def unwritable() -> str | None:
-    """Why compiled kernels cannot be kept: what the system says of the cache folder; None if they can."""
+    """Return the system's reason why compiled kernels cannot be kept in the cache folder; None if they can."""
     try:
         cache_folder().mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=cache_folder()):
@@ -46,7 +46,7 @@ OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": False, "error_model": "num
 
 
 def _import_numba() -> None:
-    """Load numba; settings in the environment with which it does not start are the user's to mend."""
+    """Import numba; errors from its settings in the environment are left for the user to correct."""
     if "numba" in sys.modules:
         return
     given = [f"{name}={value}" for name, value in sorted(os.environ.items()) if name.startswith("NUMBA_")]
@@ -67,7 +67,7 @@ def _import_numba() -> None:
 
 
 def compile_inline(function: Callable[..., Any]) -> Any:
-    """Compile `function` so that kernels inline it: a call would cost more than the few sums inside."""
+    """Compile a function so that kernels inline it: a call would cost more than the few sums inside."""
     _import_numba()
     from numba import njit
 
@@ -75,7 +75,7 @@ def compile_inline(function: Callable[..., Any]) -> Any:
 
 
 def compile_kernel(function: Callable[..., Any]) -> Any:
-    """`function` compiled by numba at its first call, and kept on disk where that is possible."""
+    """Return a function that numba compiles at its first call and, if possible, keeps on disk."""
     _import_numba()
     import numba
     from numba import njit
@@ -101,7 +101,7 @@ def compile_kernel(function: Callable[..., Any]) -> Any:
 
 
 def _mend(stored: Any) -> None:
-    """Have a damaged cache emptied, and compiled anew: a full disk leaves halves, on which numba would end."""
+    """Make a damaged cache be emptied and its kernels be compiled again; after a full disk, numba would fail on it."""
     load = stored.load_overload
 
     def load_or_empty(*asked: Any) -> Any:
@@ -119,7 +119,7 @@ def _mend(stored: Any) -> None:
 
 @functools.cache
 def _say_damaged() -> None:
-    """Warn, once in this process."""
+    """Warn of the damaged cache, once in this process."""
     text = f"what is compiled in {cache_folder()} is damaged and is compiled again, which takes about ten seconds"
     warnings.warn(CacheWarning(text), stacklevel=2)
 
@@ -127,19 +127,19 @@ def _say_damaged() -> None:
 def compile_source(
     functions: Sequence[Callable[..., Any]], inline: Sequence[Callable[..., Any]] = ()
 ) -> dict[str, Any]:
-    """Functions of one module that Python can run as they stand, compiled beside it.
+    """Compile functions of a module, and leave the module's own functions to Python.
 
     Parameters
     ----------
     functions : sequence of callable
-        In an order in which each follows those that it calls.
+        The functions, each after those that it calls.
     inline : sequence of callable
-        Those of them to be set into each place that calls them.
+        Functions among them to be inlined where they are called.
 
     Returns
     -------
     dict of str to callable
-        The compiled functions by name; the module keeps its own.
+        The compiled functions by name.
     """
     namespace = dict(vars(sys.modules[functions[0].__module__]))
     for function in functions:
@@ -155,20 +155,20 @@ HISTORIES, PULSES = "kernels", "pulse_motion"
 
 
 def needs_compiling(kernel: str = HISTORIES) -> bool:
-    """Whether a kernel will have to be compiled when it is next called, which takes some seconds."""
+    """Return whether a kernel will be compiled at its next call, which takes some seconds."""
     return unwritable() is not None or not _stamp(kernel).exists()
 
 
 @functools.cache
 def has_run(kernel: str) -> None:
-    """Note that a kernel is compiled, for the next process."""
+    """Record for later processes that a kernel is compiled."""
     if unwritable() is None:
         with suppress(OSError):
             _stamp(kernel).touch()
 
 
 def _stamp(kernel: str) -> Path:
-    """A file that is there once this version of a kernel has been compiled by this Python and numba."""
+    """Return a file that exists if this version of a kernel was compiled by this Python and numba."""
     source = Path(__file__).with_name(f"{kernel}.py").read_bytes()
     made = f"{sys.version_info[:2]}, {version('numba')}, {platform.machine()}, {zlib.crc32(source)}"
     return cache_folder() / f"{kernel}-{zlib.crc32(made.encode()):08x}.compiled"

@@ -1,4 +1,4 @@
-"""Structures and ground motions laid out for the kernel, which runs any selection of them in one call."""
+"""Structures and ground motions as the arrays of the kernel, which runs any selection of them in one call."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def run_deck(
     rate: Reals = NOTHING,
     impacts: Reals = NO_IMPACTS,
 ) -> None:
-    """Run the kernel, which fills `marks` and, if given, the samples and the impacts of the last history."""
+    """Run the kernel; it fills `marks` and, if given, the samples and the impacts of the last history."""
     run = ways.kernel(TIED if deck.forces.ndim == 4 else HISTORIES)
     samples = kernels.Samples(every, phi, rate, impacts, np.empty(kernels.MARKS))
     most = int(deck.joints.sizes[:, 1].max(initial=0))
@@ -58,16 +58,16 @@ def run_deck(
 
 
 def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
-    """What the kernel says of finished runs.
+    """Return the outcomes of runs from the marks of the kernel.
 
     Parameters
     ----------
     marks : ndarray, shape (n, MARKS)
-        As the kernel filled them.
+        Marks of the finished runs, as the kernel fills them.
     phi_cr : ndarray, shape (n, 2)
         Critical rotations of the positive and the negative direction [rad].
     reach : ndarray, shape (n,)
-        The displacement that openings of joints are over [m]; NaN if the joints are not known.
+        Displacement by which openings of joints are divided [m]; NaN if the joints are not known.
     """
     status = marks[:, kernels.STATUS]
     passed, crossed = marks[:, kernels.PASSED], marks[:, kernels.CROSSED]
@@ -102,7 +102,7 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
 
 
 def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> kernels.Deck:
-    """Lay out models and ground motions (None: no shaking) for the kernel."""
+    """Return models and ground motions (None: no ground motion) as the arrays of the kernel."""
     structures, records = [], []
     cells = 0
     for model in models:
@@ -142,14 +142,14 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
 
 
 def _three_forces(model: Model) -> Reals:
-    """The forces of a model in a table that has what vertical motion leaves alone behind them."""
+    """Return the forces of a model, followed by the part of them that vertical motion leaves unchanged."""
     cells = len(model.forces)
     held = model.held[..., :4] if len(model.held) else np.zeros((cells, 2, 4))
     return np.concatenate([model.forces.reshape(cells, 2, 2, 4), held[:, :, None, :]], axis=2)
 
 
 def _corners(models: Sequence[Model]) -> Integers:
-    """The corners below each cell of all models; of no rows if none has any."""
+    """Return the number of corners below each cell for all models; an array without rows if no model has any."""
     if not any(len(model.corners) for model in models):
         return np.zeros((0, 2), np.int64)
     alone = (np.zeros((len(model.forces), 2), np.int64) for model in models)
@@ -157,14 +157,14 @@ def _corners(models: Sequence[Model]) -> Integers:
 
 
 class _Row:
-    """Arrays to stand one after the other."""
+    """Arrays to be joined end to end."""
 
     def __init__(self) -> None:
         self.arrays: list[Reals] = []
         self.size = 0
 
     def add(self, array: Reals) -> tuple[int, int]:
-        """Where an array begins, and its size."""
+        """Add an array; return its start and its size."""
         self.arrays.append(array)
         self.size += array.size
         return self.size - array.size, array.size
@@ -174,7 +174,10 @@ class _Row:
 
 
 def _strongest_to_come(strength: Reals, stride: float, length: int) -> Reals:
-    """At samples `stride` apart (in those of `strength`), the largest from there on; nothing after the last."""
+    """Return the largest strength after each of `length` samples; zero at and after the last.
+
+    These samples are `stride` samples of `strength` apart.
+    """
     result = np.zeros(length)
     if strength.size:
         ahead = np.maximum.accumulate(strength[::-1])[::-1]

@@ -1,4 +1,4 @@
-"""The models of a structure, each with the kernel that simulates it; no other place chooses a kernel."""
+"""Models of a structure, each with the kernel that simulates it; only this module chooses kernels."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ class Kernel:
     Parameters
     ----------
     name : str
-        Its name, by which models refer to it.
+        Name of the kernel, by which models refer to it.
     meets : frozenset of str
-        The keys of `NEEDS` that elements may have; it simulates a structure whose elements need nothing else.
+        Keys of `NEEDS` that elements may have: the kernel simulates a structure if its elements have no other needs.
     model : callable
         Builds the nonlinear model of a structure, as `nonlinear_model` does.
     lay_out : callable
         Lays out models and ground motions, as `rocking_cli.dynamics.deck.lay_out` does.
     run : callable
-        Runs histories of what is laid out, as `rocking_cli.dynamics.deck.run_deck` does, with the same columns of
-        `runs` and `marks`.
+        Runs histories of the laid-out models and motions, as `rocking_cli.dynamics.deck.run_deck` does, with the same
+        columns of `runs` and `marks`.
     """
 
     name: str
@@ -50,12 +50,15 @@ KERNELS = {ELASTIC.name: ELASTIC}
 
 
 def register(kernel: Kernel) -> None:
-    """Add a kernel, to be tried after the others."""
+    """Add a kernel, which is tried after the others."""
     KERNELS[kernel.name] = kernel
 
 
 def kernel_for(mechanism: Mechanism) -> Kernel:
-    """Return the first kernel that simulates all elements of a structure. Raises `InputError`, naming them, if none."""
+    """Return the first kernel that can simulate all elements of a structure.
+
+    Raises `InputError`, with the names of the elements, if there is none.
+    """
     needs = [(each, need) for each in mechanism.hung.elements for need in NEEDS if getattr(each, need)]
     for kernel in KERNELS.values():
         if kernel.meets.issuperset(need for _, need in needs):
@@ -78,24 +81,25 @@ NO_REBOUND = Problem(
 def build(
     mechanism: Mechanism, statics: tuple[Statics, Statics], equivalence: Equivalence | None, name: ModelName
 ) -> Model:
-    """Prepare one model of a structure.
+    """Build one model of a structure.
 
     Parameters
     ----------
     mechanism : Mechanism
         The structure.
     statics : tuple of Statics
-        Its moments in both directions.
+        Statics of both directions.
     equivalence : Equivalence or None
-        Its equivalent blocks, which the linear models need.
+        Equivalent blocks, which the linear models require.
     name : {"nonlinear", "linear1", "linear2"}
-        Which equation of motion.
+        Equation of motion.
 
     Raises
     ------
     InputError
         If the restitution from kinematics is not positive, or the rebound of a one-sided structure is not known, so
-        that the motion after an impact is unknown; if no kernel simulates its elements, or one has no linear model.
+        that the motion after an impact is unknown; if no kernel simulates the elements of the structure, or one of them
+        has no linear model.
     """
     etas = mechanism.eta(mechanism.sides[0]), mechanism.eta(mechanism.sides[1])
     if isnan(etas[0]):

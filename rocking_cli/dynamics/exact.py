@@ -1,4 +1,4 @@
-"""The exact response of the equivalent blocks to a pulse, in SI units."""
+"""Exact response of the equivalent blocks to a pulse, in SI units."""
 
 from __future__ import annotations
 
@@ -20,17 +20,18 @@ KEPT = 5_000  # impacts; eta = 0.995 rests after 2800
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ExactResponse(Outcome[bool, int, float]):
-    """What the linear equation of motion says of a structure under a pulse, to rounding error; see `Outcome`.
+    """Response of an equivalent block to a pulse by its linear equation of motion, to rounding error; see `Outcome`.
 
     Parameters
     ----------
     first_excursion, first_rebound : float
-        Largest phi/phi_cr before and after the first impact; NaN for one that overturns or never comes.
+        Largest phi/phi_cr before and after the first impact; NaN if the block overturns in it, or it does not take
+        place.
     impacts : tuple of (float, int, float)
-        Time [s], sign of the direction that ends, and rotation rate before [rad/s], of each impact until it rests or
-        overturns, of the first 5000 at most.
+        Time [s], sign of the direction that ends, and rotation rate before [rad/s], of each impact until rest or
+        overturning, of at most the first 5000.
     pulse_end : float
-        How long the pulse lasts [s].
+        Duration of the pulse [s].
     """
 
     first_excursion: float
@@ -40,27 +41,27 @@ class ExactResponse(Outcome[bool, int, float]):
 
     @property
     def first_impact(self) -> float:
-        """When the first impact comes [s]; NaN if there is none."""
+        """Time of the first impact [s]; NaN if there is none."""
         return self.impacts[0][0] if self.impacts else nan
 
 
 def exact_response(
     equivalence: Equivalence, pulse: Pulse, *, kappa: Literal[1, 2], gravity: float, polarity: int = 1
 ) -> ExactResponse:
-    """Exact response of a structure's equivalent blocks to a pulse.
+    """Return the exact response of a structure's equivalent blocks to a pulse.
 
     Parameters
     ----------
     equivalence : Equivalence
-        Of the structure.
+        Equivalent blocks of the structure.
     pulse : Pulse
-        One that is made of sines and constants.
+        A pulse made of sines and constants.
     kappa : {1, 2}
-        Which scaling of the equivalent block.
+        Scaling of the equivalent block.
     gravity : float
-        That of the structure [m/s2].
+        Gravitational acceleration of the structure [m/s2].
     polarity : {1, -1}
-        -1 reverses the pulse, which is to the right at first or at its peak.
+        1 for the pulse as given, whose first or largest acceleration is to the right; -1 reverses it.
 
     Returns
     -------
@@ -69,9 +70,9 @@ def exact_response(
     Raises
     ------
     InputError
-        If the pulse has no segments, kappa or polarity is none, or an eta is not positive.
+        If the pulse has no segments, kappa or polarity is not valid, or an eta is not positive.
     SolverError
-        If it bounces all through a slow pulse, with a restitution near 1.
+        If the block has too many impacts during a slow pulse, with a restitution near 1.
 
     Notes
     -----
@@ -95,7 +96,7 @@ def exact_response(
 
 
 def sides_of(equivalence: Equivalence, *, kappa: int, gravity: float) -> tuple[Side, Side]:
-    """The equivalent blocks of both directions as the motion needs them; errors as `exact_response`."""
+    """Return the equivalent blocks of both directions as arguments of the motion. Raises as `exact_response`."""
     if kappa not in (1, 2):
         raise InputError(f"kappa must be 1 or 2, got {kappa!r}")
     if not 0 < gravity < inf:
@@ -116,7 +117,7 @@ def sides_of(equivalence: Equivalence, *, kappa: int, gravity: float) -> tuple[S
 
 
 def segments_of(pulse: Pulse) -> tuple[Segment, ...]:
-    """The segments of a pulse; `InputError` if there are none."""
+    """Return the segments of a pulse. Raises `InputError` if it has none."""
     segments = pulse.segments()
     if not segments:
         raise InputError(f"{pulse.name} is not a chain of sines and constants: respond to pulse.sampled() instead")
@@ -124,14 +125,14 @@ def segments_of(pulse: Pulse) -> tuple[Segment, ...]:
 
 
 def polarity_of(polarity: int) -> int:
-    """1 or -1; `InputError` if it is neither."""
+    """Return the polarity. Raises `InputError` if it is neither 1 nor -1."""
     if polarity not in (1, -1):
         raise InputError(f"polarity must be 1 or -1, got {polarity!r}")
     return polarity
 
 
 def solve(sides: tuple[Side, Side], segments: pulse_motion.Rows, polarity: int = 1) -> ExactResponse:
-    """The response with both peaks over their phi_cr, whatever the units."""
+    """Return the response, with both peaks over the phi_cr of their direction, in any consistent units."""
     log = [0.0] * (COLUMNS * KEPT)
     motion = pulse_motion.follow(sides, segments, float(polarity), 1.0, True, log)
     if motion.status == pulse_motion.SPENT:

@@ -1,4 +1,4 @@
-"""The exact response to many pulses of one shape: the motion of `pulse_motion`, compiled."""
+"""Exact response to many pulses of one shape, by the compiled motion of `pulse_motion`."""
 
 from __future__ import annotations
 
@@ -32,33 +32,34 @@ def exact_many(
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Outcomes:
-    """Exact response of a structure's equivalent blocks to many pulses of one shape.
+    """Return the exact response of a structure's equivalent blocks to many pulses of one shape.
 
     Parameters
     ----------
     equivalence : Equivalence
-        Of the structure.
+        Equivalent blocks of the structure.
     pulse : Pulse
         The shape; its own amplitude and period are replaced.
     amplitudes, periods : array_like, shape (n,)
-        Of each pulse [m/s2], [s], > 0; a number holds for all.
+        Amplitude [m/s2] and period [s] of each pulse, > 0; a single number applies to all pulses.
     kappa, gravity, polarity
-        See `exact_response`.
+        As in `exact_response`.
     threads : int, optional
-        How many at a time; without it, one for each processor.
+        Number of threads; by default, one for each processor.
     progress : callable, optional
         Called with the number of pulses finished since the last call.
 
     Returns
     -------
     Outcome
-        In the order given, the same for any number of threads; a failed one bounces all through its pulse. No time of
-        overturning, nor of coming to rest, is looked for.
+        Outcomes in the order of the pulses, for any number of threads. `failed` is that of pulses with too many
+        impacts. Times of overturning and of coming to rest are not computed.
 
     Raises
     ------
     InputError
-        If the pulse has no segments, an amplitude or a period is not positive, or their lengths differ.
+        If the pulse has no segments, an amplitude or a period is not positive, or amplitudes and periods differ in
+        length.
     """
     sides = sides_of(equivalence, kappa=kappa, gravity=gravity)
     sizes = _sizes(amplitudes, periods)

@@ -1,4 +1,4 @@
-"""Time histories: run the kernel and say what happened."""
+"""Time histories: run the kernel for one model and one motion, and read its results."""
 
 from __future__ import annotations
 
@@ -27,31 +27,32 @@ MOST_SAMPLES = 20_000_000
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class History(Outcome[bool, int, float]):
-    """The motion of one model of a structure: what became of it, see `Outcome`, and its samples.
+    """Time history of one model of a structure: its outcome, see `Outcome`, and its samples.
 
     Parameters
     ----------
     model : str
         `"nonlinear"`, `"linear1"` or `"linear2"`.
     time : ndarray, shape (n,)
-        Times of the samples [s]: those of the ground motion, or every so many-th of them, see its `every`.
+        Times of the samples [s]: those of the ground motion, or every k-th of them, with k its `every`.
     phi, rate : ndarray, shape (n,)
-        Signed rotation [rad] and its rate [rad/s]; NaN after overturning, and where nothing is known any longer.
+        Signed rotation [rad] and its rate [rad/s]; NaN after overturning, and after the motion becomes unknown.
     ratio : ndarray, shape (n,)
         Signed rotation over the critical rotation of its direction.
     impacts : ndarray, shape (k, 3)
-        Time [s], sign of the direction that ends, and rate before [rad/s] of each impact, of the first 20,000 at most.
+        Time [s], sign of the direction that ends, and rate before [rad/s] of each impact, of at most the first 20,000.
     contact_lost : float or None
-        When v_g'' first came down to -g [s]: the structure may leave the ground then, which no model here follows.
+        First time at which v_g'' reaches -g [s]: the structure may then leave the ground, which the models do not
+        simulate.
     uplift_error : float
-        By how much the uplift acceleration of the model is off that of the structure, relative; see `Model`.
+        Relative error of the uplift acceleration of the model, see `Model`.
     p : float
-        Frequency parameter [rad/s]: 1/p is the time in which a tilt near the critical one grows.
+        Frequency parameter [rad/s]: 1/p is the time scale on which a rotation near the critical one diverges.
     ends_at_limit : tuple of bool
         Whether the positive and the negative direction have no critical rotation: ratios are then over the kinematic
-        limit, and overturning is reaching it.
+        limit, and reaching this limit is overturning.
     check : JointCheck, optional
-        What its joints do; None if they are not known, so that nothing was checked.
+        Check of the joints; None if they are not known, so that they were not checked.
     """
 
     model: ModelName
@@ -68,28 +69,28 @@ class History(Outcome[bool, int, float]):
 
     @property
     def reference(self) -> str:
-        """What its largest ratio is over, the critical rotation or the kinematic limit."""
+        """Name of the rotation by which the peak rotation is divided: critical rotation or kinematic limit."""
         return "kinematic limit" if self.ends_at_limit[self._side] else "critical rotation"
 
     @property
     def furthest(self) -> float:
-        """The largest rotation of the direction in which the ratio is largest [rad]."""
+        """Largest rotation in the direction in which the ratio is largest [rad]."""
         return self.peak_negative if self._side else self.peak_positive
 
     @property
     def _side(self) -> int:
-        """The direction in which its ratio is largest: 0 for positive, 1 for negative."""
+        """Direction in which the ratio is largest: 0 for positive, 1 for negative."""
         known = self.ratio[np.isfinite(self.ratio)]
         return int(known[np.abs(known).argmax()] < 0)
 
     @property
     def first_impact(self) -> float:
-        """When the first impact comes [s]; NaN if there is none."""
+        """Time of the first impact [s]; NaN if there is none."""
         return float(self.impacts[0, 0]) if len(self.impacts) else float("nan")
 
 
 def check_rtol(rtol: float) -> None:
-    """Refuse a relative local error that is none."""
+    """Raise `InputError` if a number is not a valid relative local error."""
     if not FINEST_RTOL <= rtol < 1:
         raise InputError(f"rtol must be at least {FINEST_RTOL:g} and below 1, got {rtol:g}: rounding allows no less")
 
@@ -104,10 +105,10 @@ def follow(
     most_kept: int = MOST_IMPACTS,
     eta: float = float("nan"),
 ) -> History:
-    """The history of one model; for the arguments see `Engine.follow` of `rocking_cli.engines`.
+    """Simulate the time history of one model; most arguments are those of `Engine.follow` of `rocking_cli.engines`.
 
-    `release` is 0 without one; `most_kept` is how many impacts are kept; `eta` the restitution of both directions, NaN:
-    that of the model.
+    `release` is 0 without a release; `most_kept` is the number of impacts to keep; `eta` is the restitution of both
+    directions, NaN for that of the model.
     """
     every = motion.every if motion is not None else 1
     dt = every * motion.dt if motion is not None else RELEASE_DT  # between the samples that are kept
@@ -155,6 +156,6 @@ def follow(
 
 
 def _samples(motion: GroundMotion) -> int:
-    """Samples of the horizontal component that are kept and cover both components."""
+    """Return how many samples of the horizontal component to keep, so that they cover both components."""
     longest = motion.vertical.duration if motion.vertical is not None else 0.0
     return (max(motion.npts, ceil(longest / motion.dt) + 1) - 1) // motion.every + 1

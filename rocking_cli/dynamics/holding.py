@@ -1,4 +1,4 @@
-"""How far the joints of a structure let one history stand, in words."""
+"""Whether the joints of a structure hold in a time history, and until when its result is valid, in words."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ HINGES = f"describe the structure as a linkage that hinges at the joint that ope
 
 
 def unchecked(name: str = "") -> str:
-    """Return the caution that the joints of a structure are not checked; `name` is for one of several."""
+    """Return the caution that the joints of a structure are not checked; `name` is that of one of several."""
     of = f"{name}: " if name else ""
     return f"Caution: {of}{NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}"
 
 
 def joints_in_words(history: History) -> str:
-    """Say whether the joints hold in a nonlinear history; empty if there is no joint that could open.
+    """Return whether the joints hold in a nonlinear history, in words; empty if no joint could open.
 
     Parameters
     ----------
     history : History
-        Of the nonlinear model.
+        History of the nonlinear model.
 
     Returns
     -------
     str
-        A few sentences: all joints bear; or one opens by so little that the result stands; or until when it is known,
-        why, and what to do next.
+        A few sentences: all joints hold; or one opens by so little that the result is valid; or until when the result
+        is valid, why, and what to do next.
     """
     check = history.check
     if history.unknown:
@@ -56,15 +56,15 @@ def joints_in_words(history: History) -> str:
 
 
 def known_until(histories: Mapping[ModelName, History]) -> float:
-    """Return until when histories of one structure are results [s]; infinite if the outcome is known.
+    """Return the time until which the histories of one structure are valid [s]; infinite if the outcome is known.
 
-    After that those of the equivalent blocks are none either, as they have no joints.
+    After that time the histories of the equivalent blocks are not valid either, as these have no joints.
     """
     return min((run.known_to for run in histories.values() if run.unknown), default=inf)
 
 
 def why_unknown(history: History) -> str | None:
-    """Say why a history is known no further than `known_to`; None if all of it is known."""
+    """Return why a history is not valid beyond its `known_to`, in words; None if all of it is valid."""
     check = history.check
     if not history.unknown:
         return None
@@ -78,7 +78,7 @@ def why_unknown(history: History) -> str | None:
 
 
 def _until(history: History) -> str:
-    """Until when it is known, and why no further; with the lower bound of the peak."""
+    """Return until when a history is valid and why not beyond, in words, with the lower bound of the peak."""
     said = f"The motion is known up to {history.known_to:.4g} s only: then {why_unknown(history)}."
     over = "its kinematic limit" if any(history.ends_at_limit) else "its critical rotation"
     if not history.peak_ratio:

@@ -1,7 +1,8 @@
-"""The joints of a structure, laid out for the kernel that checks histories against them.
+"""Joints of a structure as the arrays by which the kernel checks time histories.
 
-The forces of `rocking_cli.core.released` become cubics over q, the coordinate of the kernel. Most moments of a history
-are far from any limit: for them two straight lines over q.^2 say between which ground accelerations all joints bear.
+The forces of `rocking_cli.core.released` become cubics over q, the coordinate of the kernel. Most states of a history
+are far from any limit of a joint: for these, two straight lines over q.^2 bound the ground accelerations at which all
+joints hold.
 """
 
 from __future__ import annotations
@@ -35,38 +36,41 @@ SAFE = 0.01  # of the width of the certain bounds, which the cubics may leave be
 
 @dataclass(frozen=True, eq=False)
 class JointTables:
-    """The joints of a structure.
+    """Joints of a structure, as arrays of the kernel.
 
     Parameters
     ----------
     labels : sequence of str
-        What messages call each.
+        Name of each joint in messages.
     contacts : ndarray of int, shape (joints, 2, 4)
-        Rows of the two normal forces and of the shear force in either direction, -1 where there is none, and whether
-        the joint bears at other ends in the other direction.
+        Rows of the two normal forces and of the shear force in either direction, -1 if there is none, and whether the
+        joint has other contact points in the other direction.
     bearing : ndarray, shape (joints, 2)
         Coefficient of friction, NaN if none is given, and strength [N], infinite if none is given.
     rows : ndarray, shape (cells, 2, rows, 20)
         Cubics over q of the factors of 1, u_g'', q.^2 and v_g'' in each force [N], and of its compliance [1/kg].
     struck : ndarray, shape (2, rows, 2)
-        Impulses in the direction that begins over the rate before [N s per rad/s]: a constant, and the factor of eta.
+        Impulses in the direction that begins, over the rotation rate before the impact [N s per rad/s]: a constant, and
+        the factor of eta.
     within : ndarray, shape (cells, 2, 5)
-        Where all joints bear for certain: u_g'' above the line of the first two over q.^2 and below that of the next
-        two, up to the q.^2 that is the last.
+        Bounds within which all joints hold for certain: u_g'' above the line over q.^2 of the first two coefficients
+        and below that of the next two, up to the q.^2 in the last column.
     reach : float
         D_cr: the largest displacement of a block's centroid from rest to phi_cr, of both directions the smaller [m].
     limit : float
-        The largest opening with which a history is known, over `reach`.
+        Largest opening with which a history remains valid, over `reach`.
     scales : bool
         Whether all forces scale with g.
     step : float
-        Longest time between the moments at which openings are advanced [s], if the kernel has no shorter one.
+        Longest time step in which openings are integrated [s]; the kernel may use a shorter one.
     gravity : float
         Acceleration of gravity [m/s2].
     redundant : bool
-        Whether statics alone does not say what each joint bears: then rows are modes in which several let go.
+        Whether statics alone does not determine the forces at the joints; then rows are modes in which several joints
+        open.
     calm : tuple of float
-        What all joints bear up to phi_cr: u_g'' at q.^2 = 0, and q.^2 at u_g'' = 0; that is -1 if they do not at rest.
+        Largest u_g'' at q.^2 = 0, and largest q.^2 at u_g'' = 0, at which all joints hold up to phi_cr; -1 if they do
+        not hold at rest.
     alone : bool
         Whether the only joint is that of a single body with the ground.
     """
@@ -89,38 +93,40 @@ class JointTables:
 
 @dataclass(frozen=True)
 class JointCheck:
-    """What the joints of a structure do in one history, each released alone where it would not bear.
+    """State of a structure's joints during one history; each joint is checked as if it alone could open.
 
     Parameters
     ----------
     limit : float
-        The opening from which nothing is known any longer, over `reach`.
+        Opening beyond which the history is not valid, over `reach`.
     reach : float
-        The least displacement of a block at the critical rotation, D_cr [m].
+        D_cr: the largest displacement of a block from rest to phi_cr, of both directions the smaller [m].
     passed : float
-        When the opening passes the limit, a contact crushes or nothing holds the structure down [s]; NaN: never.
+        Time at which the opening passes the limit, a contact crushes or no weight holds the structure down [s]; NaN if
+        never.
     reason : {"opens", "slides", "crushes", "weightless"} or None
-        Which of these.
+        Which of these happens at `passed`; "weightless" is that no weight holds the structure down.
     joint : str
-        Where; empty if nowhere.
+        The joint at which this happens; empty if none.
     warned : float
-        The first moment at which a joint would not bear [s]; NaN: never.
+        First time at which a joint would open or slide [s]; NaN if never.
     warned_joint : str
-        Which.
+        The joint of `warned`.
     largest : float
         Largest opening or slip of a joint [m], over the whole history.
     largest_joint, largest_time : str and float
-        Which joint, and when [s]; empty and NaN if none opens.
+        Joint and time [s] of the largest opening; empty and NaN if none opens.
     longest : float
         The longest time for which a joint is open, or slides [s].
     parted : float or None
-        When first a joint that stays closed would open [s]; NaN: never. None if no joint stays closed.
+        First time at which a joint that the model keeps closed would open [s]; NaN if never, None if there is no such
+        joint.
     parted_joint : str
-        Which.
+        The joint of `parted`.
     count : int
-        How many joints are checked; 0 if none could open.
+        Number of joints checked; 0 if none could open.
     alone : bool
-        Whether that is the joint of a single body with the ground.
+        Whether the only joint is that of a single body with the ground.
     """
 
     limit: float
@@ -144,7 +150,7 @@ REASONS = ("opens", "slides", "crushes", "weightless")  # in the order of the ke
 
 
 def check_of(joints: JointTables | None, marks: Reals) -> JointCheck | None:
-    """Return what the kernel says of the joints in one history; None if they are not known."""
+    """Return the check of the joints in one history from the marks of the kernel; None if they are not known."""
     if joints is None:
         return None
 
@@ -179,23 +185,23 @@ def check_of(joints: JointTables | None, marks: Reals) -> JointCheck | None:
 def joints_of(
     mechanism: Mechanism, statics: Sequence[Statics], tables: Sequence[DirectionTable], p: float
 ) -> JointTables | None:
-    """Lay out the joints of a structure for the kernel.
+    """Return the joints of a structure as arrays of the kernel; None if they are not known.
 
     Parameters
     ----------
     mechanism : Mechanism
         The structure.
     statics : sequence of Statics
-        Of both of its sides.
+        Statics of both directions.
     tables : sequence of DirectionTable
-        Of both of its sides.
+        Tables of both directions.
     p : float
         Frequency parameter [rad/s].
 
     Returns
     -------
     JointTables or None
-        None if its joints are not known, so that no history of it is checked.
+        None if the joints are not known, so that no history is checked.
     """
     cells = max(TO_CRITICAL * table.end / table.q(side.reference) for table, side in zip(tables, statics, strict=True))
     cells = int(min(np.ceil(cells), MOST_CELLS))
@@ -242,12 +248,12 @@ def joints_of(
 
 
 def _determined(mechanism: Mechanism, direction: Direction, phi: Reals) -> tuple[Released | None, Reals | None]:
-    """The rows of a direction, and their impulses. Raises `Undetermined`."""
+    """Return the tables of contact forces of a direction, and its impulses. Raises `Undetermined`."""
     return released(mechanism, direction, phi), impulses(mechanism, direction.opposite)
 
 
 def _at(table: DirectionTable, cells: int) -> Reals:
-    """Rotations at even steps of q [rad]."""
+    """Return the rotations at equal steps of q [rad]."""
     place = np.linspace(0.0, len(table.angles), cells + 1)
     k = np.minimum(place.astype(np.intp), len(table.angles) - 1)
     x = place - k
@@ -278,7 +284,7 @@ def _contacts(mechanism: Mechanism, found: Sequence[Released], labels: Sequence[
 
 
 def _cubics(values: Reals) -> Reals:
-    """Cubics through values at even nodes, shape (cells, rows, columns, 4): in each cell that through the four next."""
+    """Return cubics through values at equidistant nodes, shape (cells, rows, columns, 4), by the four nearest nodes."""
     n = len(values)
     found = np.empty((n - 1, *values.shape[1:], 4))
     first = np.clip(np.arange(n - 1) - 1, 0, n - 4)
@@ -291,14 +297,14 @@ def _cubics(values: Reals) -> Reals:
 
 
 def _lines(values: Reals) -> Reals:
-    """Straight lines between values at even nodes, as `_cubics`: a mode may begin or end at a rotation."""
+    """Return straight lines between values at equidistant nodes, in the form of `_cubics`; used for modes."""
     found = np.zeros((len(values) - 1, *values.shape[1:], 4))
     found[..., 0], found[..., 1] = values[:-1], np.diff(values, axis=0)
     return found
 
 
 def _within(cubics: Reals, contacts: Integers, bearing: Reals) -> Reals:
-    """Where all joints of a direction bear for certain, in cells FINER times as many."""
+    """Return bounds within which all joints of a direction hold for certain (`Joints.within`), on a finer grid."""
     fine = np.arange(FINER) / FINER
     powers = np.stack([np.append(fine, 1.0) ** k for k in range(4)], axis=-1)
     at = np.einsum("crvp,xp->cxrv", cubics, powers)
@@ -337,9 +343,9 @@ def _within(cubics: Reals, contacts: Integers, bearing: Reals) -> Reals:
 
 
 def _calm(within: Reals, tables: Sequence[DirectionTable], statics: Sequence[Statics]) -> tuple[float, float]:
-    """What all joints bear anywhere between rest and phi_cr: u_g'' at q.^2 = 0, and q.^2 at u_g'' = 0.
+    """Return the largest u_g'' at q.^2 = 0, and the largest q.^2 at u_g'' = 0, that all joints bear up to phi_cr.
 
-    Between the two they bear what lies below the straight line, as each cell is convex.
+    As the region in which they hold is convex in each cell, they also hold below the straight line between the two.
     """
     push = fast = np.inf
     for d, (table, side) in enumerate(zip(tables, statics, strict=True)):
@@ -353,7 +359,7 @@ def _calm(within: Reals, tables: Sequence[DirectionTable], statics: Sequence[Sta
 
 
 def _range(plane: Reals, fast: Reals) -> tuple[Reals, Reals]:
-    """Between which u_g'' all rows are at least zero at some q.^2."""
+    """Return the least and the greatest u_g'' at which all rows are at least zero, at some q.^2."""
     base, push = plane[..., ONE] + plane[..., RATE] * fast[:, None], plane[..., PUSH]
     with np.errstate(divide="ignore", invalid="ignore"):
         bound = -base / push
@@ -364,7 +370,7 @@ def _range(plane: Reals, fast: Reals) -> tuple[Reals, Reals]:
 
 
 def _fastest(plane: Reals) -> Reals:
-    """A q.^2 at which some u_g'' is left with which all rows are at least zero; 0 if there is none."""
+    """Return a large q.^2 at which all rows are at least zero for some u_g''; 0 if there is none."""
     low, high = np.zeros(len(plane)), np.full(len(plane), 1.0)
     scale = np.abs(plane[..., ONE]).max(axis=1) / np.maximum(np.abs(plane[..., RATE]).max(axis=1), 1e-300)
     high *= np.minimum(scale, 1e12)
@@ -378,7 +384,7 @@ def _fastest(plane: Reals) -> Reals:
 
 
 def _reach(mechanism: Mechanism, statics: Sequence[Statics]) -> float:
-    """D_cr [m]."""
+    """Return D_cr, the smaller over both directions of the largest displacement of a piece up to phi_cr [m]."""
     reaches = []
     for direction, side in zip(mechanism.sides, statics, strict=True):
         bodies = {body.name: k for k, body in enumerate(mechanism.bodies())}
@@ -393,7 +399,7 @@ def _reach(mechanism: Mechanism, statics: Sequence[Statics]) -> float:
 
 
 def laid_out(all_joints: Sequence[JointTables | None]) -> tuple[Integers, Integers, Reals, Reals, Reals, Reals, Reals]:
-    """Lay out the joints of several structures one after the other, as the fields of `kernels.Joints`."""
+    """Return the joints of several structures, one after the other, as the fields of `kernels.Joints`."""
     counts = np.zeros((len(all_joints), 8), np.int64)
     numbers = np.ones((len(all_joints), 6))
     known = [each for each in all_joints if each is not None]

@@ -1,4 +1,4 @@
-"""What the history kernel needs to know of a structure: numbers and tables for each direction."""
+"""Models of a structure: the numbers and tables of each direction that the kernel needs."""
 
 from __future__ import annotations
 
@@ -41,37 +41,37 @@ class Scatter(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """One equation of motion of a structure, ready for the kernel, which takes any number of them at once.
+    """One equation of motion of a structure, as arrays of the kernel, which takes any number of models at once.
 
     Parameters
     ----------
     name : str
         `"nonlinear"`, or `"linear1"` and `"linear2"` for the equivalent block with kappa1 and kappa2.
     structure : str
-        What to call the structure.
+        Name of the structure.
     phi_cr : tuple of float
-        Critical rotation in the positive and the negative direction [rad], or the limit where there is none.
+        Critical rotation in the positive and the negative direction [rad], or the kinematic limit if there is none.
     numbers, forces, angles, certain : ndarray
         See `rocking_cli.dynamics.kernels.Deck`.
     held : ndarray, shape (cells, 2, 5)
-        The part of the first force that does not scale with g, see `DirectionTable`; of no rows where there is none.
+        The part of the first force that does not scale with g, see `DirectionTable`; without rows if there is none.
     ends_at_limit : tuple of bool
-        Whether a direction has no critical rotation: `phi_cr` then is the kinematic limit, the only end it has.
+        Whether a direction has no critical rotation: `phi_cr` is then the kinematic limit, the only end of the motion.
     one_sided : Direction, optional
-        The only direction it rocks in: an impact throws it back, and its restitution is the rebound.
+        The only direction of rocking, if any: the structure rebounds at an impact, and its restitution is the rebound.
     tables : tuple of DirectionTable, optional
-        What the arrays are made of, if nonlinear.
+        Tables from which the arrays are made, if nonlinear.
     uplift_error : float
-        By how much its uplift acceleration is off that of the structure, relative, in the worse direction.
+        Relative error of the uplift acceleration of the model, in the worse direction.
     most_eta : tuple of float
         The restitution with which an impact that ends motion in the positive and in the negative direction keeps all
         energy; 1 for a symmetric structure.
     corners : ndarray
-        See `rocking_cli.dynamics.kernels.Deck`; of no rows where no tie goes slack or comes into play.
+        See `rocking_cli.dynamics.kernels.Deck`; without rows if no tie goes slack or taut.
     joints : JointTables, optional
-        The joints that its histories are checked against; None if they are not known, or of a linear model.
+        Joints by which histories are checked; None if they are not known, and for a linear model.
     scatter : Scatter
-        How well the structure is known.
+        Uncertainty of restitution and slenderness of the structure.
     kernel : str
         Name of the kernel that simulates it, see `rocking_cli.dynamics.dispatch.KERNELS`.
     """
@@ -96,7 +96,7 @@ class Model:
 
     @property
     def p(self) -> float:
-        """Frequency parameter [rad/s], of two different directions the larger."""
+        """Frequency parameter [rad/s]; the larger one if the directions differ."""
         return float(self.numbers[:, P].max())
 
     @property
@@ -116,23 +116,23 @@ class Model:
 
     @property
     def weight_share(self) -> float:
-        """The share of lambda that is due to the weight and not to ties and forces, in the weaker direction."""
+        """Share of lambda due to the weight, not to ties and forces, in the direction with the smaller lambda."""
         weaker = self.numbers[int(np.argmin(self.numbers[:, LAMBDA]))]
         return float(1 - weaker[HELD] / weaker[LAMBDA])
 
     @property
     def reach(self) -> float:
-        """The displacement that openings of joints are over [m]; NaN if its joints are not known."""
+        """Displacement by which openings of joints are divided [m]; NaN if the joints are not known."""
         return self.joints.reach if self.joints is not None else nan
 
     @property
     def is_linear(self) -> bool:
-        """Whether this is an equivalent block."""
+        """Whether the model is that of an equivalent block."""
         return self.tables is None
 
     @cached_property
     def symmetric(self) -> bool:
-        """Whether both directions are alike, so that a reversed motion does the same."""
+        """Whether both directions are equal, so that reversing a motion has no effect but on the sign."""
         if self.one_sided is not None:
             return False
         pairs = ((of[:, 0], of[:, 1]) for of in (self.forces, self.certain, self.held) if len(of))
@@ -141,14 +141,14 @@ class Model:
         return same and np.allclose(one, other, rtol=ALIKE, atol=ALIKE**2)
 
     def q(self, ratio: float) -> float:
-        """The kernel's coordinate at a signed rotation given as a fraction of its direction's phi_cr."""
+        """Return the kernel's coordinate q at a signed rotation, given as a fraction of the phi_cr of its direction."""
         side = 1 if ratio < 0 else 0
         phi = abs(ratio) * self.phi_cr[side]
         return float(np.copysign(phi if self.tables is None else self.tables[side].q(phi), ratio))
 
 
 def completed(model: Model, mechanism: Mechanism) -> Model:
-    """Return a model with what all models of a structure share: its scatter, and its sides or its bounds of eta."""
+    """Return a model with its scatter, and either made one-sided or, if it rocks both ways, with bounds of eta."""
     model = replace(model, scatter=_scatter(mechanism))
     if not mechanism.rocks_both_ways:
         return _one_sided(model, mechanism.directions[0])
@@ -157,7 +157,7 @@ def completed(model: Model, mechanism: Mechanism) -> Model:
 
 
 def _scatter(mechanism: Mechanism) -> Scatter:
-    """How well a structure is known: by its file, else as tests of such bodies show."""
+    """Return the scatter of a structure: as given, or else as usual from tests of such bodies."""
     given = mechanism.uncertainty or Uncertainty()
     usual = KINEMATIC if mechanism.restitution_is_kinematic else MEASURED
     return Scatter(
@@ -167,7 +167,7 @@ def _scatter(mechanism: Mechanism) -> Scatter:
 
 
 def _one_sided(model: Model, direction: Direction) -> Model:
-    """The same model, which the ground never lifts in the other direction, and which an impact throws back."""
+    """Return a model that never uplifts in the other direction, and that rebounds at an impact."""
     numbers = model.numbers.copy()
     numbers[0 if direction < 0 else 1, LAMBDA] = np.inf
     numbers[:, ONE_SIDED] = 1.0
@@ -175,7 +175,7 @@ def _one_sided(model: Model, direction: Direction) -> Model:
 
 
 def nonlinear_model(mechanism: Mechanism, statics: tuple[Statics, Statics], etas: tuple[float, float]) -> Model:
-    """Prepare the nonlinear model of a structure whose forces depend on its rotation alone.
+    """Build the nonlinear model of a structure whose forces depend on its rotation alone.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def _rows(held: Reals, count: int) -> Reals:
 
 
 def _rate(mechanism: Mechanism, direction: Direction, statics: Statics) -> float:
-    """How fast a motion of a direction changes [rad/s]: p, or where there is no block one of the moment at rest."""
+    """Return the rate of the motion in a direction [rad/s]: p, or else a frequency from the moment at rest."""
     at = mechanism.coefficients(np.array([0.0, statics.reference]), direction)
     if statics.phi_cr is not None and (stiffness := -float(at.stiffness(mechanism.gravity)[1])) > 0:
         return sqrt(mechanism.gravity * stiffness / float(at.I[1]))  # Eq. 17
@@ -226,15 +226,15 @@ def _rate(mechanism: Mechanism, direction: Direction, statics: Statics) -> float
 
 
 def _held_at_rest(mechanism: Mechanism, direction: Direction) -> float:
-    """The part of lambda that does not scale with g: Q(0)/(g B(0))."""
+    """Return the part of lambda that does not scale with g, Q(0)/(g B(0))."""
     rest = mechanism.coefficients(np.zeros(1), direction)
     return float(rest.Q[0] / (mechanism.gravity * rest.B[0]))
 
 
 def with_held(model: Model, mechanism: Mechanism, blocks: tuple[EquivalentBlock, EquivalentBlock]) -> Model:
-    """A linear model of a tied structure: of its moment near phi_cr the part that vertical motion leaves alone.
+    """Return a linear model with the part of its moment near phi_cr that vertical motion leaves unchanged.
 
-    I_eq x.. = -(g G' + Q') x - v_g'' (G + G' x) - s B u_g'', x = phi - phi_cr.
+    For structures with ties or forces: I_eq x.. = -(g G' + Q') x - v_g'' (G + G' x) - s B u_g'', x = phi - phi_cr.
     """
     held, numbers = np.zeros((1, 2, 5)), model.numbers.copy()
     for d, (direction, block) in enumerate(zip(mechanism.sides, blocks, strict=True)):
@@ -247,18 +247,18 @@ def with_held(model: Model, mechanism: Mechanism, blocks: tuple[EquivalentBlock,
 
 
 def linear_model(label: str, name: ModelName, blocks: tuple[EquivalentBlock, EquivalentBlock], gravity: float) -> Model:
-    """Prepare equivalent blocks.
+    """Build a linear model, `linear1` or `linear2`, from the equivalent blocks.
 
     Parameters
     ----------
     label : str
-        What to call the structure.
+        Name of the structure.
     name : {"linear1", "linear2"}
-        Which kappa.
+        Model, which gives the scaling: kappa1 or kappa2.
     blocks : tuple of EquivalentBlock
-        Of the positive and the negative direction.
+        Equivalent blocks of the positive and the negative direction.
     gravity : float
-        [m/s2].
+        Gravitational acceleration [m/s2].
     """
     # q = phi here; one cell holds the straight line and the constant that are all of its forces.
     numbers, forces = [], np.zeros((1, 2, 8))

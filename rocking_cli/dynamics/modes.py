@@ -1,9 +1,9 @@
-"""Ways in which redundant joints let go, where statics alone does not say what each bears.
+"""Modes in which redundant joints open, where statics alone does not determine the forces.
 
-The ground accelerations and rates under which some forces can be borne are a convex set at each rotation. Each edge of
-it belongs to a motion of the pieces, a mode, that opens joints and closes none: at the edge the forces begin to do work
-on it. A mode is followed as a single joint is where statics determines the forces (there the modes are the rows
-themselves): with all others holding, it goes by 1/(xi.M xi) times the work that is missing, xi its velocities for an
+At each rotation, the ground accelerations and rotation rates at which some admissible forces balance the motion are a
+convex set. Each edge of this set belongs to a motion of the pieces, a mode, that opens joints and closes none: beyond
+the edge the forces do work on this motion. A mode is treated as a single joint is if statics determines the forces:
+with all other joints closed, its acceleration is 1/(xi.M xi) times the missing work, with xi its velocities for an
 opening of 1.
 """
 
@@ -41,21 +41,21 @@ SAME = 1e-6  # of the set: corners that are one
 
 
 class Pattern(NamedTuple):
-    """Which rows a mode leaves alone: of each contact the sense of its slip, and the ends that stay shut."""
+    """The rows in which a mode has no motion: for each contact, the sign of its slip, and which ends stay closed."""
 
     slips: tuple[int, ...]
     shut: tuple[tuple[bool, ...], ...]
 
 
 class Modes(NamedTuple):
-    """The modes of one direction over rotations, as rows.
+    """The modes of one direction over rotations, as rows of `Released`.
 
     Parameters
     ----------
     released : Released
         A contact and a row for each mode.
     struck : ndarray, shape (modes, 2), or None
-        Impulse of each at an impact that begins the direction, over the rate before; see `impulses`.
+        Impulse of each mode at an impact that begins the direction, over the rotation rate before; see `impulses`.
     """
 
     released: Released
@@ -63,7 +63,7 @@ class Modes(NamedTuple):
 
 
 def modes(mechanism: Mechanism, direction: Direction, phi: Reals, critical: float) -> Modes:
-    """Find the modes in which the joints of a direction let go.
+    """Find the modes in which the joints of a direction open.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def modes(mechanism: Mechanism, direction: Direction, phi: Reals, critical: floa
     phi : ndarray, shape (n,)
         Rotations of the tables [rad].
     critical : float
-        Rotation up to which the edges are sought [rad].
+        Largest rotation at which modes are sought [rad].
     """
     contacts = mechanism.contacts(direction) or ()
     there = _Placed(mechanism, direction, contacts, phi)
@@ -115,7 +115,7 @@ def modes(mechanism: Mechanism, direction: Direction, phi: Reals, critical: floa
 class _Followed(NamedTuple):
     """A mode over rotations: velocities (n, coordinates), force (n, 4) and compliance (n,) for an opening of 1.
 
-    It exists (n,) where it closes nothing; elsewhere its velocities mean nothing.
+    `exists` (n,) is True at rotations where the mode closes no joint; elsewhere its velocities have no meaning.
     """
 
     velocity: Reals
@@ -125,7 +125,7 @@ class _Followed(NamedTuple):
 
 
 class _Placed:
-    """The rates at the contacts of a direction, and what they must bear, over rotations."""
+    """Velocities at the contacts of a direction, and the forces required there, over rotations."""
 
     def __init__(self, mechanism: Mechanism, direction: Direction, contacts: Sequence[Contact], phi: Reals) -> None:
         self._direction, self.contacts = direction, contacts
@@ -145,9 +145,10 @@ class _Placed:
                 self.friction[[*normal, shear]] = contact.friction
 
     def rays(self, k: int) -> tuple[Sparse, int]:
-        """The forces at joints at one rotation, as `sparse`, and how many of them only press: these come first.
+        """Return the extreme forces at the joints at rotation `k`, compressive ones first, and the number of these.
 
-        With friction a normal force leans to either side, so that the same rows say how a joint may move.
+        With friction, the extreme forces of a contact are inclined to either side of its normal. The matrix is as that
+        of `sparse`.
         """
         from scipy.sparse import vstack
 
@@ -159,9 +160,9 @@ class _Placed:
         return found, sum(each.shape[0] for each in presses)
 
     def sparse(self, k: int) -> Sparse:
-        """The rates at one rotation, shape (rows, coordinates), in axes that turn with the pieces.
+        """Return the rates at rotation `k` as a sparse matrix (rows, coordinates), in axes that turn with the pieces.
 
-        There most faces are as they were at rest, with a single factor, which a linear programme takes faster.
+        In these axes most faces are as at rest, with a single factor, which is faster in a linear programme.
         """
         from scipy.sparse import csr_array
 
@@ -176,13 +177,13 @@ class _Placed:
         return found
 
     def turned(self, vectors: Reals, k: int, sense: int) -> Reals:
-        """Vectors of all coordinates, shape (coordinates, ...), in the axes of `sparse`, and back with -1."""
+        """Return vectors of all coordinates, shape (coordinates, ...), in the axes of `sparse`; back if sense is -1."""
         each = np.moveaxis(vectors.reshape(self.rates.count, 3, -1), 1, 2)
         turns = self._turned[k] if sense < 0 else self._turned[k].conj()
         return np.moveaxis(_turn(each, turns[:, None]), 2, 1).reshape(vectors.shape)
 
     def label(self, mode: _Followed) -> str:
-        """What to call the contact that a mode opens most, where it begins to exist."""
+        """Return the name of the contact that a mode opens most, at the first rotation where the mode exists."""
         first = int(np.argmax(mode.exists))
         speed = np.abs(self.rates.rotations([first]).at(mode.velocity[first][None])[0])
         most = [max((speed[row] for row in (*normal, *([] if shear is None else [shear]))), default=0.0)
@@ -190,14 +191,14 @@ class _Placed:
         return self.contacts[int(np.argmax(np.array(most) >= (1 - TIGHT) * max(most)))].label  # the first of several
 
     def jump(self, mechanism: Mechanism) -> Reals | None:
-        """The jump of momentum at an impact over the rate before, a constant and a factor of the restitution."""
+        """Return the change of momentum at an impact, over the rate before: a constant, and the factor of eta."""
         if not mechanism.rocks_both_ways:
             return None
         old = Pieces(mechanism, self._direction.opposite, np.zeros(1))
         return np.stack([old.momentum(old.dq)[0], self._rocking[0]], axis=-1)
 
     def pattern(self, velocity: Reals, k: int) -> Pattern:
-        """Which rows a mode leaves alone at a rotation."""
+        """Return the pattern of a mode at rotation `k`: which rows have no motion."""
         speed = self.rates.rotations([k]).at(velocity[None])[0]
         still = TIGHT * float(np.abs(speed).max())
         slip = np.where((self.shear >= 0) & (np.abs(speed[self.shear]) > still), speed[self.shear], 0.0)
@@ -209,7 +210,7 @@ class _Placed:
         )
 
     def held(self, pattern: Pattern, *, dilates: bool) -> Rates:
-        """The rows that a mode leaves alone."""
+        """Return the rows in which a mode has no motion; if `dilates`, slip opens a joint by friction times slip."""
         kept = np.ones(len(self.one_sided), bool)
         factors = self.rates.factors
         for contact, (normal, shear), slip, shut in zip(
@@ -225,7 +226,7 @@ class _Placed:
         return Rates(self.rates.count, self.rates.pieces, factors).rows(kept)
 
     def followed(self, pattern: Pattern) -> _Followed | None:
-        """A mode over all rotations; None if its rows leave more than one way to move at rest, or it exists nowhere."""
+        """Return the mode of a pattern over all rotations; None if it is not unique at rest, or exists nowhere."""
         alone = self._alone(pattern, dilates=True)
         if alone is None:
             return None
@@ -250,20 +251,21 @@ class _Placed:
 
     @property
     def _bears(self) -> Reals:
-        """The force of a mode where it does not exist: it bears whatever comes."""
+        """Force of a mode at rotations where it does not exist: so large that the mode never opens."""
         whole = np.zeros(4)
         whole[ONE] = np.abs(self.demand[0, :, ONE]).sum()
         return whole
 
     def _closes_nothing(self, speed: Reals) -> Bools:
-        """Whether no joint would have to close, or to slide without dilating, shape (n,)."""
+        """Return whether no joint closes, or slides without dilating, at each rotation, shape (n,)."""
         least = np.where(self.shear >= 0, self.friction * np.abs(speed[:, self.shear]), 0.0) - CLOSED
         return np.asarray((speed >= least)[:, self.one_sided].all(axis=1))
 
     def _alone(self, pattern: Pattern, *, dilates: bool) -> tuple[Reals, Bools] | None:
-        """The velocities that leave the rows of a pattern alone, without those of rocking itself.
+        """Return the single motion, beside rocking, in which a pattern's rows have no velocity; None if not unique.
 
-        Of shape (n, coordinates); and at which rotations there are any: elsewhere they are those of a rotation before.
+        Velocities have the shape (n, coordinates). The flags are False at rotations without such a motion, or with
+        several; there the velocities are those of the last rotation with one.
         """
         held = self.held(pattern, dilates=dilates)
         one = stuck(held, self._centres)
@@ -288,21 +290,21 @@ class _Placed:
 
 
 def _turn(vectors: Reals, by: Points) -> Reals:
-    """Vectors of x, y and rotation, shape (..., 3), whose first two have turned by unit numbers."""
+    """Return vectors (x, y, rotation), shape (..., 3), with x and y multiplied as x + iy by unit numbers."""
     across = (vectors[..., 0] + 1j * vectors[..., 1]) * by
     return np.stack([across.real, across.imag, vectors[..., 2]], axis=-1)
 
 
 def _values(singular: Reals, matrix: Reals) -> Reals:
-    """Singular values of a matrix, as many as it has columns."""
+    """Return the singular values of a matrix, with zeros appended up to its number of columns."""
     missing = matrix.shape[-1] - singular.shape[-1]
     return np.concatenate([singular, np.zeros((*singular.shape[:-1], missing))], axis=-1)
 
 
 def _edges(there: _Placed, k: int, unit: Reals, known: Mapping[Pattern, _Followed | None]) -> Iterator[Reals]:
-    """The modes of the edges of the set of (u_g'', phi.^2) at a rotation.
+    """Yield the modes of the edges of the set of admissible (u_g'', phi.^2) at rotation `k`.
 
-    What modes that are `known` by then say of the set is not asked again; each that is found may join them.
+    Edges that the `known` modes already bound are not searched again; the caller may add each yielded mode to them.
     """
     corners: list[tuple[float, Reals]] = []  # the direction that found each, and its place
     ways = [2 * np.pi * i / WAYS for i in range(WAYS)]
@@ -330,7 +332,7 @@ def _edges(there: _Placed, k: int, unit: Reals, known: Mapping[Pattern, _Followe
 
 
 def _lines(known: Mapping[Pattern, _Followed | None], k: int, unit: Reals) -> Reals:
-    """What bounds the set at a rotation, rows of a + b x + c y >= 0 over `unit`: all modes, and how far is looked."""
+    """Return the bounds of the set at rotation `k`, rows a + b x + c y >= 0 over `unit`: modes, and search limits."""
     rows = [each.force[k, [ONE, PUSH, RATE]] * [1.0, *unit] for each in known.values() if each is not None]
     lines = np.array([[FAR, 1.0, 0.0], [FAR, -1.0, 0.0], [0.0, 0.0, 1.0], [FAR, 0.0, -1.0], *rows])
     steep = np.abs(lines[:, 1:]).max(axis=1)
@@ -338,7 +340,7 @@ def _lines(known: Mapping[Pattern, _Followed | None], k: int, unit: Reals) -> Re
 
 
 def _farthest(along: Reals, lines: Reals) -> float:
-    """How far one can go in a direction within some lines; infinity if they do not say."""
+    """Return the largest extent along a direction within the bounds; infinity if they leave no point."""
     one, other = np.triu_indices(len(lines), 1)
     crossings = np.cross(lines[one], lines[other])  # as a + b x + c y is a product with (1, x, y)
     meet = np.abs(crossings[:, 0]) > PARALLEL
@@ -348,7 +350,10 @@ def _farthest(along: Reals, lines: Reals) -> float:
 
 
 def _corner(there: _Placed, k: int, way: Reals, unit: Reals) -> tuple[Reals, Reals | None] | None:
-    """The farthest (u_g'', phi.^2) that can be borne in a direction, over `unit`; and the mode that lets go there."""
+    """Return the corner of the set in a direction, (u_g'', phi.^2) over `unit`, and the mode that opens there.
+
+    None if the linear programme has no solution; the mode is None if only the search limits bound the set.
+    """
     from scipy.optimize import linprog  # slow to import, and only redundant joints need it
     from scipy.sparse import coo_array, hstack
 
@@ -373,7 +378,7 @@ def _corner(there: _Placed, k: int, way: Reals, unit: Reals) -> tuple[Reals, Rea
 
 
 def _thrown(there: _Placed, jump: Reals) -> Iterator[Reals]:
-    """The modes on which the impulses of an impact do work against what holds them, the one with most work first."""
+    """Yield the modes on which the impulses of an impact do work, the one with the most work first."""
     from scipy.optimize import linprog  # slow to import, and only redundant joints need it
     from scipy.sparse import csr_array, vstack
 

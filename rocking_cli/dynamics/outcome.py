@@ -1,4 +1,4 @@
-"""What became of a motion, or of many: the one answer of every solver."""
+"""Outcome of one motion or of many: the one result type of all solvers."""
 
 from __future__ import annotations
 
@@ -20,39 +20,40 @@ Numbers = TypeVar("Numbers")
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Outcome(Generic[Flags, Counts, Numbers]):
-    """What became of a motion, each a number; or of many, each an ndarray of one shape.
+    """Outcome of a motion, each field a number; or of many, each field an ndarray of one shape.
 
     Times and rotations that do not exist are NaN, and null in JSON.
 
     Parameters
     ----------
     overturned, still_rocking, failed : bool
-        How it ended, if not at rest: it passed its critical rotation for good; it was left rocking, and will not
-        overturn; it could not be followed, and its other values mean nothing.
+        How the motion ended, if not at rest: the structure passed its critical rotation for good; it still rocks, and
+        will not overturn; the solver failed, and the other fields have no meaning.
     fell_to : int
-        Sign of the direction in which it overturned, 0 if it did not.
+        Sign of the direction in which the structure overturned, 0 if it did not.
     peak_positive, peak_negative : float
-        Largest rotation in either direction [rad], >= 0; NaN in a direction in which it overturned.
+        Largest rotation in either direction [rad], >= 0; NaN in the direction of overturning.
     peak_ratio : float
-        Largest rotation over the critical rotation; 0 without uplift, NaN if it overturned.
+        Largest rotation over the critical rotation; 0 without uplift, NaN after overturning.
     overturning_time : float
-        When the rotation passed the critical one for good [s]; NaN if it did not, or this was not requested.
+        Time at which the rotation passed the critical one for good [s]; NaN if it did not, or if not computed.
     uplift_time : float
-        The first uplift from rest [s]; NaN if there is none.
+        Time of the first uplift from rest [s]; NaN if there is none.
     impact_count : int
-        Number of impacts: before it overturned; else up to the end of the motion, or to where it was left because
-        nothing could change any more.
+        Number of impacts before overturning, or up to the end of the motion, or up to where the solver stopped because
+        the outcome could no longer change.
     end_time : float
-        When it came to rest for good, or was certain to overturn [s]; NaN if this was not requested.
+        Time at which the structure came to rest for good, or was certain to overturn [s]; NaN if not computed.
     unknown : bool
-        Whether a joint has opened or slid so far, before the motion ended, that what the model says of it from then on
-        is no result: peaks, uplift and impacts are those until then.
+        Whether a joint opened or slid so far, before the motion ended, that the model is not valid from then on: peaks,
+        uplift and impacts are those until then.
     known_to : float
-        Until when the motion is known [s]; NaN if all of it is.
+        Time until which the motion is valid [s]; NaN if all of it is.
     warned : float
-        The first moment at which a joint would not bear [s]; NaN if there is none.
+        First time at which a joint would open or slide [s]; NaN if there is none.
     lower_bound : float
-        Largest rotation over the critical rotation until `warned`: the structure itself rocks no less. NaN without one.
+        Largest rotation over the critical rotation until `warned`, a lower bound of the peak ratio of the structure;
+        NaN if `warned` is.
     opening : float
         Largest opening or slip of a joint, over the least displacement of a block at the critical rotation; NaN if the
         joints are not known, so that nothing was checked.
@@ -77,30 +78,30 @@ class Outcome(Generic[Flags, Counts, Numbers]):
 
     @property
     def at_rest(self) -> Flags:
-        """Whether it came to rest in the end, or never lifted."""
+        """Whether the structure came to rest in the end, or never uplifted."""
         left: Any = self.overturned | self.still_rocking | self.failed | self.unknown  # type: ignore[operator]
         return left ^ True  # type: ignore[no-any-return]
 
     @property
     def lifted(self) -> Flags:
-        """Whether it moved at all, by uplift or by a release from a tilt."""
+        """Whether the structure moved at all, by uplift or by a release from a tilt."""
         return (self.uplift_time >= 0) | self.overturned | (self.peak_ratio > 0)  # type: ignore[operator, no-any-return]
 
     def by_field(self: Outcomes, change: Callable[..., Any], *others: Outcomes) -> Outcomes:
-        """The outcome of which every field is `change` of that field here, and of that of others.
+        """Return an outcome whose fields are `change` of the same field of this outcome and of `others`.
 
         Parameters
         ----------
         change : callable
-            Takes an ndarray of each outcome, and gives one.
+            Function of an ndarray from each outcome that returns an ndarray.
         others : Outcome
-            Of many motions, too.
+            Further outcomes of many motions.
         """
         return Outcome(**{name: change(*(getattr(each, name) for each in (self, *others))) for name in OUTCOME})
 
     @property
     def words(self) -> str:
-        """How one motion ended, in the words of `rocking_cli.names`."""
+        """Outcome of one motion, in the words of `rocking_cli.names`."""
         return names.outcome(
             uplifts=bool(self.lifted),
             overturned=bool(self.overturned),

@@ -1,4 +1,4 @@
-"""Work on the processors of this machine: kernels leave the interpreter to the others."""
+"""Work in threads, which run in parallel because kernels release the interpreter lock."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ def in_parts(
     threads: int | None,
     progress: Callable[[int], None] | None,
 ) -> None:
-    """Do many things of one kind, so many at a time.
+    """Do many tasks of one kind in threads, several tasks in each part.
 
     Parameters
     ----------
     work : callable
-        Does those from a number to before another.
+        Function (first, stop) that does the tasks from `first` to before `stop`.
     count : int
-        How many there are.
+        Number of tasks.
     size : int
-        Of a part, at most.
+        Largest number of tasks in a part.
     threads : int, optional
-        Parts at a time; without it, one for each processor.
+        Number of threads; by default, one for each processor.
     progress : callable, optional
-        Called with how many are done since the last call.
+        Called with the number of tasks done since the last call.
     """
     with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
         parts = {

@@ -1,4 +1,4 @@
-"""Work in processes of their own: where it is Python that takes the time, threads wait for one another."""
+"""Work in separate processes, for tasks in Python code, which threads would not run in parallel."""
 
 from __future__ import annotations
 
@@ -21,23 +21,24 @@ _work: Callable[[int, int], Any] | None = None
 
 
 def in_processes(work: Callable[[int, int], Any], count: int, size: int, processes: int) -> Iterator[tuple[int, Any]]:
-    """Do many things of one kind, so many at a time, each in a process of its own.
+    """Do many tasks of one kind in processes, several tasks in each part.
 
     Parameters
     ----------
     work : callable
-        Does those from a number to before another, and gives what is found. It is sent to every process once.
+        Function (first, stop) that does the tasks from `first` to before `stop` and returns their result. It is sent to
+        every process once.
     count : int
-        How many there are.
+        Number of tasks.
     size : int
-        Of a part, at most.
+        Largest number of tasks in a part.
     processes : int
-        Parts at a time.
+        Number of processes.
 
     Yields
     ------
     (int, object)
-        The first of a part that is done, and what was found.
+        The first task of a part that is done, and the result of this part.
 
     Raises
     ------
@@ -57,7 +58,7 @@ def in_processes(work: Callable[[int, int], Any], count: int, size: int, process
 
 
 def _begin(work: Callable[[int, int], Any]) -> None:
-    """What a process does before its first part."""
+    """Prepare a process before its first part of the work."""
     global _work
     _work = work
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the one that began it ends it

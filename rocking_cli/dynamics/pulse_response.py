@@ -1,4 +1,4 @@
-"""Response of the linear rocking block to a pulse: a full sine by Eqs. 41-42 with their conditions, any exactly.
+"""Response of the linear rocking block to a pulse: by Eqs. 41-42 for a full sine, and exactly for any pulse shape.
 
 Everything is dimensionless [paper, Eq. 40]: rotations x = phi/phi_cr, times tau = p t counted from uplift, pulse
 amplitude a = a_g/(g lambda) and frequency omega = omega_g/p. A full sine lifts the block where a sin = 1.
@@ -26,23 +26,24 @@ LONG = 690.0  # exp of more, with a factor of omega^2, overflows
 
 @dataclass(frozen=True)
 class ClosedForm:
-    """Eqs. 41-42 where they hold, and why they do not where not.
+    """Results of Eqs. 41-42 if their conditions hold, and otherwise the reason why they do not.
 
     Parameters
     ----------
     D0 : float or None
-        Eq. 42: the energy of the free motion after the pulse, if the conditions hold; None where it does not exist or
+        Eq. 42: the energy of the free motion after the pulse, if the conditions hold; None if it does not exist or
         overflows.
     max_ratio : float or None
-        phi_max/phi_cr of Eq. 41, the peak of the first rebound; None if it overturns or a condition does not hold.
+        phi_max/phi_cr of Eq. 41, the peak of the first rebound; None if the block overturns or a condition does not
+        hold.
     overturns : bool or None
-        Whether eta^2 (1 - D0) >= 1: overturning after one impact. None if another condition than uplift does not hold;
-        without uplift it does not overturn.
+        Whether eta^2 (1 - D0) >= 1: overturning after one impact. None if a condition other than uplift does not hold;
+        without uplift the block does not overturn.
     conditions : dict of str to bool or None
-        `uplift` (a > 1), `first_impact_after_pulse`, `no_overturning_without_impact`; None where there is no motion.
+        `uplift` (a > 1), `first_impact_after_pulse`, `no_overturning_without_impact`; None if there is no motion.
     printed_ratio : float or None
-        What Eq. 41 as printed says, whether or not the conditions hold, to see how far off it is; None where that is no
-        number from 0 to 1.
+        Value of Eq. 41 as printed, whether or not its conditions hold, to show its error; None if it is not a number
+        from 0 to 1.
     """
 
     D0: float | None
@@ -58,17 +59,17 @@ class ClosedForm:
 
     @property
     def reason(self) -> str | None:
-        """Why the closed form cannot be used, in words; None where it can."""
+        """Reason why the closed form cannot be used, in words; None if it can."""
         failed = [CONDITIONS[name] for name, holds in self.conditions.items() if holds is False]
         return None if self.valid else f"it holds only where {' and '.join(failed)}"
 
     def off(self, exact: float) -> float | None:
-        """Eq. 41 as printed less an exact peak; None where it gives none."""
+        """Return Eq. 41 as printed minus an exact peak phi/phi_cr; None if Eq. 41 gives no value."""
         return None if self.printed_ratio is None else self.printed_ratio - exact
 
 
 def check_pulse(a: float, omega: float, eta: float) -> None:
-    """Refuse what is no pulse: `InputError` names the parameter."""
+    """Raise `InputError`, with the name of the parameter, if a parameter of the pulse or the block is not valid."""
     if not 0 < a <= LARGEST:
         raise InputError(f"a must be a positive number up to {LARGEST:g} (a_g over the uplift acceleration), got {a:g}")
     if not 1 / LARGEST <= omega <= LARGEST:
@@ -78,7 +79,7 @@ def check_pulse(a: float, omega: float, eta: float) -> None:
 
 
 def closed_form(a: float, omega: float, eta: float) -> ClosedForm:
-    """Maximum response to a full sine pulse by Eqs. 41-42, with the conditions under which they hold.
+    """Return the peak response to a full sine pulse by Eqs. 41-42, with the conditions under which they hold.
 
     Parameters
     ----------
@@ -131,14 +132,14 @@ def _conditions(uplift: bool, impact_after: bool | None, stays: bool | None) -> 
 
 
 def exact_pulse(a: float, omega: float, eta: float, shape: str = "sine") -> ExactResponse:
-    """Exact response of the linear block to a pulse, any number of impacts.
+    """Return the exact response of the linear block to a pulse, with any number of impacts.
 
     Parameters
     ----------
     a, omega, eta : float
         Dimensionless amplitude and frequency, and coefficient of restitution.
     shape : {"sine", "cosine", "half_sine", "rectangular"}
-        Of the pulse; omega is 2 pi over its period, see `rocking_cli.excitation.pulses`.
+        Shape of the pulse; omega is 2 pi over its period, see `rocking_cli.excitation.pulses`.
 
     Returns
     -------
@@ -150,11 +151,10 @@ def exact_pulse(a: float, omega: float, eta: float, shape: str = "sine") -> Exac
     InputError
         If a or omega is not positive, eta is outside (0, 1] or the shape is none of these.
     SolverError
-        If the block bounces all through a slow pulse, with a restitution near 1.
+        If the block has too many impacts during a slow pulse, with a restitution near 1.
 
-    Notes
-    -----
-    The motion of `rocking_cli.dynamics.pulse_motion`, with p, phi_cr and the uplift acceleration one.
+    Notes ----- The motion of `rocking_cli.dynamics.pulse_motion`, with p, phi_cr and the uplift acceleration equal to
+    1.
     """
     check_pulse(a, omega, eta)
     if shape not in SHAPES:

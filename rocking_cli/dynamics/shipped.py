@@ -1,8 +1,8 @@
-"""Kernels that are shipped as machine code: from a library in the folder `ready` to a function.
+"""Kernels shipped as machine code, one library in the folder `ready` for each kind of system.
 
-`scripts/make_kernels.py` writes one library for each kind of system. A library needs no other one: the functions of C
-that kernels call are handed to it when it is loaded. They are those of this process, so that every way to run a kernel
-has the same ones. Whatever is wrong with a library is a reason to use another way, never an end of the process.
+`scripts/make_kernels.py` writes the libraries. A library depends on no other one: when it is loaded, it is given the
+addresses of the C functions that kernels call. These are the functions of this process, so that every way to run a
+kernel uses the same ones. If a library cannot be used, the kernels are run in another way.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ _LOADING = threading.Lock()
 
 
 class Unusable(ImportError):
-    """Why a shipped kernel cannot be used."""
+    """Error: a shipped kernel cannot be used, with the reason."""
 
 
 def source_hash() -> str:
-    """What the sources of the shipped kernels are known by, whatever ends their lines."""
+    """Return the hash of the sources of the shipped kernels, independent of their line endings."""
     digest = hashlib.sha256(repr(sorted(MADE_BY.items())).encode())
     for name in SOURCES:
         digest.update(b"\0" + Path(__file__).with_name(name).read_bytes().replace(b"\r\n", b"\n"))
@@ -48,7 +48,7 @@ def source_hash() -> str:
 
 
 def manifest() -> dict[str, Any]:
-    """What is shipped: hashes of the sources and of the libraries, and the versions that made them."""
+    """Return the manifest of the shipped kernels: hashes of sources and libraries, and versions of the build tools."""
     try:
         found = json.loads((FOLDER / MANIFEST).read_text(encoding="utf-8"))
         return {"source": str(found["source"]), "made_by": dict(found["made_by"]), "files": dict(found["files"])}
@@ -57,14 +57,14 @@ def manifest() -> dict[str, Any]:
 
 
 def place() -> Path:
-    """The library for this system, which may not be there."""
+    """Return the path of the library for this system, which may not exist."""
     machine = platform.machine().lower()
     ending = ENDINGS.get(sys.platform, "so")
     return FOLDER / f"{sys.platform}-{PROCESSORS.get(machine, machine)}.{ending}"
 
 
 def is_there() -> bool:
-    """Whether there is a library for this system; a damaged one counts."""
+    """Return whether the library for this system exists, damaged or not."""
     try:
         return place().is_file()
     except OSError:  # a folder that may not be read
@@ -73,7 +73,7 @@ def is_there() -> bool:
 
 @functools.cache
 def load(kernel: KernelSet) -> Any:
-    """The function of a set. Raises `Unusable` if it cannot be had."""
+    """Return the function of a kernel. Raises `Unusable` if its library cannot be used."""
     with _LOADING:
         try:
             return ctypes.CFUNCTYPE(ctypes.c_int32, *_ROWS)((symbol(kernel.name), _library()))
@@ -82,14 +82,14 @@ def load(kernel: KernelSet) -> Any:
 
 
 def forget() -> None:
-    """Load anew what is asked for next, for tests."""
+    """Forget the loaded libraries, for tests."""
     load.cache_clear()
     _library.cache_clear()
 
 
 @functools.cache
 def _library() -> ctypes.CDLL:
-    """The library for this system, with what it calls."""
+    """Load the library for this system, and give it the C functions that it calls."""
     at = place()
     if struct.calcsize("P") != 8 or not is_there():
         raise Unusable(f"no kernels are shipped for {at.stem}")
@@ -110,7 +110,7 @@ def call(entry: Any, kernel: KernelSet, arguments: Sequence[Any]) -> None:
     Raises
     ------
     TypeError
-        If an array is not of the kind that the code takes: it would read what is not its own.
+        If an array does not have the type or the layout that the code requires, so that it would read other memory.
     RuntimeError
         If the code reports an error.
     """
@@ -130,7 +130,7 @@ def call(entry: Any, kernel: KernelSet, arguments: Sequence[Any]) -> None:
 def _pack(
     layouts: Sequence[Layout], values: Sequence[Any], whole: list[int], real: list[float], places: list[int]
 ) -> None:
-    """Append what arguments consist of to the three rows."""
+    """Append the addresses, numbers and sizes of arguments to the three lists that the machine code reads."""
     for layout, value in zip(layouts, values, strict=True):
         if isinstance(layout, tuple):
             _pack(layout[1], value, whole, real, places)

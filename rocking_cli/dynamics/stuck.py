@@ -1,7 +1,7 @@
-"""Pieces that a mode leaves stuck to one another: it moves them as one, so that few unknowns are left of many pieces.
+"""Pieces that a mode moves as one: joining them leaves few unknowns of many pieces.
 
-Two parts are one where the rows that hold between them leave no motion of the one relative to the other, at all
-rotations; and so on, until nothing more joins. Joining fewer than could be joined costs time and is never wrong.
+Two parts are joined if the closed rows between them allow no relative motion at any rotation; this is repeated until no
+more parts can be joined. Joining fewer parts than possible costs time, but is never wrong.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ APART = 1e-10  # square of the distance of lines of action that do not pass one 
 
 @dataclass(frozen=True, eq=False)
 class Stuck:
-    """Pieces joined to parts, at some rotations.
+    """Pieces joined to rigid parts, at n rotations.
 
     Parameters
     ----------
     count : int
         Number of parts that are not stuck to the ground.
     part : ndarray of int, shape (pieces,)
-        The part of each piece, -1 of what is stuck to the ground.
+        The part of each piece, -1 for pieces fixed to the ground.
     arm : ndarray of complex, shape (n, pieces)
         From the reference point of its part to the centroid of each piece [m].
     """
@@ -39,14 +39,14 @@ class Stuck:
     arm: Points
 
     def spread(self, parts: Reals) -> Reals:
-        """Velocities of the pieces by those of the parts, both of shape (n, 3 each)."""
+        """Return the velocities of the pieces from those of the parts, both of shape (n, 3 each)."""
         n = len(parts)
         moved = np.concatenate([parts.reshape(n, self.count, 3), np.zeros((n, 1, 3))], axis=1)[:, self.part]
         x, y, turn = np.moveaxis(moved, 2, 0)
         return np.stack([x - turn * self.arm.imag, y + turn * self.arm.real, turn], axis=2).reshape(n, -1)
 
     def gathered(self, pieces: Reals) -> Reals:
-        """Momenta of the parts by those of the pieces, both of shape (n, 3 each)."""
+        """Return the momenta of the parts from those of the pieces, both of shape (n, 3 each)."""
         n = len(pieces)
         found = np.zeros((n, self.count + 1, 3))
         each = _about(pieces.reshape(n, -1, 3), self.arm)
@@ -55,7 +55,7 @@ class Stuck:
         return found[:, :-1].reshape(n, -1)
 
     def contracted(self, rates: Rates) -> Rates:
-        """Rows over the velocities of the parts, without those between pieces of one part, which are zero."""
+        """Return rows of velocities by those of the parts, without rows between pieces of one part, which are zero."""
         part = np.append(self.part, GROUND)[rates.pieces]
         apart = np.flatnonzero(part[:, 0] != part[:, 1])
         arm = np.where(part == GROUND, 0j, np.append(self.arm, np.zeros_like(self.arm[:, :1]), axis=1)[:, rates.pieces])
@@ -64,20 +64,20 @@ class Stuck:
 
 
 def _about(force: Reals, arm: Points) -> Reals:
-    """Forces and moments, shape (..., 3), about points from which they are an arm away."""
+    """Return forces and moments, shape (..., 3), about points at the distance `arm` from their points of action."""
     x, y, moment = np.moveaxis(force, -1, 0)
     return np.stack([x, y, moment + arm.real * y - arm.imag * x], axis=-1)
 
 
 def stuck(held: Rates, centres: Points) -> Stuck:
-    """Join the pieces that rows which hold make one.
+    """Join the pieces among which the given rows, whose velocities are zero, allow no relative motion.
 
     Parameters
     ----------
     held : Rates
-        Velocities that are zero.
+        Rows whose velocities are zero.
     centres : ndarray of complex, shape (n, pieces)
-        Where the centroids of the pieces are [m].
+        Centroids of the pieces [m].
     """
     from scipy.sparse import coo_array  # slow to import, and only redundant joints need it
     from scipy.sparse.csgraph import connected_components
@@ -111,7 +111,7 @@ def stuck(held: Rates, centres: Points) -> Stuck:
 
 
 def _leave_nothing(number: Integers, wrench: Reals) -> NDArray[np.bool_]:
-    """Which pairs of parts, by number, their wrenches hold in both directions and against turning."""
+    """Return which pairs of parts have no relative motion: their wrenches span two translations and a rotation."""
     order = np.argsort(number, kind="stable")
     starts = np.flatnonzero(np.diff(number[order], prepend=-1))
     each = np.moveaxis(wrench[:, order], 1, 0)

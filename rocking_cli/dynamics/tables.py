@@ -1,6 +1,7 @@
 """A mechanism's coefficients as tables over q, the coordinate in which its inertia is one: dq = sqrt(I) dphi.
 
-Cubics with exact slopes at both ends of every cell. Near a lock, where the inertia grows without bound, q stays finite.
+Cubics with exact slopes at both ends of every cell. Near a rotation at which the mechanism locks, the inertia tends to
+infinity, but q stays finite.
 """
 
 from __future__ import annotations
@@ -27,25 +28,26 @@ END = 0.999  # of the kinematic limit: a locking linkage has infinite inertia at
 
 @dataclass(frozen=True)
 class DirectionTable:
-    """Tables of one direction.
+    """Tables of the coefficients of one direction.
 
     Parameters
     ----------
     forces : ndarray, shape (n, 8)
-        In each cell the cubics of (G + Q/g)/sqrt(I) and B/sqrt(I), powers 0 to 3 of the place in the cell.
+        Cubics of (G + Q/g)/sqrt(I) and B/sqrt(I) in each cell, by powers 0 to 3 of the place 0..1 in the cell.
     angles : ndarray, shape (n, 8)
-        Likewise phi [rad] and dphi/dq = 1/sqrt(I).
+        Cubics of phi [rad] and dphi/dq = 1/sqrt(I), in the same form.
     certain : ndarray, shape (n,)
-        From the start of each cell on, the ground acceleration over g that no more stops an outward motion.
+        Ground acceleration over g that cannot stop an outward motion, from the start of each cell on.
     nodes : ndarray, shape (n + 1,)
         phi at the ends of the cells [rad].
     cell : float
         Width of a cell, in q [kg^(1/2) m].
     held : ndarray, shape (n, 5)
         The cubic of Q/(g sqrt(I)), the part of the first force that does not scale with g, and from the start of each
-        cell on the largest |Q|/(g |B|); of no rows if nothing ties the structure.
+        cell on the largest |Q|/(g |B|); without rows if the structure has no ties or forces.
     corners : ndarray of int, shape (n,)
-        How many corners of the force there are up to the start of each cell; a cell that has one in it is between two.
+        Number of corners of the force up to the start of each cell; a cell with a corner counts as one between two
+        others.
     """
 
     forces: Reals
@@ -58,7 +60,7 @@ class DirectionTable:
 
     @property
     def end(self) -> float:
-        """q at which the motion counts as having reached the kinematic limit."""
+        """The q at which the mechanism reaches its kinematic limit [kg^(1/2) m]."""
         return self.cell * len(self.forces)
 
     @property
@@ -67,7 +69,7 @@ class DirectionTable:
         return float(self.angles[0, 4])
 
     def q(self, phi: float) -> float:
-        """q at a rotation [rad] within the table."""
+        """Return q at a rotation [rad] within the table."""
         k = min(max(int(np.searchsorted(self.nodes, phi, side="right")) - 1, 0), len(self.angles) - 1)
         a0, a1, a2, a3 = self.angles[k, :4].tolist()
         x = (phi - a0) / a1
@@ -79,14 +81,14 @@ class DirectionTable:
 def tabulate(mechanism: Mechanism, statics: Sequence[Statics] | None = None) -> tuple[DirectionTable, DirectionTable]:
     """Tabulate both directions of a mechanism, positive first, from rest to its kinematic limits.
 
-    Where it rocks to one side only, its table stands for both.
+    If the mechanism rocks to one side only, its table is returned twice.
 
     Parameters
     ----------
     mechanism : Mechanism
         The structure.
     statics : sequence of Statics, optional
-        Of both directions, where they are known already.
+        Statics of both directions, if they are already computed.
     """
     # A linkage may lock far beyond phi_cr, while its coefficients change within phi_cr.
     reach = max(each.limit / each.reference for each in statics or both_statics(mechanism))
@@ -102,7 +104,7 @@ def tabulate(mechanism: Mechanism, statics: Sequence[Statics] | None = None) -> 
 
 
 def _mirrored(mechanism: Mechanism, nodes: Reals) -> bool:
-    """Whether both directions have one table: the same to the last bit at every node, the coefficients and slopes."""
+    """Return whether both directions have the same table: equal coefficients at all nodes, to the last bit."""
     one, other = mechanism.directions
     if not mechanism.smooth or mechanism.limit(one) != mechanism.limit(other):
         return False
@@ -114,10 +116,10 @@ def _mirrored(mechanism: Mechanism, nodes: Reals) -> bool:
 
 
 def _cells_for(corners: Reals, cells: int) -> int:
-    """How many cells have corners of the force, at shares of their range, as near to nodes as can be had.
+    """Return the number of cells for which the corners of the force are nearest to nodes.
 
-    Where a tie goes slack the force has a corner, which no cubic follows. One next to rest asks for cells so fine that
-    it is not within the first of them.
+    `corners` are fractions of the range of q. A cubic cannot represent a corner, such as where a tie goes slack. If a
+    corner is near rest, the cells are so fine that it is beyond the first cell.
     """
     if not corners.size:
         return cells
@@ -128,7 +130,7 @@ def _cells_for(corners: Reals, cells: int) -> int:
 
 
 def _corners(mechanism: Mechanism, direction: Direction, cells: int) -> Reals:
-    """Where ties go slack or come into play, as shares of the range of q in a direction."""
+    """Return where ties go slack or taut, as fractions of the range of q in a direction."""
     shares = []
     phi, _ = _even_steps(mechanism, direction, cells)
     slack = partial(mechanism.slackness, direction=direction)
@@ -143,7 +145,7 @@ def _corners(mechanism: Mechanism, direction: Direction, cells: int) -> Reals:
 
 
 def _bent(mechanism: Mechanism, direction: Direction, phi: Reals) -> tuple[Bools, Bools]:
-    """For each tie that acts in one sense only: whether it is on either side at rotations, and changes between two."""
+    """Return, for each one-sided tie, whether it is taut at each rotation, and if this changes in each interval."""
     slack = mechanism.slackness(phi, direction)
     sign = slack > 0
     # One that has no force at rest is, from there on, on the side to which it sets out.
@@ -192,7 +194,7 @@ def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Di
 
 
 def _even_steps(mechanism: Mechanism, direction: Direction, cells: int) -> tuple[Reals, float]:
-    """Rotations [rad] at even steps of q from rest to the kinematic limit, and the width of a step."""
+    """Return rotations [rad] at equal steps of q from rest to the kinematic limit, and the size of a step."""
     # First over x with phi = end x (2 - x): where I grows like 1/(limit - phi), dq/dx stays smooth.
     end = END * mechanism.limit(direction)
     h = 0.5 / cells  # finer, as the steps near rest are twice as wide as the even ones
@@ -215,6 +217,6 @@ def _even_steps(mechanism: Mechanism, direction: Direction, cells: int) -> tuple
 
 
 def _cubics(width: float | Reals, value: Reals, slope: Reals) -> Reals:
-    """Cubic Hermite polynomials of all cells, shape (n, 4), powers of the place 0..1 inside the cell."""
+    """Return the cubic Hermite polynomials of all cells, shape (n, 4), by powers of the place 0..1 in the cell."""
     v0, v1, d0, d1 = value[:-1], value[1:], width * slope[:-1], width * slope[1:]
     return np.stack([v0, d0, 3 * (v1 - v0) - 2 * d0 - d1, 2 * (v0 - v1) + d0 + d1], axis=1)

@@ -1,4 +1,4 @@
-"""What the histories of a structure say together, in words, and how far they bear its equivalent blocks out."""
+"""Verdict on the time histories of a structure in words, and how well its equivalent blocks agree with them."""
 
 from __future__ import annotations
 
@@ -30,24 +30,25 @@ SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
 
 @dataclass(frozen=True)
 class Agreement:
-    """How the motion of an equivalent block compares with that of the structure itself, the nonlinear one.
+    """Agreement of the motion of an equivalent block with that of the nonlinear model.
 
     Parameters
     ----------
     grade : Grade
-        What the block is good for under this motion: the worst of what follows. It is to be disregarded, too, where
-        its own uplift acceleration is far off, or where one of the two overturns, or lifts, and the other does not.
+        Grade of the block under this motion, by the largest of the errors below. The block is also to be disregarded if
+        its uplift acceleration is far in error, or if only one of the two models overturns, or uplifts.
     uplift_error : float
-        Of its uplift acceleration, relative, in the worse direction: of the structure, whatever the motion.
+        Relative error of the uplift acceleration in the worse direction; it does not depend on the motion.
     same_fate : bool
-        Whether both overturn, both rock, or neither lifts.
+        Whether both models overturn, both rock, or neither uplifts.
     peak_error : float or None
-        Of its largest phi/phi_cr, relative; None unless both rock.
+        Relative error of the largest phi/phi_cr; None unless both rock.
     peak_delay : float or None
-        How much later it has its peak, or overturns [s]; None as `difference`, and unless both overturn.
+        Time by which the peak, or overturning, of the block is later [s]; None unless both overturn, or both rock
+        within their samples.
     difference : float or None
         The rms of the difference of phi/phi_cr over that of the nonlinear motion, until both are at rest or the samples
-        end; None unless both rock, and are seen in their samples.
+        end; None unless both rock, and do so within their samples.
     """
 
     grade: Grade
@@ -59,17 +60,17 @@ class Agreement:
 
     @property
     def unfit(self) -> bool:
-        """Whether its uplift acceleration alone is so far off that it is to be disregarded under any motion."""
+        """Whether the error of the uplift acceleration alone is so large that the block is to be disregarded."""
         return grade(self.uplift_error) is Grade.DISREGARD
 
 
 def agreements(histories: Mapping[ModelName, History]) -> dict[ModelName, Agreement]:
-    """Compare the motion of each equivalent block with the nonlinear one; nothing without that.
+    """Compare the motion of each equivalent block with that of the nonlinear model; empty without the latter.
 
     Parameters
     ----------
     histories : mapping of str to History
-        Models of one structure under one motion, on the same samples.
+        Histories of models of one structure under one motion, on the same samples.
     """
     if "nonlinear" not in histories or histories["nonlinear"].unknown:
         return {}
@@ -117,18 +118,18 @@ def _difference(run: History, best: History) -> float:
 
 
 def disagree(histories: Mapping[ModelName, History]) -> bool:
-    """Whether models that are fit for the structure differ in whether it overturns."""
+    """Return whether the models that are fit for the structure differ in whether it overturns."""
     fit = [run for run in histories.values() if grade(run.uplift_error) is not Grade.DISREGARD and not run.unknown]
     return len({run.overturned for run in fit}) > 1
 
 
 def verdict(histories: Mapping[ModelName, History]) -> str:
-    """Say whether a structure uplifts, how far it rocks, whether it overturns, and which model to trust for it.
+    """Return whether a structure uplifts, how far it rocks, whether it overturns, and which model to trust, in words.
 
     Parameters
     ----------
     histories : mapping of str to History
-        One or more models of the same structure and motion.
+        Histories of one or more models of the same structure and motion.
 
     Returns
     -------
@@ -158,7 +159,7 @@ def verdict(histories: Mapping[ModelName, History]) -> str:
 
 
 def _ends(run: History) -> str:
-    """What becomes of the structure, after "it" or its name."""
+    """Return the outcome of the structure in words, which follow "it" or its name."""
     if run.unknown:
         return f"has an {names.UNKNOWN} outcome"
     if run.overturned:
@@ -176,14 +177,14 @@ def _ends(run: History) -> str:
 
 
 def bearing(histories: Mapping[ModelName, History], called: Mapping[ModelName, str]) -> list[str]:
-    """A sentence on each equivalent block: what it is good for under this motion, and the numbers that say so.
+    """Return a sentence on each equivalent block: its grade under this motion, and the numbers behind this.
 
     Parameters
     ----------
     histories : mapping of str to History
-        One or more models of the same structure and motion.
+        Histories of one or more models of the same structure and motion.
     called : mapping of str to str
-        What to call the models.
+        Names of the models in the sentences.
     """
     found = agreements(histories)
     if not found:
@@ -210,7 +211,7 @@ def _bears(name: str, found: Agreement, run: History, best: History) -> str:
 
 
 def _beside(found: Agreement, run: History, best: History) -> str:
-    """What a block does beside the nonlinear model."""
+    """Return in words how the motion of a block differs from that of the nonlinear model."""
     if not found.same_fate:
         return f"it {_ends(run)}"
     if best.overturned:
@@ -233,7 +234,7 @@ def _later(delay: float) -> str:
 
 
 def _without_the_structure(histories: Mapping[ModelName, History], called: Mapping[ModelName, str]) -> list[str]:
-    """Of equivalent blocks alone: what is unfit, and what the others do."""
+    """Return sentences on equivalent blocks without a nonlinear history: unfit ones, and outcomes of the others."""
     _, *others = histories
     said = [f"By {called[name]} it {_ends(histories[name])}." for name in others]
     said += [
@@ -245,12 +246,12 @@ def _without_the_structure(histories: Mapping[ModelName, History], called: Mappi
 
 
 def governs(runs: Mapping[int, Mapping[ModelName, History]]) -> tuple[int | None, str]:
-    """Which polarity is the worse by the best model, if one is; and a sentence on it.
+    """Return the polarity that governs by the best model, None if neither does, and a sentence on it.
 
     Parameters
     ----------
     runs : mapping of int to mapping of str to History
-        The histories under the motion as it is, 1, and reversed, -1.
+        Histories under the motion as given (1) and reversed (-1).
     """
     model: ModelName = "nonlinear" if "nonlinear" in runs[1] else next(iter(runs[1]))
     by_model = f"by the {model} model"
@@ -285,5 +286,5 @@ def governs(runs: Mapping[int, Mapping[ModelName, History]]) -> tuple[int | None
 
 
 def _size(history: History) -> float:
-    """What two polarities are compared by: the overturning time [s], else the peak ratio."""
+    """Return the number by which two polarities are compared: the overturning time [s], or else the peak ratio."""
     return history.overturning_time if history.overturned else history.peak_ratio

@@ -1,4 +1,4 @@
-"""What a vertical ground motion does to the answers: it changes the weight, and may take it away."""
+"""Effect of a vertical ground motion on results: it changes the weight, down to zero."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rocking_cli.excitation.base import GroundMotion
 
 
 def contact_lost(motion: GroundMotion | None, gravity: float) -> float | None:
-    """When the vertical ground acceleration first comes down to -g [s]: from then on nothing holds a structure down.
+    """Return the first time at which the vertical ground acceleration reaches -g [s], when the weight vanishes.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ def contact_lost(motion: GroundMotion | None, gravity: float) -> float | None:
     Returns
     -------
     float or None
-        None if it never does, or there is no vertical component.
+        The time; None if -g is never reached, or there is no vertical component.
     """
     if motion is None or motion.vertical is None:
         return None
@@ -37,7 +37,7 @@ def contact_lost(motion: GroundMotion | None, gravity: float) -> float | None:
 
 
 def vertical_notes(motion: GroundMotion, gravity: float) -> list[str]:
-    """Say what the vertical component of a motion means for the answers, in sentences; none without one.
+    """Return sentences on what the vertical component of a motion means for results; empty without one.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def vertical_notes(motion: GroundMotion, gravity: float) -> list[str]:
     Returns
     -------
     list of str
-        How far g changes and what that leaves of the equivalent block, and when contact is lost if it is.
+        Range over which g changes, its effect on the equivalent block, and the time at which contact is lost, if any.
     """
     if motion.vertical is None:
         return []

@@ -1,8 +1,8 @@
-"""The three ways to run a kernel, and which of them is taken.
+"""The three ways to run a kernel, and the choice between them.
 
 The kernels have one source. The first way that works is taken: the machine code that is shipped (`shipped`); numba
-(`compiled`), an extra for authors of kernels; Python, which takes some sixty times longer and says so. All give the
-same numbers.
+(`compiled`), an extra for authors of kernels; or Python, which takes some sixty times longer and gives a warning. All
+ways give the same numbers.
 """
 
 from __future__ import annotations
@@ -35,17 +35,17 @@ _LOCK = threading.RLock()
 
 
 def kernel(of: KernelSet) -> Kernel:
-    """The function of a set, to be called with the arguments that it has in its source."""
+    """Return the function of a kernel, with the arguments that it has in its source."""
     return _chosen(of.name)[1]
 
 
 def way(of: KernelSet) -> str:
-    """Which way is taken: `READY`, `JIT` or `PYTHON`."""
+    """Return the way in which a kernel is run: `READY`, `JIT` or `PYTHON`."""
     return _chosen(of.name)[0]
 
 
 def forget() -> None:
-    """Choose anew, for tests: another environment, another cache."""
+    """Forget the chosen way, for tests with another environment or another cache."""
     from rocking_cli.dynamics import shipped
 
     _choose.cache_clear()
@@ -86,7 +86,7 @@ def _ready(of: KernelSet) -> Kernel:
 
 @functools.cache
 def compiled_module(module: str) -> dict[str, Any]:
-    """The functions of a kernel by name, compiled by numba."""
+    """Return the functions of a kernel module, compiled by numba, by name."""
     source = importlib.import_module(module)
     return compiled.compile_source(source.SOURCE, inline=source.INLINE)
 
@@ -98,13 +98,13 @@ def _jit(of: KernelSet) -> Kernel:
 
 @functools.cache
 def _say_slow(why: str) -> None:
-    """Warn, once in this process."""
+    """Warn that kernels are slow, once in this process."""
     text = f"time histories are computed by Python itself, which takes some sixty times longer ({why})"
     warnings.warn(KernelWarning(f"{text}; rocking-cli[jit] would compile them"), stacklevel=2)
 
 
 def in_python(of: KernelSet) -> Kernel:
-    """The source of a kernel with the arithmetic of machine code, in which nothing raises."""
+    """Return the Python source of a kernel with the arithmetic of machine code, in which nothing raises."""
     import numpy as np
 
     module = importlib.import_module(of.module)
@@ -145,12 +145,12 @@ MAKE = {READY: _ready, JIT: _jit, PYTHON: in_python}
 
 
 def needs_compiling(file: str = compiled.HISTORIES) -> bool:
-    """Whether numba will have to compile a kernel when it is next called, which takes some seconds."""
+    """Return whether numba will compile a kernel at its next call, which takes some seconds."""
     return way(OF_FILE[file][0]) == JIT and compiled.needs_compiling(file)
 
 
 def is_ready(file: str) -> bool:
-    """Whether a kernel can be used without making machine code first."""
+    """Return whether a kernel can be used without being compiled first."""
     asked = os.environ.get(CHOSEN)
     for each in (asked,) if asked else WAYS:
         if each == READY and _is_shipped():
@@ -169,7 +169,7 @@ def _is_shipped() -> bool:
 
 
 def versions() -> dict[str, str]:
-    """Versions of what turns kernels into machine code, as far as it is installed."""
+    """Return the versions of the installed packages that compile kernels, by name."""
     found = {}
     for name in ("llvmlite", "numba"):
         with suppress(PackageNotFoundError):
@@ -178,12 +178,12 @@ def versions() -> dict[str, str]:
 
 
 def prepare(file: str) -> None:
-    """Make what a kernel may need, whichever set is called first."""
+    """Compile what a kernel may need, whichever of its functions is called first."""
     for each in OF_FILE[file]:
         kernel(each)
 
 
 def has_run(file: str) -> None:
-    """Note that a kernel is compiled, for the next process."""
+    """Record for later processes that a kernel is compiled."""
     if way(OF_FILE[file][0]) == JIT:
         compiled.has_run(file)

@@ -1,4 +1,4 @@
-"""Engines, which simulate the histories of structures: the exact one, those of other packages, and which one is used.
+"""Engines, which simulate time histories of structures: the exact one and those of other packages.
 
 Examples
 --------

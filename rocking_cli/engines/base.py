@@ -1,4 +1,4 @@
-"""What an engine is to this package: a class derived from `Engine`, which simulates the histories of structures."""
+"""Base class of engines, which simulate the time histories of structures."""
 
 from __future__ import annotations
 
@@ -32,24 +32,24 @@ class Engine(ABC):
     Attributes
     ----------
     name : str
-        Its name; its entry point of `rocking.engines` has the same one.
+        Name of the engine, and of its entry point in `rocking.engines`.
     knows : set of str
-        What it covers beside the nonlinear history under a horizontal motion: `"linear models"`, `"releases"` from a
-        tilt, `"vertical components"` of motions, and whether `"joints"` are checked. What is not listed is refused;
-        without `"joints"` the results carry the caution that the joints are not checked.
+        What the engine covers beside nonlinear histories under a horizontal motion: `"linear models"`, `"releases"`
+        from a tilt, `"vertical components"` of motions, and whether `"joints"` are checked. Requests for anything else
+        are refused; without `"joints"` the results carry the caution that the joints are not checked.
     """
 
     name: ClassVar[str]
     knows: ClassVar[Set[Knowledge]] = frozenset()
 
     def __init_subclass__(cls, **named: Any) -> None:
-        """Guard what a subclass answers."""
+        """Wrap the methods of a subclass, so that its failures are reported as errors of its package."""
         super().__init_subclass__(**named)
         guard(cls, ("refuses", "history"), _failed)
 
     @abstractmethod
     def refuses(self, structure: Structure) -> str | None:
-        """Return why it cannot simulate a structure, as a clause without a full stop; None if it can."""
+        """Return why the engine cannot simulate a structure, as a clause without a full stop; None if it can."""
 
     @abstractmethod
     def history(
@@ -62,10 +62,9 @@ class Engine(ABC):
         tail: float,
         rtol: float,
     ) -> History:
-        """Return the history that `follow` has been asked for.
+        """Return the history that `follow` is to return, from its checked arguments.
 
-        Arguments are those of `follow`, checked; `release` is 0 if there is none. Raise `SolverError` if the motion
-        cannot be simulated to its end.
+        `release` is 0 if there is none. Raise `SolverError` if the motion cannot be simulated to its end.
         """
 
     def follow(
@@ -78,36 +77,36 @@ class Engine(ABC):
         tail: float = TAIL,
         rtol: float = RTOL,
     ) -> History:
-        """Simulate the motion of a structure under a ground motion, from a tilt, or both.
+        """Simulate the motion of a structure under a ground motion, after a release from a tilt, or both.
 
         Parameters
         ----------
         structure : Structure
             The structure.
         motion : GroundMotion, optional
-            Ground acceleration, straight between its samples and zero after the last. With its vertical component, g
+            Ground acceleration, linear between its samples and zero after the last. With its vertical component, g
             becomes g + v_g''.
         model : {"nonlinear", "linear1", "linear2"}
             Equation of motion.
         release : float, optional
             Start at rest from this fraction of phi_cr, between -1 and 1; negative in the negative direction.
         tail : float
-            How long the samples go on after the record [s]. The motion itself is always followed to its end.
+            Time after the record for which samples are kept [s]. The motion is always simulated to its end.
         rtol : float
             Relative local error of a step of the nonlinear motion.
 
         Returns
         -------
         History
-            What became of the structure, its peaks, impacts and samples.
+            Outcome of the motion, with its peaks, impacts and samples.
 
         Raises
         ------
         InputError
-            If there is neither a motion nor a release, a value is out of range, or the engine refuses the structure
-            or does not cover what is asked for.
+            If there is neither a motion nor a release, a value is out of range, or the engine refuses the structure or
+            does not cover the request.
         SolverError
-            If the motion cannot be followed to its end.
+            If the motion cannot be simulated to its end.
         PluginError
             If an engine of another package fails, or returns no valid history.
         """
@@ -151,7 +150,7 @@ def _check(
 
 
 def _fault(found: object, model: ModelName, *, checks_joints: bool) -> str:
-    """Return why an answer of an engine is not a valid history; empty if it is one."""
+    """Return why the result of an engine is not a valid history; empty if it is one."""
     if not isinstance(found, History):
         return f"it must return a History, got {type(found).__name__}"
     if found.model != model:

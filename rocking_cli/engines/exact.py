@@ -1,4 +1,4 @@
-"""The exact engine: tables of the mechanism, and a compiled kernel from impact to impact."""
+"""The exact engine: tables of the mechanism, and a compiled kernel that integrates from impact to impact."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rocking_cli.structure import Structure
 
 
 class Exact(Engine):
-    """One degree of freedom between impacts: the joints of the mechanism open, all others are checked.
+    """Engine for one degree of freedom: the joints of the mechanism open and close, and all others are only checked.
 
     Nonlinear: Eq. 8 by an error-controlled Runge-Kutta-Nystrom pair. Linear: Eq. 16, exact on every ramp of the
     record; with a vertical component, whose g changes along the ramp, by the same pair.
@@ -22,7 +22,7 @@ class Exact(Engine):
     knows: ClassVar[frozenset[Knowledge]] = frozenset({"linear models", "releases", "vertical components", "joints"})
 
     def refuses(self, structure: Structure) -> None:
-        """Refuse no structure: each has one degree of freedom. One without a model is an error of its own."""
+        """Return None: the exact engine refuses no structure; building the model raises an error if impossible."""
 
     def history(
         self,
@@ -34,5 +34,5 @@ class Exact(Engine):
         tail: float,
         rtol: float,
     ) -> History:
-        """Return the history of a model of the structure."""
+        """Return the history of a model of the structure; arguments are those of `Engine.history`."""
         return follow(structure.model(model), motion, release=release, tail=tail, rtol=rtol)

@@ -1,4 +1,4 @@
-"""Which engine simulates a structure, and the engines of other packages, by the entry points `rocking.engines`."""
+"""Choice of the engine for a structure, and engines of other packages, by the entry points `rocking.engines`."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Engines(Plugins[Engine]):
 
     @staticmethod
     def accept(loaded: object, point: Point) -> Engine:
-        """What was loaded, if it is a complete engine of its name."""
+        """Return the loaded object if it is a complete engine with the name of its entry point."""
         if not (isinstance(loaded, type) and issubclass(loaded, Engine)):
             raise MechanismError(f"{origin(point)} is not an engine: it must be a class derived from Engine")
         faults = [f"method {method} is missing" for method in sorted(loaded.__abstractmethods__)]
@@ -56,12 +56,12 @@ class Engines(Plugins[Engine]):
 
 @cache
 def engines() -> Engines:
-    """The engines of other packages."""
+    """Return the engines of other packages."""
     return Engines()
 
 
 def engine(name: str) -> Engine:
-    """Return the engine of a name, `"exact"` or one that is installed. Raises `InputError` if there is none."""
+    """Return the engine of a name, `"exact"` or one that is installed. Raises `InputError` if it does not exist."""
     if name != EXACT.name and name not in engines():
         raise InputError(f"unknown engine: {name} ({did_you_mean(name, [EXACT.name, *engines()])})")
     return EXACT if name == EXACT.name else engines()[name]
@@ -73,7 +73,7 @@ def engine_of(structure: Structure) -> Engine:
     Raises
     ------
     InputError
-        If all of them refuse it; it gives their reasons.
+        If all engines refuse the structure; the message has their reasons.
     """
     reasons = []
     for each in _in_order():
@@ -104,17 +104,17 @@ def respond(
     tail: float = TAIL,
     rtol: float = RTOL,
 ) -> dict[ModelName, History]:
-    """Simulate some models of a structure by its engine; other parameters, and errors, are those of `Engine.follow`.
+    """Simulate models of a structure by its engine; other parameters and errors are those of `Engine.follow`.
 
     Parameters
     ----------
     models : sequence of {"nonlinear", "linear1", "linear2"}
-        At least one.
+        At least one model.
 
     Returns
     -------
     dict of str to History
-        In the order of `models`.
+        History of each model, in the order of `models`.
     """
     unknown = [name for name in models if name not in MODELS]
     if unknown or not models:

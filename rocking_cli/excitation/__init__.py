@@ -1,1 +1,1 @@
-"""Ground motion: what shakes a structure."""
+"""Ground motions: records, pulses, and their measures."""

@@ -1,4 +1,4 @@
-"""A ground motion: acceleration samples at a constant interval, straight lines between them."""
+"""Ground motions: acceleration samples at a constant interval, linear in between."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ MOST_SAMPLES = 20_000_000  # of a record: more than a day at 200 samples a secon
 
 
 class Doubt(NamedTuple):
-    """Something to be careful about.
+    """A reason to doubt a ground motion or its file.
 
     Parameters
     ----------
     kind : str
-        A word for programs: dt, mean_period, pga, offset, start, final_velocity, final_displacement, clipped, spike,
-        dropout or p_dt; of what a reader found in a file, columns, digits, count, header_peak, header_time,
+        Keyword for programs: dt, mean_period, pga, offset, start, final_velocity, final_displacement, clipped, spike,
+        dropout or p_dt; for doubts that a reader has about a file: columns, digits, count, header_peak, header_time,
         header_length, uneven or resolution.
     value : float
-        The number that raised it: in s, s, g, g, g, m/s, m, samples, s, s and 1; rows (of free text the line), the
-        line, points, in the unit of the header, s, s, s and g.
+        The number that gives rise to the doubt: in s, s, g, g, g, m/s, m, samples, s, s and 1; rows (of free text the
+        line), the line, points, in the unit of the header, s, s, s and g.
     text : str
-        A sentence for people.
+        A sentence for users.
     """
 
     kind: str
@@ -37,18 +37,18 @@ class Doubt(NamedTuple):
 
 
 class Origin(NamedTuple):
-    """Which earthquake a record is of, and where it was taken, as far as its file says so for sure.
+    """The earthquake and the station of a record, as far as its file states them unambiguously.
 
     Parameters
     ----------
     event : str or None
-        The earthquake: its name, or when it was.
+        The earthquake: its name, or its time.
     station : str or None
-        Name or code.
+        Name or code of the station.
     magnitude : float or None
-        Of the moment where the file gives several.
+        Magnitude; the moment magnitude if the file has several.
     distance : float or None
-        From the epicentre, or as the file says [km].
+        Distance from the epicentre, or as the file defines it [km].
     """
 
     event: str | None = None
@@ -67,30 +67,30 @@ class GroundMotion:
     Parameters
     ----------
     name : str
-        What to call it.
+        Name of the motion.
     dt : float
         Interval between samples [s], > 0.
     acceleration : ndarray, shape (npts,)
-        Ground acceleration [m/s2] at t = 0, dt, 2 dt, ...; a copy is kept, which cannot be written to.
+        Ground acceleration [m/s2] at t = 0, dt, 2 dt, ...; the motion keeps a read-only copy.
     unit : str
-        Unit the acceleration was recorded in, for the reader's eyes only.
+        Unit of the acceleration in the file, for information only.
     format : str
-        Where it came from: a record format, or `"array"`.
+        Source of the motion: a record format, or `"array"`.
     vertical : GroundMotion, optional
-        The vertical component of the same motion, positive upwards and from the same moment on, at its own interval.
+        The vertical component of the same motion, positive upwards, with the same start and its own sampling interval.
     points : ndarray of int, optional
-        Indexes of the samples that were recorded, where the others lie on straight lines between these; without it
-        all were.
+        Indices of the recorded samples, if the others are interpolated linearly between these; by default all are
+        recorded.
     every : int
-        Of how many samples a history keeps one: a pulse is sampled more finely than its history need be shown.
+        Time histories keep one of this many samples: pulses are sampled more finely than their histories are shown.
     remarks : tuple of Doubt, optional
-        What its reader found doubtful in the file.
+        Doubts of the reader about the file.
     processing : tuple of str, optional
-        Steps applied to it since it was read, in order, as they would be requested again: `"highpass 0.1"`.
+        Processing steps applied since reading, in order, written as in a request: `"highpass 0.1"`.
     ground : GroundMotion, optional
-        Of the motion of a floor, that of the ground below: its peaks are what a motion is scaled to.
+        For the motion of a floor, the motion of the ground, whose peaks are used for scaling.
     origin : Origin, optional
-        The earthquake and the station, as far as its file says.
+        The earthquake and the station, as far as the file states them.
 
     Raises
     ------
@@ -142,13 +142,13 @@ class GroundMotion:
 
     @property
     def velocity(self) -> NDArray[np.float64]:
-        """Ground velocity at the samples [m/s], from zero, exact for straight lines between them."""
+        """Ground velocity at the samples [m/s], starting from zero, exact for linear interpolation."""
         a = self.acceleration
         return from_zero(self.dt * (a[:-1] + a[1:]) / 2)
 
     @property
     def displacement(self) -> NDArray[np.float64]:
-        """Ground displacement at the samples [m], from zero, exact for straight lines between them."""
+        """Ground displacement at the samples [m], starting from zero, exact for linear interpolation."""
         a, v, dt = self.acceleration, self.velocity, self.dt
         return from_zero(dt * (v[:-1] + dt * (2 * a[:-1] + a[1:]) / 6))
 
@@ -160,23 +160,23 @@ class GroundMotion:
 
     @property
     def of_ground(self) -> GroundMotion:
-        """The motion of the ground, which this is unless it is that of a floor."""
+        """The motion of the ground: of a floor motion, the ground below; otherwise this motion."""
         return self if self.ground is None else self.ground
 
     @property
     def kept(self) -> GroundMotion:
-        """The motion at the samples that a history keeps, to be shown beside it."""
+        """The motion at the samples that time histories keep, to be shown beside them."""
         if self.every == 1:
             return self
         return replace(self, dt=self.every * self.dt, acceleration=self.acceleration[:: self.every], every=1)
 
     def plot(self, file: str | Path | None = None) -> Any:
-        """Draw it as `rocking_cli.record` does: acceleration, velocity, displacement and Arias intensity over time.
+        """Draw acceleration, velocity, displacement and Arias intensity against time, as `rocking_cli.record` does.
 
         Parameters
         ----------
         file : str or Path, optional
-            Where to write the picture too: .png, .svg or .pdf.
+            File to write the plot to as well: .png, .svg or .pdf.
 
         Returns
         -------
@@ -187,14 +187,14 @@ class GroundMotion:
         return record(self).plot(file)
 
     def response_spectrum(self, periods: ArrayLike | None = None, damping: float = 0.05) -> Any:
-        """Its response spectrum, as `rocking_cli.response_spectrum` gives it.
+        """Return the response spectrum of the motion, as `rocking_cli.response_spectrum` gives it.
 
         Parameters
         ----------
         periods : array_like, shape (n,), optional
-            Of the oscillators [s]; 200 from 0.02 to 10 s at equal ratios, unless given.
+            Periods of the oscillators [s]; by default, 200 from 0.02 to 10 s at equal ratios.
         damping : float
-            Their damping ratio.
+            Damping ratio of the oscillators.
 
         Returns
         -------
@@ -205,9 +205,10 @@ class GroundMotion:
         return response_spectrum(self, periods, damping=damping)
 
     def scaled(self, factor: float) -> GroundMotion:
-        """The same motion with every acceleration multiplied by `factor`, named so.
+        """Return the motion with every acceleration multiplied by `factor`, and the factor in its name.
 
-        A negative factor reverses the horizontal component; the vertical one is multiplied by its size.
+        A negative factor reverses the horizontal component; the vertical one is multiplied by the factor's absolute
+        value.
         """
         name = self.name if factor == 1 else f"{self.name} x {factor:g}"
         if not np.isfinite(factor * float(np.abs(self.acceleration).max())):
@@ -218,7 +219,7 @@ class GroundMotion:
 
 
 def _own(values: ArrayLike, kind: type[np.generic]) -> NDArray[Any]:
-    """A copy of values that nobody can write to; no second one of what is such a copy already."""
+    """Return a read-only copy of values; values that are such a copy already are returned themselves."""
     if isinstance(values, np.ndarray) and values.base is None and not values.flags.writeable and values.dtype == kind:
         return values
     copied = np.array(values, dtype=kind, order="C")
@@ -227,7 +228,7 @@ def _own(values: ArrayLike, kind: type[np.generic]) -> NDArray[Any]:
 
 
 def from_zero(steps: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Running sums of steps, zero before the first."""
+    """Return the running sums of steps, with zero before the first step."""
     total = np.zeros(steps.size + 1)
     np.cumsum(steps, out=total[1:])
     return total

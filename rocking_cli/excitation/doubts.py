@@ -1,4 +1,4 @@
-"""What makes a ground motion doubtful, each doubt with the number that raised it."""
+"""Reasons to doubt a ground motion, each with the number that gives rise to it."""
 
 from __future__ import annotations
 
@@ -27,20 +27,19 @@ _AROUND = 18  # samples on either side that must be smooth for one to stand out
 
 
 def doubts(motion: GroundMotion, measured: Measures) -> list[Doubt]:
-    """What a ground motion itself gives reason to doubt.
+    """Return the reasons to doubt a ground motion.
 
     Parameters
     ----------
     motion : GroundMotion
-        As read, before any scaling: whether its PGA is plausible is one of the questions. Of the motion of a floor it
-        is that of the ground.
+        The motion as read, before scaling, as its PGA is checked; for the motion of a floor, that of the ground.
     measured : Measures
-        Its measures.
+        Measures of the motion.
 
     Returns
     -------
     list of Doubt
-        Empty if there is none.
+        The doubts; empty if there are none.
     """
     return [
         *motion.remarks,
@@ -52,10 +51,10 @@ def doubts(motion: GroundMotion, measured: Measures) -> list[Doubt]:
 
 
 def of_samples(motion: GroundMotion, *, accelerations: bool = True) -> list[Doubt]:
-    """What single samples give reason to doubt: nothing once they were corrected, which hides it.
+    """Return the doubts about single samples; none for a corrected motion, in which corrections hide them.
 
-    Of other quantities than `accelerations` a sample that stands alone is doubted, and no other: a displacement of
-    coarse digits that stands still is not clipped.
+    If the values are not `accelerations`, only isolated samples are doubted: a displacement of few digits that stays
+    constant is not clipped.
     """
     if not all(each.startswith("gain ") for each in motion.processing):
         return []
@@ -66,7 +65,7 @@ def of_samples(motion: GroundMotion, *, accelerations: bool = True) -> list[Doub
 
 
 def coarse_for(motion: GroundMotion, p: float, what: str = "this structure") -> list[Doubt]:
-    """Whether the samples are too far apart for a structure, called `what`, of frequency parameter p [rad/s]."""
+    """Return a doubt if dt is too long for a structure, called `what`, of frequency parameter p [rad/s]."""
     product = p * motion.dt
     if product <= GROWTH:
         return []
@@ -141,10 +140,10 @@ def _clipping(motion: GroundMotion) -> list[Doubt]:
 
 
 def _spikes(motion: GroundMotion) -> list[Doubt]:
-    """Find samples that stand alone, as a lost sign or digit leaves them.
+    """Return doubts about isolated samples, such as those with a lost sign or digit.
 
-    Off the cubic through its four neighbours a sample leaves a distance, and so do these neighbours: one wrong sample
-    leaves them in the ratio of `pattern`, and nothing else does that where all around is smooth.
+    Each sample is compared with the cubic through its four neighbours. One wrong sample leaves differences at itself
+    and at its neighbours in the ratio of `pattern`, which nothing else does if the motion around is smooth.
     """
     a = motion.acceleration
     if a.size < 2 * _AROUND:
@@ -174,7 +173,7 @@ def _spikes(motion: GroundMotion) -> list[Doubt]:
 
 
 def _dropouts(motion: GroundMotion) -> list[Doubt]:
-    """Find where the ground stands still all at once, and goes on as suddenly: values that were lost."""
+    """Return doubts about intervals in which the motion stops and resumes suddenly, as lost values do."""
     a = motion.acceleration
     steps = np.diff(a)
     peak = float(np.abs(a).max())
@@ -197,7 +196,7 @@ def _dropouts(motion: GroundMotion) -> list[Doubt]:
 
 
 def _longest_run(indexes: NDArray[np.intp]) -> int:
-    """How many of these ascending indexes follow one another without a gap, at most."""
+    """Return the length of the longest run of consecutive numbers among ascending indices."""
     gaps = np.flatnonzero(np.diff(indexes) > 1)
     ends = np.concatenate([[-1], gaps, [indexes.size - 1]])
     return int(np.diff(ends).max())

@@ -1,6 +1,6 @@
-"""How strong a ground motion is: exact for the straight lines between its samples, also for what peaks between them.
+"""Intensity measures of a ground motion, exact for linear interpolation, also for peaks between samples.
 
-Velocity and displacement start from zero; they are the parabolas and cubics that the straight lines integrate to.
+Velocity and displacement start from zero; between samples they are the parabolas and cubics that follow by integration.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ class Measures:
     pga, mean, rms : float
         Peak, mean and root-mean-square acceleration, in units of standard gravity.
     pgv, final_velocity : float
-        Peak velocity and that at the last sample [m/s].
+        Peak velocity, and velocity at the last sample [m/s].
     pgd, final_displacement : float
-        Peak displacement and that at the last sample [m].
+        Peak displacement, and displacement at the last sample [m].
     arias : float
         Arias intensity, pi/(2 g) times the integral of the squared acceleration [m/s].
     t_5, t_95 : float or None
-        When 5 and 95 % of it have built up [s]; None without any.
+        Times at which 5 and 95 % of the Arias intensity are reached [s]; None if it is zero.
     mean_period : float or None
-        2 pi times the rms acceleration over the rms of its rate [s]; None where the acceleration never changes. It is
-        the square root of a mean of squared frequencies turned over, and so shorter than the mean period `Tm` of
+        2 pi times the rms acceleration over the rms of its rate [s]; None if the acceleration is constant. Its inverse
+        is the root mean square of the frequencies, so that it is shorter than the mean period `Tm` of
         `processing.intensity`, a mean of periods over the Fourier spectrum.
     """
 
@@ -59,23 +59,23 @@ class Measures:
 
 
 def arias_build_up(motion: GroundMotion) -> Reals:
-    """Arias intensity of the motion up to each sample [m/s]; over its last value, a Husid plot."""
+    """Return the Arias intensity up to each sample [m/s]; divided by its last value, this is a Husid plot."""
     return from_zero(_squared(motion)) * (pi / (2 * STANDARD_GRAVITY))
 
 
 def time_of_share(motion: GroundMotion, share: float) -> float | None:
-    """When a share of the Arias intensity has built up [s]; None of a motion that is zero throughout."""
+    """Return the time at which a share of the Arias intensity is reached [s]; None if the motion is zero."""
     built = arias_build_up(motion)
     return _time_of(motion, built, share * float(built[-1])) if built[-1] > 0 else None
 
 
 def measure(motion: GroundMotion) -> Measures:
-    """All measures of a ground motion.
+    """Return all measures of a ground motion.
 
     Parameters
     ----------
     motion : GroundMotion
-        Straight between its samples.
+        The ground motion, linear between its samples.
 
     Returns
     -------
@@ -111,13 +111,13 @@ def measure(motion: GroundMotion) -> Measures:
 
 
 def _squared(motion: GroundMotion) -> Reals:
-    """Integral of the squared acceleration over each interval [m2/s3]."""
+    """Return the integral of the squared acceleration over each sampling interval [m2/s3]."""
     a, b = motion.acceleration[:-1], motion.acceleration[1:]
     return motion.dt / 3 * (a * a + a * b + b * b)
 
 
 def _peak_velocity(motion: GroundMotion, v: Reals) -> float:
-    """Largest velocity in size [m/s]: at a sample, or where the acceleration passes zero between two."""
+    """Return the peak velocity [m/s], at a sample or where the acceleration is zero between two samples."""
     k = np.flatnonzero(_changes_sign(motion.acceleration))
     a, b = motion.acceleration[k], motion.acceleration[k + 1]
     between = v[k] + motion.dt * a * (a / (a - b)) / 2
@@ -125,7 +125,7 @@ def _peak_velocity(motion: GroundMotion, v: Reals) -> float:
 
 
 def _peak_displacement(motion: GroundMotion, v: Reals, u: Reals) -> float:
-    """Largest displacement in size [m]: at a sample, or where the velocity passes zero between two."""
+    """Return the peak displacement [m], at a sample or where the velocity is zero between two samples."""
     dt = motion.dt
     # A parabola has a root between two samples only if its sign, or that of its slope, changes there.
     k = np.flatnonzero(_changes_sign(v) | _changes_sign(motion.acceleration))
@@ -141,13 +141,13 @@ def _peak_displacement(motion: GroundMotion, v: Reals, u: Reals) -> float:
 
 
 def _changes_sign(values: Reals) -> NDArray[np.bool_]:
-    """Of each interval: whether the values at its ends are of opposite signs."""
+    """Return for each sampling interval whether the values at its ends have opposite signs."""
     signs = np.sign(values)
     return signs[:-1] * signs[1:] < 0
 
 
 def _time_of(motion: GroundMotion, built: Reals, level: float) -> float:
-    """When the Arias intensity has built up to a level [s]."""
+    """Return the time at which the Arias intensity reaches a level [s]."""
     k = int(np.searchsorted(built, level)) - 1
     ends = motion.acceleration[k : k + 2]
     most = float(np.abs(ends).max())

@@ -1,10 +1,10 @@
-"""The pulse in a record: which sine, Ricker or near-fault pulse captures most of its energy.
+"""Fit of a pulse (sine, Ricker or near-fault) to a record, by the share of the record's energy that it captures.
 
-A pulse s is fitted to a record r, both in acceleration or both in velocity, by least squares: what is maximised is the
-share of the energy of the record that it captures, 1 - sum (r - s)^2 / sum r^2 over the samples. For a start and a
-period the best amplitude is linear least squares, and so is the phase of a near-fault pulse, which is a sum of its
-phases 0 and 90. What remains is sought on a grid, by cross-correlation, and refined from the best places by a simplex.
-The ground is at rest before the record and after it.
+A pulse s is fitted to a record r, both in acceleration or both in velocity, by least squares: the fit maximises the
+captured share of the record's energy, 1 - sum (r - s)^2 / sum r^2 over the samples. For a start and a period, the best
+amplitude follows from linear least squares, and so does the phase of a near-fault pulse, which is a sum of its phases 0
+and 90. Start, period and number of cycles are searched on a grid, by cross-correlation, and refined from the best
+points by a simplex method. The ground is at rest before the record and after it.
 """
 
 from __future__ import annotations
@@ -40,20 +40,22 @@ ENOUGH = (10, 40, 500)  # samples to a period that are looked at: on the grid, o
 
 @dataclass(frozen=True)
 class PulseFit:
-    """A pulse as fitted to a record.
+    """A pulse fitted to a record.
 
     Parameters
     ----------
     pulse : Pulse
-        Its shape, amplitude [m/s2] and period [s]; the phase of a near-fault pulse is above -90 and at most 90 degrees.
+        The pulse, with its shape, amplitude [m/s2] and period [s]; the phase of a near-fault pulse is above -90 and at
+        most 90 degrees.
     start : float
-        When it starts [s] from the first sample of the record; it may start before, and end after, the record.
+        Start of the pulse [s] after the first sample of the record; the pulse may start before, and end after, the
+        record.
     sign : int
-        1 as it is, -1 reversed.
+        Sign of the pulse: 1 as given, -1 reversed.
     criterion : {"acceleration", "velocity"}
-        In what it was fitted.
+        Quantity in which the pulse was fitted.
     captured : float
-        Share of the energy of the record that it captures, 1 - sum (r - s)^2 / sum r^2.
+        Share of the record's energy that the pulse captures, 1 - sum (r - s)^2 / sum r^2.
     """
 
     pulse: Pulse
@@ -64,26 +66,26 @@ class PulseFit:
 
     @property
     def centre(self) -> float:
-        """The middle of the pulse [s] from the first sample of the record."""
+        """Middle of the pulse [s] after the first sample of the record."""
         return self.start + self.pulse.duration / 2
 
     def acceleration(self, t: Reals) -> Reals:
-        """Ground acceleration of the pulse [m/s2] at times t [s] of the record."""
+        """Return the ground acceleration of the pulse [m/s2] at times t [s] of the record."""
         return self.sign * self.pulse.acceleration(t - self.start)
 
     def velocity(self, t: Reals) -> Reals:
-        """Ground velocity of the pulse [m/s] at times t [s] of the record."""
+        """Return the ground velocity of the pulse [m/s] at times t [s] of the record."""
         return self.sign * self.pulse.velocity(t - self.start)
 
     def alone(self, motion: GroundMotion) -> GroundMotion:
-        """The pulse without its record, on the samples of the record, without a vertical component."""
+        """Return the pulse as a ground motion at the samples of the record, without a vertical component."""
         name = f"{self.pulse} of {motion.name}"
         a = self.acceleration(np.arange(motion.npts, dtype=np.float64) * motion.dt)
         return replace(motion, name=name, acceleration=a, format="pulse", vertical=None, points=None)
 
 
 def fit_pulse(motion: GroundMotion, shape: str, criterion: Criterion) -> PulseFit:
-    """The pulse of a shape that captures most energy of a record.
+    """Return the pulse of a shape that captures the most energy of a record.
 
     Parameters
     ----------
@@ -94,7 +96,7 @@ def fit_pulse(motion: GroundMotion, shape: str, criterion: Criterion) -> PulseFi
         `mavroeidis` any phase, and 1.01 to 6 cycles.
     criterion : {"acceleration", "velocity"}
         Whether the energy is that of the acceleration or that of the velocity. The velocity of a record starts from
-        zero; where it drifts, the drift is fitted.
+        zero; if it drifts, the pulse is fitted to the drift too.
 
     Returns
     -------
@@ -113,9 +115,9 @@ def fit_pulses(
     shapes: Sequence[str] = tuple(FITTED),
     criteria: Sequence[Criterion] = CRITERIA,
 ) -> Iterator[PulseFit]:
-    """The best pulse by each criterion and of each shape, one after the other as they are found.
+    """Yield the best pulse for each criterion and shape, as soon as it is found.
 
-    `fit_pulse` says what the arguments are.
+    The arguments are those of `fit_pulse`.
     """
     for criterion in criteria:
         values = motion.velocity if criterion == "velocity" else motion.acceleration
@@ -133,7 +135,7 @@ def fit_pulses(
 
 
 class _Place(NamedTuple):
-    """Where and how long a pulse is: start and period [s], cycles of a near-fault pulse."""
+    """Start [s] and period [s] of a pulse, and the number of cycles of a near-fault pulse."""
 
     start: float
     period: float
@@ -141,14 +143,14 @@ class _Place(NamedTuple):
 
 
 def _parts(shape: str, period: float, cycles: float) -> list[Pulse]:
-    """Pulses that a pulse of the shape is a sum of."""
+    """Return the pulses of unit amplitude whose sum, with weights, is a pulse of the shape."""
     if shape == "mavroeidis":
         return [MavroeidisPapageorgiou(1.0, period, phase, cycles) for phase in (0.0, 90.0)]
     return [FITTED[shape](1.0, period)]
 
 
 def _as_pulse(shape: str, place: _Place, weights: Reals) -> tuple[Pulse, int]:
-    """The pulse that is the sum of its parts, of positive amplitude, and its sign."""
+    """Return the pulse that is the weighted sum of its parts, with a positive amplitude, and its sign."""
     if shape != "mavroeidis":
         return FITTED[shape](abs(float(weights[0])), place.period), 1 if weights[0] > 0 else -1
     even, odd = (
@@ -162,16 +164,16 @@ def _as_pulse(shape: str, place: _Place, weights: Reals) -> tuple[Pulse, int]:
 
 
 class _PulseSearch:
-    """A record to find pulses in.
+    """Search for pulses in one record.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Acceleration or velocity of the record over its peak.
+        Acceleration or velocity of the record, divided by its peak.
     dt : float
-        [s].
+        Sampling interval [s].
     as_velocity : bool
-        Whether it is the velocity.
+        Whether the values are velocities.
     """
 
     def __init__(self, values: Reals, dt: float, as_velocity: bool) -> None:
@@ -183,15 +185,15 @@ class _PulseSearch:
             self.levels.append(np.convolve(self.levels[-1], [0.25, 0.5, 0.25])[1:-1:2])
 
     def level(self, period: float, enough: int) -> int:
-        """The coarsest level with enough samples to a period."""
+        """Return the coarsest level of resampling with at least `enough` samples in a period."""
         return min(max(floor(log(period / self.dt / enough, 2) + 1e-9), 0), len(self.levels) - 1)
 
     def curve(self, pulse: Pulse, x: Reals) -> Reals:
-        """What is fitted, of a pulse of unit amplitude, at times x in periods."""
+        """Return the acceleration or velocity, as fitted, of a pulse at times x in periods."""
         return pulse.period * pulse.velocity_shape(x) if self.as_velocity else pulse.shape(x)
 
     def fit(self, shape: str, place: _Place, level: int = 0) -> tuple[float, Reals]:
-        """Share of the energy captured at a place, and the amplitudes of the parts, over the peak of the record."""
+        """Return the captured share of the energy, and the amplitudes of the parts over the record's peak."""
         values, dt = self.levels[level], self.dt * 2**level
         parts = _parts(shape, place.period, place.cycles)
         first, last = ceil(place.start / dt), floor((place.start + parts[0].duration) / dt)
@@ -203,14 +205,15 @@ class _PulseSearch:
         return float(seen @ weights) * 2**level / self.energy, weights
 
     def best(self, shape: str) -> _Place:
-        """The place where most energy is captured."""
+        """Return start, period and cycles at which the pulse captures the most energy."""
         _, place = max(self._refine(shape, place, 1.0, ROUGH, ENOUGH[1]) for place in self._places(shape))
         return self._refine(shape, place, ROUGH, FINE, ENOUGH[2])[1]
 
     def _refine(self, shape: str, place: _Place, size: float, within: float, enough: int) -> tuple[float, _Place]:
-        """The best place near one: the middle is moved, and the logarithms of the period and of the cycles.
+        """Refine start, period and cycles by the simplex method; return the captured share and the result.
 
-        `size` is that of the first simplex and `within` that of the last, over a step of the grid.
+        The variables are the middle of the pulse and the logarithms of period and cycles. `size` is the size of the
+        first simplex and `within` that of the last, in steps of the grid.
         """
         steps = size * np.array([1 / ENOUGH[0] / 2, log(2) / PER_OCTAVE, 0.15])[: 3 if shape == "mavroeidis" else 2]
         middle = _middle(shape, place)
@@ -232,7 +235,7 @@ class _PulseSearch:
         return most, there(u)
 
     def _places(self, shape: str) -> list[_Place]:
-        """The most promising places of a grid, not near one another."""
+        """Return the best points of a grid of start, period and cycles, without points near better ones."""
         periods = self.shortest * 2 ** np.arange(0.0, log(self.longest / self.shortest, 2), 1 / PER_OCTAVE)
         tried = CYCLES if shape == "mavroeidis" else (2.0,)
         grid = [self._best_start(shape, period, cycles) for period in periods.tolist() for cycles in tried]
@@ -243,7 +246,7 @@ class _PulseSearch:
         return chosen
 
     def _best_start(self, shape: str, period: float, cycles: float) -> tuple[float, _Place]:
-        """Share of the energy captured, about, and the place: of the pulses of one length the best."""
+        """Return the approximate captured share and the start of the best pulse of a period and cycles."""
         level = self.level(period, ENOUGH[0])
         values, dt = self.levels[level], self.dt * 2**level
         parts = _parts(shape, period, cycles)
@@ -258,16 +261,16 @@ class _PulseSearch:
 
 
 def _span(shape: str, cycles: float) -> float:
-    """How long a pulse is, in periods."""
+    """Return the duration of a pulse in periods."""
     return cycles if shape == "mavroeidis" else _parts(shape, 1.0, cycles)[0].span
 
 
 def _middle(shape: str, place: _Place) -> float:
-    """The middle of a pulse [s]."""
+    """Return the time of the middle of a pulse [s]."""
     return place.start + _span(shape, place.cycles) * place.period / 2
 
 
 def _near(shape: str, one: _Place, other: _Place) -> bool:
-    """Whether two places may be of one maximum."""
+    """Return whether two points of the grid may belong to the same maximum."""
     between = abs(_middle(shape, one) - _middle(shape, other))
     return abs(log(one.period / other.period)) < APART and between < APART * max(one.period, other.period)

@@ -1,4 +1,4 @@
-"""A ground motion as comma-separated text that the reader of delimited text takes back number for number."""
+"""Ground motions as comma-separated text, which the reader of delimited text reads back with identical numbers."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ BLOCK = 10_000  # lines written at a time: a long record never stands in memory 
 
 
 def is_record_csv(path: Path) -> bool:
-    """Whether a file begins as `write_record_csv` begins it."""
+    """Return whether a file begins as files of `write_record_csv` do."""
     with path.open("rb") as file:
         first = file.readline(MOST)
         return first == HEADER.encode() or (
@@ -26,14 +26,15 @@ def is_record_csv(path: Path) -> bool:
 
 
 def write_record_csv(stream: BinaryIO, motion: GroundMotion) -> None:
-    """Write time [s] and acceleration [m/s2], a line a sample, below a comment on what was done to it, if anything.
+    """Write time [s] and acceleration [m/s2], one sample per line, below a comment on the processing, if any.
 
     Parameters
     ----------
     stream : binary file
-        Where to.
+        Stream to write to.
     motion : GroundMotion
-        The motion. Its accelerations are read back identical, its interval too or to the last bit.
+        The motion. Its accelerations are read back identical, and its sampling interval identical or within the last
+        bit.
     """
     if motion.processing:
         stream.write(one_line(f"{DONE}{', '.join(motion.processing)}")[: MOST - 1].encode() + b"\n")
@@ -49,7 +50,7 @@ def write_record_csv(stream: BinaryIO, motion: GroundMotion) -> None:
 
 
 def _last_time(dt: float, intervals: int) -> str:
-    """The last time, which the reader divides by the number of intervals: one that gives back dt if there is any."""
+    """Return the last time as text, such that the reader, dividing it by `intervals`, obtains dt if possible."""
     product = dt * intervals
     rounded = float(f"{product:.12g}")
     near = (rounded, product, float(np.nextafter(product, 0.0)), float(np.nextafter(product, np.inf)))

@@ -1,4 +1,4 @@
-"""A ground motion as it is used: what was read, how it is scaled, and where it comes from."""
+"""A ground motion with its scale factor and its source."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Scaled(NamedTuple):
-    """A ground motion as read, the factor on it, the pulse or file it comes from, and its place among those asked."""
+    """A ground motion as read, its scale factor, its pulse or file, and its place among the requested motions."""
 
     motion: GroundMotion
     factor: float

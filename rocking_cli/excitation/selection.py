@@ -1,4 +1,4 @@
-"""Which record files are meant by names and patterns."""
+"""Record files from names and patterns."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from rocking_cli.excitation.records.opening import STANDARD_INPUT
 
 
 def select(place: str, folder: Path | None = None) -> list[Path]:
-    """The files that a name or a pattern stands for.
+    """Return the files that match a name or a pattern.
 
     Parameters
     ----------
     place : str
-        A file, or a pattern: `records/*.AT2`; `**` stands for any folders between. Without a folder, `-` is standard
+        A file, or a pattern: `records/*.AT2`; `**` matches any folders in between. Without a folder, `-` is standard
         input.
     folder : Path, optional
-        The folder that it is relative to; by default that of the process.
+        Folder to which `place` is relative; by default the current one.
 
     Returns
     -------
     list of Path
-        At least one, in the order of their names; relative where the place is.
+        At least one file, sorted by name; relative if `place` is.
 
     Raises
     ------
     InputError
-        If there is no such file, it is a folder, or nothing matches.
+        If the file does not exist or is a folder, or nothing matches.
     """
     if folder is None and place == STANDARD_INPUT:
         return [Path(STANDARD_INPUT)]

@@ -1,4 +1,4 @@
-"""The maximum of a function of a few numbers, without derivatives: Nelder and Mead's simplex."""
+"""Maximum of a function of a few variables, without derivatives, by the simplex method of Nelder and Mead."""
 
 from __future__ import annotations
 
@@ -13,24 +13,23 @@ Reals = NDArray[np.float64]
 def maximise(
     f: Callable[[Reals], float], start: Reals, steps: Sequence[float], *, within: float, most: int = 600
 ) -> tuple[float, Reals]:
-    """The largest value near a start, and where it is.
+    """Return the largest value of a function near a start, and its point.
 
     Parameters
     ----------
     f : callable
-        Of a point, shape (n,); minus infinity where there is no value.
+        Function of a point, shape (n,); minus infinity where it is not defined.
     start : ndarray, shape (n,)
-        Where to begin; f is finite there.
+        Point to start from, where f is finite.
     steps : sequence of float
-        How far the first simplex reaches along each coordinate, and the scale of each.
+        Size of the first simplex along each coordinate, which is the scale of the coordinate.
     within : float
-        The simplex ends smaller than this in each coordinate, over `steps`.
+        Size of the last simplex along each coordinate, over `steps`.
     most : int
-        Steps, at most.
+        Largest number of steps.
 
-    Notes
-    -----
-    Nelder and Mead (1965): reflect the worst corner, and stretch or shrink as it pays.
+    Notes ----- Nelder and Mead (1965): reflect the worst corner, and expand or contract the simplex according to the
+    result.
     """
     scale = np.asarray(steps, dtype=np.float64)
     corners = start + np.vstack([np.zeros(scale.size), np.diag(scale)])

@@ -1,4 +1,4 @@
-"""A page printed to PDF by the browser of the system: nothing else sets it as people see it."""
+"""Print a page of HTML to PDF by the browser of the system, which lays it out as users see it."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ PATIENCE = 120  # s
 
 
 def browser() -> str:
-    """The browser that prints: the one named in ROCKING_BROWSER, else the first that is found.
+    """Return the browser that prints: the one in ROCKING_BROWSER, or else the first one found.
 
     Raises
     ------
     InputError
-        If there is none.
+        If there is no browser.
     """
     found = next(_there(), None)
     if found is None:
@@ -52,7 +52,7 @@ def _there() -> Iterator[str]:
 
 
 def as_pdf(page: bytes) -> bytes:
-    """A page of HTML that needs no network, printed.
+    """Return a page of HTML, which must not need a network, as PDF.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def as_pdf(page: bytes) -> bytes:
     InputError
         If there is no browser.
     Refused
-        If it does not print.
+        If the browser fails to print.
     """
     program = browser()
     with tempfile.TemporaryDirectory(prefix="rocking-", ignore_cleanup_errors=True) as folder:

@@ -1,6 +1,6 @@
-"""Places in the data of a structure as users write them, with dots: `width`, `loads.0.mass`, `ties.bar.prestress`.
+"""Paths in the data of a structure as users write them, with dots: `width`, `loads.0.mass`, `ties.bar.prestress`.
 
-A number is the place of an entry in a list, counted from 0; a word there is the `name` of an entry.
+For a list, a number is the index of an entry, from 0, and a word is the `name` of an entry.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ HOLE = object()
 
 
 def words(text: str) -> tuple[str, ...]:
-    """The words of a place. Raises `InputError` if there are none."""
+    """Return the words of a path. Raises `InputError` if there are none."""
     found = tuple(part.strip() for part in text.strip().split("."))
     if not all(found):
         hint = "write words with a dot between them, such as loads.0.mass"
@@ -36,31 +36,31 @@ def put(
     is_list: Callable[[Place], bool] = lambda place: False,
     grow: bool = True,
 ) -> Place:
-    """Put a value at a place of plain data, in place.
+    """Put a value at a path in plain data, which is changed, and return its place.
 
     Parameters
     ----------
     data : dict
-        Mappings and lists; changed.
+        Nested mappings and lists, which are changed.
     path : tuple of str
-        See `words`.
+        Path, as returned by `words`.
     value : any
-        What is to stand there.
+        The new value.
     is_list : callable
-        Whether what is missing at a place is a list, also where a name follows and no number.
+        Function that returns whether a missing item at a place is a list, even if a name follows and not a number.
     grow : bool
-        Whether lists may get new entries; a named one gets its name. Those that a number leaves out are holes until
-        `closed` takes them away.
+        Whether new entries may be added to lists; an entry added by name gets this name. Entries skipped by a number
+        are placeholders, which `closed` removes.
 
     Returns
     -------
     tuple
-        The place: keys, and places in lists.
+        The place: keys of mappings and indices of lists.
 
     Raises
     ------
     InputError
-        If a list has no such entry, or something on the way is a number or a text.
+        If a list has no such entry, or the path goes through a number or a text.
     """
     here: Any = data
     place: Place = ()
@@ -80,14 +80,14 @@ def put(
 
 
 def replace_at(data: Any, place: Place, value: Any) -> None:
-    """Put another value at a place that is there, as `put` gives it."""
+    """Replace the value at an existing place, as returned by `put`."""
     for part in place[:-1]:
         data = data[part]
     data[place[-1]] = value
 
 
 def _entry(entries: list[Any], word: str, before: tuple[str, ...], *, grow: bool) -> int:
-    """The place of an entry by its number or its name; a new one is made if the list may grow."""
+    """Return the index of an entry by its number or name; a new entry is added if `grow` is True."""
     names = [each.get("name") if isinstance(each, dict) else None for each in entries]
     if word in names:
         return names.index(word)
@@ -116,7 +116,7 @@ def _known(word: str, names: list[Any]) -> str:
 
 
 def copied(data: Any) -> Any:
-    """A copy of plain data, of which nothing is shared with the original."""
+    """Return a deep copy of plain data."""
     if isinstance(data, dict):
         return {key: copied(value) for key, value in data.items()}
     return [copied(each) for each in data] if isinstance(data, list) else data

@@ -1,4 +1,4 @@
-"""What pydantic finds wrong with the fields of a file, in plain words and with its place."""
+"""Validation errors of pydantic as problems in plain words, with their places in a file."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ OF_KIND: Any = {
 def problems(
     document: Document, model: type[BaseModel], errors: Iterable[ErrorDetails], *, owner: str, lister: str
 ) -> list[Problem]:
-    """The errors of a validation, each with its place in the file.
+    """Return the errors of a validation as problems, each with its place in the file.
 
     Parameters
     ----------
     document : Document
         The file.
     model : type
-        What its data were validated as.
+        Model by which the data were validated.
     errors : iterable of ErrorDetails
-        See `pydantic.ValidationError.errors`.
+        Errors, as from `pydantic.ValidationError.errors`.
     owner : str
-        What the fields at the top belong to, for messages: "block".
+        Name of what the top-level fields belong to, for messages: "block".
     lister : str
-        What lists them.
+        What lists the valid fields, for messages.
     """
     found: dict[Place, Problem] = {}
     errors = _of_words(errors)
@@ -53,7 +53,7 @@ def problems(
 
 
 def of_arguments(model: type[BaseModel], errors: Iterable[ErrorDetails], owner: str) -> list[Problem]:
-    """The errors of a validation of arguments in Python, each with the name of its argument."""
+    """Return the errors of a validation of arguments in Python as problems, each with the name of its argument."""
     found: dict[Place, Problem] = {}
     errors = _of_words(errors)
     places = [_place_in(model, error) for error in errors]
@@ -71,7 +71,7 @@ def of_arguments(model: type[BaseModel], errors: Iterable[ErrorDetails], owner: 
 
 
 def _place_in(model: type[BaseModel], error: ErrorDetails) -> Place:
-    """The path of an error in the data of a model: pydantic adds the branches of unions to it."""
+    """Return the path of an error in the data of a model, without the branches of unions that pydantic adds."""
     place: Place = ()
     for part in error["loc"]:
         if isinstance(part, int) or part in fields_at(model, place) or names_at(model, place):
@@ -80,7 +80,7 @@ def _place_in(model: type[BaseModel], error: ErrorDetails) -> Place:
 
 
 def place_of(data: Any, error: ErrorDetails) -> Place:
-    """The path of an error in the user's data: pydantic adds the branches of unions to it."""
+    """Return the path of an error in the user's data, without the branches of unions that pydantic adds."""
     path: list[str | int] = []
     for k, part in enumerate(error["loc"]):
         last = k == len(error["loc"]) - 1
@@ -94,7 +94,10 @@ def place_of(data: Any, error: ErrorDetails) -> Place:
 
 
 def _concerns(data: Any, error: ErrorDetails, errors: Iterable[ErrorDetails]) -> bool:
-    """Whether an error speaks of the branch of a union that the user meant: of a mapping, not that it is no number."""
+    """Return whether an error concerns the branch of a union that the user meant.
+
+    For example, it is of no use to say that a mapping is not a number.
+    """
     if error["type"] not in OF_KIND:
         return True
     place = place_of(data, error)
@@ -111,7 +114,7 @@ def _concerns(data: Any, error: ErrorDetails, errors: Iterable[ErrorDetails]) ->
 
 
 def _of_words(errors: Iterable[ErrorDetails]) -> list[ErrorDetails]:
-    """The errors without those that say of a wrong word that it is no number, where a number or a word may stand."""
+    """Return the errors without those that a wrong word is not a number, where a number or a word is allowed."""
     errors = list(errors)
     words = {error["loc"][:-1] for error in errors if error["type"] == "literal_error" and _is_branch(error["loc"][-1])}
     return [
@@ -122,7 +125,7 @@ def _of_words(errors: Iterable[ErrorDetails]) -> list[ErrorDetails]:
 
 
 def _is_branch(part: int | str) -> bool:
-    """Whether a part of a place is the branch of a union that takes words only, as pydantic writes it."""
+    """Return whether a part of a path is pydantic's name of a union's branch that accepts words only."""
     return isinstance(part, str) and part.startswith("literal[")
 
 
@@ -147,7 +150,7 @@ def _got(given: Any) -> str:
 
 
 def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, lister: str) -> tuple[str, str | None]:
-    """One error in plain words, and a hint; the arguments are those of `problems`, and its place in the data."""
+    """Return an error in plain words, and a hint; the arguments are those of `problems`, and its place in the data."""
     kind, given, ctx = error["type"], error["input"], error.get("ctx", {})
     fields = fields_at(model, place[:-1])
     info = next((fields[part] for part in reversed(place) if isinstance(part, str) and part in fields), None)
@@ -199,29 +202,29 @@ def say(model: type[BaseModel], place: Place, error: ErrorDetails, owner: str, l
 
 
 def unit_at(model: type[BaseModel], place: Place) -> str:
-    """The unit of the number at a place of the data of a model; empty for a pure number, or where there is no field."""
+    """Return the unit of the number at a place in a model's data; empty if dimensionless, or if there is no field."""
     extras = [info.json_schema_extra for info, _ in _held(model, place) if info is not None]
     return next((str(extra["unit"]) for extra in extras[:1] if isinstance(extra, dict) and "unit" in extra), "")
 
 
 def types_at(model: type[BaseModel], place: Place) -> set[Any]:
-    """The types that the value at a place may have, those in lists too; of a fixed word, the word."""
+    """Return the types allowed at a place, also as entries of lists; for a literal, its words."""
     return {leaf for _, annotation in _held(model, place)[:1] for leaf in _leaves(annotation)} if place else set()
 
 
 def lists_models(model: type[BaseModel], place: Place) -> bool:
-    """Whether a list of mappings stands at a place, such as `loads`."""
+    """Return whether the value at a place is a list of mappings, such as `loads`."""
     held = _held(model, place)[:1] if place and isinstance(place[-1], str) else []
     return any("list[" in str(annotation) and _models(annotation) for _, annotation in held)
 
 
 def names_at(model: type[BaseModel], place: Place) -> bool:
-    """Whether the keys of the mapping at a place are names that the user chooses, such as those of `blocks`."""
+    """Return whether the keys of the mapping at a place are chosen by the user, as those of `blocks` are."""
     return any(get_origin(each) is dict for _, annotation in _held(model, place) for each in _choices(annotation))
 
 
 def is_plural(model: type[BaseModel], place: Place) -> bool:
-    """Whether a list or a mapping stands at a place."""
+    """Return whether the value at a place is a list or a mapping."""
     return any("list[" in str(annotation) or "dict[" in str(annotation) for _, annotation in _held(model, place))
 
 
@@ -231,15 +234,15 @@ def _leaves(annotation: Any) -> list[Any]:
 
 
 def fields_at(model: type[BaseModel], place: Place) -> dict[str, Any]:
-    """The fields that may stand at a place, of whichever models it may hold, by the names that users write."""
+    """Return the fields allowed at a place, of all models allowed there, by the names that users write."""
     models = [each for _, annotation in _held(model, place) for each in _choices(annotation) if _is_model(each)]
     return {name: info for each in models for name, info in _spelt(each).items()}
 
 
 def _held(model: type[BaseModel], place: Place) -> list[tuple[Any, Any]]:
-    """What a place may hold: the field, where one has its name, and the annotation; places in lists count for nothing.
+    """Return what is allowed at a place, as pairs (field, annotation); the field is None unless the place has its name.
 
-    A key that the user chooses is no name of a field, even if one is called the same.
+    Indices of lists are ignored. A key that the user chooses is not the name of a field, even if they are equal.
     """
     held: list[tuple[Any, Any]] = [(None, model)]
     for part in place:
@@ -251,7 +254,7 @@ def _held(model: type[BaseModel], place: Place) -> list[tuple[Any, Any]]:
 
 
 def _choices(annotation: Any) -> list[Any]:
-    """Models with their other kinds, mappings and plain types that an annotation allows, also as entries of a list."""
+    """Return the models (with their other kinds), mappings and plain types that an annotation allows, also in lists."""
     if get_origin(annotation) is dict or not get_args(annotation):
         return [annotation, *(annotation.kinds() if hasattr(annotation, "kinds") else ())]
     return [inner for part in get_args(annotation) for inner in _choices(part)]
@@ -266,12 +269,12 @@ def _field(annotation: Any, name: str) -> Any:
 
 
 def _spelt(model: type[BaseModel]) -> dict[str, Any]:
-    """The fields of a model by the names that users write."""
+    """Return the fields of a model by the names that users write."""
     return {info.alias or name: info for name, info in model.model_fields.items()}
 
 
 def _models(annotation: Any) -> list[type[BaseModel]]:
-    """The models in an annotation, such as `list[A | B] | None`."""
+    """Return the models in an annotation, such as `list[A | B] | None`."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
     return [inner for part in get_args(annotation) for inner in _models(part)]

@@ -1,4 +1,4 @@
-"""Reading files of a bounded size, and writing files whole or not at all."""
+"""Read files of a bounded size, and write files whole or not at all."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ NEW = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0) | getattr(
 def read_bytes(
     path: str | Path, what: str, most: int, *, if_pipe: str = "write what it gives to a file first"
 ) -> bytes:
-    """Content of a file, after a look at what it is and how large.
+    """Return the content of a file, after checking its kind and size.
 
     Parameters
     ----------
     path : str or Path
         The file.
     what : str
-        What it should be, for messages: "structure file".
+        Kind of file, for messages: "structure file".
     most : int
-        How large it may be [bytes].
+        Largest size allowed [bytes].
     if_pipe : str, optional
-        What to do about a device or a pipe, for the message.
+        Hint for the message if the path is a device or a pipe.
 
     Raises
     ------
     InputError
-        If there is no such file, it is a folder, a device or a pipe, is larger, or cannot be read.
+        If the file does not exist, is a folder, a device or a pipe, is larger than `most`, or cannot be read.
     """
     shown = str(path)
     try:
@@ -64,9 +64,9 @@ def read_bytes(
 
 
 def read_at_most(stream: IO[bytes] | io.BufferedIOBase, most: int) -> bytes | None:
-    """All that a stream gives, or None if it is more than `most` bytes.
+    """Return the content of a stream, or None if it is more than `most` bytes.
 
-    It is read a piece at a time: a read of `most` bytes at once would set aside memory for as many.
+    It is read in pieces, as reading `most` bytes at once would reserve memory for all of them.
     """
     pieces, size = [], 0
     while piece := stream.read(1 << 20):
@@ -78,7 +78,7 @@ def read_at_most(stream: IO[bytes] | io.BufferedIOBase, most: int) -> bytes | No
 
 
 def folder(name: str) -> Path:
-    """A folder to write into, made if it is not there: before any work, as it may be refused, by `InputError`."""
+    """Return a folder to write into, made if it does not exist. Raises `InputError` if this is not possible."""
     path = Path(name)
     try:
         path.mkdir(parents=True, exist_ok=True)
@@ -89,9 +89,9 @@ def folder(name: str) -> Path:
 
 
 def check_new_folder(path: Path) -> None:
-    """Refuse, before any work, a place where no new folder can be made: `InputError` says why.
+    """Raise `InputError`, before any work, if no new folder can be made at a path.
 
-    A folder that is there and empty is as good as a new one.
+    An existing empty folder is accepted.
     """
     shown, elsewhere = str(path), "move it away, or name another folder"
     if path.is_dir():
@@ -108,21 +108,21 @@ def check_new_folder(path: Path) -> None:
 
 
 def write_folder(path: Path, files: Mapping[str, bytes]) -> None:
-    """Write a new folder through a temporary one, so that no half-written one is ever seen.
+    """Write a new folder through a temporary one, so that an incomplete one is never visible.
 
     Parameters
     ----------
     path : Path
-        Where to: nothing is there, or an empty folder.
+        Path of the new folder, which does not exist or is empty.
     files : mapping of str to bytes
-        Content by the place in it, with `/` between folders.
+        Content of each file by its path in the folder, with `/` between names.
 
     Raises
     ------
     InputError
-        If there can be no such folder; nothing is then left behind.
+        If the folder cannot be made; nothing is then left behind.
     Refused
-        If the system refuses: a full disk. The same holds.
+        If the system refuses, as with a full disk; nothing is then left behind.
     """
     check_new_folder(path)
     filled = path.is_dir()  # it may be where somebody is: it stays, and what is new is moved into it
@@ -149,7 +149,7 @@ def write_folder(path: Path, files: Mapping[str, bytes]) -> None:
 
 
 def check_writable(path: Path) -> None:
-    """Refuse, before any work, a place where no file can be written: `InputError` says why."""
+    """Raise `InputError`, before any work, if no file can be written at a path."""
     shown, path = str(path), Path(os.path.realpath(path))  # through a link, the file it stands for
     if path.is_symlink():
         raise InputError(Problem("this link leads back to itself", shown))
@@ -164,24 +164,24 @@ def check_writable(path: Path) -> None:
 
 
 def _is_special(path: Path) -> bool:
-    """Whether this is a device or a pipe, which is written into: a file in its place would end what it is for."""
+    """Return whether a path is a device or a pipe, which must be written into and not replaced by a file."""
     return path.exists() and not path.is_file()
 
 
 def keep_apart(outputs: Sequence[tuple[str, Path | None]], inputs: Sequence[str | None]) -> None:
-    """Refuse to write over an input, or two outputs to one file.
+    """Raise `InputError` if an output would overwrite an input, or two outputs are the same file.
 
     Parameters
     ----------
     outputs : sequence of (str, Path or None)
-        The option that requests it, and where it goes; None if it is not requested.
+        The option of each output, and its path; None if it is not requested.
     inputs : sequence of str or None
         Files that are read.
 
     Raises
     ------
     InputError
-        Naming the option.
+        With the name of the option.
     """
     read = [Path(name) for name in inputs if name is not None and Path(name).exists()]
     taken: dict[Path, str] = {}
@@ -203,7 +203,7 @@ REFUSED = (errno.ENOSPC, errno.EFBIG, errno.EIO, errno.EPIPE, getattr(errno, "ED
 
 
 class _Output(io.FileIO):
-    """A file that remembers what the system refused: libraries that write to it may say something else."""
+    """A file that keeps the error of the system, as libraries that write to it may raise another one."""
 
     refused: OSError | None = None
 
@@ -216,23 +216,23 @@ class _Output(io.FileIO):
 
 
 def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Write a file through a temporary neighbour, so that no half-written one is ever seen.
+    """Write a file through a temporary one in the same folder, so that an incomplete one is never visible.
 
-    A device, or a pipe that somebody reads, gets what is written when it is complete.
+    A device, or a pipe with a reader, receives the content when it is complete.
 
     Parameters
     ----------
     path : Path
-        Where to.
+        Path of the file.
     write : callable
-        Gets the open binary file.
+        Function that writes to the open binary file.
 
     Raises
     ------
     InputError
-        If there can be no such file; an older one of that name is then untouched.
+        If the file cannot be made; an older one of that name is then unchanged.
     Refused
-        If the system refuses: a full disk. The same holds.
+        If the system refuses, as with a full disk; an older file is then unchanged.
     """
     check_writable(path)
     shown, path = path, Path(os.path.realpath(path))
@@ -264,7 +264,7 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
 
 
 def _fill(handle: int, shown: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Write to an open file and close it; where the system refuses, that is what is said."""
+    """Write to an open file and close it; an error of the system takes precedence over others."""
     output = _Output(handle, "wb")
     try:
         with io.BufferedWriter(output) as file:
@@ -279,7 +279,7 @@ def _fill(handle: int, shown: Path, write: Callable[[BinaryIO], object]) -> None
 
 
 def _write_into(path: Path, shown: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Write to a device or a pipe, when all of it is there."""
+    """Write the complete content to a device or a pipe."""
     try:
         # Opening a pipe that nobody reads would wait for ever.
         handle = os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
@@ -301,6 +301,6 @@ def _write_into(path: Path, shown: Path, write: Callable[[BinaryIO], object]) ->
 
 
 def _cannot(shown: Path, error: OSError) -> RockingError:
-    """What to say of a file that cannot be written."""
+    """Return the error of a file that cannot be written."""
     problem = Problem(f"cannot be written: {error.strerror or error}", str(shown))
     return Refused(str(problem)) if error.errno in REFUSED else InputError(problem)

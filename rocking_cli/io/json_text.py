@@ -1,4 +1,4 @@
-"""Plain data as JSON text: the one encoder of all that is written as JSON."""
+"""Plain data as JSON text; all JSON of the package is encoded here."""
 
 from __future__ import annotations
 
@@ -9,33 +9,33 @@ from typing import Any
 
 
 def json_text(data: Any, *, sort_keys: bool = False, compact: bool = False) -> str:
-    """JSON of plain data on one line.
+    """Return plain data as JSON on one line.
 
     Parameters
     ----------
     data : object
         Mappings, sequences, texts, numbers, truth values and None; numpy's arrays and scalars too.
     sort_keys : bool
-        Whether the order of keys in a mapping is that of the alphabet.
+        Whether to sort the keys of mappings alphabetically.
     compact : bool
         Whether to leave out blanks.
 
     Returns
     -------
     str
-        NaN and infinity are null: JSON has no such numbers.
+        JSON text, in which NaN and infinity are null.
 
     Raises
     ------
     TypeError
-        If something in it is none of these.
+        If an item has any other type.
     """
     separators = (",", ":") if compact else None
     return json.dumps(_plain(data), allow_nan=False, sort_keys=sort_keys, separators=separators)
 
 
 def _plain(data: Any) -> Any:
-    """The same of Python's own types, and None for what is no finite number."""
+    """Return data with Python's own types, and None for numbers that are not finite."""
     if isinstance(data, float):
         return float(data) if isfinite(data) else None
     if hasattr(data, "tolist"):  # of numpy, which takes long to import where it is not needed

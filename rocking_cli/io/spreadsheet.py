@@ -1,4 +1,4 @@
-"""Tables of texts as spreadsheets write them: CSV with commas, semicolons or tabs, in UTF-8 or UTF-16."""
+"""Tables of text written by spreadsheets: CSV with commas, semicolons or tabs, in UTF-8 or UTF-16."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ _LINE_END = re.compile("\r\n|\r|\n")
 
 @dataclass(frozen=True)
 class Row:
-    """A row that has something in it.
+    """A row that is not blank.
 
     Parameters
     ----------
     line : int
-        Where it begins in the file, counted from 1.
+        Line of the file in which the row begins, from 1.
     cells : tuple of str
-        As many as there are headings, without blanks at their ends; those that the file leaves out are empty.
+        A cell for each heading, without outer blanks; cells missing in the file are empty.
     short : bool
-        Whether the file leaves some out.
+        Whether cells are missing in the file.
     too_many : str or None
-        What stands beyond the last heading.
+        Content beyond the last heading, if any.
     """
 
     line: int
@@ -43,20 +43,20 @@ class Row:
 
 @dataclass(frozen=True)
 class Spreadsheet:
-    """A table.
+    """A table of text.
 
     Parameters
     ----------
     file : str
-        What to call it.
+        Name of the file in messages.
     line : int
-        That of its headings.
+        Line of the headings.
     headings : tuple of str
-        Each once; one that is empty stands over nothing.
+        Headings without repetition; an empty one heads an empty column.
     rows : tuple of Row
-        Those that are not blank.
+        Rows that are not blank.
     decimal_comma : bool
-        Whether its numbers have commas for points: not where commas part the cells.
+        Whether numbers may have decimal commas; not if commas separate the cells.
     """
 
     file: str
@@ -67,12 +67,12 @@ class Spreadsheet:
 
 
 def read_sheet(path: Path) -> Spreadsheet:
-    """The table of a file. Raises `InputError` if there is none, or it has no headings, or one of them twice."""
+    """Return the table of a file. Raises `InputError` if it has no table, no headings, or a heading twice."""
     return parse_sheet(read_bytes(path, "table", LARGEST), str(path))
 
 
 def parse_sheet(raw: bytes, file: str) -> Spreadsheet:
-    """The table in the content of a file, or of what is called so. Raises as `read_sheet`."""
+    """Return the table in the content of a file; `file` is its name in messages. Raises as `read_sheet`."""
     text, skipped = _decoded(raw, file), 0
     if found := re.match(r"(?i)\s*\"?sep=(.)\"?\r?\n", text):  # what some spreadsheets begin with
         text, skipped = text[found.end() :], found[0].count("\n")
@@ -105,13 +105,13 @@ def _decoded(raw: bytes, file: str) -> str:
 
 
 def _separator(line: str) -> str:
-    """What parts the cells of a line: what there is most of outside of quotes."""
+    """Return the character that separates the cells of a line: the most frequent one outside of quotes."""
     bare = re.sub(r'"[^"]*"|\[[^\]]*\]', "", line)
     return max(SEPARATORS, key=bare.count)
 
 
 def _cells(text: str, separator: str, file: str, skipped: int) -> Iterator[tuple[int, list[str]]]:
-    """The line in which each row begins, and its cells; blank rows are left out."""
+    """Yield the line in which each row begins, and its cells, without blank rows."""
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
     while True:
         line = reader.line_num + 1 + skipped

@@ -1,4 +1,4 @@
-"""Tables as files, CSV or Parquet by the ending of their name, written a block of rows at a time."""
+"""Tables as files, CSV or Parquet by the extension of the file name, written in blocks of rows."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ROWS = 4_000  # of numbers that stand in memory as text
 
 
 def check_table(path: Path | None) -> None:
-    """Refuse, before any work, to write a Parquet file without pyarrow: `InputError` says how to get it."""
+    """Raise `InputError`, before any work, if a Parquet file is requested without pyarrow installed."""
     if path is not None and path.suffix.lower() == PARQUET and find_spec("pyarrow") is None:
         hint = "pip install 'rocking-cli[parquet]', or give a name that ends in .csv"
         raise InputError(Problem("Parquet needs the package pyarrow, which is not installed", str(path), hint=hint))
@@ -33,17 +33,17 @@ def write_table(path: Path, blocks: Iterable[Columns]) -> None:
     Parameters
     ----------
     path : Path
-        A name that ends in .parquet is a Parquet file at full precision, with a row group for each block; any other is
-        comma-separated text of nine digits. What is NaN is null there and an empty field here.
+        Path of the file. If it ends in .parquet, a Parquet file at full precision is written, with a row group for each
+        block and null for NaN; otherwise comma-separated text with nine digits and an empty field for NaN.
     blocks : iterable of mapping of str to sequence
-        Blocks of rows, of which a long table has many, all with the same columns: words, whole numbers, other numbers.
+        Blocks of rows, all with the same columns; a column has words, integers or reals.
     """
     write = _write_parquet if path.suffix.lower() == PARQUET else write_csv
     write_whole(path, lambda stream: write(stream, blocks))
 
 
 def write_csv(stream: BinaryIO, blocks: Iterable[Columns], *, digits: int | None = 9) -> None:
-    """Write a table as comma-separated text; see `write_table`. Without `digits` numbers are written with all."""
+    """Write a table as comma-separated text; see `write_table`. With `digits` None, numbers have all their digits."""
     text = io.TextIOWrapper(stream, encoding="utf-8", newline="", write_through=True)
     writer = csv.writer(text, lineterminator="\n")
     for k, columns in enumerate(blocks):
@@ -59,7 +59,7 @@ def write_csv(stream: BinaryIO, blocks: Iterable[Columns], *, digits: int | None
 
 
 def _lines(table: np.ndarray) -> str:
-    """Numbers as lines, several times as fast as field by field: a history has millions."""
+    """Return a table of numbers as lines of text, faster than field by field, as a history has millions of them."""
     line = ",".join(["%.9g"] * table.shape[1]) + "\n"
     return (line * len(table) % tuple((table + 0.0).ravel().tolist())).replace("nan", "")  # no -0
 

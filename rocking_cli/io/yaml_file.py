@@ -1,4 +1,4 @@
-"""A YAML file as plain data, with every problem placed at file:line:column."""
+"""A YAML file as plain data, with the place file:line:column of every problem."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class _Loader(yaml.SafeLoader):
 
 
 def _fast() -> type[_Loader]:
-    """The same with the parser in C, which gives the events; composed in C, deep nesting would end the process."""
+    """Return the loader with the C parser for events; nodes are composed in Python, as C crashes on deep nesting."""
 
     class Fast(Composer, yaml.CSafeLoader):
         yaml_implicit_resolvers = _Loader.yaml_implicit_resolvers
@@ -46,7 +46,7 @@ def _fast() -> type[_Loader]:
 
 
 def _composed(text: str) -> yaml.Node | None:
-    """The nodes of a text."""
+    """Return the nodes of a YAML text."""
     if len(text) >= LONG and yaml.__with_libyaml__:
         with suppress(ReaderError):  # for a bad character it has no place
             return yaml.compose(text, Loader=_fast())
@@ -76,22 +76,22 @@ Place = tuple[str | int, ...]
 
 @dataclass
 class Document:
-    """A parsed file: plain data, and where each key and value stands.
+    """A parsed file: plain data, with the place of each key and value.
 
     Parameters
     ----------
     what : str
-        What the file should be, for messages: "structure".
+        Kind of file, for messages: "structure".
     file : str
-        What to call it.
+        Name of the file in messages.
     lines : list of str
-        Its text.
+        Lines of the file.
     data : dict
-        Its content.
+        Content of the file.
     keys, values : dict
-        Where the key and the value of each path stand.
+        Marks of the key and the value at each path.
     problems : list of Problem
-        What is wrong so far.
+        Problems found so far.
     """
 
     what: str
@@ -106,7 +106,7 @@ class Document:
     def problem(
         self, message: str, mark: yaml.Mark | None, name: str | None = None, hint: str | None = None
     ) -> Problem:
-        """A problem at a mark, with the line it stands in."""
+        """Return a problem at a mark, with the line of the file."""
         if mark is None or mark.line >= len(self.lines):
             return Problem(message, self.file, field=name, hint=hint)
         return Problem(
@@ -114,7 +114,7 @@ class Document:
         )
 
     def plain(self, node: yaml.Node, path: Place = ()) -> Any:
-        """Plain data of a node; problems are gathered, not raised."""
+        """Return the plain data of a node, and add problems to the list."""
         self.values.setdefault(path, node.start_mark)
         if len(path) > DEEPEST:
             raise InputError(self.problem(f"nested too deep to be a {self.what}", node.start_mark))
@@ -159,29 +159,29 @@ class Document:
         return data
 
     def at(self, place: Place, message: str, hint: str | None = None, *, key: bool = False) -> Problem:
-        """A problem with the value at a place, or with its key; where it stands nowhere, with what holds it."""
+        """Return a problem with the value at a place, or with its key, or else with the nearest item around it."""
         mark = (self.keys if key else self.values).get(place) or self.values.get(place[:-1])
         return self.problem(message, mark, spell(place), hint)
 
     def check(self) -> None:
-        """Raise every problem found so far, in the order of the lines."""
+        """Raise `InputError` with every problem found so far, in the order of the lines."""
         if self.problems:
             raise InputError(*sorted(self.problems, key=lambda problem: problem.line or 0))
 
 
 def spell(place: Place) -> str | None:
-    """A place as the user would write it: `polygon[2]`, `restitution.positive_to_negative`."""
+    """Return a place as the user would write it: `polygon[2]`, `restitution.positive_to_negative`."""
     text = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in place)
     return text.lstrip(".") or None
 
 
 def read_text(path: Path, what: str) -> str:
-    """The text of a file that should be a `what`. Raises `InputError` if there is none."""
+    """Return the text of a file of a kind `what`. Raises `InputError` if it cannot be read."""
     return decoded(read_bytes(path, f"{what} file", LARGEST), str(path), what)
 
 
 def decoded(raw: bytes, shown: str, what: str) -> str:
-    """The text in the content of a file, or of what is called so. Raises `InputError` if it is none."""
+    """Return the text of a file from its bytes; `shown` is its name in messages. Raises `InputError` if not text."""
     if len(raw) > LARGEST:
         raise InputError(Problem(f"this cannot be a {what} file: it is larger than {LARGEST / 1e6:.4g} MB", shown))
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):  # what a redirection writes in older shells of Windows
@@ -201,16 +201,16 @@ def parse(text: str, file: str, what: str, hint: str) -> Document:
     Parameters
     ----------
     text, file : str
-        The text, and what to call it.
+        The text, and its name in messages.
     what : str
-        What it should be: "structure".
+        Kind of file: "structure".
     hint : str
-        Where to find one to start from, for who gives none.
+        Hint on where to find a template, if the file is empty.
 
     Returns
     -------
     Document
-        Keys given twice and the like are among its problems.
+        The document; repeated keys and similar errors are in its problems.
 
     Raises
     ------

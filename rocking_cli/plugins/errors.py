@@ -67,7 +67,7 @@ def guard(
 
 
 def own_traceback(error: BaseException | None) -> str | None:
-    """Return the traceback of the error of a plugin, if such an error caused this one."""
+    """Return the traceback of a plugin's error that caused this one; None if there is none."""
     while error is not None:
         if isinstance(error, PluginError) and error.__cause__ is not None:
             told = traceback.TracebackException.from_exception(error.__cause__)
@@ -99,7 +99,7 @@ def _guarded(
 
 
 def _on_the_way(file: str) -> bool:
-    """Return whether a frame only calls or imports a plugin, and is of no use to its author."""
+    """Return whether a frame of the traceback only calls or imports a plugin, and is of no use to its author."""
     return file == __file__ or "importlib" in file
 
 

@@ -1,8 +1,8 @@
-"""The entry points of installed packages, read once for each state of the environment.
+"""Entry points of installed packages, read once for each state of the environment.
 
-To read them with `importlib.metadata` takes longer than most commands compute, the more so the more packages there are.
-They are kept in the user's cache folder by all that they depend on: where Python imports from, and which files there
-declare entry points. A cache that cannot be read or written costs time, and nothing else.
+Reading them with `importlib.metadata` takes longer than most commands compute. So they are kept in the user's cache
+folder, under a key of all that they depend on: Python's import path, and the files there that declare entry points. If
+the cache cannot be read or written, they are read each time.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ BY_PATH = {"_frozen_importlib_external", "importlib_metadata"}
 
 @dataclass(frozen=True)
 class Point:
-    """An object that a package provides.
+    """An entry point: an object that a package provides.
 
     Parameters
     ----------
     name, value, group : str
-        As the package declares them; a value is "module:object".
+        Name, value and group as the package declares them; a value is "module:object".
     package : str, optional
         Name and version of the package.
     """
@@ -46,14 +46,14 @@ class Point:
     package: str = "unknown package"
 
     def load(self) -> Any:
-        """Import the object."""
+        """Import and return the object."""
         module, _, attribute = self.value.partition("[")[0].partition(":")
         imported = import_module(module.strip())
         return attrgetter(attribute.strip())(imported) if attribute else imported
 
 
 def entry_points(group: str) -> list[Point]:
-    """Return the entry points of one of our groups."""
+    """Return the entry points of one of the groups of this package."""
     return [point for point in _all() if point.group == group]
 
 
@@ -72,7 +72,7 @@ def _all() -> list[Point]:
 
 
 def _state() -> str:
-    """Return what stands for all that a search for entry points would read."""
+    """Return a key for all files that a search for entry points would read."""
     seen: list[object] = []
     for path in sys.path:
         seen.append(path)
@@ -90,7 +90,7 @@ def _state() -> str:
 
 
 def _stamp(file: str) -> tuple[int, int] | None:
-    """Return when a file was changed, and its size; None if there is none."""
+    """Return the time of the last change of a file and its size; None if it does not exist."""
     try:
         status = os.stat(file)  # noqa: PTH116  a Path would cost more than the question
     except (OSError, ValueError):
@@ -99,7 +99,7 @@ def _stamp(file: str) -> tuple[int, int] | None:
 
 
 def _read() -> list[Point]:
-    """Search all installed packages."""
+    """Return the entry points of all installed packages by searching them."""
     from importlib.metadata import distributions  # which imports much of what Python has for mail
 
     points, known = [], set()
@@ -115,7 +115,7 @@ def _read() -> list[Point]:
 
 
 def _load(state: str) -> list[Point]:
-    """Take the entry points of a state of the environment from the file, or read them and put them there."""
+    """Return the entry points for a state of the environment from the cache, or read them and cache them."""
     file = cache.folder() / FILE
     kept: dict[str, list[list[str]]] = {}
     # Whatever a damaged file, or one of another version, may hold.

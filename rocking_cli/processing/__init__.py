@@ -1,1 +1,1 @@
-"""What is made of a ground motion before it shakes anything: read, corrected, turned, carried up to a floor."""
+"""Processing of ground motions before they excite a structure: reading, correction, rotation, motion of a floor."""

@@ -1,4 +1,4 @@
-"""Two components of a record, turned into the plane in which a structure rocks."""
+"""Rotation of two components of a record into the plane in which a structure rocks."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ SAME = 1e-6  # relative difference of two intervals that are printed differently
 
 
 def turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMotion:
-    """The motion in a direction between two components at right angles.
+    """Return the motion in a direction between two components at right angles.
 
     Parameters
     ----------
     one, other : GroundMotion
         The components: the first is at 0 degrees, the second at 90.
     azimuth : float
-        Of the direction, from the first to the second [deg].
+        Angle of the direction, from the first component towards the second [deg].
 
     Returns
     -------
@@ -30,7 +30,7 @@ def turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMoti
     Raises
     ------
     InputError
-        If they differ in length or interval.
+        If the components differ in length or sampling interval.
     """
     if not isclose(one.dt, other.dt, rel_tol=SAME):
         message = f"its interval is {other.dt:.9g} s, that of {one.name} {one.dt:.9g} s"
@@ -53,7 +53,7 @@ def turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMoti
 
 
 def _exact(value: float) -> float:
-    """A cosine of a right angle is zero."""
+    """Return a cosine or sine, with rounding errors at right angles set to zero."""
     return round(value) if abs(value - round(value)) < 1e-15 else value
 
 

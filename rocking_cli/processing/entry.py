@@ -1,4 +1,4 @@
-"""A record as a study or a list of records names it, with how to read it and what to make of it."""
+"""A record as named in a study or a list of records, with its reading and its corrections."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Positive = Annotated[float, Field(gt=0)]
 
 
 def _parsed(parse: Callable[[Any], object]) -> AfterValidator:
-    """A check by a parser that raises `InputError`: the value stays as it is written."""
+    """Return a validator that checks a value by a parser raising `InputError`, and leaves the value unchanged."""
 
     def check(value: Any) -> Any:
         try:
@@ -34,7 +34,7 @@ def _parsed(parse: Callable[[Any], object]) -> AfterValidator:
 
 
 def _unit(value: object) -> object:
-    """A unit as it is spelt here, from any spelling of an acceleration."""
+    """Return the canonical spelling of a unit of acceleration."""
     known = {name for quantity in ("acceleration", "velocity", "displacement") for name in units_of(quantity)}
     if value not in known and isinstance(value, str):
         found = canonical(value)
@@ -49,7 +49,7 @@ FloorText = Annotated[str | dict[str, Any], _parsed(Floor.parse)]
 
 
 class Entry(BaseModel):
-    """How a record is read, and what is made of it."""
+    """How a record is read and processed."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
@@ -76,14 +76,14 @@ class Entry(BaseModel):
     weight: Positive = Field(1.0, description="weight of the record relative to the others")
 
     def reading(self, folder: Path, common: Reading = Reading()) -> Reading:  # noqa: B008 - it does not change
-        """How to read it; what it does not say itself is as in `common`, and its corrections come before those.
+        """Return how to read the record; missing items are taken from `common`, and its own corrections come first.
 
         Parameters
         ----------
         folder : Path
-            What its files are relative to.
+            Folder to which the entry's files are relative.
         common : Reading, optional
-            What holds for all records beside it.
+            Reading that all records share.
 
         Raises
         ------
@@ -116,19 +116,19 @@ def _first(own: Any, common: Any) -> Any:
 
 
 def as_written(entry: Entry) -> Mapping[str, Any]:
-    """What an entry says, apart from its file, by the names that it is written with."""
+    """Return the items of an entry, without its file, by the names under which they are written."""
     return entry.model_dump(exclude={"file"}, exclude_defaults=True, by_alias=True)
 
 
 def of_reading(reading: Reading, folder: Path) -> dict[str, Any]:
-    """What an entry says for its record to be read so, by the names that it is written with.
+    """Return the items of an entry that makes its record be read in this way, by the names in files.
 
     Parameters
     ----------
     reading : Reading
-        How it is read.
+        How the record is read.
     folder : Path
-        What its files are to be relative to.
+        Folder to which the entry's files are to be relative.
     """
     said = {
         "units": reading.units,
@@ -146,7 +146,7 @@ def of_reading(reading: Reading, folder: Path) -> dict[str, Any]:
 
 
 def relative(file: Path, folder: Path) -> str:
-    """A file as seen from a folder; of another drive of Windows its whole path."""
+    """Return the path of a file relative to a folder; on another drive of Windows, its absolute path."""
     try:
         return Path(os.path.relpath(file.resolve(), folder.resolve())).as_posix()
     except ValueError:

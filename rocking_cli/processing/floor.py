@@ -25,18 +25,18 @@ _NUMBER = regex(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 
 @dataclass(frozen=True)
 class Floor:
-    """A floor of a building that answers in its first mode.
+    """A floor of a building that responds in its first mode.
 
     Parameters
     ----------
     period : float
-        T1, of the mode [s].
+        T1, period of the mode [s].
     damping : float
-        xi, its damping ratio.
+        xi, damping ratio of the mode.
     height : float
-        z, of the floor over that of the building, from 0 to 1: the shape of the mode, psi = z/H.
+        Ratio of the floor's height z to that of the building H, from 0 to 1; the mode shape is psi = z/H.
     participation : float
-        gamma, of the mode; 3n/(2n + 1) for n equal storeys.
+        gamma, participation factor of the mode; 3n/(2n + 1) for n equal storeys.
     """
 
     period: float
@@ -65,12 +65,12 @@ class Floor:
 
     @classmethod
     def parse(cls, given: str | Mapping[str, object]) -> Self:
-        """Read a floor: `T1=0.4,xi=0.05,z=0.67,gamma=1.29`, with `n=3` storeys in place of gamma, or a mapping.
+        """Read a floor from `T1=0.4,xi=0.05,z=0.67,gamma=1.29`, with `n=3` storeys instead of gamma, or from a mapping.
 
         Raises
         ------
         InputError
-            If something is missing, unknown, no number or out of range.
+            If an item is missing, unknown, not a number or out of range.
         """
         pairs = dict(given) if isinstance(given, Mapping) else _pairs(given)
         for key in pairs:
@@ -90,13 +90,13 @@ class Floor:
         return cls(values["T1"], values.get("xi", DAMPING), values["z"], values["gamma"])
 
     def of(self, ground: GroundMotion) -> GroundMotion:
-        """The motion of the floor above a ground motion.
+        """Return the motion of the floor for a ground motion.
 
         Returns
         -------
         GroundMotion
-            Sampled so finely that the mode is seen; its `ground` is what is given here, its vertical component that of
-            the ground, as floors are taken as rigid that way.
+            Motion of the floor, sampled finely enough for the mode. Its `ground` is the given motion, and its vertical
+            component is that of the ground, as floors are assumed to be vertically rigid.
         """
         x, v, parts = relative_response(ground, self.period, self.damping)
         w = 2 * pi / self.period
@@ -114,7 +114,7 @@ class Floor:
 
 
 def _of_storeys(n: float) -> float:
-    """The participation factor of n equal storeys."""
+    """Return the participation factor of n equal storeys."""
     return 3 * n / (2 * n + 1)
 
 

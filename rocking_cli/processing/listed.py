@@ -1,4 +1,4 @@
-"""A record file that the user named, by itself or in a list of records."""
+"""A record file named by the user, alone or in a list of records."""
 
 from __future__ import annotations
 
@@ -18,14 +18,17 @@ SUFFIXES = (".yaml", ".yml")
 
 
 class Listed(NamedTuple):
-    """A record file, and what a list says of it; None where it was named by itself."""
+    """A record file with its entry in a list of records; None if the user named the file itself."""
 
     path: Path
     entry: Entry | None = None
     folder: Path = Path()
 
     def reading(self, common: Reading) -> Reading:
-        """How to read it, `common` being how all are read. Raises `InputError` if it contradicts itself."""
+        """Return how to read the record, with the items of `common` for all records.
+
+        Raises `InputError` if its items contradict one another.
+        """
         if self.entry is None:
             return common
         try:
@@ -34,11 +37,11 @@ class Listed(NamedTuple):
             raise InputError(*(replace(each, file=str(self.path)) for each in error.problems)) from None
 
     def read(self, common: Reading) -> GroundMotion:
-        """The motion. Raises `InputError` if it cannot be read."""
+        """Return the motion of the record. Raises `InputError` if it cannot be read."""
         return self.as_said(self.reading(common).read(self.path))
 
     def as_said(self, motion: GroundMotion) -> GroundMotion:
-        """The motion with the earthquake and the station that the list gives, in the place of those of its file."""
+        """Return the motion with the earthquake and station of the list instead of those of its file."""
         if self.entry is None:
             return motion
         own = motion.origin
@@ -47,5 +50,5 @@ class Listed(NamedTuple):
 
 
 def is_list(path: Path) -> bool:
-    """Whether a file is a list of records, by its name."""
+    """Return whether a file is a list of records, by its name."""
     return path.suffix.lower() in SUFFIXES

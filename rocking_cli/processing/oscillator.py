@@ -1,7 +1,7 @@
-"""The linear oscillator under a ground motion: exact for the straight lines between its samples.
+"""Response of the linear oscillator to a ground motion, exact for linear interpolation between samples.
 
 With x'' + 2 xi w x' + w^2 x = -u_g'' and the complex mu = -xi w + i w_d, w_d = w sqrt(1 - xi^2), the solution from rest
-is x = -Im(z)/w_d and x' = -Im(mu z)/w_d with z' = mu z + u_g'', z(0) = 0. Over an interval on which u_g'' is straight
+is x = -Im(z)/w_d and x' = -Im(mu z)/w_d with z' = mu z + u_g'', z(0) = 0. Over an interval on which u_g'' is linear
 
     z(t + dt) = e^m z(t) + dt [(phi_1 - phi_2) u_g''(t) + phi_2 u_g''(t + dt)],    m = mu dt
 
@@ -36,14 +36,14 @@ SHORTEST, LONGEST, PERIODS = (
 
 @dataclass(frozen=True, eq=False)
 class ResponseSpectrum:
-    """The largest responses of linear oscillators to a ground motion.
+    """Largest responses of linear oscillators to a ground motion.
 
     Parameters
     ----------
     periods : ndarray, shape (n,)
-        Of the oscillators [s], positive.
+        Periods of the oscillators [s], positive.
     damping : float
-        Their damping ratio.
+        Damping ratio of the oscillators.
     sd : ndarray, shape (n,)
         Largest displacement relative to the ground [m].
     """
@@ -64,12 +64,12 @@ class ResponseSpectrum:
 
 
 def relative_response(motion: GroundMotion, period: float, damping: float) -> tuple[Reals, Reals, int]:
-    """Displacement and velocity of an oscillator relative to the ground, from rest.
+    """Return displacement and velocity of an oscillator relative to the ground, starting at rest.
 
     Parameters
     ----------
     motion : GroundMotion
-        Straight between its samples.
+        Ground motion, linear between its samples.
     period : float
         Undamped period of the oscillator [s].
     damping : float
@@ -78,9 +78,9 @@ def relative_response(motion: GroundMotion, period: float, damping: float) -> tu
     Returns
     -------
     displacement, velocity : ndarray, shape (n (npts - 1) + 1,)
-        [m] and [m/s], at n equal parts of every interval.
+        Displacement [m] and velocity [m/s], with n equal parts of every sampling interval.
     parts : int
-        n: where the oscillator is fast there are several, so that its motion is seen between the samples.
+        n, more than 1 if the period is so short that the response must be sampled more finely than the motion.
     """
     check_oscillator(period, damping)
     parts = max(ceil(min(PER_PERIOD * motion.dt / period, FINEST) - 1e-9), 1)
@@ -105,14 +105,14 @@ def relative_response(motion: GroundMotion, period: float, damping: float) -> tu
 def response_spectrum(
     motion: GroundMotion, periods: ArrayLike | None = None, damping: float = DAMPING
 ) -> ResponseSpectrum:
-    """Spectrum of the responses of linear oscillators to a ground motion, while it lasts and after it.
+    """Return the response spectrum of a ground motion, from the responses during the motion and after it.
 
     Parameters
     ----------
     motion : GroundMotion
-        Straight between its samples.
+        Ground motion, linear between its samples.
     periods : array_like, shape (n,), optional
-        Undamped periods [s], positive; 200 from 0.02 to 10 s at equal ratios, unless given.
+        Undamped periods [s], positive; by default, 200 from 0.02 to 10 s at equal ratios.
     damping : float
         Damping ratio, from 0 to below 1.
 
@@ -132,12 +132,12 @@ def response_spectrum(
 
 
 def periods_between(low: float, high: float) -> Reals:
-    """The periods of a spectrum [s], at equal ratios."""
+    """Return the periods of a spectrum from `low` to `high` [s], at equal ratios."""
     return np.geomspace(low, high, PERIODS)
 
 
 def check_oscillator(period: float, damping: float) -> None:
-    """Refuse what is no oscillator."""
+    """Raise `InputError` if a period or a damping ratio is not that of an oscillator."""
     if not 0 < period < inf:
         raise InputError(Problem(f"the period of an oscillator is a positive number of seconds, got {period:g}"))
     if not 0 <= damping < 1:
@@ -145,7 +145,7 @@ def check_oscillator(period: float, damping: float) -> None:
 
 
 def finer(values: Reals, parts: int) -> Reals:
-    """Samples of the same straight lines, so many to an interval."""
+    """Return linearly interpolated values, with each interval divided into `parts` parts."""
     if parts == 1:
         return values
     places = np.arange((values.size - 1) * parts + 1)
@@ -153,7 +153,7 @@ def finer(values: Reals, parts: int) -> Reals:
 
 
 def _phi(m: complex) -> tuple[complex, complex]:
-    """phi_1 and phi_2 of the exponential of m."""
+    """Return the functions phi_1 and phi_2 of m, see the module."""
     if abs(m) > SMALL:
         grown = np.exp(m)
         return complex((grown - 1) / m), complex((grown - 1 - m) / (m * m))
@@ -166,7 +166,10 @@ def _phi(m: complex) -> tuple[complex, complex]:
 
 
 def _advance(growth: complex, forcing: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """z[k + 1] = growth z[k] + forcing[k] from zero, a block at a time: |growth| is at most 1, and no power large."""
+    """Return z with z[k + 1] = growth z[k] + forcing[k] and z[0] = 0, computed in blocks.
+
+    As |growth| is at most 1, no power of it is large.
+    """
     blocks = -(-forcing.size // BLOCK)
     padded = np.zeros(blocks * BLOCK, dtype=np.complex128)
     padded[: forcing.size] = forcing
@@ -183,7 +186,7 @@ def _advance(growth: complex, forcing: NDArray[np.complex128]) -> NDArray[np.com
 
 
 def _peak(motion: GroundMotion, period: float, damping: float) -> float:
-    """The largest displacement [m]: between samples that of the cubic with their values and slopes."""
+    """Return the peak displacement [m], with cubic interpolation between samples from values and slopes."""
     x, v, parts = relative_response(motion, period, damping)
     h = motion.dt / parts
     seen = PER_PERIOD * h <= period * (1 + 1e-9)  # a motion faster than the parts is no cubic between them
@@ -197,7 +200,7 @@ def _peak(motion: GroundMotion, period: float, damping: float) -> float:
 
 
 def _turning_point(x0: Reals, x1: Reals, v0: Reals, v1: Reals) -> Reals:
-    """Extreme value of Hermite's cubics over [0, 1] whose slopes at the ends are of opposite signs."""
+    """Return the extreme value in [0, 1] of Hermite cubics whose slopes at the ends have opposite signs."""
     # The slope is v0 + 2 b s + 3 c s^2.
     b, c = 3 * (x1 - x0) - 2 * v0 - v1, 2 * (x0 - x1) + v0 + v1
     root = np.sqrt(np.maximum(b * b - 3 * c * v0, 0.0))
@@ -207,7 +210,7 @@ def _turning_point(x0: Reals, x1: Reals, v0: Reals, v1: Reals) -> Reals:
 
 
 def _free_peak(x: float, v: float, period: float, damping: float) -> float:
-    """The first and largest turning point [m] of the free vibration that follows the motion."""
+    """Return the first, and so largest, peak displacement [m] of the free vibration after the motion."""
     w = 2 * pi / period
     w_d = w * sqrt(1 - damping * damping)
     mu = complex(-damping * w, w_d)

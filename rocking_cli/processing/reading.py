@@ -1,4 +1,4 @@
-"""How a record is read and what is made of it, in one object: from a file to the motion that shakes a structure."""
+"""How a record is read and processed, in one object: from a file to the motion that excites a structure."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from rocking_cli.processing.steps import Factor, Lowpass, Resample, Step, of_ver
 
 @dataclass(frozen=True)
 class Reading:
-    """How a record is read, and what is made of it, in this order.
+    """How a record is read and processed; the steps take place in the order of the parameters.
 
     Parameters
     ----------
     dt, units, channel : float, str, str, optional
-        See `rocking_cli.excitation.records.read_record`.
+        Sampling interval [s], unit and channel, as for `rocking_cli.excitation.records.read_record`.
     quantity : str, optional
-        What the file holds; by default accelerations, or what the gain is of.
+        Quantity in the file; by default acceleration, or the quantity of the gain.
     gain : Gain, optional
-        What one unit of the file stands for.
+        Value of one unit of the file.
     other : str or Path, optional
-        The file of the component at right angles, read alike.
+        File of the component at right angles, read in the same way.
     other_channel : str, optional
-        Its channel; by default that of the first.
+        Channel of the second component; by default that of the first.
     azimuth : float
-        Of the plane of the structure, from the first component to the second [deg].
+        Angle of the structure's plane, from the first component towards the second [deg].
     steps : tuple of Step
-        Corrections, in their order: of what was recorded, before it is differentiated.
+        Corrections in their order, applied to the recorded values, before differentiation.
     floor : Floor, optional
         The floor that the structure stands on.
     """
@@ -60,12 +60,12 @@ class Reading:
                 raise InputError(Problem(f"{what} two components", field=f"`{name}`", hint=hint))
 
     def read(self, file: str | Path) -> GroundMotion:
-        """The motion that shakes a structure.
+        """Return the motion that excites a structure.
 
         Raises
         ------
         InputError
-            If a file cannot be read, a correction cannot be made, or two components do not go together.
+            If a file cannot be read, a correction cannot be made, or two components do not fit together.
         """
         measured, quantity = self._measured(file, self.channel)
         step = smallest_step(measured)
@@ -77,13 +77,13 @@ class Reading:
         return self.on_floor(as_acceleration(corrected, quantity, self._left_of(step)))
 
     def _left_of(self, step: float) -> float:
-        """What corrections leave of the step of the last digit."""
+        """Return the size that a step of the last digit has after the corrections; 0 after a low-pass filter."""
         for each in self.steps:
             step *= 0.0 if isinstance(each, Lowpass) else abs(each.by) if isinstance(each, Factor) else 1.0
         return step
 
     def pair(self, file: str | Path) -> tuple[GroundMotion, GroundMotion]:
-        """Two components, each by itself: what is made of them is linear, and may come before they are turned.
+        """Return the two components, each processed by itself before their rotation, which is linear.
 
         Raises
         ------
@@ -102,11 +102,11 @@ class Reading:
         return self.channel if self.other_channel is None else self.other_channel
 
     def on_floor(self, motion: GroundMotion) -> GroundMotion:
-        """A motion of the ground as it is on the floor, if there is one."""
+        """Return the motion of the floor for a ground motion; without a floor, the ground motion."""
         return motion if self.floor is None else self.floor.of(motion)
 
     def vertical(self, file: str | Path, dt: float | None = None, channel: str | None = None) -> GroundMotion:
-        """The vertical component in a file of its own: as it is read, with the same corrections.
+        """Return the vertical component from a file of its own, read in the same way and with the same corrections.
 
         Raises
         ------
@@ -127,7 +127,7 @@ class Reading:
 
 
 def _same(one: str | Path, other: str | Path) -> bool:
-    """Whether two paths are of one file, however they are written."""
+    """Return whether two paths are those of one file, however they are written."""
     try:
         return Path(one) == Path(other) or Path(one).samefile(other)
     except OSError:  # one is not there, which is said where it is read

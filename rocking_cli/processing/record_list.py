@@ -1,4 +1,4 @@
-"""A list of records in a YAML file, such as `rocking select` writes: each with how to read it and its factor."""
+"""A list of records in a YAML file, as `rocking select` writes it: how to read each record, and its scale factor."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ HINT = "`rocking select` writes one"
 
 
 class RecordList(BaseModel):
-    """The content of a list of records."""
+    """Content of a list of records."""
 
     model_config = ConfigDict(frozen=True, extra="ignore", strict=True, allow_inf_nan=False)
 
@@ -26,12 +26,12 @@ class RecordList(BaseModel):
 
 
 def read_list(path: Path) -> list[Listed]:
-    """The records of a list.
+    """Return the records of a list.
 
     Parameters
     ----------
     path : Path
-        The YAML file; the files it names are relative to its folder.
+        The YAML file; file names in it are relative to its folder.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""Corrections of a ground motion, each a step of its own: nothing is corrected unless requested.
+"""Corrections of a ground motion, each a separate step; nothing is corrected unless requested.
 
-Filters are Butterworth's of order 4, once forwards and once backwards (scipy.signal.sosfiltfilt), so that no time is
-shifted; at the corner half of the amplitude is left.
+Filters are Butterworth filters of order 4, applied forwards and backwards (scipy.signal.sosfiltfilt), so that they have
+zero phase and leave half of the amplitude at the corner frequency.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ _NUMBER = regex(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 
 @dataclass(frozen=True)
 class Step:
-    """One correction; `str` gives it as it is requested."""
+    """One correction; `str` returns it as it is requested."""
 
     name: ClassVar[str]
     example: ClassVar[str]
 
     @property
     def value(self) -> str:
-        """What it is given, as text."""
+        """Parameters of the step, as text."""
         raise NotImplementedError
 
     def __str__(self) -> str:
@@ -44,15 +44,15 @@ class Step:
 
     @classmethod
     def parse(cls, text: str) -> Self:
-        """Read what it is given. Raises `InputError`."""
+        """Return the step with parameters from a text. Raises `InputError`."""
         raise NotImplementedError
 
     def of(self, motion: GroundMotion) -> GroundMotion:
-        """The corrected motion, its vertical component left alone. Raises `InputError` where it cannot be done."""
+        """Return the corrected motion, with its vertical component unchanged. Raises `InputError` if not possible."""
         raise NotImplementedError
 
     def refused(self, motion: GroundMotion, message: str, hint: str | None = None) -> InputError:
-        """What to raise where it cannot be done."""
+        """Return the error to raise if the correction is not possible."""
         return InputError(Problem(message, motion.name, field=f"`{self.name}`", hint=hint))
 
 
@@ -66,12 +66,12 @@ class Baseline(Step):
 
     @property
     def value(self) -> str:
-        """Which polynomial."""
+        """Kind of polynomial."""
         return self.kind
 
     @classmethod
     def parse(cls, text: str) -> Self:
-        """Read which polynomial."""
+        """Return the step for a kind of polynomial."""
         word = text.strip().lower()
         if word not in DEGREES:
             hint = did_you_mean(word, list(DEGREES))
@@ -79,7 +79,7 @@ class Baseline(Step):
         return cls(word)
 
     def of(self, motion: GroundMotion) -> GroundMotion:
-        """The motion without it."""
+        """Return the motion without the polynomial."""
         degree = DEGREES[self.kind]
         if motion.npts <= degree + 1:
             raise self.refused(motion, f"{motion.npts} samples lie on such a line: nothing would be left")
@@ -98,16 +98,16 @@ class Filter(Step):
 
     @property
     def value(self) -> str:
-        """The corner."""
+        """Corner frequency in Hz, as text."""
         return exact(self.frequency)
 
     @classmethod
     def parse(cls, text: str) -> Self:
-        """Read the corner frequency, in Hz."""
+        """Return the filter with a corner frequency in Hz."""
         return cls(_positive(cls, re.sub(r"\s*[hH][zZ]\s*$", "", text), "a frequency in Hz"))
 
     def of(self, motion: GroundMotion) -> GroundMotion:
-        """The motion, filtered forwards and backwards."""
+        """Return the motion, filtered forwards and backwards."""
         from scipy import signal
 
         nyquist, slowest = 0.5 / motion.dt, 1 / motion.duration
@@ -131,7 +131,7 @@ class Filter(Step):
 
 @dataclass(frozen=True)
 class Highpass(Filter):
-    """Take out what is slower than a frequency."""
+    """Remove frequencies below a corner frequency [Hz]."""
 
     name = "highpass"
     kind = "highpass"
@@ -139,7 +139,7 @@ class Highpass(Filter):
 
 @dataclass(frozen=True)
 class Lowpass(Filter):
-    """Take out what is faster than a frequency."""
+    """Remove frequencies above a corner frequency [Hz]."""
 
     name = "lowpass"
     example = "25"
@@ -148,7 +148,7 @@ class Lowpass(Filter):
 
 @dataclass(frozen=True)
 class Taper(Step):
-    """Bring both ends to zero by half a cosine, over a share of the duration each (scipy's Tukey window)."""
+    """Reduce both ends to zero by a half cosine, each over a fraction of the duration (scipy's Tukey window)."""
 
     name = "taper"
     example = "0.05"
@@ -156,12 +156,12 @@ class Taper(Step):
 
     @property
     def value(self) -> str:
-        """The share at each end."""
+        """Fraction of the duration at each end, as text."""
         return exact(self.share)
 
     @classmethod
     def parse(cls, text: str) -> Self:
-        """Read the share, a number or per cent."""
+        """Return the taper for a fraction, a number or a percentage."""
         plain = text.strip()
         percent = plain.endswith("%")
         share = _positive(cls, plain.removesuffix("%"), "a share") / (100 if percent else 1)
@@ -170,7 +170,7 @@ class Taper(Step):
         return cls(share)
 
     def of(self, motion: GroundMotion) -> GroundMotion:
-        """The tapered motion."""
+        """Return the tapered motion."""
         from scipy.signal import windows
 
         return _of_samples(motion, motion.acceleration * windows.tukey(motion.npts, 2 * self.share))
@@ -178,7 +178,7 @@ class Taper(Step):
 
 @dataclass(frozen=True)
 class Trim(Step):
-    """Keep what is from one time to another [s], to the nearest samples; the first becomes time zero."""
+    """Keep the samples from one time to another [s], to the nearest sample; the first becomes time zero."""
 
     name = "trim"
     example = "2:20"
@@ -187,12 +187,12 @@ class Trim(Step):
 
     @property
     def value(self) -> str:
-        """The two times."""
+        """The two times, as text."""
         return f"{exact(self.start)}:{exact(self.end)}" if self.end < inf else f"{exact(self.start)}:"
 
     @classmethod
     def parse(cls, text: str) -> Self:
-        """Read two times, either of which may be left out: `2:20`, `2:`, `:20`."""
+        """Return the step for two times, either of which may be left out: `2:20`, `2:`, `:20`."""
         first, colon, last = (part.strip() for part in text.partition(":"))
         if not colon or not (first or last):
             raise _wrong(cls, f"{text!r} is not a range of times")
@@ -202,7 +202,7 @@ class Trim(Step):
         return cls(start, end)
 
     def of(self, motion: GroundMotion) -> GroundMotion:
-        """The motion between the two times."""
+        """Return the motion between the two times."""
         dt = motion.dt
         first = round(self.start / dt) if self.start <= motion.duration else motion.npts
         last = round(min(self.end, motion.duration) / dt)
@@ -217,7 +217,7 @@ class Trim(Step):
 
 @dataclass(frozen=True)
 class Resample(Step):
-    """Another interval [s]: a finer one on the straight lines, of a coarser one first what it cannot hold is out."""
+    """Change the sampling interval [s]: interpolate linearly to a finer one; filter and resample to a coarser one."""
 
     name = "resample"
     example = "0.005"
@@ -231,16 +231,16 @@ class Resample(Step):
 
     @property
     def value(self) -> str:
-        """The interval."""
+        """New sampling interval, as text."""
         return exact(self.dt)
 
     @classmethod
     def parse(cls, text: str) -> Self:
-        """Read the interval, in s or with its unit."""
+        """Return the step for an interval, in s or with its unit."""
         return cls(_time(cls, text))
 
     def of(self, motion: GroundMotion) -> GroundMotion:
-        """The motion at the new interval."""
+        """Return the motion at the new sampling interval."""
         ratio = self.dt / motion.dt
         if abs(ratio - 1) < 1e-9:
             return motion
@@ -265,7 +265,10 @@ class Resample(Step):
         return _of_samples(motion, np.interp(time, motion.time, motion.acceleration), self.dt)
 
     def _coarser(self, motion: GroundMotion, ratio: float) -> GroundMotion:
-        """By scipy.signal.resample_poly, which low-passes; the interval is to the fraction that it takes."""
+        """Return the motion at a coarser interval by scipy.signal.resample_poly, which applies a low-pass filter.
+
+        The ratio of the intervals is rounded to the fraction that this function takes.
+        """
         from fractions import Fraction
 
         from scipy import signal
@@ -282,7 +285,7 @@ class Resample(Step):
 
 @dataclass(frozen=True)
 class Factor(Step):
-    """Multiply by a number: that of a set of records."""
+    """Multiply the accelerations by a factor, such as that of a set of records."""
 
     name = "factor"
     example = "1.5"
@@ -290,16 +293,16 @@ class Factor(Step):
 
     @property
     def value(self) -> str:
-        """The number."""
+        """The factor, as text."""
         return exact(self.by)
 
     @classmethod
     def parse(cls, text: str) -> Self:
-        """Read the number, not zero."""
+        """Return the step for a factor, which must not be zero."""
         return cls(_number(cls, text, "a factor"))
 
     def of(self, motion: GroundMotion) -> GroundMotion:
-        """The multiplied motion."""
+        """Return the multiplied motion."""
         return replace(motion.scaled(self.by), name=motion.name, vertical=motion.vertical)
 
 
@@ -309,12 +312,12 @@ STEPS: Mapping[str, type[Step]] = {
 
 
 def parse_step(name: str, given: object) -> Step:
-    """A step from its name and what it is given, as a study file has it: `highpass: 0.1`, `trim: [2, 20]`.
+    """Return a step from its name and parameters, as in a study file: `highpass: 0.1`, `trim: [2, 20]`.
 
     Raises
     ------
     InputError
-        If there is no such step, or it cannot take that.
+        If there is no such step, or its parameters are not valid.
     """
     step = STEPS.get(name)
     if step is None:
@@ -328,7 +331,7 @@ def parse_step(name: str, given: object) -> Step:
 
 
 def parse_steps(entries: Sequence[Mapping[str, Any] | str]) -> tuple[Step, ...]:
-    """Steps in their order, from a list of `{highpass: 0.1}` or of `highpass 0.1`. Raises `InputError`."""
+    """Return steps in their order, from a list of `{highpass: 0.1}` or of `highpass 0.1`. Raises `InputError`."""
     found = []
     for entry in entries:
         if isinstance(entry, str):
@@ -343,21 +346,22 @@ def parse_steps(entries: Sequence[Mapping[str, Any] | str]) -> tuple[Step, ...]:
 
 
 def process(motion: GroundMotion, steps: Sequence[Step], *, accelerations: bool = True) -> GroundMotion:
-    """A motion after some steps, in their order; its vertical component goes through the same, but not upside down.
+    """Return a motion after some steps; its vertical component is processed too, but never reversed.
 
     Parameters
     ----------
     motion : GroundMotion
-        As read.
+        The motion as read.
     steps : sequence of Step
-        In the order of their doing.
+        Steps in the order of application.
     accelerations : bool
-        Whether its samples are accelerations, and not yet to be differentiated.
+        Whether the samples are accelerations, and not values that are differentiated later.
 
     Returns
     -------
     GroundMotion
-        Its `processing` has the steps, its `remarks` what was doubtful about single samples before them.
+        The processed motion. Its `processing` has the steps, and its `remarks` the doubts about single samples before
+        them.
 
     Raises
     ------
@@ -384,7 +388,7 @@ def process(motion: GroundMotion, steps: Sequence[Step], *, accelerations: bool 
 
 
 def _check_band(steps: Sequence[Step]) -> None:
-    """Refuse filters that leave nothing between them."""
+    """Raise `InputError` if high-pass and low-pass filters leave no frequencies between them."""
     slowest = max((step.frequency for step in steps if isinstance(step, Highpass)), default=None)
     fastest = min((step.frequency for step in steps if isinstance(step, Lowpass)), default=None)
     if slowest is not None and fastest is not None and slowest >= fastest:
@@ -393,7 +397,7 @@ def _check_band(steps: Sequence[Step]) -> None:
 
 
 def of_vertical(steps: Sequence[Step]) -> tuple[Step, ...]:
-    """The steps of a motion for its vertical component: a negative factor reverses the horizontal one alone."""
+    """Return the steps for the vertical component, in which a negative factor becomes positive."""
     return tuple(replace(step, by=abs(step.by)) if isinstance(step, Factor) else step for step in steps)
 
 

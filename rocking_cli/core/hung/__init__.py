@@ -1,4 +1,4 @@
-"""What is attached to a mechanism: loads and ties, crossing walls, and pivots that crush under them."""
+"""What is attached to a mechanism: loads, ties and crossing walls; and the crushing of its pivots."""
 
 from rocking_cli.core.hung.element import Element as Element
 from rocking_cli.core.hung.element import Stretched as Stretched

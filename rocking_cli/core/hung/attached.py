@@ -1,8 +1,9 @@
-"""Loads and ties attached to a mechanism beside its own bodies, as the equation of motion sees them.
+"""Loads and ties attached to a mechanism, as terms of its equation of motion.
 
     (I + ...) phi.. + (J + ...) phi.^2 + (g + v_g'') G + Q = -s B u_g'',   Q = N L' - F.r'
 
-A load adds its mass to I, J, G and B by its shares; a tie and a force add to Q, which does not scale with g.
+A load adds its mass to I, J, G and B, each by the share that the load gives; ties and forces add to Q, which does not
+scale with g.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from rocking_cli.core.kinematics import Direction, Points
 
 
 class Path(NamedTuple):
-    """Where a point goes over the rotations: its place and first two derivatives in phi, each shape (n,)."""
+    """Path of a point over the rotations: its position [m] and first two derivatives in phi, each shape (n,)."""
 
     z: Points
     dz: Points
@@ -24,13 +25,13 @@ class Path(NamedTuple):
 
 
 class Spot(NamedTuple):
-    """A point of a body, or of the ground (None), by its place at rest [m]."""
+    """A point of a body, or of the ground (body None), by its position at rest [m]."""
 
     body: str | None
     at: complex
 
     def as_dict(self) -> dict[str, Any]:
-        """Its body and its place [x, y]."""
+        """Return the body and the position [x, y] of the point [m]."""
         return {"body": self.body, "at": [self.at.real, self.at.imag]}
 
 
@@ -39,41 +40,41 @@ Follow = Callable[[Spot], Path]
 
 
 class Push(NamedTuple):
-    """A force on a point of a body, or of the ground."""
+    """A force [N] on a point of a body, or of the ground."""
 
     spot: Spot
     force: Points  # Fx + i Fy [N], shape (n,)
 
 
 class Attached(Protocol):
-    """Something attached to a mechanism."""
+    """A load or an element attached to a mechanism."""
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Name of the attached thing."""
         ...
 
     def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
-        """Add its share to coefficients."""
+        """Add the terms of the attached thing to the coefficients `total`."""
         ...
 
     def forces(self, direction: Direction, follow: Follow) -> Sequence[Push]:
-        """The forces that it exerts on bodies and the ground, beside inertia and weight."""
+        """Return the forces on bodies and the ground [N], other than inertia forces and weight."""
         ...
 
 
 @dataclass(frozen=True)
 class PointMass:
-    """A load whose mass counts by three shares: for horizontal and vertical inertia, and as weight.
+    """A load with mass, by its shares in the horizontal inertia, in the vertical inertia and in the weight.
 
     Parameters
     ----------
     name : str
-        What it is called.
+        Name of the load.
     spot : Spot
-        Where it acts.
+        Point at which it acts.
     mass : float
-        [kg].
+        Mass [kg].
     horizontal, vertical, weight : float
         Shares of the mass, 0 to 1.
     """
@@ -87,7 +88,7 @@ class PointMass:
 
     @property
     def words(self) -> str:
-        """Its mass and its shares."""
+        """Description of the mass and its shares."""
         if (self.horizontal, self.vertical, self.weight) == (1, 1, 1):
             return f"{self.mass:.4g} kg"
         sideways, up, borne = (f"{share:.3g}" for share in (self.horizontal, self.vertical, self.weight))
@@ -96,12 +97,12 @@ class PointMass:
         )
 
     def as_dict(self) -> dict[str, Any]:
-        """Its place, its mass and its shares."""
+        """Return the point, the mass [kg] and the shares of the load."""
         shares = {"horizontal": self.horizontal, "vertical": self.vertical, "weight": self.weight}
         return {"kind": "load", **self.spot.as_dict(), "mass": self.mass, **shares}
 
     def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
-        """Add it to I, J, G, B and V."""
+        """Add the inertia and the weight of the mass to I, J, G, B and V."""
         z, dz, ddz = follow(self.spot)
         across, up, down = (self.mass * share for share in (self.horizontal, self.vertical, self.weight))
         total.I[:] += across * dz.real**2 + up * dz.imag**2
@@ -113,9 +114,9 @@ class PointMass:
         total.dB[:] += direction * across * ddz.real
 
     def forces(self, direction: Direction, follow: Follow) -> Sequence[Push]:
-        """None: it has inertia and weight only."""
+        """Return no forces: a mass has only inertia and weight."""
         return ()
 
     def product(self, one: complex, other: complex) -> float:
-        """The mass inner product of two velocities of its point."""
+        """Return the inner product of two velocities of the mass point, weighted with its mass and shares."""
         return self.mass * (self.horizontal * one.real * other.real + self.vertical * one.imag * other.imag)

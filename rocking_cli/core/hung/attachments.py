@@ -1,4 +1,4 @@
-"""Attach the loads and ties of a user to a structure for its equation of motion, checked against its bodies."""
+"""Attach a user's loads and ties to the bodies of a structure, after checking them against these bodies."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ Loc = tuple[str | int, ...]
 
 
 class RefusedFields(PydanticCustomError):
-    """Fields of a user that do not fit together, at `field` within `loc`; see `as_validation_error`.
+    """Error of fields that do not fit together: `field` within the place `loc`; see `as_validation_error`.
 
-    A validator may raise it, as `geometry_error`; no plugin is blamed for it.
+    A validator may raise it, as it may `geometry_error`; it does not count as an error of the plugin.
     """
 
     def __new__(cls, loc: Loc, field: str, reason: str) -> RefusedFields:
-        """Make it as pydantic knows such errors; braces in a message would be pydantic's."""
+        """Make the error with braces in its message escaped, which pydantic would format."""
         return super().__new__(cls, "geometry", "{reason}", {"reason": reason, "field": (*loc, field)})
 
     def __init__(self, loc: Loc, field: str, reason: str) -> None:
@@ -45,14 +45,14 @@ class RefusedFields(PydanticCustomError):
 
     @classmethod
     def first_of(cls, error: ValidationError) -> RefusedFields:
-        """Return the first of the errors that another structure with the same fields has."""
+        """Return the first error of the validation of another structure with the same fields."""
         first = error.errors(include_url=False)[0]
         *loc, field = (*first["loc"], *first.get("ctx", {}).get("field", ())) or ("mechanism",)
         return cls(tuple(loc), str(field), first["msg"])
 
 
 def as_validation_error(refused: Sequence[RefusedFields], title: str) -> ValidationError:
-    """What was refused, as errors of the fields it stands in."""
+    """Return a pydantic `ValidationError` that has each refusal at its field."""
     return ValidationError.from_exception_data(
         title,
         [InitErrorDetails(type=geometry_error(one.field, one.reason), loc=one.loc, input=None) for one in refused],
@@ -61,18 +61,18 @@ def as_validation_error(refused: Sequence[RefusedFields], title: str) -> Validat
 
 @dataclass(frozen=True)
 class Carrier:
-    """The bodies of a mechanism that things may hang on.
+    """Bodies of a mechanism to which loads and ties may be attached.
 
     Parameters
     ----------
     bodies : mapping of str to Body
-        By their names.
+        The bodies by name.
     outlines : mapping of str to sequence of Outline
-        Shapes of those whose shape is known.
+        Outlines of the bodies whose shape is known.
     alike : mapping of str to int
-        Of those that stand for several: how many.
+        Number of identical bodies that one body represents, for bodies that represent several.
     piece : callable
-        The piece of a body that a point is on, where it cracked.
+        Function that returns the piece of a cracked body on which a point lies.
     """
 
     bodies: Mapping[str, Body]
@@ -88,7 +88,7 @@ class Carrier:
         alike: Mapping[str, int],
         piece: Callable[[str, complex], str] = lambda body, at: body,
     ) -> Carrier:
-        """The carrier of a mechanism; shapes that are drawn at will do not count."""
+        """Return the carrier of a mechanism; outlines from its sketch count only if its bodies are uniform plates."""
         shapes = {body.name: [body.outline] for body in bodies if body.outline}
         return cls(
             {body.name: body for body in bodies},
@@ -110,7 +110,7 @@ class Carrier:
         return name
 
     def spot(self, name: str | None, point: complex, loc: Loc, field: str) -> Spot:
-        """A point of a body. Raises `RefusedFields` if it lies outside it."""
+        """Return a point of a body. Raises `RefusedFields` if the point lies outside the body."""
         body = self.carrying(name, point, loc)
         shapes = self.outlines.get(body, ())
         if shapes and not any(_holds(np.asarray(shape), point) for shape in shapes):
@@ -130,7 +130,7 @@ class Carrier:
         return self.body(name if name is None else self.piece(name, point), loc)
 
     def off(self, body: str, point: complex) -> float:
-        """Return how far a point lies from a body, over the size of that body; 0 if its shape is not known."""
+        """Return the distance of a point from a body, over the size of the body; 0 if its shape is not known."""
         shapes = [np.asarray(shape) for shape in self.outlines.get(body, ())]
         if not shapes or any(_holds(shape, point) for shape in shapes):
             return 0.0
@@ -139,7 +139,7 @@ class Carrier:
         return min(_from_edges(shape, point) for shape in shapes) / size
 
     def foot(self, name: str | None, loc: Loc) -> Spot:
-        """The point of a body under its centroid at the height of its lowest corner. Raises `RefusedFields`."""
+        """Return the point below the centroid of a body, at the height of its lowest corner. Raises `RefusedFields`."""
         body = self.body(name, loc)
         centroid = self.bodies[body].centroid
         lowest = min((float(np.asarray(shape).imag.min()) for shape in self.outlines.get(body, ())), default=0.0)
@@ -153,9 +153,9 @@ class Carrier:
 def attach(
     carrier: Carrier, loads: Sequence[Load], ties: Sequence[Tie], taken: Collection[str] = ()
 ) -> Iterator[tuple[Loc, Attached]]:
-    """What the equation of motion sees of loads and ties, each with its place among the fields.
+    """Yield the terms of loads and ties in the equation of motion, each with its place among the fields.
 
-    Raises `RefusedFields`, also of a name that is there already or is of `taken`.
+    Raises `RefusedFields`, also if a name is used twice or is in `taken`.
     """
     own, names = {*POINTS, *taken}, set[str]()
     for k, load in enumerate(loads):
@@ -174,7 +174,7 @@ def attach(
 
 
 def interlocked(interlock: Interlock, carrier: Carrier, density: float | None, gravity: float) -> Attached:
-    """What the equation of motion sees of the walls that cross a structure. Raises `RefusedFields`."""
+    """Return the friction of crossing walls as a term of the equation of motion. Raises `RefusedFields`."""
     loc, density = ("interlock",), interlock.density or density
     if density is None:
         raise RefusedFields(loc, "density", "is missing: the weight of the crossing walls is their friction")
@@ -184,7 +184,7 @@ def interlocked(interlock: Interlock, carrier: Carrier, density: float | None, g
 
 
 def far_off(carrier: Carrier, loads: Sequence[Load]) -> Iterator[str]:
-    """Say which loads lie further from their bodies than these are large, a sentence each without a full stop."""
+    """Yield a sentence, without a full stop, for each load that is further from its body than the body is large."""
     for load in loads:
         at = complex(*load.at)
         body = carrier.carrying(load.body, at, ())
@@ -219,7 +219,7 @@ def _spots(carrier: Carrier, tie: Tie, loc: Loc) -> Iterator[Spot]:
 def check_stretched(
     loc: Loc, tie: Element, followed: Callable[[Reals, Direction], Follow], limits: Mapping[Direction, float]
 ) -> None:
-    """Refuse a tie that no motion ever stretches, or in the one sense in which it can act."""
+    """Refuse a tie that no motion stretches, or none in the one sense in which it can act."""
     for part in tie.stretched:
         long = max(1.0, *(abs(b.at - a.at) for a, b in pairwise(part.spots)))
         for direction, limit in limits.items():
@@ -235,7 +235,7 @@ def check_stretched(
 
 
 def followed(bodies: Sequence[Body], motions: Sequence[RigidMotion], shape: tuple[int, ...]) -> Follow:
-    """The paths of points of bodies over the rotations of their motions; the ground stays."""
+    """Return a function that gives the path of a point of the bodies or the ground over the rotations of `motions`."""
     by_name = {body.name: motion for body, motion in zip(bodies, motions, strict=True)}
 
     def follow(spot: Spot) -> Path:
@@ -257,7 +257,7 @@ def _from_edges(corners: np.ndarray, point: complex) -> float:
 
 
 def _holds(corners: np.ndarray, point: complex) -> bool:
-    """Whether a point is in a polygon, or next to its edge."""
+    """Return whether a point is in a polygon, or next to its edge."""
     if _from_edges(corners, point) <= OUTSIDE * float(np.abs(corners - corners.mean()).max()):
         return True
     a, b = corners, np.roll(corners, -1)

@@ -1,4 +1,4 @@
-"""Crushing of pivots: a corner of finite strength bears on a strip, and the pivot is in its middle."""
+"""Crushing of pivots: a corner of finite strength bears on a strip, with the pivot in the middle of the strip."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ class Crushing(Described):
 
     @property
     def words(self) -> str:
-        """That it moves the pivots, as a sentence without a full stop."""
+        """Sentence, without a full stop, that crushing moves the pivots."""
         return (
             f"pivots moved inwards by crushing at {self.strength / 1e6:g} MPa under the forces at rest, and kept there "
             "over the whole motion"
         )
 
     def enlarged(self, factor: float) -> Crushing:
-        """The same strength of a structure of another size."""
+        """Return the same strength for a structure of another size."""
         return self.model_copy(update={"depth": None if self.depth is None else factor * self.depth})

@@ -1,9 +1,9 @@
-"""Elements: what pulls on a mechanism with a force N over an elongation e, by whatever law.
+"""Elements: forces N on a mechanism that follow from an elongation e, by any law.
 
     Q = N e',   Q' = N'(e) e'^2 + N e'',   U = the integral of N de
 
-A law answers `force`, `slope` and `energy`. What may be asked of a structure follows from what its elements say of
-themselves: whether they remember, whether they resist by their rate, and whether their law is made of straight lines.
+A law gives `force`, `slope` and `energy`. Each element states whether it has a memory, whether it resists by its rate,
+and whether its law is piecewise linear; from this follows which questions have an answer for the structure.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def _failed(cls: type, method: str) -> str:
 
 
 class Element(ABC):
-    """Something on a mechanism whose force follows from its elongation: a tie, a bed of springs, a constant force."""
+    """A force on a mechanism that follows from an elongation: a tie, a bed of springs, a constant force."""
 
     name: str
     has_memory: ClassVar[bool] = False
@@ -55,7 +55,7 @@ class Element(ABC):
     """How its force departs from straight lines over its elongation, to follow its name: `yields`."""
 
     def __init_subclass__(cls, **named: Any) -> None:
-        """Guard what an element of another package answers: whatever fails there is an error of that package."""
+        """Wrap the methods of elements of other packages, so that their failures name that package."""
         super().__init_subclass__(**named)
         if cls.__module__.partition(".")[0] != __name__.partition(".")[0]:
             guard(cls, ("force", "slope", "energy", "slack_at", "elongation", "act", "forces"), _failed)
@@ -63,46 +63,46 @@ class Element(ABC):
     @property
     @abstractmethod
     def words(self) -> str:
-        """What it is, in a few words, without its name."""
+        """Description of the element in a few words, without its name."""
 
     @abstractmethod
     def as_dict(self) -> dict[str, Any]:
-        """Its kind, its place at rest and its numbers, in SI units."""
+        """Return the kind, the place at rest and the parameters of the element, in SI units."""
 
     @abstractmethod
     def force(self, e: Reals) -> Reals:
-        """N of one of them at elongations, shape (n,) [N]; tension is positive."""
+        """Return the force N of one such element at elongations `e` [N], shape (n,); tension is positive."""
 
     @abstractmethod
     def slope(self, e: Reals, going: Reals) -> Reals:
-        """dN/de [N/m], shape (n,); at a corner of its law, on the side to which `going` (e') has its sign."""
+        """Return dN/de [N/m], shape (n,); at a corner of the law, on the side given by the sign of `going` (e')."""
 
     @abstractmethod
     def energy(self, e: Reals) -> Reals:
-        """The integral of N from rest [J], shape (n,)."""
+        """Return the energy at elongations `e`, the integral of N from rest [J], shape (n,)."""
 
     @abstractmethod
     def elongation(self, follow: Follow, direction: Direction = Direction.POSITIVE) -> tuple[Reals, Reals, Reals]:
-        """e [m] and its first two derivatives in phi, each shape (n,); `direction` is that of rocking."""
+        """Return e [m] and its first two derivatives in phi, each shape (n,), in a direction of rocking."""
 
     @abstractmethod
     def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
-        """Add its moment to Q, with its derivative and its energy."""
+        """Add the moment of the element to Q, with its derivative and its energy."""
 
     @abstractmethod
     def forces(self, direction: Direction, follow: Follow) -> Sequence[Push]:
-        """The forces that it exerts on bodies and the ground."""
+        """Return the forces of the element on bodies and the ground [N]."""
 
     @property
     def stretched(self) -> Sequence[Stretched]:
-        """The ties along a path that it acts as; none of a force."""
+        """Ties along a path that together act as this element does; empty for a force."""
         return ()
 
     def refuses(self, question: Question) -> str | None:
-        """Why it lets a question not be answered, to follow its name; None if it does.
+        """Return why the element prevents an answer to a question, a clause that follows its name; None if not.
 
-        What remembers or resists by its rate has no one force over its elongation; what is not made of straight lines
-        has no linear model, and no code of practice here knows it.
+        An element with memory or with resistance to its rate has no single force at an elongation. One that is not
+        piecewise linear has no linear model, and the codes of practice here do not cover it.
         """
         if self.has_memory or (self.has_rate and question != "equivalent block"):
             return self.departs or f"has {'a memory' if self.has_memory else 'a force that depends on its rate'}"
@@ -113,18 +113,18 @@ class Element(ABC):
 
 @dataclass(frozen=True)
 class Stretched(Element):
-    """An element that is stretched along a path of points, by any law.
+    """An element stretched along a path of points, by any law.
 
     Parameters
     ----------
     name : str
-        What it is called.
+        Name of the element.
     spots : sequence of Spot
-        Two or more; its length is the sum of the pieces between them.
+        Two points or more; the length of the element is the sum of the distances between them.
     count : float
-        How many of them there are.
+        Number of identical elements.
     only : {"tension", "compression"}, optional
-        In which sense it can act; it then has a corner where `slack_at` is zero.
+        The only sense in which it acts, if any; its law then has a corner where `slack_at` is zero.
     """
 
     name: str
@@ -135,28 +135,28 @@ class Stretched(Element):
 
     @property
     def at_rest(self) -> tuple[float, float]:
-        """Its force [N] and its stiffness [N/m] at rest."""
+        """Force [N] and stiffness [N/m] at rest."""
         rest = np.zeros(1)
         return float(self.force(rest)[0]), float(self.slope(rest, np.ones(1))[0])
 
     @property
     def stretched(self) -> Sequence[Stretched]:
-        """Itself."""
+        """The element itself."""
         return (self,)
 
     def as_dict(self) -> dict[str, Any]:
-        """Its path, and its force and stiffness at rest."""
+        """Return the path of the element, and its force and stiffness at rest."""
         force, stiffness = self.at_rest
         path = [spot.as_dict() for spot in self.spots]
         strength = {"stiffness": stiffness, "prestress": force, "only": self.only}
         return {"kind": "tie", "path": path, **strength, "count": self.count}
 
     def slack_at(self, e: Reals) -> Reals:
-        """What changes its sign where it goes slack or comes into play, if it acts in one sense only [N]."""
+        """Return a value [N] that changes sign where a one-sided element goes slack or taut."""
         return self.force(e)
 
     def elongation(self, follow: Follow, direction: Direction = Direction.POSITIVE) -> tuple[Reals, Reals, Reals]:
-        """e = L - L(0) [m] and the first two derivatives of L, each shape (n,)."""
+        """Return e = L - L(0) [m] and the first two derivatives of L in phi, each shape (n,)."""
         paths = [follow(spot) for spot in self.spots]
         e, first, second = (np.zeros(paths[0].z.shape) for _ in range(3))
         for (one, here), (other, there) in pairwise(zip(self.spots, paths, strict=True)):
@@ -174,7 +174,7 @@ class Stretched(Element):
         return np.where(np.abs(e) <= ROUNDING * reach, 0.0, e), first, second
 
     def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
-        """Add N L' to Q."""
+        """Add the moment N L' to Q."""
         e, first, second = self.elongation(follow)
         n = self.force(e)
         total.Q[:] += self.count * n * first
@@ -182,7 +182,7 @@ class Stretched(Element):
         total.U[:] += self.count * self.energy(e)
 
     def forces(self, direction: Direction, follow: Follow) -> Sequence[Push]:
-        """N along each piece of its path, on both of its ends."""
+        """Return the force N along each piece of the path, at both of its ends [N]."""
         n = self.count * self.force(self.elongation(follow)[0])
         paths = [follow(spot) for spot in self.spots]
         pushes = []
@@ -196,16 +196,16 @@ class Stretched(Element):
 
 
 def dot(u: complex | Points, v: Points) -> Reals:
-    """Product of vectors of the plane, each a complex number."""
+    """Return the scalar product of vectors of the plane, each a complex number."""
     return np.asarray((np.conj(u) * v).real)
 
 
 def _apart(one: Spot, other: Spot) -> float:
-    """The distance of two points at rest [m]; 0 if they are one."""
+    """Return the distance of two points at rest [m]; exactly 0 if they coincide to rounding."""
     rest = abs(other.at - one.at)
     return 0.0 if rest <= TOGETHER * (1 + abs(one.at)) else rest
 
 
 def _met(d: Points, dd: Points, rest: float) -> NDArray[np.bool_]:
-    """Where two points that met at rest are still so near that their distance is its derivative times phi."""
+    """Return where points that coincide at rest are still so near that their distance is its derivative times phi."""
     return np.abs(d) <= NEAR * np.abs(dd) if rest == 0.0 else np.zeros(d.shape, bool)

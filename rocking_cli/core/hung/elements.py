@@ -1,4 +1,4 @@
-"""The elements that structure files know: a constant force, an elastic tie, and a bed of springs along a face."""
+"""The elements of structure files: a constant force, an elastic tie, and a bed of springs along a face."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from rocking_cli.core.kinematics import Direction, Reals
 
 @dataclass(frozen=True)
 class ConstantForce(Element):
-    """A force of constant size and direction, such as the thrust of a vault; friction turns with the motion.
+    """A force of constant size and direction, such as the thrust of a vault; or friction, which opposes the motion.
 
-    Its elongation is how far its point moves against it.
+    Its elongation is the displacement of its point against the force.
 
     Parameters
     ----------
     name : str
-        What it is called.
+        Name of the force.
     spot : Spot
-        Where it acts.
+        Point at which it acts.
     thrust : complex
-        Fx + i Fy [N]; of friction, as it acts while the mechanism rocks in the positive direction.
+        Fx + i Fy [N]; for friction, its value while the mechanism rocks in the positive direction.
     friction : bool
-        Whether its horizontal part is against the motion in either direction.
+        Whether the horizontal component reverses with the direction of rocking.
     """
 
     name: str
@@ -39,41 +39,41 @@ class ConstantForce(Element):
 
     @property
     def words(self) -> str:
-        """Its two parts, or that it is friction."""
+        """Description of the force by its two components, or as friction."""
         if self.friction:
             at = f"at y = {self.spot.at.imag:.4g} m"
             return f"a constant friction of {abs(self.thrust) / 1000:.4g} kN against the motion {at}"
         return f"a force of {self.thrust.real / 1000:.4g} kN to the right and {self.thrust.imag / 1000:.4g} kN up"
 
     def as_dict(self) -> dict[str, Any]:
-        """Its place and its two parts."""
+        """Return the point and the two components of the force [N]."""
         kind = "friction" if self.friction else "force"
         return {"kind": kind, **self.spot.as_dict(), "force": [self.thrust.real, self.thrust.imag]}
 
     def in_direction(self, direction: Direction) -> complex:
-        """The force while the mechanism rocks in a direction [N]."""
+        """Return the force Fx + i Fy while the mechanism rocks in a direction [N]."""
         return complex(direction * self.thrust.real, self.thrust.imag) if self.friction else self.thrust
 
     def force(self, e: Reals) -> Reals:
-        """Its size."""
+        """Return the size of the force [N], shape (n,)."""
         return np.full(e.shape, abs(self.thrust))
 
     def slope(self, e: Reals, going: Reals) -> Reals:
-        """Nothing."""
+        """Return zeros: the force is constant."""
         return np.zeros(e.shape)
 
     def energy(self, e: Reals) -> Reals:
-        """What moving against it takes."""
+        """Return the work done against the force [J]."""
         return abs(self.thrust) * e
 
     def elongation(self, follow: Follow, direction: Direction = Direction.POSITIVE) -> tuple[Reals, Reals, Reals]:
-        """How far its point moves against it [m]; of no force, in no direction."""
+        """Return the displacement of the point against the force [m] and its derivatives; zeros for no force."""
         z, dz, ddz = follow(self.spot)
         way = self.in_direction(direction) / (abs(self.thrust) or 1.0)
         return -dot(way, z - self.spot.at), -dot(way, dz), -dot(way, ddz)
 
     def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
-        """Add -F.r' to Q."""
+        """Add the moment -F.r' to Q."""
         z, dz, ddz = follow(self.spot)
         force = self.in_direction(direction)
         total.Q[:] -= dot(force, dz)
@@ -81,7 +81,7 @@ class ConstantForce(Element):
         total.U[:] -= dot(force, z - self.spot.at)
 
     def forces(self, direction: Direction, follow: Follow) -> Sequence[Push]:
-        """Itself."""
+        """Return the force itself, at its point."""
         return (Push(self.spot, np.full(follow(self.spot).z.shape, self.in_direction(direction))),)
 
 
@@ -94,7 +94,7 @@ class Spring(Stretched):
     name, spots, count, only
         See `Stretched`.
     stiffness, prestress : float
-        k [N/m], and N0 at rest [N], tension positive.
+        Stiffness k [N/m], and force N0 at rest [N], tension positive.
     """
 
     stiffness: float
@@ -102,7 +102,7 @@ class Spring(Stretched):
 
     @property
     def words(self) -> str:
-        """Its stiffness, its force at rest and its sense."""
+        """Description of the stiffness, of the force at rest and of the sense in which the tie acts."""
         sense = f", {self.only} only" if self.only else ""
         force = f", {self.prestress / 1000:.4g} kN at rest" if self.prestress else ""
         many = f"{self.count:g} ties, each" if self.count != 1 else "a tie of"
@@ -110,18 +110,18 @@ class Spring(Stretched):
 
     @property
     def at_rest(self) -> tuple[float, float]:
-        """Its prestress and its stiffness, also of one that is slack."""
+        """Prestress [N] and stiffness [N/m], also if the tie is slack at rest."""
         return self.prestress, self.stiffness
 
     def force(self, e: Reals) -> Reals:
-        """N of one of them at an elongation [N]."""
+        """Return the force N of one tie at elongations `e` [N]."""
         n = self.slack_at(e)
         if self.only == "tension":
             return np.maximum(n, 0.0)
         return np.minimum(n, 0.0) if self.only == "compression" else n
 
     def slope(self, e: Reals, going: Reals) -> Reals:
-        """k where it acts: taut from rest on, as soon as it moves in its sense."""
+        """Return k where the tie acts, else 0; a tie at zero force acts if `going` has the sense in which it acts."""
         if self.only is None:
             return np.full(e.shape, self.stiffness)
         sense = -1.0 if self.only == "compression" else 1.0
@@ -129,7 +129,7 @@ class Spring(Stretched):
         return np.where(acts, self.stiffness, 0.0)
 
     def energy(self, e: Reals) -> Reals:
-        """The integral of N from rest [J]; what goes slack on the way stores no more."""
+        """Return the integral of N from rest [J]; a slack tie stores no more energy."""
         if self.only is not None and self.stiffness > 0:
             with np.errstate(over="ignore"):
                 slack = -np.float64(self.prestress) / self.stiffness  # the elongation at which it goes slack
@@ -137,27 +137,27 @@ class Spring(Stretched):
         return self.prestress * e + self.stiffness * e**2 / 2
 
     def slack_at(self, e: Reals) -> Reals:
-        """N0 + k e [N]."""
+        """Return N0 + k e [N], the force of a tie that acts in both senses."""
         return self.prestress + self.stiffness * e
 
 
 @dataclass(frozen=True)
 class SpringBed(Element):
-    """Springs all along a face of a body, from each of its points to where that rests: k ds each.
+    """Springs distributed along a face of a body, from each point of the face to its place at rest: k ds each.
 
-    Their moment is that of two springs at the points of Gauss, exactly: the squared distance is quadratic along the
-    face of a rigid body. Its force and elongation are the resultant of one bed and the opening of its middle.
+    Two springs at the Gauss points of the face have exactly the same moment, as the squared distance is quadratic along
+    the face of a rigid body. Force and elongation of the bed are its resultant and the opening at mid-face.
 
     Parameters
     ----------
     name : str
-        What it is called.
+        Name of the bed.
     start, end : Spot
-        The ends of the face, of one body.
+        Ends of the face, on the same body.
     modulus : float
-        [N/m per metre].
+        Stiffness per length of the face [N/m per metre].
     count : float
-        How many of them there are.
+        Number of identical beds.
     """
 
     name: str
@@ -168,49 +168,49 @@ class SpringBed(Element):
 
     @property
     def words(self) -> str:
-        """Its modulus."""
+        """Description of the bed by its modulus."""
         return f"springs of {self.modulus / 1000:.4g} kN/m per metre of its face"
 
     @property
     def stiffness(self) -> float:
-        """That of one bed when all of its face opens alike [N/m]."""
+        """Stiffness of one bed if all of its face opens by the same amount [N/m]."""
         return self.modulus * abs(self.end.at - self.start.at)
 
     @property
     def stretched(self) -> Sequence[Spring]:
-        """The two springs that act as it does."""
+        """The two springs, at the Gauss points, that act as the bed does."""
         middle, half = (self.start.at + self.end.at) / 2, (self.end.at - self.start.at) / 2
         each = self.modulus * abs(half) * self.count
         places = (middle - half / np.sqrt(3), middle + half / np.sqrt(3))
         return [Spring(self.name, (Spot(None, at), Spot(self.start.body, at)), each) for at in places]
 
     def as_dict(self) -> dict[str, Any]:
-        """Its face and its modulus."""
+        """Return the face and the modulus of the bed."""
         return {"kind": "bed", "path": [self.start.as_dict(), self.end.as_dict()], "modulus": self.modulus}
 
     def force(self, e: Reals) -> Reals:
-        """The resultant of one bed when its middle has opened by e [N]."""
+        """Return the resultant of one bed whose mid-face has opened by `e` [N]."""
         return self.stiffness * e
 
     def slope(self, e: Reals, going: Reals) -> Reals:
-        """Its stiffness."""
+        """Return the stiffness of one bed [N/m], shape (n,)."""
         return np.full(e.shape, self.stiffness)
 
     def energy(self, e: Reals) -> Reals:
-        """What it stores when all of its face has opened by e [J]."""
+        """Return the energy of one bed if all of its face has opened by `e` [J]."""
         return self.stiffness * e**2 / 2
 
     def elongation(self, follow: Follow, direction: Direction = Direction.POSITIVE) -> tuple[Reals, Reals, Reals]:
-        """The opening of its middle."""
+        """Return the opening at mid-face [m] and its first two derivatives in phi."""
         at = (self.start.at + self.end.at) / 2
         middle = Spring(self.name, (Spot(None, at), Spot(self.start.body, at)), self.stiffness)
         return middle.elongation(follow, direction)
 
     def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
-        """Add its moment to Q."""
+        """Add the moment of the bed to Q."""
         for spring in self.stretched:
             spring.act(total, direction, follow)
 
     def forces(self, direction: Direction, follow: Follow) -> Sequence[Push]:
-        """Those of its springs."""
+        """Return the forces of the springs of the bed [N]."""
         return [push for spring in self.stretched for push in spring.forces(direction, follow)]

@@ -1,4 +1,4 @@
-"""Everything that is attached to a mechanism, and what follows from all of it together."""
+"""All loads, forces and ties of a mechanism together, and their joint effect."""
 
 from __future__ import annotations
 
@@ -19,39 +19,39 @@ from rocking_cli.errors import InputError, Problem
 
 @dataclass(frozen=True, eq=False)
 class Hung:
-    """The loads, forces and ties of a structure, and the friction of walls that cross it.
+    """Loads, forces and ties of a structure, and the friction of its crossing walls.
 
     Parameters
     ----------
     placed : sequence of (tuple, Attached)
-        Each with its place among the fields of the structure.
+        Each attached thing with its place among the fields of the structure.
     """
 
     placed: Sequence[tuple[Loc, Attached]]
 
     @cached_property
     def things(self) -> Sequence[Attached]:
-        """All of them, as the equation of motion sees them."""
+        """All attached things, as terms of the equation of motion."""
         return [thing for _, thing in self.placed]
 
     @cached_property
     def elements(self) -> Sequence[Element]:
-        """Those whose force follows from their elongation."""
+        """The attached things whose force follows from an elongation."""
         return [thing for thing in self.things if isinstance(thing, Element)]
 
     @property
     def masses(self) -> Sequence[PointMass]:
-        """The loads that have a mass."""
+        """Loads that have a mass."""
         return [thing for thing in self.things if isinstance(thing, PointMass)]
 
     @property
     def ties(self) -> Sequence[Element]:
-        """The elements that are stretched: ties and beds of springs."""
+        """Elements that are stretched: ties and beds of springs."""
         return [each for each in self.elements if each.stretched]
 
     @cached_property
     def one_sided(self) -> Sequence[Stretched]:
-        """The ties that act in one sense only."""
+        """Ties that act in one sense only, tension or compression."""
         return [tie for each in self.elements for tie in each.stretched if tie.only is not None]
 
     def refuses(self, question: Question) -> str | None:
@@ -60,39 +60,39 @@ class Hung:
         return f"{NO_ANSWER[question]}: {fault}" if fault is not None else None
 
     def fault(self, question: Question) -> str | None:
-        """Return which element lets a question not be answered, in its own words; None if all do."""
+        """Return the element that prevents an answer to a question, and why, in words; None if there is none."""
         found = ((each.name, each.refuses(question)) for each in self.elements)
         return next((f"{name} {why}" for name, why in found if why), None)
 
     def ask(self, question: Question) -> None:
-        """Raise `InputError` if the elements leave a question without an answer."""
+        """Raise `InputError` if the elements prevent an answer to a question."""
         if why := self.refuses(question):
             raise InputError(Problem(why, field="ties"))
 
     def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
-        """Add their shares to coefficients."""
+        """Add the terms of all attached things to the coefficients `total`."""
         for thing in self.things:
             thing.act(total, direction, follow)
 
     def slackness(self, follow: Follow, count: int) -> Reals:
-        """For each tie that acts in one sense only: what is zero where it goes slack, shape (ties, count)."""
+        """Return a value that is zero where a tie goes slack, for each one-sided tie, shape (ties, count)."""
         if not self.one_sided:
             return np.zeros((0, count))
         return np.array([each.slack_at(each.elongation(follow)[0]) for each in self.one_sided])
 
     def pressing(self, on: Container[str | None], direction: Direction, follow: Follow, gravity: float) -> float:
-        """Return the downward force at rest of what is attached to some bodies [N].
+        """Return the downward force at rest of the loads and ties on some bodies [N].
 
         Parameters
         ----------
         on : container of str
             Names of the bodies.
         direction : Direction
-            Of rocking, which decides where a tie without length at rest points to.
+            Direction of rocking, which gives a tie of zero length at rest its direction.
         follow : callable
-            The paths of points, at rest.
+            Function that gives the path of a point, evaluated at rest.
         gravity : float
-            [m/s2].
+            Gravitational acceleration [m/s2].
         """
         weights = (thing.mass * thing.weight for thing in self.masses if thing.spot.body in on)
         pushes = (push for thing in self.things for push in thing.forces(direction, follow) if push.spot.body in on)
@@ -100,12 +100,12 @@ class Hung:
 
     @property
     def carried(self) -> float:
-        """The mass of the loads that counts as weight [kg]."""
+        """Sum of the loads' masses that count as weight [kg]."""
         return sum(thing.mass * thing.weight for thing in self.masses)
 
     @property
     def lifting(self) -> float:
-        """The upward part of constant forces [N]."""
+        """Sum of the upward components of constant forces [N]."""
         return sum(each.thrust.imag for each in self.elements if isinstance(each, ConstantForce))
 
     def check_stretched(
@@ -114,7 +114,7 @@ class Hung:
         limit: Callable[[Direction], float],
         directions: Sequence[Direction],
     ) -> None:
-        """Refuse ties that no motion of a structure stretches, up to its limits."""
+        """Refuse ties that no motion of the structure, up to its limit in each direction, stretches."""
         if self.ties:
             limits = {direction: limit(direction) for direction in directions}
             for loc, thing in self.placed:

@@ -1,4 +1,4 @@
-"""The friction of crossing walls, which hold a facade back by the courses they share with it."""
+"""Friction of crossing walls, which restrain a facade through the courses of masonry that they share with it."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ ARM = 1 / 3  # of the height: where the friction of courses under their own weig
 
 
 class Interlock(Described):
-    """Friction between the courses of a facade and of the walls that cross it [Circolare 7/2019, C8.7.1.2].
+    """Friction between the courses of a facade and of its crossing walls [Circolare 7/2019, C8.7.1.2].
 
     F = 0.4 n (n + 1) (h_b/l) mu l^2 t_s w of each crossing wall, at a third of the height above the foot: constant,
-    against the motion in either direction, and without inertia. What the crossing walls carry themselves is left out;
-    so is that blocks come apart once they have slid by their overlap, which no history may be trusted beyond.
+    against the motion in either direction, and without inertia. The load on the crossing walls is neglected, and so is
+    the separation of blocks that have slid by their overlap: a time history is not valid beyond that.
     """
 
     courses: int = quantity("number of courses in the height", symbol="n", example=40, ge=1, le=10_000)
@@ -35,14 +35,14 @@ class Interlock(Described):
     )
 
     def force(self, density: float, gravity: float) -> float:
-        """The friction of one crossing wall [N].
+        """Return the friction force of one crossing wall [N].
 
         Parameters
         ----------
         density : float
-            Of the crossing walls [kg/m3].
+            Density of the crossing walls [kg/m3].
         gravity : float
-            [m/s2].
+            Gravitational acceleration [m/s2].
 
         Examples
         --------
@@ -55,10 +55,10 @@ class Interlock(Described):
         return SHARE * n * (n + 1) * (course / self.overlap) * self.friction * self.overlap**2 * self.thickness * weight
 
     def attached(self, foot: Spot, density: float, gravity: float) -> ConstantForce:
-        """What the equation of motion sees of all of them, on a body whose foot is at a point."""
+        """Return the friction of all crossing walls as one force on the body whose foot is at a point."""
         spot = Spot(foot.body, foot.at + 1j * ARM * self.height)
         return ConstantForce(NAME, spot, complex(-self.walls * self.force(density, gravity)), friction=True)
 
     def enlarged(self, factor: float) -> Interlock:
-        """The same courses of a structure of another size."""
+        """Return the crossing walls of a structure of another size, with the same number of courses."""
         return self.model_copy(update={key: factor * getattr(self, key) for key in ("overlap", "thickness", "height")})

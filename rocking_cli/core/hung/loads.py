@@ -1,4 +1,4 @@
-"""Loads of a structure, as users give them: masses it carries or drags along, and forces."""
+"""Loads of a structure, as users give them: masses and constant forces."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ FLOORS: dict[str, dict[str, float]] = {
 class Load(Described):
     """A mass or a constant force at a point of a body.
 
-    A mass counts by three shares, each 1 unless given: in the horizontal and the vertical inertia, and as weight.
+    A mass counts by three shares, each 1 by default: in the horizontal inertia, in the vertical inertia and as weight.
     A force has no inertia.
     """
 
@@ -67,7 +67,7 @@ class Load(Described):
         return self
 
     def attached(self, body: str, count: float) -> PointMass | ConstantForce:
-        """What the equation of motion sees of `count` such loads."""
+        """Return `count` such loads as one term of the equation of motion."""
         spot = Spot(body, complex(*self.at))
         if self.force is not None:
             return ConstantForce(self.name, spot, count * complex(*self.force))
@@ -77,6 +77,6 @@ class Load(Described):
         return PointMass(self.name, spot, count * self.mass, **{**FLOORS.get(self.floor or "", {}), **given})
 
     def enlarged(self, factor: float) -> Load:
-        """The same load on a structure of another size: only where it acts, and its seat, are multiplied."""
+        """Return the load on a structure of another size: its point and its seat are multiplied, all else stays."""
         seat = None if self.seat is None else factor * self.seat
         return self.model_copy(update={"at": [factor * each for each in self.at], "seat": seat})

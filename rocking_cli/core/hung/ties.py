@@ -1,4 +1,4 @@
-"""Ties of a structure, as users give them: bars, cables and tendons, and springs along a face."""
+"""Ties of a structure, as users give them: ties between points, and springs along a face."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ LATER = {
 
 
 class Place(Described):
-    """A point of the ground, or of a body."""
+    """A point of the ground or of a body."""
 
     ground: Vertex | None = point("a point of the ground", default=None)
     body: Name | None = Field(None, description="a body, by its name in the picture; optional for a single body")
@@ -48,17 +48,17 @@ class Place(Described):
 
     @property
     def point(self) -> complex:
-        """Where it is at rest [m]."""
+        """Position at rest, x + iy [m]."""
         return complex(*(self.ground or self.at or ()))
 
     def enlarged(self, factor: float) -> Place:
-        """The same place of a structure of another size."""
+        """Return the place on a structure of another size."""
         moved = {key: [factor * each for each in value] for key in ("ground", "at") if (value := getattr(self, key))}
         return self.model_copy(update=moved)
 
 
 class Face(Described):
-    """A straight face of a body, along which there are springs to the ground."""
+    """A straight face of a body with springs to the ground along it."""
 
     model_config = ConfigDict(validate_by_name=True)
 
@@ -67,15 +67,15 @@ class Face(Described):
     end: Vertex = point("its other end", alias="to")
 
     def enlarged(self, factor: float) -> Face:
-        """The same face of a structure of another size."""
+        """Return the face on a structure of another size."""
         moved = {key: [factor * each for each in getattr(self, key)] for key in ("start", "end")}
         return self.model_copy(update=moved)
 
 
 class Tie(Described):
-    """An elastic tie between two points, along a path of more, or a bed of springs along a face.
+    """An elastic tie along a path of two or more points, or a bed of springs along a face.
 
-    A tie of another law derives from it: it adds its fields and gives its own `element`, see `Laws`.
+    A tie of another law derives from this class: it adds its fields and returns its own `element`, see `Laws`.
     """
 
     model_config = ConfigDict(validate_by_name=True)
@@ -103,7 +103,7 @@ class Tie(Described):
     @model_validator(mode="wrap")
     @classmethod
     def _by_its_law(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
-        """Leave a tie that names an installed law to the class of that law."""
+        """Validate a tie that names an installed law with the class of that law."""
         if cls is not Tie or not isinstance(data, dict) or "law" not in data or not laws():
             return handler(data)
         if (law := data["law"]) not in laws():
@@ -113,7 +113,7 @@ class Tie(Described):
 
     @classmethod
     def kinds(cls) -> Sequence[type[Tie]]:
-        """The ties of other laws, whose fields may stand where this one's may."""
+        """Return the tie classes of other laws, whose fields may be given instead of those of this class."""
         return list(laws().values()) if cls is Tie else ()
 
     @model_validator(mode="before")
@@ -160,34 +160,34 @@ class Tie(Described):
 
     @property
     def places(self) -> list[Place]:
-        """The points it runs over; none of a bed."""
+        """Points along the path of the tie; empty for a bed of springs."""
         if self.start is not None and self.end is not None:
             return [self.start, self.end]
         return list(self.path or [])
 
     @property
     def span(self) -> float:
-        """Its length at rest [m]."""
+        """Length of the tie at rest [m]."""
         points = [place.point for place in self.places]
         return sum(abs(b - a) for a, b in pairwise(points))
 
     @property
     def k(self) -> float:
-        """Its stiffness [N/m]."""
+        """Stiffness of the tie [N/m]."""
         if self.stiffness is not None:
             return self.stiffness
         assert self.area is not None and self.modulus is not None
         return self.area * self.modulus / (self.length or self.span)
 
     def element(self, spots: Sequence[Spot], count: float) -> Element:
-        """What the equation of motion sees of `count` such ties over these points; of a bed, the ends of its face."""
+        """Return the element of `count` such ties over these points; for a bed, the points are the ends of its face."""
         if self.bed is not None:
             assert self.modulus is not None
             return SpringBed(self.name, spots[0], spots[1], self.modulus, count)
         return Spring(self.name, tuple(spots), self.k, self.prestress, only=self.only, count=count)
 
     def enlarged(self, factor: float) -> Tie:
-        """The same tie on a structure of another size: where it runs is multiplied, its stiffness and force stay."""
+        """Return the tie on a structure of another size: its path is multiplied, its stiffness and force stay."""
         moved: dict[str, Any] = {
             key: value.enlarged(factor) for key in ("start", "end", "bed") if (value := getattr(self, key)) is not None
         }
@@ -199,7 +199,7 @@ class Tie(Described):
 
 
 class Laws(Plugins[type[Tie]]):
-    """Ties of other laws than the elastic one, by what files call the law: the entry points `rocking.laws`.
+    """Tie classes of other laws than the elastic one, by the name of the law: the entry points `rocking.laws`.
 
     Raises
     ------
@@ -214,7 +214,7 @@ class Laws(Plugins[type[Tie]]):
 
     @staticmethod
     def accept(loaded: object, point: Point) -> type[Tie]:
-        """What was loaded, if it is a tie that has a field `law`."""
+        """Return the loaded object if it is a tie class with a field `law`."""
         if not (isinstance(loaded, type) and issubclass(loaded, Tie)):
             raise MechanismError(f"{origin(point)} is not a law: it must be a class derived from Tie")
         if "law" not in loaded.model_fields or loaded.model_fields["law"].default != point.name:
@@ -225,5 +225,5 @@ class Laws(Plugins[type[Tie]]):
 
 @cache
 def laws() -> Laws:
-    """The laws there are."""
+    """Return the installed laws of ties."""
     return Laws()

@@ -1,4 +1,4 @@
-"""Pulses: the shapes that are installed, found through the entry points `rocking.pulses`, and their specifications."""
+"""Installed pulse shapes, found by the entry points `rocking.pulses`, and the parser of pulse specifications."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class PulseShapes(Plugins[type[Pulse]]):
 
     @staticmethod
     def accept(loaded: object, point: Point) -> type[Pulse]:
-        """What was loaded, if it is a complete shape of its name."""
+        """Return the loaded object if it is a complete pulse shape with the name of its entry point."""
         if not (isinstance(loaded, type) and issubclass(loaded, Pulse)) or loaded.__abstractmethods__:
             raise MechanismError(f"{origin(point)} is not a pulse shape: it must derive from Pulse and be complete")
         if getattr(loaded, "name", None) != point.name or not isinstance(getattr(loaded, "title", None), str):
@@ -45,19 +45,19 @@ class PulseShapes(Plugins[type[Pulse]]):
 
 
 def parse_pulse(text: str) -> Pulse:
-    """Read a specification such as `sine:0.6g:0.8s`.
+    """Return the pulse of a specification such as `sine:0.6g:0.8s`.
 
     Parameters
     ----------
     text : str
-        Name, amplitude with its unit (g, m/s2, cm/s2, mm/s2, gal, mg or %g), period in s (or with ms; a frequency
-        in Hz will do), and what the shape takes besides, as numbers or with their unit: for `mavroeidis` the phase in
-        deg and the number of cycles.
+        Name, amplitude with its unit (g, m/s2, cm/s2, mm/s2, gal, mg or %g), period in s or ms (or a frequency in Hz),
+        and further parameters of the shape, as numbers or with their unit: for `mavroeidis` the phase in deg and the
+        number of cycles.
 
     Raises
     ------
     InputError
-        If the shape is unknown, a number or a unit is missing or out of range; it gives the expected form.
+        If the shape is unknown, a number or a unit is missing or out of range; the message has the expected form.
     """
     name, *words = (word.strip() for word in text.split(":"))
     shape = PulseShapes()[name]

@@ -1,4 +1,4 @@
-"""What a pulse is: a shape over time, an amplitude and a period."""
+"""Base class of pulses: a shape in time, an amplitude and a period."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ NODES = 48  # of Gauss's rule for the velocity
 
 
 class Segment(NamedTuple):
-    """A piece of a pulse that is a sine, or a constant if omega is zero: a = amplitude sin(omega (t - start) + phase).
+    """A piece of a pulse, sine or (omega = 0) constant: a = amplitude sin(omega (t - start) + phase).
 
     Parameters
     ----------
     start, stop : float
-        When [s], from the start of the pulse.
+        Times [s] from the start of the pulse.
     amplitude : float
-        [m/s2].
+        Amplitude [m/s2].
     omega : float
-        [rad/s].
+        Angular frequency [rad/s].
     phase : float
-        [rad].
+        Phase at `start` [rad].
     """
 
     start: float
@@ -50,16 +50,16 @@ class Pulse(ABC):
     """A pulse of the ground acceleration, positive to the right.
 
     A shape is a subclass, found by its entry point in `rocking.pulses`, that gives `span` and `shape`, and `segments`
-    if it is made of sines and constants. Parameters beyond amplitude and period are further fields with defaults, a
-    frozen dataclass then; the metadata of a field may name its "unit". Its sign is that of its source: the first of
-    its large lobes is positive, or the only one, except where a phase turns it.
+    if it consists of sines and constants. Further parameters are fields with defaults, and the subclass is then a
+    frozen dataclass; the metadata of a field may have its "unit". The sign is as in the publication of the shape: the
+    first large lobe is positive, unless a phase changes this.
 
     Parameters
     ----------
     amplitude : float
         Largest acceleration of the pulse [m/s2], > 0.
     period : float
-        [s], > 0.
+        Period [s], > 0.
 
     Raises
     ------
@@ -80,7 +80,7 @@ class Pulse(ABC):
     """Where it comes from."""
 
     def __init_subclass__(cls, **named: Any) -> None:
-        """What a shape says of itself is guarded: whatever fails there is an error of the plugin."""
+        """Wrap the methods of a shape, so that any failure in them is reported as an error of the plugin."""
         super().__init_subclass__(**named)
         guard(cls, ("__post_init__", "shape", "velocity_shape", "segments"), _failed)
 
@@ -93,20 +93,21 @@ class Pulse(ABC):
     @property
     @abstractmethod
     def span(self) -> float:
-        """How many periods it lasts."""
+        """Duration of the pulse in periods."""
 
     @abstractmethod
     def shape(self, x: Reals) -> Reals:
-        """Acceleration over its amplitude at times x in [0, span] in periods; 1 in size at its largest."""
+        """Return the acceleration over the amplitude, at times x in [0, span] in periods; its peak is 1."""
 
     def segments(self) -> tuple[Segment, ...]:
-        """The pieces it is made of, one after the other; empty if it is no chain of sines and constants."""
+        """Return the consecutive segments of the pulse; empty if it does not consist of sines and constants."""
         return ()
 
     def velocity_shape(self, x: Reals) -> Reals:
-        """Velocity over amplitude times period at times x in [0, span] in periods, from zero.
+        """Return the velocity over amplitude times period, at times x in [0, span] in periods, starting from zero.
 
-        By Gauss's rule, exact to rounding for a smooth shape of a few cycles; a subclass may give its closed form.
+        It is integrated by Gauss quadrature, exact to rounding for a smooth shape of a few cycles; a subclass may give
+        its closed form.
         """
         nodes, weights = np.polynomial.legendre.leggauss(NODES)
         half = np.asarray(x, dtype=np.float64)[..., None] / 2
@@ -115,33 +116,32 @@ class Pulse(ABC):
 
     @property
     def duration(self) -> float:
-        """How long it lasts [s]."""
+        """Duration of the pulse [s]."""
         return self.span * self.period
 
     def acceleration(self, t: Reals) -> Reals:
-        """Ground acceleration [m/s2] at times t [s], any shape; zero outside of [0, duration]."""
+        """Return the ground acceleration [m/s2] at times t [s], an array of any shape; zero outside [0, duration]."""
         x = np.asarray(t, dtype=np.float64) / self.period
         inside = (x >= 0) & (x <= self.span)
         return self.amplitude * np.where(inside, self.shape(np.clip(x, 0.0, self.span)), 0.0)
 
     def velocity(self, t: Reals) -> Reals:
-        """Ground velocity [m/s] at times t [s], any shape; after the pulse it stays what it is at its end."""
+        """Return the ground velocity [m/s] at times t [s], an array of any shape; constant after the pulse."""
         x = np.clip(np.asarray(t, dtype=np.float64) / self.period, 0.0, self.span)
         return self.amplitude * self.period * self.velocity_shape(x)
 
     def sampled(self, per_period: int = FINE) -> GroundMotion:
-        """The pulse as a ground motion with straight lines between samples, zero after the last.
+        """Return the pulse as a ground motion, linear between samples and zero after the last.
 
         Parameters
         ----------
         per_period : int
-            Samples to a period, made a few more if the pulse would not end on one that a history keeps.
+            Samples per period; a few more are used if the pulse would otherwise not end at a sample that time histories
+            keep.
 
-        Notes
-        -----
-        Chords of a curve bend to its inner side and lose impulse, in all of it at the same sign. Samples set off by a
-        twelfth of the second difference have the impulse of the curve itself in every interval, so that motions are
-        right to fourth order in the interval, not to second.
+        Notes ----- Linear interpolation of a curve lies on its inner side, so that impulse is lost. Samples shifted by
+        a twelfth of the second difference keep the impulse of the curve in every interval, so that the error of motions
+        is of fourth order in the interval, not of second order.
         """
         every = max(per_period // COARSE, 1)
         steps = every * int(np.ceil(self.span * per_period / every - 1e-9))
@@ -151,7 +151,7 @@ class Pulse(ABC):
 
     @property
     def specification(self) -> str:
-        """What `parse_pulse` makes this very pulse of, to the last bit.
+        """Text from which `parse_pulse` makes this pulse, to the last bit.
 
         Examples
         --------
@@ -169,12 +169,15 @@ class Pulse(ABC):
 
 
 def _shortest(value: float) -> str:
-    """The shortest text that is read as this number."""
+    """Return the shortest text that is read as this number."""
     return repr(float(value)).removesuffix(".0")
 
 
 def _amplitude(value: float) -> str:
-    """The shortest text in g or m/s2 that is read as this number [m/s2]; some numbers are no multiple of g."""
+    """Return the shortest text in g or m/s2 that is read as this amplitude [m/s2].
+
+    Some amplitudes are not a multiple of g.
+    """
     texts = (f"{value / STANDARD_GRAVITY:.{digits}g}" for digits in range(1, DIGITS + 1))
     in_g = [f"{text}g" for text in texts if float(text) * STANDARD_GRAVITY == value]
     return min([*in_g[:1], f"{_shortest(value)}m/s2"], key=len)
@@ -185,7 +188,7 @@ def _failed(cls: type, method: str) -> str:
 
 
 def _with_its_impulse(curve: Reals) -> Reals:
-    """Samples whose chords have the impulse of the curve through those given; none leaves its range of -1 to 1."""
+    """Return samples between -1 and 1 whose linear interpolation has the impulse of the curve through those given."""
     if curve.size < 5:
         return curve
     bend = np.empty_like(curve)

@@ -22,21 +22,21 @@ class Sine(Pulse):
     span = 1.0
 
     def shape(self, x: Reals) -> Reals:
-        """See `Pulse.shape`."""
+        """Return the normalised acceleration, as `Pulse.shape`."""
         return np.sin(2 * pi * x)
 
     def velocity_shape(self, x: Reals) -> Reals:
-        """See `Pulse.velocity_shape`."""
+        """Return the normalised velocity, as `Pulse.velocity_shape`."""
         curve: Reals = (1 - np.cos(2 * pi * x)) / (2 * pi)
         return curve
 
     def segments(self) -> tuple[Segment, ...]:
-        """See `Pulse.segments`."""
+        """Return the segments of the pulse, as `Pulse.segments`."""
         return (Segment(0.0, self.duration, self.amplitude, 2 * pi / self.period, 0.0),)
 
 
 class Cosine(Pulse):
-    """One full cycle of a cosine: it begins and ends at its peak."""
+    """One full cycle of a cosine, which begins and ends at its peak."""
 
     name = "cosine"
     title = "full cosine"
@@ -44,16 +44,16 @@ class Cosine(Pulse):
     span = 1.0
 
     def shape(self, x: Reals) -> Reals:
-        """See `Pulse.shape`."""
+        """Return the normalised acceleration, as `Pulse.shape`."""
         return np.cos(2 * pi * x)
 
     def segments(self) -> tuple[Segment, ...]:
-        """See `Pulse.segments`."""
+        """Return the segments of the pulse, as `Pulse.segments`."""
         return (Segment(0.0, self.duration, self.amplitude, 2 * pi / self.period, pi / 2),)
 
 
 class HalfSine(Pulse):
-    """The first half of a sine of the given period: it lasts half of it."""
+    """The first half of a sine of the given period; its duration is half the period."""
 
     name = "half_sine"
     title = "half sine, of half the period"
@@ -61,16 +61,16 @@ class HalfSine(Pulse):
     span = 0.5
 
     def shape(self, x: Reals) -> Reals:
-        """See `Pulse.shape`."""
+        """Return the normalised acceleration, as `Pulse.shape`."""
         return np.sin(2 * pi * x)
 
     def segments(self) -> tuple[Segment, ...]:
-        """See `Pulse.segments`."""
+        """Return the segments of the pulse, as `Pulse.segments`."""
         return (Segment(0.0, self.duration, self.amplitude, 2 * pi / self.period, 0.0),)
 
 
 class Rectangular(Pulse):
-    """A constant acceleration: its period is what it lasts."""
+    """A constant acceleration; its duration is the period."""
 
     name = "rectangular"
     title = "constant, for one period"
@@ -78,16 +78,16 @@ class Rectangular(Pulse):
     span = 1.0
 
     def shape(self, x: Reals) -> Reals:
-        """See `Pulse.shape`."""
+        """Return the normalised acceleration, as `Pulse.shape`."""
         return np.ones_like(x)
 
     def segments(self) -> tuple[Segment, ...]:
-        """See `Pulse.segments`."""
+        """Return the segments of the pulse, as `Pulse.segments`."""
         return (Segment(0.0, self.duration, self.amplitude, 0.0, pi / 2),)
 
 
 class Ricker(Pulse):
-    """The symmetric Ricker wavelet, less the second derivative of a Gaussian; cut off below 1e-5 of its peak.
+    """Symmetric Ricker wavelet, the negative second derivative of a Gaussian, truncated below 1e-5 of its peak.
 
     Its period is that of the peak of its Fourier spectrum.
     """
@@ -98,13 +98,13 @@ class Ricker(Pulse):
     span = 2.6
 
     def shape(self, x: Reals) -> Reals:
-        """See `Pulse.shape`."""
+        """Return the normalised acceleration, as `Pulse.shape`."""
         z = 2 * pi**2 * (x - self.span / 2) ** 2
         curve: Reals = (1 - z) * np.exp(-z / 2)
         return curve
 
     def velocity_shape(self, x: Reals) -> Reals:
-        """See `Pulse.velocity_shape`."""
+        """Return the normalised velocity, as `Pulse.velocity_shape`."""
         middle = self.span / 2
         from_middle = np.asarray(x) - middle
         curve: Reals = from_middle * np.exp(-((pi * from_middle) ** 2)) + middle * np.exp(-((pi * middle) ** 2))
@@ -112,9 +112,9 @@ class Ricker(Pulse):
 
 
 class AntisymmetricRicker(Pulse):
-    """The antisymmetric Ricker wavelet, less the third derivative of a Gaussian; cut off below 1e-5 of its peak.
+    """Antisymmetric Ricker wavelet, the negative third derivative of a Gaussian, truncated below 1e-5 of its peak.
 
-    Its period is that of the peak of its Fourier spectrum. Of its two large lobes the first is positive.
+    Its period is that of the peak of its Fourier spectrum. The first of its two large lobes is positive.
     """
 
     name = "ricker_antisymmetric"
@@ -124,7 +124,7 @@ class AntisymmetricRicker(Pulse):
     PEAK: ClassVar[float] = float(np.sqrt(3 - np.sqrt(6)) * np.sqrt(6) * np.exp(-(3 - np.sqrt(6)) / 2))  # 1.38
 
     def shape(self, x: Reals) -> Reals:
-        """See `Pulse.shape`."""
+        """Return the normalised acceleration, as `Pulse.shape`."""
         z = 2 * pi / np.sqrt(3) * (x - self.span / 2)
         curve: Reals = (z**2 - 3) * z * np.exp(-(z**2) / 2) / self.PEAK
         return curve
@@ -132,15 +132,15 @@ class AntisymmetricRicker(Pulse):
 
 @dataclass(frozen=True)
 class MavroeidisPapageorgiou(Pulse):
-    """A cosine of the velocity under a bell: near-fault pulses of one to a few cycles.
+    """Near-fault pulse of one to a few cycles: its velocity is a cosine times a bell-shaped envelope.
 
     Parameters
     ----------
     phase : float
-        nu [deg]: 0 gives a velocity symmetric about the middle and positive there, 90 an antisymmetric one that is
-        negative after the middle.
+        Phase nu [deg]: 0 gives a velocity symmetric about the middle and positive there, 90 an antisymmetric one that
+        is negative after the middle.
     cycles : float
-        Length of the bell in periods, gamma > 1 in the source.
+        Length of the envelope in periods, gamma > 1 in the publication.
     """
 
     phase: float = field(default=0.0, metadata={"unit": "deg"})
@@ -162,27 +162,27 @@ class MavroeidisPapageorgiou(Pulse):
 
     @property
     def span(self) -> float:
-        """See `Pulse.span`."""
+        """Duration of the pulse in periods."""
         return self.cycles
 
     @property
     def velocity_amplitude(self) -> float:
-        """A of the source, half the height of the bell [m/s]."""
+        """A of the publication, half the height of the velocity's envelope [m/s]."""
         return self.amplitude * self.period / (pi * self.peak)
 
     def shape(self, x: Reals) -> Reals:
-        """See `Pulse.shape`."""
+        """Return the normalised acceleration, as `Pulse.shape`."""
         return _raw(x - self.span / 2, self.phase, self.cycles) / self.peak
 
     def velocity_shape(self, x: Reals) -> Reals:
-        """See `Pulse.velocity_shape`."""
+        """Return the normalised velocity, as `Pulse.velocity_shape`."""
         z = 2 * pi * (x - self.span / 2)
         curve: Reals = (1 + np.cos(z / self.cycles)) * np.cos(z + np.radians(self.phase)) / (2 * pi * self.peak)
         return curve
 
     @property
     def peak(self) -> float:
-        """Largest acceleration over pi A/T."""
+        """Largest acceleration divided by pi A/T."""
         return _peak(self.phase, self.cycles)
 
     def __str__(self) -> str:
@@ -190,7 +190,7 @@ class MavroeidisPapageorgiou(Pulse):
 
 
 def _raw(x: Reals, phase: float, cycles: float) -> Reals:
-    """Acceleration of a near-fault pulse over pi A/T at times x from its middle, in periods."""
+    """Return the acceleration of a near-fault pulse over pi A/T, at times x from its middle, in periods."""
     z, nu = 2 * pi * x, np.radians(phase)
     bell = z / cycles
     curve: Reals = -(np.sin(bell) * np.cos(z + nu) / cycles + np.sin(z + nu) * (1 + np.cos(bell)))
@@ -199,7 +199,7 @@ def _raw(x: Reals, phase: float, cycles: float) -> Reals:
 
 @lru_cache(maxsize=256)
 def _peak(phase: float, cycles: float) -> float:
-    """Its largest size: sought on a grid, then on finer ones, and at last by a parabola."""
+    """Return the largest absolute acceleration over pi A/T: by ever finer grids, and finally by a parabola."""
     grid = np.linspace(-cycles / 2, cycles / 2, ceil(100 * cycles) + 1)
     coarse = np.abs(_raw(grid, phase, cycles))
     # A point of the grid is within 1/200 period of the peak, and so within 0.2 % of it: any of these may be it.

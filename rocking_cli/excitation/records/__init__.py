@@ -1,4 +1,4 @@
-"""Recorded ground motions: find out what a file is by looking inside it, and read it."""
+"""Readers of recorded ground motions, chosen by the content of the file."""
 
 from __future__ import annotations
 
@@ -37,26 +37,26 @@ def read_record(
         text: a column of accelerations, or several, with or without the time. It may be compressed (gzip), or a file
         in a zip archive. `-` is standard input, which can be read once.
     dt : float, optional
-        Interval between samples [s]. Needed for one column; otherwise it must agree with the file.
+        Sampling interval [s]. Required for a file of one column; otherwise it must agree with the file.
     units : str, optional
-        Unit of the accelerations in the file: g, m/s2, cm/s2, mm/s2, gal, mg (a thousandth of g) or %g. Needed where
-        the file does not name its unit; otherwise it must agree with the file.
+        Unit of the accelerations in the file: g, m/s2, cm/s2, mm/s2, gal, mg (a thousandth of g) or %g. Required if the
+        file does not state its unit; otherwise it must agree with the file.
     channel : str, optional
-        Which channel of a file with several: its place, counted from 1, or its name in the file. Of an archive with
-        several files the place or name of one, and a channel in it behind a colon: `north.V2:2`. Of a table also
-        `column 6`.
+        Channel of a file with several: its number, from 1, or its name in the file. For an archive with several files,
+        the number or name of a file, with the channel after a colon: `north.V2:2`. For a table also `column 6`.
     quantity : {"acceleration", "velocity", "displacement"}, optional
-        What the file holds: by default accelerations, or what the gain is of. Others are differentiated, by central
-        differences; `units` is then of them.
+        Quantity in the file: by default accelerations, or the quantity of the gain. Velocities and displacements, whose
+        unit `units` then is, are differentiated by central differences.
     gain : str, optional
-        What one unit of the file stands for, where its numbers are the output of an instrument: `0.05 m/V`.
+        Value of one unit of the file, if its numbers are the output of an instrument: `0.05 m/V`.
     uneven : bool, optional
-        Take uneven times too: the values are put on an even grid, and a remark of the motion says how uneven.
+        Whether to accept uneven times: the values are interpolated to an even grid, and a remark states how uneven the
+        times are.
 
     Returns
     -------
     GroundMotion
-        Accelerations [m/s2] at a constant interval [s], named after the file. Its `processing` says what was done.
+        Accelerations [m/s2] at a constant interval [s], named after the file. Its `processing` has the steps applied.
 
     Raises
     ------
@@ -77,7 +77,10 @@ def read_measured(
     gain: str | Gain | None = None,
     uneven: bool = False,
 ) -> tuple[GroundMotion, Quantity]:
-    """Read what was measured, in SI units in the place of accelerations, and what it is; arguments of `read_record`."""
+    """Read measured values, in SI units in place of accelerations, and their quantity.
+
+    The arguments are those of `read_record`.
+    """
     if dt is not None and not (math.isfinite(dt) and dt > 0):
         raise InputError(Problem(f"the sample interval must be a positive number of seconds, got {dt}", field="`dt`"))
     gain = Gain.parse(gain) if isinstance(gain, str) else gain
@@ -104,7 +107,7 @@ def read_measured(
 
 
 def _wanted(quantity: Quantity | None, gain: Gain | None, units: str | None, *, uneven: bool) -> Wanted:
-    """What is asked of the reader, once the arguments agree."""
+    """Return the request to the reader, after checking that the arguments agree."""
     if quantity is not None and quantity not in QUANTITIES:
         raise InputError(Problem(f"must be one of {', '.join(QUANTITIES)}, got '{quantity}'", field="`from`"))
     if gain is None:
@@ -119,7 +122,10 @@ def _wanted(quantity: Quantity | None, gain: Gain | None, units: str | None, *, 
 
 
 def _must_be_asked(reader: Reader, wanted: Wanted, file: str) -> bool:
-    """Whether a reader is told what is wanted; one that cannot be asked has accelerations alone, in a unit it knows."""
+    """Return whether a reader takes a request (`Wanted`).
+
+    Raises `InputError` if it does not, and something other than accelerations is requested.
+    """
     if takes_wanted(reader):
         return True
     if wanted.raw or wanted.quantity != "acceleration":
@@ -136,7 +142,7 @@ def _multiplied(motion: GroundMotion, gain: Gain | None) -> GroundMotion:
 
 
 def _short(problem: Problem) -> Problem:
-    """Cut what a problem quotes of a file: a line of it may be of any length."""
+    """Shorten what a problem quotes from a file, as its lines may have any length."""
     message, excerpt = problem.message, problem.excerpt
     if len(message) > _MESSAGE:
         message = f"{message[: _MESSAGE * 2 // 3]} ... {message[-_MESSAGE // 3 :]}"

@@ -1,4 +1,4 @@
-"""The columns of a table: their names, which are times, which accelerations, and which one is requested."""
+"""Columns of a table: their names, which of them are times or accelerations, and which one is requested."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ _BRACKETED = regex(r"[\[(]\s*([^\])]+?)\s*[\])]")
 
 @dataclass(frozen=True)
 class Label:
-    """What the header says of a column.
+    """Name and unit of a column, from the header.
 
     Parameters
     ----------
     name : str
-        Its name, perhaps with a unit in it; empty if it has none.
+        Name of the column, which may include a unit; empty if it has none.
     unit : str, optional
-        Its unit, if a line of its own gives it.
+        Unit, if the header has a line of units.
     """
 
     name: str
@@ -48,22 +48,22 @@ class Label:
 
     @property
     def is_time(self) -> bool:
-        """Whether it is the name of a time."""
+        """Whether the name is that of a time."""
         return _TIME.match(self.name) is not None
 
 
 @dataclass(frozen=True)
 class Choice:
-    """The column of accelerations that is meant.
+    """The chosen column of accelerations.
 
     Parameters
     ----------
     column : int
-        Its index in the table.
+        Index of the column in the table.
     time : int or None
-        Index of the column with its times; None if there is none.
+        Index of the column of times; None if there is none.
     channel : str
-        Its name, or its place among the accelerations; empty if it is the only one.
+        Name of the column, or its number among the accelerations; empty if it is the only one.
     """
 
     column: int
@@ -72,23 +72,23 @@ class Choice:
 
 
 def labels(lines: Sequence[tuple[int, str]], delimiter: str | None, columns: int) -> tuple[list[Label], list[int]]:
-    """Names of the columns of a table, from the header above it.
+    """Return the names of the columns of a table, from the header above it.
 
     Parameters
     ----------
     lines : sequence of (int, str)
         Line number and text of every line of the header.
     delimiter : str or None
-        What separates the columns below; None stands for blanks.
+        Delimiter of the columns; None for blanks.
     columns : int
-        How many there are.
+        Number of columns.
 
     Returns
     -------
     list of Label
-        One for each column; empty ones if no line has as many words as there are columns.
+        A label for each column; empty labels if no line has as many words as there are columns.
     list of int
-        Numbers of the lines they are from.
+        Numbers of the lines from which the labels are.
     """
     rows = [(number, cells) for number, line in lines[-NEAR:] if (cells := _cells(line, delimiter, columns))]
     if not rows:
@@ -108,7 +108,7 @@ def choose(
     increases: Callable[[NDArray[np.float64]], bool],
     wanted: Wanted,
 ) -> Choice:
-    """Find the requested column, or the only one with values of the kind that is wanted.
+    """Return the requested column, or the only one with values of the requested quantity.
 
     Parameters
     ----------
@@ -117,18 +117,19 @@ def choose(
     table : ndarray, shape (columns, rows)
         The numbers.
     names : sequence of Label
-        One for each column.
+        Label of each column.
     asked : str, optional
-        Place among the columns with such values, counted from 1, or name; or `column 6`, of all.
+        Number among the columns with such values, from 1, or name; or `column 6`, counting all columns.
     increases : callable
-        Whether a column increases evenly, as times do.
+        Function that returns whether a column increases evenly, as times do.
     wanted : Wanted
-        What the values are: accelerations, as a rule.
+        Requested quantity, as a rule accelerations.
 
     Raises
     ------
     InputError
-        If there are several and none is requested, or no such one exists; it lists them.
+        If there are several such columns and none is requested, or the requested one does not exist; the message lists
+        them.
     """
     times = _times(table, names, increases)
     values = [k for k in range(len(table)) if k not in times and _may_be(str(names[k]), wanted)]
@@ -143,7 +144,7 @@ def choose(
 
 
 def _may_be(label: str, wanted: Wanted) -> bool:
-    """Whether the values under a label may be of the kind that is wanted."""
+    """Return whether the values under a label may be of the requested quantity."""
     if wanted.raw:
         return True
     if wanted.quantity == "acceleration":
@@ -153,7 +154,7 @@ def _may_be(label: str, wanted: Wanted) -> bool:
 
 
 def _cells(line: str, delimiter: str | None, columns: int) -> list[str]:
-    """The cells of a line of labels, in the first way that gives as many as there are columns; else none."""
+    """Split a line of labels into as many cells as there are columns; empty if no way of splitting gives so many."""
     if len(line) > LONG:
         return []
     for cells in _ways(line, delimiter):
@@ -166,7 +167,7 @@ def _cells(line: str, delimiter: str | None, columns: int) -> list[str]:
 
 
 def _ways(line: str, delimiter: str | None) -> Iterator[list[str]]:
-    """The ways to part a line of labels: as the numbers are, else as is usual."""
+    """Yield a line of labels split in several ways: as the numbers are, then by usual delimiters."""
     line = line.strip().rstrip(",; \t")
     if delimiter is not None:
         try:
@@ -183,7 +184,7 @@ def _ways(line: str, delimiter: str | None) -> Iterator[list[str]]:
 def _times(
     table: NDArray[np.float64], names: Sequence[Label], increases: Callable[[NDArray[np.float64]], bool]
 ) -> list[int]:
-    """Columns that are called time, or else the first if it increases evenly, and those that repeat it."""
+    """Return the columns whose name is a time, or else the first if it increases evenly, and repetitions of it."""
     called = [k for k, label in enumerate(names) if label.is_time]
     found = [k for k in called if (np.diff(table[k]) > 0).all()]
     if not found and increases(table[0]):
@@ -233,7 +234,7 @@ def _plain(name: str) -> str:
 
 
 def _without_unit(name: str) -> str:
-    """A name without what is in brackets behind it."""
+    """Return a name without a unit in brackets at its end."""
     return _plain(re.sub(r"\s*(?:\[[^\]]*\]|\([^)]*\))\s*$", "", name))
 
 
@@ -252,7 +253,7 @@ def _units(label: str, wanted: Wanted) -> set[str]:
 def _listed(
     table: NDArray[np.float64], names: Sequence[Label], times: Sequence[int], values: Sequence[int], wanted: Wanted
 ) -> str:
-    """A line for each column that may be meant, with place, name, unit and largest number, and what the others are."""
+    """Return text that lists the columns that may be meant, with number, name, unit and peak, and the other columns."""
     out = []
     for place, k in enumerate(values, start=1):
         units = _units(str(names[k]), wanted)

@@ -1,4 +1,4 @@
-"""COSMOS V1 and V2c (format 1.20): text, integer, real and comment headers that say their own lengths, then values."""
+"""COSMOS V1 and V2c (format 1.20): text, integer, real and comment headers that state their lengths, then values."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ _TEXT_LINES, _HEADER_VALUES, _COMMENT_LINES = 1000, 10_000, 100_000  # more than
 
 @dataclass(frozen=True)
 class _Headers:
-    """What the headers of a channel say: name, real numbers and where they begin, first data line, where it is from."""
+    """Content of the headers of a channel: name, real numbers and their first line, first data line, and origin."""
 
     name: str
     reals: NDArray[np.float64]
@@ -69,7 +69,7 @@ class _Headers:
 
 
 def sniff(text: str) -> bool:
-    """Whether the first line gives the version and the number of text lines."""
+    """Return whether the first line states the version and the number of text lines."""
     return _FIRST.match(text[:_LINE].split("\n")[0]) is not None
 
 
@@ -100,7 +100,7 @@ def read(
 
 
 def _headers(file: str, lines: Lines, start: int) -> _Headers:
-    """Go through the headers of a channel, from line index `start` on."""
+    """Read the headers of a channel, from line index `start` on."""
     first = _FIRST.match(lines[start])
     if first is None:
         message = "a channel must begin here, with a line that says (Format v01.20 with 13 text lines)"
@@ -128,7 +128,7 @@ def _headers(file: str, lines: Lines, start: int) -> _Headers:
 
 
 def _origin(text: Sequence[str], reals: NDArray[np.float64]) -> Origin:
-    """The earthquake, in the second line if that has a year, the station, the magnitude and the distance."""
+    """Return the origin: earthquake (in the second line, if this has a year), station, magnitude and distance."""
     station = next((match for line in text if (match := _STATION.match(line))), None)
     hypocentre = next((line for line in text if line.startswith("Hypocenter")), "")
     distance = reals[_DISTANCE - 1] if reals.size >= _DISTANCE else None
@@ -137,7 +137,10 @@ def _origin(text: Sequence[str], reals: NDArray[np.float64]) -> Origin:
 
 
 def _history(file: str, lines: Lines, headers: _Headers, index: int, units: str | None) -> tuple[Channel | str, int]:
-    """Read the values announced at line index `index`, or say what they are if not accelerations; the index after."""
+    """Read the values announced at line index `index`, and return the index after them.
+
+    If they are not accelerations, the name of their quantity is returned in place of the channel.
+    """
     line_number = index + 1
     line = lines[index] if index < len(lines) else ""
     match = _announced(line)
@@ -171,7 +174,7 @@ def _history(file: str, lines: Lines, headers: _Headers, index: int, units: str 
 
 
 def _peak(headers: _Headers, values: NDArray[np.float64], dt: float, unit: str) -> tuple[Doubt, ...]:
-    """Whether the largest value is the one of the header."""
+    """Return a doubt if the largest value differs from that in the header."""
     if headers.reals.size < _PEAK_TIME or headers.reals[_PEAK - 1] == _UNSET:
         return ()
     peak, time = headers.reals[_PEAK - 1], headers.reals[_PEAK_TIME - 1]
@@ -180,12 +183,12 @@ def _peak(headers: _Headers, values: NDArray[np.float64], dt: float, unit: str) 
 
 
 def _announced(line: str) -> re.Match[str] | None:
-    """What the line that announces values says; a long one is none, and would be searched for long."""
+    """Match a line that announces values; a long line is none, and is not searched, which would take long."""
     return _DATA.match(" ".join(line.split())) if len(line) < _LONG else None
 
 
 def _interval(file: str, headers: _Headers, count: int, length: float) -> float:
-    """Sample interval [s]: the one of the header that agrees with the length [s] of this history."""
+    """Return the sampling interval of the header [s] that agrees with the duration of the history [s]."""
     places = ((_DT_MS, 0.001), (_DT_RAW, 1.0))
     stated = [headers.reals[place - 1] * size for place, size in places if place <= headers.reals.size]
     for candidate in stated:
@@ -203,7 +206,7 @@ def _interval(file: str, headers: _Headers, count: int, length: float) -> float:
 
 
 def _width(file: str, line_number: int, form: str) -> int:
-    """Characters to a number in a Fortran format such as (8F10.5)."""
+    """Return the number of characters per number in a Fortran format such as (8F10.5)."""
     match = _WIDTH.match(form)
     if match is None:
         raise InputError(Problem(f"a format such as (8F10.5) is needed, this is {form}", file, line_number))

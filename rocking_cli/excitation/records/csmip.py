@@ -1,4 +1,4 @@
-"""CSMIP V2 (CDMG, California): channels one after another, each with acceleration, velocity and displacement."""
+"""CSMIP V2 (CDMG, California): consecutive channels, each with acceleration, velocity and displacement."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _HEAD = 100_000  # characters looked at to recognise the format
 
 
 def sniff(text: str) -> bool:
-    """Whether the line that announces a history is there, and not of an uncorrected record, which may have it too."""
+    """Return whether a line announces a history, in a file that is not an uncorrected record."""
     return not csmip_v1.sniff(text) and any(_DATA.match(line) for line in text[:_HEAD].expandtabs().split("\n"))
 
 

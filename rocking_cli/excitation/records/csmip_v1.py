@@ -1,4 +1,4 @@
-"""CSMIP V1 (CDMG, California): uncorrected channels one after another, of digitised films or evenly sampled."""
+"""CSMIP V1 (CDMG, California): consecutive uncorrected channels, digitised from film or evenly sampled."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ _PAIRS, _VALUES = 7, 9  # characters: 10F7.3, five points a line, and 8F9.6 unle
 
 
 def sniff(text: str) -> bool:
-    """Whether the first line is that of an uncorrected channel."""
+    """Return whether the first line is that of an uncorrected channel."""
     return FIRST.match(text[:200]) is not None
 
 
@@ -57,7 +57,7 @@ def read(
 ) -> GroundMotion:
     """Read a CSMIP V1 file; arguments, result and errors are those of `registry.Reader.read`.
 
-    The points of a digitised film are put on a constant interval as `layout.straight_lines` says.
+    The points of a digitised film are interpolated to a constant interval by `layout.straight_lines`.
     """
     lines = lines_of(text)
     channels: list[Channel] = []
@@ -73,7 +73,7 @@ def read(
 
 
 def _channel(file: str, lines: Lines, start: int, units: str | None) -> tuple[Channel, int]:
-    """Read the channel that begins at line index `start`; the index after it."""
+    """Read the channel that begins at line index `start`; return it and the index after it."""
     if not FIRST.match(lines[start]):
         message = "a channel must begin with the line UNCORRECTED ACCELEROGRAM DATA here"
         hint = "the file may have been cut or edited, or its number of points is wrong: download it again"
@@ -99,7 +99,7 @@ def _channel(file: str, lines: Lines, start: int, units: str | None) -> tuple[Ch
 def _evenly(
     file: str, lines: Lines, index: int, match: re.Match[str], name: str, units: str | None
 ) -> tuple[Channel, int]:
-    """Read samples at a constant interval, announced at line index `index`."""
+    """Read samples at a constant interval, announced at line index `index`; return them and the index after them."""
     line_number, line = index + 1, lines[index]
     if not match[2].lower().startswith("accel"):
         message = f"the values are {match[2]} data, not accelerations"
@@ -117,7 +117,7 @@ def _evenly(
 
 
 def _film(file: str, lines: Lines, start: int, index: int, name: str, units: str | None) -> tuple[Channel, int]:
-    """Read pairs of time and acceleration, from line index `index` on."""
+    """Read pairs of time and acceleration from line index `index` on; return them and the index after them."""
     head = lines[start : start + _TEXT_LINES]
     count_line, count_text = _find(file, head, start, _COUNT, "number of points (NO. OF POINTS)")
     unit_line, spelling = _find(file, head, start, _UNITS, "unit (UNITS OF UNCOR ACCEL ARE SEC AND ...)")
@@ -129,7 +129,7 @@ def _film(file: str, lines: Lines, start: int, index: int, name: str, units: str
 
 
 def _find(file: str, head: Sequence[str], start: int, pattern: re.Pattern[str], what: str) -> tuple[int, str]:
-    """Line number and value of something in the text header of a channel, which begins at line index `start`."""
+    """Return line number and value of an item in the text header of a channel that begins at line index `start`."""
     for line_number, line in enumerate(head, start=start + 1):
         if match := pattern.search(line.rstrip()):
             return line_number, match[1]

@@ -1,4 +1,4 @@
-"""From the bytes of a record file to its text: UTF-8, UTF-16 or Latin-1, with the padding of old programs taken off."""
+"""Decoding of record files from bytes to text: UTF-8, UTF-16 or Latin-1, without the padding of old programs."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ _HEAD = 2000  # bytes looked at for UTF-16 without a mark
 
 
 def decoded(data: bytes, file: str) -> str | None:
-    r"""Text of a file, lines ending in a plain newline; None if it holds bytes that no text does.
+    r"""Return the text of a file with plain newlines; None if it has bytes that text does not have.
 
     Parameters
     ----------
     data : bytes
-        Its content. NUL bytes that fill the end of the file are taken off, those that fill up a line of ASCII text are
-        blanks; a line of nothing else is no padding, as it may have been a value.
+        Content of the file. NUL bytes at the end of the file are removed, and those that fill up a line of ASCII text
+        become blanks. A line of NUL bytes alone is not padding, as it may have been a value.
     file : str
-        What to call it in messages.
+        Name of the file in messages.
 
     Raises
     ------
     InputError
-        If it is empty, or UTF-16 that is damaged.
+        If the file is empty, or damaged UTF-16.
     """
     encoding = _utf_16(data)
     if encoding is None:
@@ -55,7 +55,7 @@ def decoded(data: bytes, file: str) -> str | None:
 
 
 def _utf_16(data: bytes) -> str | None:
-    """Name of the UTF-16 encoding, by its mark or by every other byte being NUL; None if it is none."""
+    """Return the name of the UTF-16 encoding, by its mark or by NUL in every other byte; None if it is not UTF-16."""
     if data.startswith(codecs.BOM_UTF16_LE) and not data.startswith(codecs.BOM_UTF32_LE):
         return "utf-16-le"
     if data.startswith(codecs.BOM_UTF16_BE):
@@ -68,7 +68,7 @@ def _utf_16(data: bytes) -> str | None:
 
 
 def _without_padding(data: bytes) -> bytes:
-    """The bytes without NUL, if these are padding of lines of ASCII text; else as they are."""
+    """Return the bytes without NUL bytes if these are padding of lines of ASCII text; else unchanged."""
     stripped = data.rstrip(b"\0")
     if not stripped.isascii() or not re.search(rb"[\r\n]", stripped) or _BLANK_WITH_NUL.search(stripped):
         return data

@@ -1,4 +1,4 @@
-"""ESM ASCII (Engineering Strong-Motion database, ITACA): a header of `KEY: value` lines, then one value a line."""
+"""ESM ASCII (Engineering Strong-Motion database, ITACA): a header of `KEY: value` lines, then one value per line."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _HEAD = 20_000  # characters the header is sought in
 
 
 def sniff(text: str) -> bool:
-    """Whether the header has the interval and the number of points under the names of ESM."""
+    """Return whether the header states the interval and the number of points by their names in ESM."""
     return all(re.search(rf"^{key}:", text[:_HEAD], re.MULTILINE) for key in ("SAMPLING_INTERVAL_S", "NDATA"))
 
 
@@ -75,7 +75,7 @@ def read(
 
 
 def _origin(header: Mapping[str, tuple[int, str]]) -> Origin:
-    """The earthquake by its name, which others have too, and its time."""
+    """Return the origin; other formats share the key of the earthquake's name, but not that of its time."""
     said = {key: value for key, (_, value) in header.items()}
     day, time = _DAY.fullmatch(said.get("EVENT_DATE_YYYYMMDD", "")), _TIME.fullmatch(said.get("EVENT_TIME_HHMMSS", ""))
     when = [sign.join(match.groups()) for sign, match in (("-", day), (":", time)) if match is not None]

@@ -44,7 +44,7 @@ _PEAK = regex(r"Acceleration:\s+peak\s+(\S+)")
 
 
 def sniff(text: str) -> bool:
-    """Whether the first two lines of the header are those of a corrected GeoNet record."""
+    """Return whether the first two lines of the header are those of a corrected GeoNet record."""
     head = text[:5000].expandtabs().split("\n")[:_TEXT_LINES]
     return bool(_FIRST.match(head[0])) and any(_COUNT.match(line) for line in head)
 
@@ -63,7 +63,7 @@ def read(
 
 
 def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[Channel, int]:
-    """Read one component from line index `start` on; the index after it."""
+    """Read one component from line index `start` on; return it and the index after it."""
     if not _FIRST.match(lines[start]):
         message = "a component must begin with the line Corrected accelerogram here"
         hint = "the file may have been cut or edited, or its number of points is wrong: download it again"
@@ -102,13 +102,13 @@ def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[
 
 
 def _origin(head: Sequence[str]) -> Origin:
-    """The earthquake, which has no name there but its time, and the site."""
+    """Return the origin: the earthquake by its time, as the file has no name, and the site."""
     patterns = (_EVENT, _STATION, _MAGNITUDE, _DISTANCE)
     return origin(*(first_match(pattern, head) for pattern in patterns))
 
 
 def _find(file: str, lines: Sequence[str], start: int, pattern: re.Pattern[str], what: str) -> tuple[int, str]:
-    """Line number and value of something in the text header of a component."""
+    """Return line number and value of an item in the text header of a component."""
     for line_number, line in enumerate(lines[start : start + _TEXT_LINES], start=start + 1):
         if match := pattern.search(line):
             return line_number, match[1]

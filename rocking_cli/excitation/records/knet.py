@@ -1,4 +1,4 @@
-"""K-NET and KiK-net (NIED, Japan): a header of 17 lines, then counts of the digitiser, scaled and about no zero."""
+"""K-NET and KiK-net (NIED, Japan): a header of 17 lines, then digitiser counts with a scale factor and an offset."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _WIDTH, _AFTER = 9, 1  # characters to a number, the last of them a blank
 
 
 def sniff(text: str) -> bool:
-    """Whether the header has the rate and the scale factor under the names of K-NET."""
+    """Return whether the header states the rate and the scale factor by their names in K-NET."""
     head = text[:5000].expandtabs().split("\n")[:_HEADER_LINES]
     return all(any(line.startswith(key) for line in head) for key in ("Sampling Freq", "Scale Factor"))
 
@@ -49,7 +49,7 @@ def sniff(text: str) -> bool:
 def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
-    """Read a K-NET or KiK-net file; the mean, which is the digitiser's zero, is taken off.
+    """Read a K-NET or KiK-net file, and subtract the mean, which is the zero of the digitiser.
 
     Arguments, result and errors are those of `registry.Reader.read`.
     """
@@ -83,7 +83,7 @@ def read(
 
 
 def _find(file: str, lines: Sequence[str], pattern: re.Pattern[str], what: str) -> tuple[int, tuple[str, ...]]:
-    """Line number and values of something in the header."""
+    """Return line number and values of an item in the header."""
     for line_number, line in enumerate(lines[:_HEADER_LINES], start=1):
         if match := pattern.match(line):
             return line_number, match.groups()

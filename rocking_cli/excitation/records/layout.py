@@ -1,4 +1,4 @@
-"""What the data centres' formats share: Fortran's fixed-width numbers, stated units, and several channels in a file."""
+"""Common parts of the data centres' formats: Fortran's fixed-width numbers, stated units, and several channels."""
 
 from __future__ import annotations
 
@@ -33,24 +33,24 @@ _TOUCHING = "the rows do not keep to columns of {} characters, so that numbers t
 
 @dataclass(frozen=True)
 class RecordBlock:
-    """Where a run of numbers is, and how many there must be.
+    """Place and number of a block of numbers in a file.
 
     Parameters
     ----------
     start : int
-        Index of its first line, counted from 0.
+        Index of the first line, from 0.
     count : int
-        How many numbers the header says.
+        Number of values that the header states.
     width : int or None
-        Characters to a number; None for numbers that stand in no columns.
+        Characters per number; None for numbers that are not in columns.
     header_line : int
-        Line number of the header that gives `count`, counted from 1.
+        Number of the header line that states `count`, from 1.
     margin : int, optional
         Characters before the first number of a line.
     after : int, optional
-        How many blanks end each column.
+        Number of blanks at the end of each column.
     unset : float, optional
-        What stands for no value; it is read as NaN.
+        Number that means a missing value, which is read as NaN.
     """
 
     start: int
@@ -69,7 +69,7 @@ class Channel:
     Parameters
     ----------
     name : str
-        What the file calls it, such as an azimuth; empty if it gives no name.
+        Name in the file, such as an azimuth; empty if it has none.
     dt : float
         Interval between samples [s].
     acceleration : ndarray, shape (npts,)
@@ -77,13 +77,13 @@ class Channel:
     unit : str
         Unit in the file.
     dt_line : int, optional
-        Line number of the interval.
+        Number of the line that states the interval.
     flaw : Problem, optional
-        Why it cannot be used: it is listed with that, and refused if it is chosen.
+        Why the channel cannot be used: this is shown in lists of channels, and if the channel is chosen.
     points : ndarray of int, optional
         Indexes of the samples that were recorded, if not all of them.
     remarks : tuple of Doubt, optional
-        What is doubtful about its place in the file.
+        Doubts about how the channel is printed in the file.
     origin : Origin, optional
         The earthquake and the station.
     """
@@ -100,7 +100,7 @@ class Channel:
 
 
 class Numbers(NamedTuple):
-    """What `fixed_width` reads.
+    """Numbers read by `fixed_width`.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ class Numbers(NamedTuple):
     end : int
         Index of the line after the last one.
     remarks : tuple of Doubt
-        What is doubtful about how they are printed.
+        Doubts about how the numbers are printed.
     """
 
     values: NDArray[np.float64]
@@ -118,26 +118,26 @@ class Numbers(NamedTuple):
 
 
 def lines_of(text: str) -> Lines:
-    """Lines of a file with columns: where an editor has put tabs there are blanks again."""
+    """Return the lines of a file with columns, with blanks in place of the tabs that an editor may have put."""
     return Lines(text, tabs=True)
 
 
 def fixed_width(file: str, lines: Lines, block: RecordBlock, *, last: bool = True) -> Numbers:
-    """Read numbers that stand in columns of a constant width, with or without blanks between them.
+    """Read numbers in columns of a constant width, with or without blanks between them.
 
-    A row that leaves its columns has lost a character, and its numbers with it. Where most rows do, an editor has taken
-    their blanks away: they are read as numbers with blanks between them, and that is a remark.
+    A single row that is not aligned to the columns has lost a character, and its numbers cannot be trusted. If most
+    rows are not aligned, an editor has removed blanks: they are read as numbers separated by blanks, with a remark.
 
     Parameters
     ----------
     file : str
         The file, for the messages.
     lines : Lines
-        All its lines.
+        All lines of the file.
     block : RecordBlock
-        Where the numbers are, and how many.
+        Place and number of the values.
     last : bool, optional
-        Whether no other numbers may follow.
+        Whether the block is the last, so that no other numbers may follow.
 
     Returns
     -------
@@ -146,7 +146,7 @@ def fixed_width(file: str, lines: Lines, block: RecordBlock, *, last: bool = Tru
     Raises
     ------
     InputError
-        If one is no finite number, there are more or fewer than there must be, or a few rows leave their columns.
+        If a number is not finite, there are too many or too few, or a few rows are not aligned to the columns.
     """
     lines.check_lengths(file)
     values = array("d")  # a list would hold an object for each
@@ -194,7 +194,7 @@ def fixed_width(file: str, lines: Lines, block: RecordBlock, *, last: bool = Tru
 
 
 def _cells(row: str, block: RecordBlock) -> list[str] | None:
-    """The cells of a row; None if its numbers do not all end where their columns do."""
+    """Split a row into cells; None if its numbers do not all end where their columns end."""
     if block.width is None:
         return [row]
     wide, rest = divmod(len(row) - block.margin + block.after, block.width)
@@ -206,7 +206,7 @@ def _cells(row: str, block: RecordBlock) -> list[str] | None:
 
 
 def _floats(file: str, line_number: int, row: str, cells: Sequence[str], block: RecordBlock) -> list[float]:
-    """Values of cells, NaN for those that are not set."""
+    """Return the values of cells, NaN for missing values."""
     try:
         found = [float(cell.upper().replace("D", "E")) for cell in cells]
     except ValueError:
@@ -221,7 +221,7 @@ def _floats(file: str, line_number: int, row: str, cells: Sequence[str], block: 
 
 
 def _out_of_columns(file: str, lines: Lines, leaving: Sequence[int], rows: int, block: RecordBlock) -> Problem:
-    """Describe the first of a few rows that leave their columns."""
+    """Return the problem of the first of a few rows that are not aligned to the columns."""
     more = f" (as in {len(leaving) - 1} more of {rows})" if len(leaving) > 1 else ""
     message = f"the numbers of this row do not end at their columns of {block.width} characters{more}"
     hint = "a character was lost or added, so that its values are wrong: download the file again"
@@ -229,7 +229,7 @@ def _out_of_columns(file: str, lines: Lines, leaving: Sequence[int], rows: int, 
 
 
 def _no_columns(leaving: Sequence[int], rows: int, block: RecordBlock) -> Doubt:
-    """Say that rows are read as free text."""
+    """Return the doubt that rows are read as free text, as they are not aligned to columns."""
     text = (
         f"{len(leaving)} of its {rows} rows, from line {leaving[0]} on, do not keep to columns of {block.width} "
         "characters: they were read as numbers with blanks between them. Did an editor save the file?"
@@ -238,14 +238,14 @@ def _no_columns(leaving: Sequence[int], rows: int, block: RecordBlock) -> Doubt:
 
 
 def stated_unit(file: str, line_number: int, unit: str, units: str | None) -> str:
-    """Canonical unit of the accelerations that a header, or the definition of a format, states.
+    """Return the canonical unit of the accelerations that a header, or the definition of a format, states.
 
     Parameters
     ----------
     file, line_number : str, int
-        Where it is stated, for the messages.
+        File and line that state the unit, for messages.
     unit : str
-        The unit as spelled there.
+        The unit as spelled in the file.
     units : str, optional
         The unit the user gave, which must not contradict it.
 
@@ -258,7 +258,7 @@ def stated_unit(file: str, line_number: int, unit: str, units: str | None) -> st
 
 
 def old_unit(file: str, line_number: int, spelling: str, units: str | None) -> str:
-    """Canonical unit as `stated_unit` finds it, or a tenth of g, which only digitised films are in."""
+    """Return the canonical unit as `stated_unit` does, or a tenth of g, which only digitised films have."""
     if spelling.replace(" ", "").lower() != TENTH_OF_G:
         return stated_unit(file, line_number, spelling, units)
     if units is not None:
@@ -272,10 +272,10 @@ def old_unit(file: str, line_number: int, spelling: str, units: str | None) -> s
 def straight_lines(
     file: str, pairs: NDArray[np.float64], where: str
 ) -> tuple[float, NDArray[np.float64], NDArray[np.intp]]:
-    """Put a digitised film, straight lines between points at uneven times, on an interval that meets all the times.
+    """Interpolate a digitised film, with uneven times, to a constant interval that includes all of its times.
 
-    Times are whole milliseconds, so there is one, and the lines stay the same: more samples than the file has points,
-    though none of them made up.
+    Times are in whole milliseconds, so that such an interval exists and the interpolation is exact: the motion has more
+    samples than the film has points, but the same straight lines between these.
 
     Parameters
     ----------
@@ -284,16 +284,16 @@ def straight_lines(
     pairs : ndarray, shape (2 * points,)
         Time [s] and value of each point.
     where : str
-        The lines they are on.
+        Lines of the points in the file, for messages.
 
     Returns
     -------
     dt : float
-        The largest such interval [s].
+        The largest interval that includes all times [s].
     values : ndarray, shape (npts,)
         Values at this interval.
     points : ndarray of int, shape (points,)
-        Which of them are the points.
+        Indices of the samples that are points of the film.
     """
     time, values = pairs.reshape(-1, 2).T
     far = np.abs(time) > _LONGEST
@@ -315,7 +315,7 @@ def straight_lines(
 def whole_number(
     file: str, line_number: int, line: str, token: str, what: str, *, least: int = 1, most: int = MOST_SAMPLES
 ) -> int:
-    """A whole number of the header from `least` to `most`; `what` says which it is."""
+    """Return an integer of the header from `least` to `most`; `what` is its name in messages."""
     digits = token.strip()
     # Python takes no more than some thousand digits for a number, and those of other scripts, too.
     if re.fullmatch(r"[+-]?[0-9]{1,30}", digits) and least <= int(digits) <= most:
@@ -326,12 +326,12 @@ def whole_number(
 
 
 def column_width(file: str, line_number: int, line: str, token: str) -> int:
-    """Characters to a number, from the format of the header."""
+    """Return the number of characters per number, from the format in the header."""
     return whole_number(file, line_number, line, token, "width of the columns", most=_WIDEST)
 
 
 def number(file: str, line_number: int, line: str, token: str, what: str, *, least: float = 0.0) -> float:
-    """A number of the header, which must be more than `least`; `what` says which it is."""
+    """Return a number of the header, which must be larger than `least`; `what` is its name in messages."""
     (value,) = numbers_in(file, line_number, line, [token])
     if not value > least:
         message = f"the {what} must be more than {least:g}, this is {token.strip()}"
@@ -342,20 +342,20 @@ def number(file: str, line_number: int, line: str, token: str, what: str, *, lea
 def choose(
     file: str, form: str, channels: Sequence[Channel], asked: str | None = None, dt: float | None = None
 ) -> GroundMotion:
-    """Make a ground motion of the requested channel, or of the only one.
+    """Return the ground motion of the requested channel, or of the only one.
 
     Parameters
     ----------
     file : str
         The file, for the messages and the name of the motion.
     form : str
-        Name of its format.
+        Name of the format.
     channels : sequence of Channel
-        What it holds.
+        Channels of the file.
     asked : str, optional
-        The channel, by its place counted from 1, or by its name.
+        The requested channel, by its number, from 1, or by its name.
     dt : float, optional
-        Interval the user gave [s], which must agree.
+        Sampling interval given by the user [s], which must agree with the file.
 
     Returns
     -------
@@ -385,7 +385,7 @@ def choose(
 
 
 def in_si(values: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
-    """Accelerations [m/s2] from values in one of `UNITS`, or in tenths of g."""
+    """Return accelerations [m/s2] from values in one of `UNITS`, or in tenths of g."""
     return values * (UNITS["g"] / 10 if unit == TENTH_OF_G else UNITS[unit])
 
 
@@ -394,7 +394,7 @@ def _is_row(line: str) -> bool:
 
 
 def _find(file: str, channels: Sequence[Channel], asked: str) -> Channel:
-    """Look up a channel by place or name; a number is a place first, as names such as 90 DEG may be numbers too."""
+    """Return the channel with a number or name; a number such as 90 is tried as the channel's number first."""
     word = _plain(asked)
     if word.isdecimal() and 1 <= int(word) <= len(channels):
         return channels[int(word) - 1]
@@ -407,12 +407,12 @@ def _find(file: str, channels: Sequence[Channel], asked: str) -> Channel:
 
 
 def _plain(name: str) -> str:
-    """Put a name in lower case, with single blanks, and without the unit of an azimuth."""
+    """Return a name in lower case, with single blanks, and without the unit of an azimuth."""
     return re.sub(r"(?<=\d) ?deg(?:rees)?$", "", " ".join(name.lower().split()))
 
 
 def _listed(channels: Sequence[Channel]) -> str:
-    """Number, name, points and peak of every channel; of one that cannot be used, why."""
+    """Return text that lists all channels with number, name, points and peak, or why they cannot be used."""
     return "".join(
         f"\n    {place}: {channel.name + ', ' if channel.name else ''}{channel.acceleration.size} points, "
         f"{channel.flaw.message if channel.flaw else _peak(channel)}"

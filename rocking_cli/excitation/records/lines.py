@@ -1,4 +1,4 @@
-"""The lines of a text, cut out a page at a time: a long record has more lines than should be objects all at once."""
+"""Lines of a text, split a page at a time, as a long record has too many lines to hold all as objects."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ LONGEST = 1_000_000
 
 
 class Lines(Sequence[str]):
-    r"""What `text.split("\n")` gives, but never more than a page of it in memory.
+    r"""The sequence `text.split("\n")`, with at most one page of it in memory.
 
     Parameters
     ----------
     text : str
         Content of a file, lines ending in a plain newline.
     tabs : bool, optional
-        Whether there are blanks in place of tabs, as in a file with columns.
+        Whether tabs are replaced by blanks, as required in a file with columns.
     """
 
     def __init__(self, text: str, *, tabs: bool = False) -> None:
@@ -60,22 +60,22 @@ class Lines(Sequence[str]):
 
     @cached_property
     def edited(self) -> bool:
-        """Whether an editor has gone over the blanks of a file with columns: tabs, or none before any line."""
+        """Whether an editor has changed the blanks of a file with columns: it has tabs, or no leading blanks."""
         return self._had_tabs or not (self._text.startswith(" ") or "\n " in self._text)
 
     def since(self, start: int) -> Iterator[str]:
-        """Yield all lines from index `start` on: quicker than one index after the other."""
+        """Yield all lines from index `start` on, faster than by single indices."""
         for _, page in self.pages(start):
             yield from page
 
     def pages(self, start: int) -> Iterator[tuple[int, list[str]]]:
-        """Yield all lines from index `start` on, a page at a time, each with the index of its first line."""
+        """Yield all lines from index `start` on in pages, each with the index of its first line."""
         for number in range(bisect_right(self._firsts, start) - 1, len(self._firsts)):
             skipped = max(start - self._firsts[number], 0)
             yield self._firsts[number] + skipped, self._cut(number)[skipped:]
 
     def check_lengths(self, file: str) -> None:
-        """Refuse a line so long that its numbers would fill the memory. Raises `InputError`."""
+        """Raise `InputError` if a line is so long that its numbers would fill the memory."""
         ends = [*self._firsts[1:], self._length]
         for (start, end), number in zip(pairwise(self._starts), ends, strict=True):
             if end - start > PAGE + LONGEST:  # the last line of a page is the only one that goes beyond it

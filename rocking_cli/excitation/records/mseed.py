@@ -1,4 +1,4 @@
-"""MiniSEED, version 2: records of a few thousand bytes, each with the code of its channel and its time, and no unit."""
+"""MiniSEED, version 2: records of a few thousand bytes, each with the channel's code and time, and without a unit."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _DAYS = range(1, 367)
 
 
 def sniff(data: bytes) -> bool:
-    """Whether the first bytes are the header of a record, with a date that there is."""
+    """Return whether the first bytes are the header of a record with a valid date."""
     if len(data) < _LEAST:
         return False
     if _version_3(data):
@@ -77,7 +77,7 @@ def _version_3(data: bytes) -> bool:
 
 
 def _joined(file: str, name: str, segments: Sequence[Any], unit: tuple[str, float], wanted: Wanted) -> Channel:
-    """Put the segments of a channel, which obspy parts at gaps, one behind the other."""
+    """Join the segments of a channel, which obspy splits at gaps, to one channel."""
     segments = sorted(segments, key=lambda segment: segment.stats.starttime)
     flaw = velocity_code(file, segments[0].stats.channel, wanted) or _gap(file, name, segments)
     samples = np.concatenate([segment.data for segment in segments])
@@ -86,7 +86,7 @@ def _joined(file: str, name: str, segments: Sequence[Any], unit: tuple[str, floa
 
 
 def _gap(file: str, name: str, segments: Sequence[Any]) -> Problem | None:
-    """Find the first place where time does not go on from a segment to the next."""
+    """Return the problem of the first gap in time between two segments; None if there is none."""
     count = 0
     for one, two in pairwise(segments):
         count += one.stats.npts

@@ -1,4 +1,4 @@
-"""From a path to the bytes of one record: a file, standard input, a gzip file, or a file in a zip archive."""
+"""Open a record: a file, standard input, a gzip file, or a file in a zip archive."""
 
 from __future__ import annotations
 
@@ -35,20 +35,20 @@ _again: WeakSet[Any] = WeakSet()
 
 
 class Opened(NamedTuple):
-    """The bytes of one record, and what to call it.
+    """Content of one record, and its names.
 
     Parameters
     ----------
     data : bytes
-        Content, expanded if it was compressed.
+        Content, decompressed.
     file : str
-        Its name in messages: the path, with the name of the file in an archive behind it.
+        Name in messages: the path, followed by the name of the file in an archive.
     name : str
-        Name of the motion, but for its channel.
+        Name of the motion, without its channel.
     member : str
-        Which of several files of an archive it is; empty if there is no choice.
+        Name of the file in an archive of several; empty otherwise.
     channel : str or None
-        What is left of the requested channel, once a file of an archive is chosen.
+        The requested channel, without the name of the file in the archive.
     """
 
     data: bytes
@@ -59,17 +59,17 @@ class Opened(NamedTuple):
 
 
 def name_of(path: str | Path) -> str:
-    """What to call a record file: its path, or standard input."""
+    """Return the name of a record file in messages: its path, or standard input."""
     return "standard input" if str(path) == STANDARD_INPUT else str(path)
 
 
 def original(path: str | Path) -> bytes:
-    """The bytes of a file as they came, compressed or not; those of standard input if they were read before.
+    """Return the bytes of a file, still compressed; for standard input, those read before.
 
     Raises
     ------
     InputError
-        If it cannot be read.
+        If the file cannot be read.
     """
     if str(path) == STANDARD_INPUT and sys.stdin in _taken:
         return _taken[sys.stdin]
@@ -77,26 +77,26 @@ def original(path: str | Path) -> bytes:
 
 
 def allow_again(path: str | Path) -> None:
-    """Have a record that came from standard input read once more: the same one, in another way."""
+    """Allow a record from standard input to be read a second time, from the bytes kept."""
     if str(path) == STANDARD_INPUT and sys.stdin in _taken:
         _again.add(sys.stdin)
 
 
 def open_record(path: str | Path, channel: str | None = None) -> Opened:
-    """Read what is to be one record, from whatever it is packed in.
+    """Return the content of one record, from a file, standard input or an archive.
 
     Parameters
     ----------
     path : str or Path
-        A file, or `-` for standard input. A gzip file is expanded; of a zip archive one file is.
+        A file, or `-` for standard input. A gzip file is decompressed, and so is one file of a zip archive.
     channel : str, optional
-        The requested channel. Of an archive with several files it is the place, counted from 1, or the name
-        of one, with a colon and the channel in it where that has several too.
+        The requested channel. For an archive with several files, the number, from 1, or the name of a file, followed by
+        a colon and the channel if the file has several.
 
     Raises
     ------
     InputError
-        If it cannot be read, is too large, damaged or packed twice, or if which file of an archive is unclear.
+        If the file cannot be read, is too large, damaged or compressed twice, or the file of an archive is not clear.
     """
     data, file = _bytes(path), name_of(path)
     name, member = Path(file).name, ""
@@ -120,7 +120,7 @@ def _bytes(path: str | Path) -> bytes:
 
 
 def _from_standard_input() -> bytes:
-    """All that standard input gives, once."""
+    """Return all of standard input, which is read only once."""
     file = name_of(STANDARD_INPUT)
     stream: Any = sys.stdin
     if stream is None:
@@ -153,7 +153,7 @@ def _of_gzip(data: bytes, file: str) -> bytes:
 
 
 def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bool, str | None]:
-    """Return content and name of the requested file, or the only one; whether there are several; the channel in it."""
+    """Return content and name of the requested or only file, whether there are several, and the channel in it."""
     if data.count(b"PK\x01\x02") > MEMBERS:  # their list is read as a whole
         raise InputError(
             Problem(f"the archive has more than {MEMBERS} files: too many for a record", file, hint=_UNPACK)
@@ -187,13 +187,13 @@ def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bo
 
 
 def _is_no_record(member: zipfile.ZipInfo) -> bool:
-    """Whether a member is a folder, or what a file manager adds unasked."""
+    """Return whether a member of an archive is a folder, or a hidden file that a file manager adds."""
     parts = member.filename.split("/")
     return member.is_dir() or parts[0] == "__MACOSX" or parts[-1].startswith(".")
 
 
 def _chosen(file: str, names: Sequence[str], channel: str | None) -> tuple[int, str | None]:
-    """Find which file of an archive is requested, and the channel in it."""
+    """Return the index of the requested file of an archive, and the channel in it."""
     if channel is not None:
         for asked, rest in ((channel, None), channel.rpartition(":")[::2]):
             if (place := _place(names, asked.strip(), alone=len(names) == 1)) is not None:
@@ -211,7 +211,7 @@ def _chosen(file: str, names: Sequence[str], channel: str | None) -> tuple[int, 
 
 
 def _place(names: Sequence[str], asked: str, *, alone: bool) -> int | None:
-    """Index of a file by its name, with or without its folder, or by its place unless it is alone."""
+    """Return the index of a file by its name, with or without folder, or by its number; None if not found."""
     for wanted in (names, [name.rsplit("/", 1)[-1] for name in names]):
         found = [place for place, name in enumerate(wanted) if name.lower() == asked.lower()]
         if len(found) == 1:
@@ -228,7 +228,7 @@ def _damaged(what: str, error: Exception, file: str) -> Problem:
 
 
 def _most(packed: int) -> int:
-    """Bytes that a record of so many packed ones may have."""
+    """Return the largest size [bytes] to which this many compressed bytes may be decompressed."""
     return min(EXPANDED, max(RATIO * packed, SMALL))
 
 
@@ -239,5 +239,5 @@ def _too_large(file: str, packed: int) -> Problem:
 
 
 def _printable(text: str) -> str:
-    """Put escapes in the place of what would do something to a terminal."""
+    """Return a text with escapes for characters that control a terminal."""
     return "".join(each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)

@@ -1,4 +1,4 @@
-"""Where a record is from, as far as its header says so for sure: what is unsure is left out, and nothing is refused."""
+"""Origin of a record from its header: what is uncertain is left out, and nothing is refused."""
 
 from __future__ import annotations
 
@@ -28,20 +28,20 @@ _INFO = regex(r"PEER\b.{0,60}?\bDATABASE RECORD\W+(.{1,200}?),[^,]{0,20}\bACCELE
 
 
 def origin(event: str | None, station: str | None, magnitude: object = None, distance: object = None) -> Origin:
-    """The origin of what a header says, each part of it only if it makes sense.
+    """Return the origin from the items of a header, without the items that are not plausible.
 
     Parameters
     ----------
     event, station : str or None
-        Names as they stand there, of others: control characters are left out.
+        Names as in the header; control characters are removed.
     magnitude, distance : object, optional
-        Numbers, or as printed; the distance in km.
+        Numbers, or their text in the header; the distance in km.
     """
     return Origin(name(event), name(station), _within(magnitude, 0.0, LARGEST), _within(distance, -1.0, FARTHEST))
 
 
 def name(text: str | None) -> str | None:
-    """A name fit to be shown, in one line; None where it says nothing."""
+    """Return a name in one line, fit for display; None if it has no meaning."""
     found = seen(text or "").strip(" ,;:-*")
     if not re.search(r"[^\W_]", found) or _NOTHING.fullmatch(found):
         return None
@@ -49,7 +49,7 @@ def name(text: str | None) -> str | None:
 
 
 def of_csmip(head: Sequence[str]) -> Origin:
-    """The origin in the text header of a channel of CSMIP: one line names the earthquake and its day."""
+    """Return the origin from the text header of a CSMIP channel, with the earthquake and its date in one line."""
     number = next((k for k, line in enumerate(head) if _CSMIP_STATION.match(line)), None)
     station = None
     if number is not None:  # its name is in the line below
@@ -61,17 +61,17 @@ def of_csmip(head: Sequence[str]) -> Origin:
 
 
 def magnitude(line: str) -> str | None:
-    """The magnitude in a line such as ML=4.9, Mw=4.8(CIT): of the moment before the others."""
+    """Return the magnitude in a line such as ML=4.9, Mw=4.8(CIT): moment magnitude first; None if there is none."""
     return next((found for kind in _MAGNITUDES if (found := first_match(kind, [line]))), None)
 
 
 def first_match(pattern: re.Pattern[str], lines: Iterable[str]) -> str | None:
-    """The first group of a pattern in the first line where it is found."""
+    """Return the first group of a pattern in the first line that matches; None if no line does."""
     return next((match[1] for line in lines if (match := pattern.search(line[:1000]))), None)
 
 
 def of_peer(line: str) -> Origin:
-    """The origin in the second line of a PEER file: earthquake, date, station and component between commas."""
+    """Return the origin from the second line of a PEER file: earthquake, date, station, component."""
     parts = [part.strip() for part in line[:1000].split(",")]
     if len(parts) >= 4 and _DATE.fullmatch(parts[1]):
         return origin(parts[0], ", ".join(parts[2:-1]))
@@ -81,13 +81,13 @@ def of_peer(line: str) -> Origin:
 
 
 def of_info(text: str) -> Origin:
-    """The origin in the title of a PEER file that something else quotes, without its component."""
+    """Return the origin from the title of a PEER file, without its component, as another file quotes it."""
     match = _INFO.search(text[:2000])
     return of_peer(f"{match[1]}, component") if match else NOT_SAID
 
 
 def _within(value: object, above: float, most: float) -> float | None:
-    """A number of a header above and at most these; None for any other, and for what is none."""
+    """Return a number of a header if it is above `above` and at most `most`; else None."""
     if isinstance(value, str):
         value = float(value) if _NUMBER.fullmatch(value := value.strip()) else None
     try:

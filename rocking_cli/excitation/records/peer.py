@@ -1,4 +1,4 @@
-"""PEER AT2: a few lines of header with the number of points and the interval, then values several to a line."""
+"""PEER AT2: a few header lines with the number of points and the interval, then several values per line."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _HEADER_LINES = 30  # where the header must have ended; four lines are usual
 
 @dataclass(frozen=True)
 class _PeerHeader:
-    """What the header states: number of points, interval [s], line numbers of both, index of the first data line."""
+    """Content of the header: number of points, interval [s], their line numbers, index of the first data line."""
 
     npts: int
     dt: float
@@ -45,7 +45,7 @@ class _PeerHeader:
 
 
 def sniff(text: str) -> bool:
-    """Whether this is a PEER file: its title, or a line with NPTS that is not a comment, is near the top."""
+    """Return whether this is a PEER file: its title, or a line with NPTS that is not a comment, is near the top."""
     head = text[:100_000].split("\n")[:_HEADER_LINES]
     if text.lstrip().startswith("{"):  # JSON, which may well quote the header of its origin
         return False
@@ -80,12 +80,12 @@ def read(
 
 
 def _origin(lines: Sequence[str]) -> Origin:
-    """The earthquake and the station: below the title of the database alone, as others write what they like there."""
+    """Return the origin; only files with the title of the database are known to have it in the second line."""
     return of_peer(lines[1]) if len(lines) > 1 and _SIGNATURE.match(lines[0]) else NOT_SAID
 
 
 def _header(file: str, lines: Sequence[str]) -> _PeerHeader:
-    """Find the number of points and the interval, however many lines the header has."""
+    """Read the number of points and the interval from a header of any length."""
     npts: tuple[str, int] | None = None
     dt: tuple[str, int] | None = None
     for number, line in enumerate(lines[:_HEADER_LINES], start=1):
@@ -116,12 +116,12 @@ def _header(file: str, lines: Sequence[str]) -> _PeerHeader:
 
 
 def _values(file: str, lines: Lines, data: int) -> NDArray[np.float64]:
-    """All values from line index `data` on."""
+    """Return all values from line index `data` on."""
     return np.concatenate([_page_values(file, first, page) for first, page in lines.pages(data)])
 
 
 def _page_values(file: str, first: int, page: Sequence[str]) -> NDArray[np.float64]:
-    """Values of the lines from index `first` on; line by line only if something is wrong there."""
+    """Return the values of the lines from index `first` on; line by line only if there is an error."""
     body = "\n".join(filter(_plain, page))
     if "_" not in body:  # float() would take 1_000
         try:
@@ -139,5 +139,5 @@ def _page_values(file: str, first: int, page: Sequence[str]) -> NDArray[np.float
 
 
 def _plain(line: str) -> bool:
-    """Whether a line is not a comment; delimited text may keep the header of its origin in comments."""
+    """Return whether a line is not a comment; comments of delimited text may quote the header of its source."""
     return not line.lstrip().startswith(("#", "%"))

@@ -1,9 +1,9 @@
-"""The record readers that are installed, found through the entry points `rocking.records`, and which one a file is for.
+"""Installed record readers, found by the entry points `rocking.records`, and the choice of the reader of a file.
 
-A reader is a module, or any object, with a `TITLE` (the name of its format), a `SIGN` (what it recognises a file
-by, for the messages) and the functions `sniff` and `read` of `Reader`. One that has `BINARY = True` too is given the
-bytes of a file in place of its text. One with `TAKES_WANTED = True` can read other values than accelerations:
-its `read` takes `wanted`, a `sensor.Wanted`.
+A reader is a module, or any object, with a `TITLE` (the name of its format), a `SIGN` (by which it recognises a file,
+for messages) and the functions `sniff` and `read` of `Reader`. A reader with `BINARY = True` is given the bytes of a
+file instead of its text. A reader with `TAKES_WANTED = True` can read other values than accelerations: its `read` takes
+`wanted`, a `sensor.Wanted`.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ FALLBACK = "text"
 
 
 class Reader(Protocol):
-    """What a record format has to offer."""
+    """Interface of a reader of a record format."""
 
     TITLE: str
     SIGN: str
 
     # The content is a str, or the bytes of a reader with BINARY = True: Any lets either name its own.
     def sniff(self, content: Any, /) -> bool:
-        """Whether a file with this content is of this format; quick, and never by raising."""
+        """Return whether a file with this content has this format; fast, and without raising errors."""
         ...
 
     def read(
@@ -42,13 +42,13 @@ class Reader(Protocol):
         content : str or bytes
             Content of the file: its text, lines ending in a plain newline, or its bytes with `BINARY = True`.
         file : str
-            Its path, for the messages and the name of the motion.
+            Path of the file, for messages and the name of the motion.
         dt : float, optional
-            Interval between samples [s]; it must agree with the file, and is needed where the file gives none.
+            Sampling interval [s]; it must agree with the file, and is required if the file has none.
         units : str, optional
-            Unit of the accelerations; it must not contradict the file, and is needed where the file gives none.
+            Unit of the accelerations; it must not contradict the file, and is required if the file states none.
         channel : str, optional
-            Which channel: its place, counted from 1, or its name; needed where there are several.
+            Channel, by its number, from 1, or its name; required if there are several.
 
         Returns
         -------
@@ -58,21 +58,21 @@ class Reader(Protocol):
         Raises
         ------
         InputError
-            If anything is missing, contradictory, no number, or no acceleration.
+            If anything is missing, contradictory, not a number, or not an acceleration.
         """
         ...
 
 
 def load_readers() -> dict[str, Reader]:
-    """All readers by name, in alphabetic order.
+    """Return all readers by name, in alphabetical order.
 
-    One that cannot be loaded, is no reader, or whose name two packages claim is left out with a warning: in its place
-    is one that claims no file, and says why where a file is of no format.
+    A reader that cannot be loaded, is not valid, or has a name that two packages claim is left out with a warning. A
+    substitute, which claims no file, states the reason if no reader claims a file.
 
     Warns
     -----
     PluginWarning
-        Of each that is left out, once in a process.
+        For each reader that is left out, once in a process.
     """
     installed, readers = Readers(), dict[str, Reader]()
     for name in installed:
@@ -100,7 +100,7 @@ class Readers(Plugins[Reader]):
 
     @staticmethod
     def accept(loaded: object, point: Point) -> Reader:
-        """What was loaded, if it is a reader, with its errors named."""
+        """Return the loaded object, wrapped so that its errors name it, if it is a reader."""
         missing = [word for word in ("sniff", "read") if not callable(getattr(loaded, word, None))]
         missing += [word for word in ("TITLE", "SIGN") if not isinstance(getattr(loaded, word, None), str)]
         if missing:
@@ -109,13 +109,13 @@ class Readers(Plugins[Reader]):
 
 
 class ReaderError(InputError, PluginError):
-    """A file that its reader fails on, by an error of the reader's own: of many files, the others can be read."""
+    """Error inside a reader for one file; other files can still be read."""
 
     exit_code = PluginError.exit_code
 
 
 class _Broken:
-    """In place of a reader that cannot be used."""
+    """Substitute for a reader that cannot be used."""
 
     TITLE = "cannot be used"
     BINARY = True  # it is listed where the file is no text too
@@ -131,7 +131,7 @@ class _Broken:
 
 
 class _Guarded:
-    """A reader whose own errors are blamed on it."""
+    """A reader wrapped so that its own errors are reported as errors of its package."""
 
     def __init__(self, reader: Reader, point: Point) -> None:
         self.TITLE, self.SIGN, self.BINARY = reader.TITLE, reader.SIGN, takes_bytes(reader)
@@ -140,7 +140,7 @@ class _Guarded:
         self._module = point.value.partition(":")[0]
 
     def sniff(self, content: Any, /) -> bool:
-        """What the reader says; one that fails claims nothing."""
+        """Return whether the reader claims a file; False if it fails."""
         what = f"{origin(self._point)} failed to say whether a file is of its format"
         try:
             with blame(what, self._module):
@@ -152,7 +152,7 @@ class _Guarded:
             return False
 
     def read(self, content: Any, file: str, /, **options: Any) -> GroundMotion:
-        """What the reader reads; anything but a motion is an error of the reader."""
+        """Return the motion that the reader reads; any other result is an error of the reader."""
         try:
             with blame(f"{origin(self._point)} failed to read it", self._module):
                 motion = self._reader.read(content, file, **options)
@@ -164,38 +164,38 @@ class _Guarded:
 
 
 def takes_bytes(reader: Reader) -> bool:
-    """Whether a reader is given the bytes of a file, not its text."""
+    """Return whether a reader is given the bytes of a file instead of its text."""
     return bool(getattr(reader, "BINARY", False))
 
 
 def takes_wanted(reader: Reader) -> bool:
-    """Return whether a reader can read other values than accelerations at even times."""
+    """Return whether a reader can read other values than accelerations, and uneven times."""
     return bool(getattr(reader, "TAKES_WANTED", False))
 
 
 def reader_for(text: str | None, file: str, readers: dict[str, Reader], data: bytes = b"") -> Reader:
-    """Choose the one reader that claims a file, or the fallback if none of the others does.
+    """Return the one reader that claims a file, or the fallback if none of the others does.
 
     Parameters
     ----------
     text : str or None
-        Content of the file; None if it is no text, and then only the readers of bytes are asked.
+        Content of the file; None if it is not text, so that only readers of bytes are tried.
     file : str
-        Its path, for the messages.
+        Path of the file, for messages.
     readers : dict of str to Reader
-        The readers to ask.
+        The readers to try.
     data : bytes, optional
-        The same content, for the readers of bytes.
+        The same content as bytes.
 
     Returns
     -------
     Reader
-        The only one whose `sniff` said yes.
+        The only reader whose `sniff` is True.
 
     Raises
     ------
     InputError
-        If several claim the file, or none does.
+        If several readers claim the file, or none does.
     """
 
     def claimed(name: str) -> bool:

@@ -1,4 +1,4 @@
-"""SAC, versions 6 and 7, binary: a header of 158 words that names no unit, then the samples of one component."""
+"""SAC, versions 6 and 7, binary: a header of 158 words without a unit, then the samples of one component."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _A = {"acceleration": "an acceleration", "velocity": "a velocity", "displacement
 
 @dataclass(frozen=True)
 class _SacHeader:
-    """Words of the header: interval [s], extremes, version, number of points, kind of file, of values, whether even."""
+    """Content of the header: interval [s], extremes, version, number of points, kind of file and values, evenness."""
 
     delta: float
     least: float
@@ -44,7 +44,7 @@ class _SacHeader:
 
 
 def sniff(data: bytes) -> bool:
-    """Whether the version of the header is one there is, and the words beside it make sense."""
+    """Return whether the version in the header is a valid one, and the words beside it are plausible."""
     header = _header(data)
     return header is not None and header.delta > 0 and header.even in (0, 1) and 0 < header.kind < 200
 
@@ -91,7 +91,7 @@ def read(
 
 
 def _extremes(header: _SacHeader, samples: NDArray[np.float32]) -> tuple[Doubt, ...]:
-    """Whether the smallest and the largest sample are those of the header, where it gives them."""
+    """Return a doubt if the smallest or largest sample differs from that in the header, if there is one."""
     if not samples.size or _UNSET in (header.least, header.most):
         return ()
     least, most = float(samples.min()), float(samples.max())
@@ -106,7 +106,7 @@ def _extremes(header: _SacHeader, samples: NDArray[np.float32]) -> tuple[Doubt, 
 
 
 def _header(data: bytes) -> _SacHeader | None:
-    """Read the words that matter, in whichever byte order gives a version there is; None if neither does."""
+    """Read the header in the byte order that gives a valid version; None if neither does."""
     if len(data) >= _HEADER:
         for order in "<>":
             words = struct.unpack_from(f"{order}fff292xi8xi20xii72xi", data)

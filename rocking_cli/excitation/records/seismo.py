@@ -1,4 +1,4 @@
-"""What the seismologists' formats share: obspy reads them, and what they hold may be no acceleration in any unit."""
+"""Common parts of seismological formats, which obspy reads and which need not hold accelerations or state a unit."""
 
 from __future__ import annotations
 
@@ -24,26 +24,26 @@ _MOST = 10 * STANDARD_GRAVITY  # m/s2; whole numbers beyond this are counts: no 
 
 
 def traces(data: bytes, file: str, form: str) -> list[Any]:
-    """Read the traces of a file with obspy, which is imported here because few have it, and fewer need it.
+    """Read the traces of a file with obspy, an optional package that is imported here.
 
     Parameters
     ----------
     data : bytes
         Content of the file.
     file : str
-        Its path, for the messages.
+        Path of the file, for messages.
     form : str
-        What obspy calls the format.
+        Name of the format in obspy.
 
     Returns
     -------
     list of obspy.Trace
-        In the order of the file.
+        Traces in the order of the file.
 
     Raises
     ------
     InputError
-        If obspy is not installed, or does not understand the file or a part of it.
+        If obspy is not installed, or cannot read the file or a part of it.
     """
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("ignore")  # obspy's deprecations are no business of who reads a record
@@ -69,7 +69,7 @@ def traces(data: bytes, file: str, form: str) -> list[Any]:
 
 
 def origin_of(trace: Any) -> Origin:
-    """Network and station of a trace; of SAC also the name of the event, its magnitude and its distance [km]."""
+    """Return network and station of a trace; for SAC also the earthquake, its magnitude and its distance [km]."""
     stats = trace.stats
     station = ".".join(part for part in (str(stats.network).strip(), str(stats.station).strip()) if part)
     sac = stats.get("sac", {})
@@ -79,9 +79,9 @@ def origin_of(trace: Any) -> Origin:
 def channel_of(
     file: str, name: str, dt: float, samples: NDArray[Any], unit: tuple[str, float], flaw: Problem | None
 ) -> Channel:
-    """Make a channel of samples, with the flaw found in the header or the first one found in the samples.
+    """Make a channel of samples, with the flaw of its header or else the first one of its samples.
 
-    `unit` is name and size of the unit of the samples, which the formats have no place for.
+    `unit` is the name and size of the samples' unit, which these formats do not state.
     """
     values = samples.astype(np.float64) if samples.dtype.kind in "iuf" else np.full(samples.size, np.nan)
     flaw = flaw or _flaw(file, name, values, unit, whole=samples.dtype.kind in "iu")
@@ -89,7 +89,7 @@ def channel_of(
 
 
 def velocity_code(file: str, code: str, wanted: Wanted) -> Problem | None:
-    """Find a channel code of an instrument that records velocity, where accelerations are wanted."""
+    """Return the problem that a channel code is that of a velocity instrument, if accelerations are requested."""
     if wanted.quantity != "acceleration" or not _VELOCITY_CODE.fullmatch(code):
         return None
     message = f"channel {code} is of a seismometer, which records velocity, not of an accelerometer"
@@ -101,7 +101,7 @@ def velocity_code(file: str, code: str, wanted: Wanted) -> Problem | None:
 
 
 def _flaw(file: str, name: str, values: NDArray[np.float64], unit: tuple[str, float], *, whole: bool) -> Problem | None:
-    """Find samples that are no numbers, or counts of a digitiser."""
+    """Return the problem of samples that are not numbers, or are counts of a digitiser; None if there is none."""
     who = f"channel {name}" if name else "the file"
     if not values.size:
         return Problem(f"{who} has no samples", file)

@@ -1,4 +1,4 @@
-"""What an instrument wrote, if not an acceleration in a unit: displacements, velocities, volts and counts."""
+"""Recorded values other than accelerations in a unit: displacements, velocities, volts and counts."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _PER = regex(r"(.+?)\s*(?:/|\bper\b)\s*([^\W\d_%]{1,20}|%)")
 
 
 class _Stated(NamedTuple):
-    """A unit that a header states, its size, and the line."""
+    """A unit stated in a header: its name, its size in SI units and its line."""
 
     unit: str
     size: float
@@ -48,16 +48,17 @@ class _Stated(NamedTuple):
 
 
 class Wanted(NamedTuple):
-    """What is asked of a reader besides accelerations at even times; one with `TAKES_WANTED = True` can be asked.
+    """Request to a reader with `TAKES_WANTED = True`, beyond accelerations at even times.
 
     Parameters
     ----------
     quantity : str
-        What the values of the file are; the reader gives them in the place of accelerations, in SI units.
+        Quantity of the values in the file; the reader returns them in place of accelerations, in SI units.
     raw : bool
-        Whether they are the output of an instrument, without a unit that matters: they are given as they are.
+        Whether the values are the output of an instrument: they are then returned unchanged, whatever their unit.
     uneven : bool
-        Whether times may be uneven: the values are then put on an even grid, and a `Doubt` says how uneven.
+        Whether times may be uneven: the values are then interpolated to an even grid, and a `Doubt` states how uneven
+        the times are.
     """
 
     quantity: Quantity = "acceleration"
@@ -65,7 +66,7 @@ class Wanted(NamedTuple):
     uneven: bool = False
 
     def unit(self, file: str, header: Sequence[tuple[int, str]], units: str | None) -> tuple[str, float]:
-        """Name and size of the unit of the values; arguments and errors are those of `units.resolve_unit`."""
+        """Return name and size of the unit of the values; arguments and errors are those of `units.resolve_unit`."""
         if self.raw:
             self._refuse_stated(file, header)
             return "raw", 1.0
@@ -82,7 +83,7 @@ class Wanted(NamedTuple):
                 raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint="leave `gain` out"))
 
     def _refuse_another(self, file: str, header: Sequence[tuple[int, str]]) -> None:
-        """Refuse labels whose units in brackets are of other quantities alone."""
+        """Raise `InputError` if the labels have units in brackets, and all of these are of other quantities."""
         for number, line in header[-1:]:
             said = {each: unit for unit in _BRACKETED.findall(line) if (each := quantity_of(unit)) is not None}
             if said and self.quantity not in said:
@@ -92,7 +93,7 @@ class Wanted(NamedTuple):
                 raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
 
     def _stated(self, header: Sequence[tuple[int, str]]) -> _Stated | None:
-        """What the header says the unit is."""
+        """Return the unit that the header states; None if it states none."""
         for number, line in reversed(header):
             for one in (a or b for a, b in _IN_HEADER.findall(line)):
                 if (size := size_of(one, self.quantity)) is not None:
@@ -120,17 +121,17 @@ class Wanted(NamedTuple):
 
 
 def plural(quantity: Quantity) -> str:
-    """What several are called."""
+    """Return the plural of a quantity, in words."""
     return "velocities" if quantity == "velocity" else f"{quantity}s"
 
 
 def units_of(quantity: Quantity) -> tuple[str, ...]:
-    """The units that a quantity may be given in."""
+    """Return the units in which a quantity may be given."""
     return tuple(UNITS) if quantity == "acceleration" else OTHER_UNITS[quantity]
 
 
 def size_of(unit: str, quantity: Quantity) -> float | None:
-    """Size of a unit of a quantity, in SI units; None if it is not one."""
+    """Return the size of a unit of a quantity, in SI units; None if it is not a unit of this quantity."""
     if quantity == "acceleration":
         name = canonical(unit)
         return None if name is None else UNITS[name]
@@ -139,22 +140,22 @@ def size_of(unit: str, quantity: Quantity) -> float | None:
 
 
 def quantity_of(unit: str) -> Quantity | None:
-    """What a unit is of; None if it is of none of the three."""
+    """Return the quantity of a unit; None if it is not that of an acceleration, velocity or displacement."""
     return next((each for each in QUANTITIES if size_of(unit, each) is not None), None)
 
 
 @dataclass(frozen=True)
 class Gain:
-    """What one unit of an instrument's output stands for.
+    """Value of one unit of an instrument's output.
 
     Parameters
     ----------
     size : float
-        In m/s2, m/s or m, not zero; a negative one reverses the motion.
+        Value in m/s2, m/s or m, not zero; a negative one reverses the motion.
     quantity : str
-        Of what it is.
+        Quantity of the value.
     text : str
-        As it is written: `0.05 m/V`.
+        The gain as written: `0.05 m/V`.
     """
 
     size: float
@@ -166,12 +167,12 @@ class Gain:
 
     @classmethod
     def parse(cls, text: str) -> Gain:
-        """Read a gain such as `0.05 m/V`, `1.5e-5 m/count` or `2 g/V`; what it is per may be left out.
+        """Read a gain such as `0.05 m/V`, `1.5e-5 m/count` or `2 g/V`; the unit after the slash is optional.
 
         Raises
         ------
         InputError
-            If it is no number, or has no unit of an acceleration, a velocity or a length.
+            If the text has no number, or no unit of acceleration, velocity or length.
         """
         match = _FORM.fullmatch(text)
         if match is None or not LEAST <= abs(float(match[1])) <= MOST:
@@ -198,29 +199,29 @@ def _refused(message: str, guess: str | None = None) -> InputError:
 
 
 def smallest_step(measured: GroundMotion) -> float:
-    """The smallest difference of neighbours that is not zero, as a rule one of the last digit; 0 if there is none."""
+    """Return the smallest non-zero difference of consecutive samples, usually one last digit; 0 if there is none."""
     steps = np.abs(np.diff(measured.acceleration))
     smallest = float(steps[steps > 0].min(initial=np.inf))
     return smallest if isfinite(smallest) else 0.0
 
 
 def as_acceleration(measured: GroundMotion, quantity: Quantity, step: float | None = None) -> GroundMotion:
-    """The ground acceleration, of what was measured and stands in the place of it.
+    """Return the ground acceleration from measured displacements, velocities or accelerations.
 
     Parameters
     ----------
     measured : GroundMotion
-        Its "accelerations" are displacements [m] or velocities [m/s]; of accelerations it is given back.
+        Motion whose "accelerations" are the measured values, in m, m/s or m/s2; accelerations are returned unchanged.
     quantity : str
-        What they are.
+        Quantity of the measured values.
     step : float, optional
-        What `smallest_step` was before corrections, which hide it; 0 to raise no doubt about it.
+        `smallest_step` of the values before corrections, which hide it; 0 to raise no doubt about the resolution.
 
     Returns
     -------
     GroundMotion
-        Central differences, zero at the first and the last sample. Of what is at a frequency f they leave sinc^2(f dt)
-        of a displacement, sinc(2 f dt) of a velocity, sinc(x) = sin(pi x)/(pi x).
+        Motion by central differences, zero at the first and the last sample. At a frequency f they reduce the amplitude
+        by sinc^2(f dt) for displacements and sinc(2 f dt) for velocities, with sinc(x) = sin(pi x)/(pi x).
     """
     if quantity == "acceleration":
         return measured
@@ -235,18 +236,18 @@ def as_acceleration(measured: GroundMotion, quantity: Quantity, step: float | No
 
 
 def said(quantity: Quantity) -> str:
-    """How a differentiated quantity is named among what was done to a motion."""
+    """Return the name of the differentiation of a quantity in the list of processing steps."""
     return f"from {quantity}"
 
 
 def in_words(quantity: Quantity, dt: float) -> str:
-    """What differentiating does, for people: which filter central differences are."""
+    """Return a description of the differentiation as a filter, for users."""
     twice, half = ("twice ", 0.44295 / dt) if quantity == "displacement" else ("", 0.30168 / dt)
     return f"differentiated {twice}by central differences, which leave half of what is at {half:.3g} Hz"
 
 
 def _resolution(smallest: float, found: NDArray[np.float64], dt: float, quantity: Quantity) -> tuple[Doubt, ...]:
-    """What one step of the smallest digit becomes, where it is much of the whole."""
+    """Return a doubt if one step of the last digit, differentiated, is a large part of the peak acceleration."""
     power, unit = (2, "m") if quantity == "displacement" else (1, "m/s")
     noise = smallest / dt**power
     peak = float(np.abs(found).max())

@@ -24,7 +24,7 @@ SIGN = 'a JSON object with "accel_data"'
 
 
 def sniff(text: str) -> bool:
-    """Whether this is a JSON object with accelerations."""
+    """Return whether this is a JSON object with accelerations."""
     return text.lstrip().startswith("{") and '"accel_data"' in text
 
 
@@ -84,7 +84,7 @@ def read(
 
 
 class _TwiceError(Exception):
-    """A key that an object has more than once."""
+    """Error: an object has a key more than once."""
 
     def __init__(self, key: str) -> None:
         super().__init__(key)
@@ -92,7 +92,7 @@ class _TwiceError(Exception):
 
 
 def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Make an object of its pairs; JSON itself would take the last of two."""
+    """Return an object of its pairs; raise `_TwiceError` for a repeated key, of which JSON would take the last."""
     found: dict[str, Any] = {}
     for key, value in pairs:
         if key in found:
@@ -102,25 +102,25 @@ def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _whole(digits: str) -> int | float:
-    """Value of a whole number; Python takes no more than some thousand digits, and none is used beyond a few."""
+    """Return the value of an integer of any length; Python would refuse one of some thousand digits."""
     return int(digits) if len(digits) < 40 else float(digits)
 
 
 def _shown(value: object) -> str:
-    """A value as JSON has it, cut short."""
+    """Return a value as JSON text, shortened."""
     if isinstance(value, (list, dict)):  # of any size and depth
         return "a list" if isinstance(value, list) else "an object"
     return json.dumps(value)[:40]
 
 
 def _one_missing(stated: float) -> tuple[Doubt, ...]:
-    """Say that a value may be lost: files of SimCenter's own say one too many, though nothing tells the two apart."""
+    """Return the doubt that a value may be lost; SimCenter's own files also state one value too many."""
     text = f"it says numPoints = {stated:g} and has one value less, as files of SimCenter do: or was one lost?"
     return (Doubt("count", float(stated), text),)
 
 
 def _digits(text: str) -> tuple[Doubt, ...]:
-    """Whether a few of the accelerations are printed otherwise than the others."""
+    """Return a doubt if a few of the accelerations have another number of digits than the others."""
     match = re.search(r'"accel_data"\s*:\s*\[([^\]]*)', text)
     if match is None:
         return ()
@@ -135,11 +135,11 @@ def _is_number(value: object) -> bool:
 
 
 def _line_of(text: str, key: str) -> int:
-    """Line number where a key is; 1 if it is nowhere."""
+    """Return the number of the line with a key; 1 if the key is not found."""
     match = next(_places(text, key), None)
     return text.count("\n", 0, match.start()) + 1 if match else 1
 
 
 def _places(text: str, key: str) -> Iterator[re.Match[str]]:
-    """Where a key is."""
+    """Yield the matches of a key in the text."""
     return re.finditer(rf"{re.escape(json.dumps(key, ensure_ascii=False))}\s*:", text)

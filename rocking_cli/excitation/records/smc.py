@@ -1,4 +1,4 @@
-"""USGS SMC: 11 lines of text, 48 whole and 50 real numbers, comments, then values 8 to a line without blanks."""
+"""USGS SMC: 11 text lines, 48 integers and 50 reals, comments, then 8 values per line without blanks between them."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _DISTANCE = regex(r"^epicentral dist *= *([\d.]+)")
 
 
 def sniff(text: str) -> bool:
-    """Whether the first line says what it is as SMC does, and the second is a bare asterisk."""
+    """Return whether the first line is one of the titles of SMC, and the second is a single asterisk."""
     head = text[:1000].split("\n")
     return bool(_FIRST.match(head[0])) and len(head) > 1 and head[1].strip() == "*"
 
@@ -91,7 +91,7 @@ def read(
 
 
 def _origin(head: Sequence[str]) -> Origin:
-    """The earthquake by its name and time, the station, the magnitude and the distance of the text header."""
+    """Return the origin from the text header: earthquake by name and time, station, magnitude and distance."""
     match = _EVENT.fullmatch(head[3][:200].rstrip()) if len(head) > 3 else None
     event = None
     if match is not None:

@@ -1,4 +1,4 @@
-"""Checks of what a header states of its values - their peak, its time, their duration - against the values."""
+"""Checks of the values of a record against their peak, its time and their duration as stated in the header."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ _PRINTED = 1e-4  # of a value: some print the peak with more digits in the heade
 def peak_doubts(
     values: NDArray[np.float64], dt: float, unit: str, line: int, peak: str, time: str | None = None
 ) -> tuple[Doubt, ...]:
-    """Whether the largest value is the one that the header states, and where it states it.
+    """Return a doubt if the largest value, or its time, differs from that stated in the header.
 
     Parameters
     ----------
     values : ndarray, shape (npts,)
-        As in the file.
+        Values as in the file.
     dt : float
-        Interval between them [s].
+        Sampling interval [s].
     unit : str
-        What they are in.
+        Unit of the values.
     line : int
         Line number of the header.
     peak, time : str
-        Peak, of either sign, and its time [s] as the header prints them: their last digit may be rounded.
+        Peak, with any sign, and its time [s] as printed in the header, whose last digit may be rounded.
 
     Returns
     -------
     tuple of Doubt
-        Empty if they agree, or the header does not print numbers.
+        The doubts; empty if values and header agree, or the header does not have numbers.
     """
     stated, found = _value(peak), float(np.abs(values).max())
     if stated is None:
@@ -59,7 +59,7 @@ def peak_doubts(
 
 
 def length_doubts(found: float, line: int, length: str, tolerance: float) -> tuple[Doubt, ...]:
-    """Whether a record is as long as its header states, in seconds, to a tolerance [s] and the last digit printed."""
+    """Return a doubt if the duration differs from that in the header [s] by more than `tolerance` [s] and rounding."""
     stated = _value(length)
     if stated is None or abs(stated[0] - found) <= stated[1] + tolerance:
         return ()
@@ -68,7 +68,7 @@ def length_doubts(found: float, line: int, length: str, tolerance: float) -> tup
 
 
 def _value(printed: str) -> tuple[float, float] | None:
-    """A printed number and the size of its last digit; None if it is not one."""
+    """Return a printed number and the size of its last digit; None if it is not a number."""
     match = _NUMBER.fullmatch(printed.strip())
     if match is None:
         return None

@@ -39,7 +39,7 @@ _DT_TOLERANCE = 1e-3  # a given interval may be the rounded form of the file's, 
 
 
 def sniff(text: str) -> bool:
-    """Whether this looks like delimited text: some line begins with a number, and it is not JSON or XML."""
+    """Return whether this looks like delimited text: a line begins with a number, and it is not JSON or XML."""
     head = text[:_HEAD]
     return not head.lstrip().startswith(("{", "[", "<")) and _first_row(head.split("\n")) is not None
 
@@ -125,34 +125,34 @@ def read(
 
 
 def usable(values: NDArray[np.float64]) -> bool:
-    """Whether all values are finite, and not so large that no arithmetic can be done with them."""
+    """Return whether all values are finite, and not too large for arithmetic."""
     return bool((np.abs(values) < _HUGE).all())
 
 
 def sensible(value: float) -> bool:
-    """Whether one value is `usable`."""
+    """Return whether one value is `usable`."""
     return abs(value) < _HUGE
 
 
 def numbers_in(file: str, line_number: int, line: str, tokens: Sequence[str]) -> list[float]:
-    """Values of the numbers printed on a line, Fortran's exponents included.
+    """Return the values of the numbers printed on a line, including those with Fortran's exponents.
 
     Parameters
     ----------
     file, line_number, line : str, int, str
-        Where they are, for the message.
+        File, line number and text of the line, for messages.
     tokens : sequence of str
         The numbers as printed.
 
     Returns
     -------
     list of float
-        Their values.
+        Values of the numbers.
 
     Raises
     ------
     InputError
-        At the first one that is not a finite number, or beyond all measure.
+        At the first number that is not finite, or far too large.
     """
     values = []
     for token in tokens:
@@ -164,14 +164,14 @@ def numbers_in(file: str, line_number: int, line: str, tokens: Sequence[str]) ->
 
 
 def only_channel(file: str, asked: str | None) -> None:
-    """Refuse any channel but the first, of a file that can hold no other."""
+    """Raise `InputError` if a channel other than the first is requested of a file with one channel."""
     if asked is not None and asked.strip() != "1":
         message = f"there is no channel '{asked}': the file holds one component"
         raise InputError(Problem(message, file=file, field="`channel`", hint="leave `channel` out"))
 
 
 def check_interval(file: str, line_number: int | None, own: float, given: float | None) -> None:
-    """Refuse a sample interval [s] of the file that is none, or one given by the user that is another."""
+    """Raise `InputError` if the sampling interval of the file [s] is not valid, or differs from the given one."""
     if not _INTERVALS[0] <= own <= _INTERVALS[1]:
         raise InputError(
             Problem(f"the sampling interval is {own:g} s, which is not plausible", file=file, line=line_number)
@@ -182,20 +182,20 @@ def check_interval(file: str, line_number: int | None, own: float, given: float 
 
 
 def _value(token: str) -> float | None:
-    """Value of a printed number; None if it is not one. Stricter than `float`, which takes 1_000."""
+    """Return the value of a printed number; None if it is not one. Stricter than `float`, which accepts 1_000."""
     if _NUMBER.fullmatch(token):
         return float(token.upper().replace("D", "E"))
     return math.nan if _NOT_FINITE.fullmatch(token) else None
 
 
 def _clean(line: str) -> str:
-    """Strip outer blanks and empty cells at the end; nothing at all is left of a comment."""
+    """Return a line without outer blanks and empty cells at its end; empty for a comment."""
     line = line.strip()
     return "" if line.startswith(("#", "%")) else line.rstrip(",; \t")
 
 
 def _first_row(lines: Iterable[str]) -> int | None:
-    """Index of the first line of data: the first that begins with a number and is not a comment."""
+    """Return the index of the first data line, which begins with a number and is not a comment; None if none does."""
     for index, line in enumerate(lines):
         match = _FIRST_CELL.match(_clean(line))
         if match and _value(match[0] if match[1] is None else match[1].strip().replace(",", ".")) is not None:
@@ -204,7 +204,7 @@ def _first_row(lines: Iterable[str]) -> int | None:
 
 
 def _unquoted(file: str, line_number: int, row: str, text: str) -> str:
-    """The text with blanks for its quotation marks, after a look at its first row."""
+    """Return the text with blanks in place of its quotation marks, after a check of its first row."""
     if any("," in cell for cell in _QUOTED.findall(row)) and not re.search(r"[;\t]", _QUOTED.sub("", row)):
         message = "the commas within quotation marks may be decimal ones, or part thousands"
         hint = "write decimals with a point, or separate the columns with semicolons"
@@ -213,13 +213,13 @@ def _unquoted(file: str, line_number: int, row: str, text: str) -> str:
 
 
 def _has_decimal_commas(lines: Lines, start: int) -> bool:
-    """Whether the numbers of the first rows, which are separated by something else, have commas in them."""
+    """Return whether the numbers of the first rows have decimal commas, as other delimiters separate them."""
     _, page = next(lines.pages(start))
     return any("," in _clean(line) for line in page)
 
 
 def _with_points(file: str, first: int, page: Sequence[str]) -> list[str]:
-    """The rows of a page from line index `first` on, with points for their decimal commas."""
+    """Return the rows of a page from line index `first` on, with points in place of decimal commas."""
     rows = [_clean(line) for line in page]
     for number, row in enumerate(rows, start=first + 1):
         if "." in row:
@@ -230,12 +230,12 @@ def _with_points(file: str, first: int, page: Sequence[str]) -> list[str]:
 
 
 def _delimiter(row: str) -> str | None:
-    """Find what separates the columns, from the first row of data; None stands for blanks."""
+    """Return the delimiter of the columns, from the first row of data; None for blanks."""
     return next((mark for mark in (";", "\t", ",") if mark in _clean(row)), None)
 
 
 def _header(file: str, lines: Sequence[str], delimiter: str | None, columns: int) -> list[tuple[int, str]]:
-    """Line number and text of comments and header lines, the column labels last."""
+    """Return line number and text of comments and header lines, with the column labels last."""
     comments, header = [], []
     for number, line in enumerate(lines, start=1):
         line = line.strip()
@@ -262,7 +262,7 @@ def _header(file: str, lines: Sequence[str], delimiter: str | None, columns: int
 
 
 def _refuse_other_times(file: str, names: Sequence[Label], lines: Sequence[int]) -> None:
-    """Refuse columns of times that are not in seconds, from the labels on these lines."""
+    """Raise `InputError` if columns of times are not in seconds, by their labels on these lines."""
     for label in names:
         if match := _OTHER_TIME.search(str(label)):
             message = f"the time column is in '{match[1]}'"
@@ -272,7 +272,7 @@ def _refuse_other_times(file: str, names: Sequence[Label], lines: Sequence[int])
 def _table(
     file: str, lines: Lines, start: int, delimiter: str | None, names: Sequence[Label], *, commas: bool
 ) -> NDArray[np.float64]:
-    """All columns as the rows of an array; by numpy's own, fast parser, by the careful one on a page it gives up."""
+    """Return all columns as rows of an array, by numpy's parser, or the slower one for a page that numpy refuses."""
     columns = len(names)
     _refuse_too_many(file, len(lines) - start, columns)
     table = np.empty((columns, len(lines) - start))  # rather too wide: blank lines and comments hold nothing
@@ -291,7 +291,7 @@ def _table(
 
 
 def _refuse_too_many(file: str, rows: int, columns: int) -> None:
-    """Refuse a table larger than any record, before there is memory for it."""
+    """Raise `InputError` if a table is larger than any record, before memory is reserved for it."""
     if rows > MOST_SAMPLES or rows * columns > MOST_NUMBERS:
         most = MOST_SAMPLES if rows > MOST_SAMPLES else MOST_NUMBERS // columns
         raise InputError(
@@ -300,7 +300,7 @@ def _refuse_too_many(file: str, rows: int, columns: int) -> None:
 
 
 def _quick_table(lines: Sequence[str], delimiter: str | None, columns: int) -> NDArray[np.float64] | None:
-    """Parse the lines with numpy; None if it does not understand one of them, or a value is not usable."""
+    """Parse lines with numpy; None if it cannot parse a line, or a value is not usable."""
     if not any(line.strip() for line in lines):  # numpy warns of that
         return np.empty((0, columns))
     try:
@@ -313,7 +313,7 @@ def _quick_table(lines: Sequence[str], delimiter: str | None, columns: int) -> N
 def _careful_table(
     file: str, first: int, lines: Sequence[str], delimiter: str | None, names: Sequence[Label]
 ) -> NDArray[np.float64]:
-    """Parse the lines from index `first` on one by one: to say which is wrong, or take what numpy does not, 1D-3."""
+    """Parse lines from index `first` on one by one, to report errors or accept numbers such as 1D-3."""
     values: list[float] = []
     columns = len(names)
     for number, line in enumerate(lines, start=first + 1):
@@ -340,12 +340,12 @@ def _refuse_a_single_sample(file: str, start: int, table: NDArray[np.float64]) -
 
 
 def _called(names: Sequence[Label], place: int) -> str:
-    """What to call a column."""
+    """Return the name of a column in messages."""
     return f"column {place + 1}" + (f" ({names[place]})" if names[place].name else "")
 
 
 def _increases_evenly(column: NDArray[np.float64]) -> bool:
-    """Whether a column is one of times."""
+    """Return whether a column may be one of even times."""
     try:
         even_interval(column)
     except UnevenTimeError:
@@ -354,12 +354,12 @@ def _increases_evenly(column: NDArray[np.float64]) -> bool:
 
 
 def _increases(column: NDArray[np.float64]) -> bool:
-    """Whether a column may be one of uneven times."""
+    """Return whether a column may be one of uneven times."""
     return bool((np.diff(column) > 0).all())
 
 
 def _interval(file: str, lines: Lines, start: int, time: NDArray[np.float64], column: str) -> float:
-    """Interval of the times in a column [s], which has a name if there are several."""
+    """Return the interval of the times in a column [s]; `column` is its name, if there are several."""
     try:
         return even_interval(time)
     except UnevenTimeError as error:
@@ -372,7 +372,7 @@ def _interval(file: str, lines: Lines, start: int, time: NDArray[np.float64], co
 def _on_grid(
     file: str, lines: Lines, start: int, time: NDArray[np.float64], values: NDArray[np.float64]
 ) -> tuple[float, NDArray[np.float64], Doubt] | None:
-    """Values at even times; see `times.on_grid`."""
+    """Return interval and values at even times, and a doubt; see `times.on_grid`."""
     try:
         return on_grid(time, values)
     except UnevenTimeError as error:
@@ -381,14 +381,14 @@ def _on_grid(
 
 
 def _at_row(file: str, lines: Lines, start: int, row: int, message: str, hint: str) -> Problem:
-    """Place a problem at a row of the table, counted from 0; blank lines and comments are no rows."""
+    """Return a problem at a row of the table, counted from 0 without blank lines and comments."""
     numbers = (number for number, line in enumerate(lines, start=1) if number > start and _clean(line))
     number = next(islice(numbers, row, None))
     return Problem(message, file=file, line=number, excerpt=lines[number - 1].strip()[:100], hint=hint)
 
 
 def _not_a_number(file: str, line_number: int, line: str, token: str, *, known: bool) -> Problem:
-    """Describe a value that cannot be used; `known` for NaN, infinity and the like, which are numbers of a kind."""
+    """Return the problem of a value that cannot be used; `known` for NaN, infinity and similar values."""
     hint = None
     if known:
         message = f"'{token}' is not a finite number of sensible size"

@@ -1,4 +1,4 @@
-"""Printed times: the constant interval they stand for, within what their rounding leaves open."""
+"""Constant sampling interval from printed times, within the uncertainty of their rounding."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ _FINE = 0.01  # share of times that must be finer than the coarsest one, or they
 
 
 class UnevenTimeError(Exception):
-    """Times that have no constant interval.
+    """Error: times have no constant interval.
 
     Parameters
     ----------
     message : str
-        What is wrong with them.
+        What is wrong with the times.
     hint : str
-        What to do about it.
+        Remedy.
     row : int or None
-        Index of the first one that is out of step.
+        Index of the first time that is not evenly spaced.
     """
 
     def __init__(self, message: str, hint: str, row: int | None) -> None:
@@ -35,7 +35,7 @@ class UnevenTimeError(Exception):
 
 
 def even_interval(time: NDArray[np.float64]) -> float:
-    """Interval of evenly spaced times.
+    """Return the interval of evenly spaced times.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def even_interval(time: NDArray[np.float64]) -> float:
     Raises
     ------
     UnevenTimeError
-        At the first time that is out of step.
+        At the first time that is not evenly spaced.
     """
     steps = np.diff(time)
     if (steps <= 0).any():
@@ -93,28 +93,29 @@ def even_interval(time: NDArray[np.float64]) -> float:
 
 
 def _as_written(value: float) -> float:
-    """The number of twelve digits that a quotient misses by its last bits alone, if there is one."""
+    """Return the number of at most twelve digits that differs from a quotient by rounding only, or the quotient."""
     written = float(f"{value:.12g}")
     return written if abs(written - value) <= 2 * np.spacing(value) else value
 
 
 def on_grid(time: NDArray[np.float64], values: NDArray[np.float64]) -> tuple[float, NDArray[np.float64], Doubt] | None:
-    """Values at even times, on the straight lines between those at uneven ones.
+    """Interpolate values from uneven times linearly to even times.
 
     Parameters
     ----------
     time, values : ndarray, shape (npts,)
-        Times [s], and the values then.
+        Times [s], and the values at these times.
 
     Returns
     -------
     (float, ndarray, Doubt) or None
-        The usual interval [s], the values at it, and how uneven the times are; None where they do not increase.
+        The usual interval [s], the values at this interval, and how uneven the times are; None if times do not
+        increase.
 
     Raises
     ------
     UnevenTimeError
-        Where most of the grid would lie in gaps between the samples.
+        If most of the grid would lie in gaps between the samples.
     """
     steps = np.diff(time)
     if not (steps > 0).all():
@@ -137,7 +138,7 @@ def on_grid(time: NDArray[np.float64], values: NDArray[np.float64]) -> tuple[flo
 
 
 def _of_decimals(time: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
-    """Find the one resolution of all times [s], if it is below a tenth of `dt` but not negligible; else 0."""
+    """Return the resolution of times [s] with few decimals, less than a tenth of `dt`; 0 if they have more decimals."""
     decimals = math.floor(-math.log10(dt / 10) + 1e-9) + 1
     resolution = 10.0**-decimals
     rounded = (np.abs(time - np.round(time, decimals)) < 1e-6 * resolution).all()
@@ -145,9 +146,10 @@ def _of_decimals(time: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
 
 
 def _of_digits(time: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
-    """Find the resolution of each time [s], if all have as many digits, as %g prints: the first fine, the last coarse.
+    """Return the resolution of each time [s] if all have the same number of digits, as printed by %g.
 
-    They may be coarser than decimals may be, but no more than half of `dt`: what `dt` is, the fine ones say.
+    These times have fewer decimals the larger they are. Their resolution may be up to half of `dt`, as the first times,
+    which are finer, determine `dt`.
     """
     size = np.floor(np.log10(np.maximum(np.abs(time), dt / 1000)) + 1e-12)
     for digits in range(_FEWEST, _MOST + 1):

@@ -1,4 +1,4 @@
-"""The unit of an acceleration: its spellings, its size, and where a header states it. It is never guessed."""
+"""Units of accelerations: their spellings and sizes, and where a header states them. A unit is never guessed."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ _NOT_USABLE_LABEL = regex(rf"[\[(]\s*({_SPEED}|{_LENGTH}|{_FOREIGN})\s*[\])]")
 
 
 def canonical(spelling: str) -> str | None:
-    """Canonical name of a unit of acceleration, such as ``"m/s2"`` for ``"M/SEC**2"``; None if it is not one."""
+    """Return the canonical name of a unit of acceleration, ``"m/s2"`` for ``"M/SEC**2"``; None if it is not one."""
     word = _normal(spelling)
     if not re.fullmatch(_UNIT, word):
         return None
@@ -76,12 +76,12 @@ def canonical(spelling: str) -> str | None:
 
 
 def is_unit(word: str) -> bool:
-    """Whether a word of a header is the unit of a time, a length, a speed or an acceleration, and nothing else."""
+    """Return whether a word is the unit of a time, a length, a speed or an acceleration, and nothing else."""
     return re.fullmatch(rf"m?s|secs?|seconds?|{_UNIT}|{_SPEED}|{_LENGTH}|{_FOREIGN}", _normal(word)) is not None
 
 
 def header_units(line: str) -> set[str]:
-    """Canonical units that a line of a header states for the accelerations; one in brackets outweighs a name."""
+    """Return the canonical units that a header line states for the accelerations; units in brackets come first."""
     line = _normal(line)
     if _ABOUT_A_VALUE.search(line):
         return set()
@@ -90,7 +90,7 @@ def header_units(line: str) -> set[str]:
 
 
 def resolve_unit(file: str, header: Sequence[tuple[int, str]], units: str | None) -> str:
-    """Find the unit of the accelerations in a file, from its header or from what the user says.
+    """Return the unit of the accelerations in a file, from its header or as given by the user.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def resolve_unit(file: str, header: Sequence[tuple[int, str]], units: str | None
     Raises
     ------
     InputError
-        If neither names a unit, the two differ, the header names several, or it is not about acceleration.
+        If neither header nor user gives a unit, the two differ, the header has several, or is not about acceleration.
     """
     given = None if units is None else canonical(units)
     if units is not None and given is None:
@@ -132,7 +132,7 @@ def resolve_unit(file: str, header: Sequence[tuple[int, str]], units: str | None
 
 
 def _not_said(file: str, header: Sequence[tuple[int, str]]) -> Problem:
-    """Describe a header without a unit, or with one that is none of `UNITS`."""
+    """Return the problem of a header without a unit, or with one that is not in `UNITS`."""
     hint = f"say which it is with `units`: {CHOICES}"
     for index, (number, line) in enumerate(header):
         if _ABOUT_A_VALUE.search(_normal(line)):
@@ -145,7 +145,7 @@ def _not_said(file: str, header: Sequence[tuple[int, str]]) -> Problem:
 
 
 def _refuse_other_quantities(file: str, header: Sequence[tuple[int, str]]) -> None:
-    """Refuse a header that speaks of a velocity or displacement, or of a unit that cannot be read."""
+    """Raise `InputError` if a header states a velocity or displacement, or a unit that cannot be read."""
     about_acceleration = any(header_units(line) or re.search(_ACCELERATION, _normal(line)) for _, line in header)
     for index, (number, line) in enumerate(header):
         label = index == len(header) - 1
@@ -157,19 +157,19 @@ def _refuse_other_quantities(file: str, header: Sequence[tuple[int, str]]) -> No
 
 
 def other_quantity(line: str, *, label: bool = True) -> str | None:
-    """Say what a line of a header takes the values for, if not for accelerations in a usable unit; None if it does.
+    """Return why a header line contradicts accelerations in a usable unit, a sentence; None if it does not.
 
     Parameters
     ----------
     line : str
         The line, or the label of one column.
     label : bool, optional
-        Whether it is about columns for sure, so that a unit in brackets is that of the values.
+        Whether the line certainly labels columns, so that a unit in brackets is that of the values.
 
     Returns
     -------
     str or None
-        What is wrong with it, as a sentence.
+        What is wrong with the line, as a sentence.
     """
     if header_units(line):
         return None
@@ -186,12 +186,12 @@ def other_quantity(line: str, *, label: bool = True) -> str | None:
 
 
 def _same(unit: str, other: str) -> bool:
-    """Whether two units are of the same size, as cm/s2 and gal are."""
+    """Return whether two units have the same size, as cm/s2 and gal do."""
     return math.isclose(UNITS[unit], UNITS[other])
 
 
 def _normal(line: str) -> str:
-    """Put a line in lower case, with one spelling for powers and minus signs, and spaces for underscores."""
+    """Return a line in lower case, with one spelling of powers and minus signs, and spaces for underscores."""
     for old, new in (("_", " "), ("²", "2"), ("⁻", "-"), ("\N{MINUS SIGN}", "-"), ('"', " "), ("'s", "")):
         line = line.lower().replace(old, new)
     return line.strip()

@@ -36,7 +36,7 @@ _INTEGERS, _REALS = 100, 50
 
 
 def sniff(text: str) -> bool:
-    """Whether the first line is that of an uncorrected record of Volume I."""
+    """Return whether the first line is that of an uncorrected record of Volume I."""
     return _FIRST.match(text[:200]) is not None
 
 
@@ -45,9 +45,9 @@ def read(
 ) -> GroundMotion:
     """Read a USC V1 file; arguments, result and errors are those of `registry.Reader.read`.
 
-    Between its points the accelerogram is straight lines, at times that are whole milliseconds. The motion has the
-    largest interval that meets all of these times, so it is the same lines, not an approximation: more samples
-    than the file has points, though none of them made up.
+    The record is linear between its points, whose times are whole milliseconds. The motion has the largest constant
+    interval that includes all of these times: it has more samples than the file has points, but is not an
+    approximation.
     """
     lines = lines_of(text)
     count_line, count_text = _find(file, lines, _COUNT, "number of points (NO. OF POINTS)")
@@ -70,7 +70,7 @@ def read(
 
 
 def _find(file: str, lines: Sequence[str], pattern: re.Pattern[str], what: str) -> tuple[int, str]:
-    """Line number and value of something in the text header."""
+    """Return line number and value of an item in the text header."""
     for line_number, line in enumerate(lines[:30], start=1):
         if match := pattern.search(line.rstrip()):
             return line_number, match[1]

@@ -1,7 +1,7 @@
-"""Whether printed numbers keep to their columns and digits: where a character was lost, a row or a number is short.
+"""Checks whether printed numbers keep to their columns and digits: a short row or number has lost a character.
 
-Programs print every number of a file in the same way. A row or a number that is printed otherwise than nearly all the
-others is no mistake of reading but of the file, and the number is most likely not the one that was written.
+Programs print all numbers of a file in the same way. If a row or a number has another form than nearly all the others,
+the file is damaged, and the number is most likely not the original one.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Form = tuple[int | None, int | None, int | None]
 
 @dataclass(frozen=True)
 class PrintedRows:
-    """Printed numbers, to look at how they are printed.
+    """Rows of printed numbers, for checks of their form.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class PrintedRows:
     start : int
         Index of the first row.
     split : callable
-        The numbers of a row as printed; none of a comment.
+        Function that returns the numbers of a row as printed; none for a comment.
     end : int, optional
         Index of the line after the last row, if it is not the end of the file.
     """
@@ -48,13 +48,13 @@ class PrintedRows:
     end: int | None = None
 
     def __iter__(self) -> Iterator[tuple[int, str]]:
-        """Line number and text of each row."""
+        """Yield line number and text of each row."""
         for first, page in self.pages():
             yield from enumerate(page, start=first + 1)
 
     @cached_property
     def tally(self) -> tuple[Counter[tuple[int, int, int, int]], Counter[str]]:
-        """How often rows of a length, count, indent and length of the last number are; and numbers of a form."""
+        """Counts of rows by length, number of values, indent and length of the last value; and of numbers by form."""
         sizes: Counter[tuple[int, int, int, int]] = Counter()
         numbers: Counter[str] = Counter()
         for _, page in self.pages():
@@ -67,7 +67,7 @@ class PrintedRows:
         return sizes, numbers
 
     def pages(self) -> Iterator[tuple[int, list[str]]]:
-        """Rows, a page of them at a time, with the index of its first line."""
+        """Yield the rows in pages, each with the index of its first line."""
         for first, page in self.lines.pages(self.start):
             if self.end is not None and first + len(page) >= self.end:
                 yield first, page[: self.end - first]
@@ -76,15 +76,15 @@ class PrintedRows:
 
 
 def split_numbers(row: str) -> list[str]:
-    """Numbers of a row as printed: between blanks, or touching where a sign tells them apart."""
+    """Return the numbers of a row as printed, separated by blanks, or only by a sign."""
     return _GLUED.sub(" ", row).split()
 
 
 def odd_row(rows: PrintedRows) -> tuple[int, str] | None:
-    """Line number and text of the first of a few rows that leave the columns in which the others stand.
+    """Return line number and text of the first of a few rows not aligned to the columns of the others; None if none.
 
-    Columns are what numbers of different lengths, in the first place of a row and in the last, all end at; without
-    that, rows of one length are no more than numbers of one length.
+    Columns are assumed only if first and last numbers of rows have different lengths and yet end at the same places:
+    otherwise, rows of equal length only mean numbers of equal length.
     """
     if rows.lines.edited:
         return None
@@ -113,7 +113,7 @@ def odd_row(rows: PrintedRows) -> tuple[int, str] | None:
 
 
 def unlike_the_others(rows: PrintedRows) -> tuple[Doubt, ...]:
-    """What is doubtful about how the numbers of a free text are printed, one of them from each row."""
+    """Return doubts about the form of numbers in free text, at most one for each row."""
     found = odd_digits(rows)
     if not found and (odd := odd_row(rows)) is not None:
         text = f"line {odd[0]} does not end where the others do, which keep to columns: was a character lost?"
@@ -122,9 +122,9 @@ def unlike_the_others(rows: PrintedRows) -> tuple[Doubt, ...]:
 
 
 def odd_digits(rows: PrintedRows) -> list[Doubt]:
-    """Whether a few numbers have fewer or more digits than all the others, which a program that pads them prints alike.
+    """Return doubts if a few numbers have fewer or more digits than the others, printed by a program that pads.
 
-    A program that leaves zeros at the end away, or prints as many digits as a number needs, raises no doubt.
+    If a program omits trailing zeros, or prints as many digits as each number requires, there are no doubts.
     """
     tally: Counter[Form | None] = Counter()
     for number, times in rows.tally[1].items():
@@ -155,7 +155,7 @@ def odd_digits(rows: PrintedRows) -> list[Doubt]:
 
 
 def _unlike(rows: PrintedRows, usual: Form) -> Iterator[tuple[int, str]]:
-    """Line and text of each number that is printed in another form."""
+    """Yield line number and text of each number that has another form than the usual one."""
     for first, page in rows.pages():
         blanked = _blank_out("\n".join(page)).split("\n")
         odd = {row for row in set(blanked) if any(_form(number) != usual for number in rows.split(row))}
@@ -165,17 +165,17 @@ def _unlike(rows: PrintedRows, usual: Form) -> Iterator[tuple[int, str]]:
 
 
 def _is_padded(number: str, usual: Form) -> bool:
-    """Whether a number, which is not zero, is printed as most are and ends with a zero."""
+    """Return whether a number, other than zero, has the usual form and ends with a zero."""
     return _mantissa(number).endswith("0") and _form(_blank_out(number)) == usual
 
 
 def _blank_out(text: str) -> str:
-    """The text with zeros for all digits, but for a zero before a point, which may as well be absent."""
+    """Return the text with zeros for all digits, except an optional zero before a decimal point."""
     return text.replace("0.", "o.").translate(_DIGITS)
 
 
 def _form(blanked: str) -> Form | None:
-    """How a number that is blanked out is printed; None if it is none."""
+    """Return the form of a blanked-out number; None if it is not a number."""
     match = _PRINTED.fullmatch(blanked.replace("o", ""))
     if match is None:
         return None
@@ -185,6 +185,6 @@ def _form(blanked: str) -> Form | None:
 
 
 def _mantissa(token: str) -> str:
-    """Digits of a number from the first that is not zero on; none of zero."""
+    """Return the digits of a number from the first non-zero one on; empty for zero."""
     match = _PRINTED.fullmatch(token)
     return ((match[1] or "") + (match[3] or "")).lstrip("0") if match else token

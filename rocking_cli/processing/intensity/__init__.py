@@ -1,4 +1,4 @@
-"""Measures of intensity by name: those that are installed, found through the entry points `rocking.measures`."""
+"""Installed measures of intensity by name, found by the entry points `rocking.measures`."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class IntensityMeasures(Plugins[type[Measure]]):
 
     @staticmethod
     def accept(loaded: object, point: Point) -> type[Measure]:
-        """What was loaded, if it is a complete measure of its name."""
+        """Return the loaded object if it is a complete measure with the name of its entry point."""
         kinds = (MotionMeasure, RelativeMeasure, RunMeasure)
         if not (isinstance(loaded, type) and issubclass(loaded, kinds)) or loaded.__abstractmethods__:
             what = "it must derive from MotionMeasure, RelativeMeasure or RunMeasure and be complete"
@@ -60,7 +60,7 @@ class IntensityMeasures(Plugins[type[Measure]]):
 
 @cache
 def parse_measure(text: str) -> Measure:
-    """Read a measure such as `PGA`, `Sa(1.0)` or `Sa(1 s, 2%)`.
+    """Return the measure of a text such as `PGA`, `Sa(1.0)` or `Sa(1 s, 2%)`.
 
     Parameters
     ----------
@@ -70,9 +70,9 @@ def parse_measure(text: str) -> Measure:
     Raises
     ------
     InputError
-        If there is no such measure, or a parameter is missing or out of range; it gives the form.
+        If there is no such measure, or a parameter is missing or out of range; the message has the expected form.
     MechanismError
-        If the plugin that it comes from cannot be used.
+        If the plugin of the measure cannot be used.
 
     Examples
     --------
@@ -101,9 +101,9 @@ def parse_measure(text: str) -> Measure:
 
 
 def parse_measures(text: str) -> list[Measure]:
-    """Several measures, separated by commas outside of brackets; `all` stands for all that there are.
+    """Return several measures, separated by commas outside of brackets; `all` stands for all measures.
 
-    Raises `InputError` and `MechanismError` as `parse_measure`, the first also if there is none.
+    Raises `InputError` and `MechanismError` as `parse_measure`, and `InputError` if there is no measure in the text.
     """
     words = [word.strip() for word in re.split(r",(?![^(]*\))", text)]
     found = [each for word in words for each in (all_measures() if word.lower() == ALL else [parse_measure(word)])]
@@ -111,9 +111,9 @@ def parse_measures(text: str) -> list[Measure]:
 
 
 def all_measures() -> list[Measure]:
-    """All that are installed, those of a motion alone first; of those with parameters the usual ones.
+    """Return all installed measures, those of a motion alone first; of those with parameters, the usual ones.
 
-    One that cannot be loaded is left out with a warning.
+    A measure that cannot be loaded is left out with a warning.
     """
     known = IntensityMeasures()
     found: list[Measure] = []
@@ -126,12 +126,12 @@ def all_measures() -> list[Measure]:
 
 
 def power_of(cls: type[Measure]) -> float | None:
-    """The power of the factor on a motion that measures of a class go with; None where it is computed of every run."""
+    """Return the power of the scale factor to which measures of a class are proportional; None for a `RunMeasure`."""
     if issubclass(cls, RelativeMeasure):
         return parse_measure(cls.to).power
     return cls.power if isinstance(cls.power, int | float) else None
 
 
 def _plain(name: str) -> str:
-    """A name without its case and blanks."""
+    """Return a name in lower case without blanks."""
     return "".join(name.lower().split())

@@ -1,4 +1,4 @@
-"""Measures of intensity: a name, a unit, and how they depend on the factor on a motion."""
+"""Base classes of measures of intensity: name, unit, and dependence on the scale factor of a motion."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.ASCI
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """What relative measures are relative to, of one structure or of many: numbers, or arrays of one shape.
+    """Properties of one structure (numbers), or of many (arrays of one shape), to which measures are relative.
 
     Parameters
     ----------
     p : float or ndarray
-        Frequency parameter [rad/s]; NaN where there is none.
+        Frequency parameter [rad/s]; NaN if the structure has none.
     lambda_ : float or ndarray
         Uplift acceleration over g.
     gravity : float or ndarray
-        [m/s2].
+        Gravitational acceleration [m/s2].
     v_imp : float or ndarray
-        The velocity step of the ground that just overturns it [m/s]; NaN where it is not known.
+        Velocity step of the ground that just overturns the structure [m/s]; NaN if not known.
     """
 
     p: float | Reals
@@ -44,7 +44,7 @@ class Reference:
 
     @property
     def uplift(self) -> float | Reals:
-        """The acceleration at uplift [m/s2]."""
+        """Uplift acceleration [m/s2]."""
         return self.gravity * self.lambda_
 
 
@@ -57,8 +57,8 @@ class Measure(ABC):
     """A measure of the intensity of a ground motion, found by its entry point in `rocking.measures`.
 
     A measure derives from `MotionMeasure`, `RelativeMeasure` or `RunMeasure`. Its parameters are fields of a frozen
-    dataclass, and stand in brackets after its name: `Sa(1.0, 2%)`. The metadata of a field may name its "unit", and
-    "after": the sign that stands before it, a comma unless it says ":".
+    dataclass, and are written in brackets after its name: `Sa(1.0, 2%)`. The metadata of a field may have its "unit",
+    and "after": the character before the parameter, a comma or ":".
     """
 
     name: ClassVar[str]
@@ -75,36 +75,36 @@ class Measure(ABC):
     """The fields of `Reference` that not every structure has, `p` and `v_imp`, of which it needs these."""
 
     def __init_subclass__(cls, **named: Any) -> None:
-        """What a measure computes is guarded: whatever fails there is an error of the plugin."""
+        """Wrap the methods of a measure, so that any failure in them is reported as an error of the plugin."""
         super().__init_subclass__(**named)
         guard(cls, ("__post_init__", "of", "relative"), _failed)
 
     @property
     @abstractmethod
     def power(self) -> float | None:
-        """Power of the factor on a motion that it is proportional to; None if it is computed for every run."""
+        """Power of the scale factor to which the measure is proportional; None if it is computed for every run."""
 
     @property
     def is_relative(self) -> bool:
-        """Whether it asks what is shaken."""
+        """Whether the measure depends on the structure."""
         return not isinstance(self, MotionMeasure)
 
     @property
     def base(self) -> MotionMeasure | None:
-        """The measure of the motion alone that it is, or makes something of; None where it is computed of every run."""
+        """The measure of the motion alone on which this one is based, or which it is; None for a `RunMeasure`."""
         return None
 
     def relative(self, value: Any, structure: Reference) -> Any:
-        """What it makes of a value of `base`, of the motion as scaled, for a structure; arrays of one shape."""
+        """Return the measure for a structure from a value of `base` for the scaled motion; arrays of one shape."""
         return value
 
     @property
     def label(self) -> str:
-        """With its unit, for a heading."""
+        """Name of the measure with its unit, for a heading."""
         return f"{self} [{self.unit}]" if self.unit else str(self)
 
     def __str__(self) -> str:
-        """What is read as this measure."""
+        """Return the text from which `parse_measure` makes this measure."""
         given = [(field, getattr(self, field.name)) for field in fields(self)]
         while given and given[-1][1] == given[-1][0].default:
             given.pop()
@@ -115,12 +115,12 @@ class Measure(ABC):
 
     @classmethod
     def read(cls, words: Sequence[str]) -> Measure:
-        """The measure with these parameters, as they stand between the brackets.
+        """Return the measure with these parameters, given as texts from between the brackets.
 
         Raises
         ------
         InputError
-            If there are too few or too many, or one cannot be read; it gives the form.
+            If there are too few or too many parameters, or one cannot be read; the message has the expected form.
         """
         asked = fields(cls)
         least = sum(field.default is MISSING for field in asked)
@@ -132,7 +132,7 @@ class Measure(ABC):
 
     @classmethod
     def form(cls) -> str:
-        """How it is given, in words: `Sa(PERIOD[, DAMPING])`."""
+        """Return the form in which the measure is written: `Sa(PERIOD[, DAMPING])`."""
         words = ""
         for field in fields(cls):
             word = f"{field.metadata.get('after', ', ') if words else ''}{field.name.upper()}"
@@ -141,7 +141,7 @@ class Measure(ABC):
 
     @classmethod
     def usually(cls) -> tuple[str, ...]:
-        """Return the names that stand for it if all measures are requested."""
+        """Return the texts of this measure, with usual parameters, that `all` stands for."""
         return cls.usual or ((cls.name,) if all(field.default is not MISSING for field in fields(cls)) else ())
 
 
@@ -153,7 +153,7 @@ class MotionMeasure(Measure):
 
     @property
     def base(self) -> MotionMeasure:
-        """Itself."""
+        """The measure itself."""
         return self
 
     @abstractmethod
@@ -161,14 +161,17 @@ class MotionMeasure(Measure):
         """Return the non-negative value of the measure; None if it is undefined for the motion."""
 
     def value(self, motion: GroundMotion) -> float:
-        """Its value; NaN where the motion has none. Raises `PluginError` if it gives no number, or a negative one."""
+        """Return the value of the measure; NaN if the motion has none.
+
+        Raises `PluginError` if `of` returns something other than a non-negative number.
+        """
         return _sound(self, self.of(motion))
 
 
 class RelativeMeasure(Measure):
-    """A measure of a motion times what a structure makes of it.
+    """A measure of a motion, multiplied by a factor that depends on the structure.
 
-    A subclass gives `to`, the name of the measure of the motion, and `relative`, in proportion to its value.
+    A subclass gives `to`, the name of the measure of the motion, and `relative`, proportional to its value.
     """
 
     to: ClassVar[str]
@@ -176,7 +179,7 @@ class RelativeMeasure(Measure):
 
     @property
     def base(self) -> MotionMeasure:
-        """The measure of the motion."""
+        """The measure of the motion on which this one is based."""
         from rocking_cli.processing.intensity import parse_measure
 
         found = parse_measure(self.to)
@@ -188,33 +191,36 @@ class RelativeMeasure(Measure):
 
     @property
     def power(self) -> float:
-        """That of the measure of the motion."""
+        """Power of the scale factor to which the measure of the motion is proportional."""
         return float(self.base.power or 0.0)
 
     @abstractmethod
     def relative(self, value: Any, structure: Reference) -> Any:
-        """What it makes of a value, of the motion as scaled, for a structure; arrays of one shape."""
+        """Return the measure for a structure from a value of `base` for the scaled motion; arrays of one shape."""
 
 
 class RunMeasure(Measure):
-    """A measure of a motion and a structure that scales with no power of the factor: it is computed for every run.
+    """A measure of a motion and a structure that is not proportional to a power of the scale factor.
 
-    A subclass gives `of`.
+    It is computed for every run. A subclass gives `of`.
     """
 
     power = None
 
     @abstractmethod
     def of(self, motion: GroundMotion, structure: Reference) -> float | None:
-        """Its value for a motion as scaled, not reversed, and one structure; None where there is none."""
+        """Return the value for a scaled motion, not reversed, and one structure; None if it is undefined."""
 
     def value(self, motion: GroundMotion, structure: Reference) -> float:
-        """Its value; NaN where there is none. Raises `PluginError` if it gives no number, or a negative one."""
+        """Return the value of the measure; NaN if it is undefined.
+
+        Raises `PluginError` if `of` returns something other than a non-negative number.
+        """
         return _sound(self, self.of(motion, structure))
 
 
 def _sound(measure: Measure, found: object) -> float:
-    """A value, if it is one."""
+    """Return a value if it is a non-negative number. Raises `PluginError` otherwise."""
     if found is None:
         return nan
     with blame(f"the measure {measure} gave {found!r}", type(measure).__module__):
@@ -225,12 +231,12 @@ def _sound(measure: Measure, found: object) -> float:
 
 
 def _written(value: Any, field: Field[Any]) -> str:
-    """A parameter as it stands in the name."""
+    """Return a parameter as it is written in the text of a measure."""
     return f"{100 * value:g}%" if field.metadata.get("unit") == "%" else repr(float(value))
 
 
 def _read(word: str, field: Field[Any], form: str) -> float:
-    """A parameter: a number, in its unit or with one."""
+    """Return a parameter from a text, a number with or without a unit."""
     unit, found = field.metadata.get("unit", ""), _NUMBER.fullmatch(word.strip())
     if found is None:
         raise InputError(f"{word.strip()!r} is not a valid {field.name}: {form}")

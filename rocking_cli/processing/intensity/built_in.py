@@ -1,6 +1,6 @@
-"""The measures of intensity of this package. They come in by the same door as anybody's.
+"""Measures of intensity of this package, found by entry points as those of other packages are.
 
-Exact for the straight lines between samples, except the mean period, which is defined by the samples.
+They are exact for linear interpolation between samples, except the mean period, which is defined by the samples.
 """
 
 from __future__ import annotations
@@ -26,66 +26,66 @@ AVERAGED = 100  # periods of an average
 
 
 class PeakAcceleration(MotionMeasure):
-    """Largest acceleration."""
+    """Peak ground acceleration."""
 
     name, title, unit, power = "PGA", "peak ground acceleration", "g", 1.0
 
     def of(self, motion: GroundMotion) -> float:
-        """Over standard gravity."""
+        """Return the peak acceleration [standard gravity]."""
         return motion.pga_g
 
 
 class PeakVelocity(MotionMeasure):
-    """Largest velocity."""
+    """Peak ground velocity."""
 
     name, title, unit, power = "PGV", "peak ground velocity", "m/s", 1.0
 
     def of(self, motion: GroundMotion) -> float:
-        """In m/s."""
+        """Return the peak velocity [m/s]."""
         return measure(motion).pgv
 
 
 class PeakDisplacement(MotionMeasure):
-    """Largest displacement."""
+    """Peak ground displacement."""
 
     name, title, unit, power = "PGD", "peak ground displacement", "m", 1.0
 
     def of(self, motion: GroundMotion) -> float:
-        """In m."""
+        """Return the peak displacement [m]."""
         return measure(motion).pgd
 
 
 class VelocityOverAcceleration(MotionMeasure):
-    """How long the motion pushes to one side."""
+    """Ratio of peak velocity to peak acceleration, a measure of how long the motion acts in one direction."""
 
     name, title, unit, power = "PGV/PGA", "peak velocity over peak acceleration", "s", 0.0
     source = "Zhu et al. (1988), of the inverse"
 
     def of(self, motion: GroundMotion) -> float | None:
-        """In s; none of a motion that is zero throughout."""
+        """Return the ratio [s]; None for a motion that is zero throughout."""
         found = measure(motion)
         return found.pgv / (found.pga * STANDARD_GRAVITY) if found.pga else None
 
 
 class Arias(MotionMeasure):
-    """pi/(2 g) times the integral of the squared acceleration."""
+    """Arias intensity, pi/(2 g) times the integral of the squared acceleration."""
 
     name, title, unit, power = "Arias", "Arias intensity", "m/s", 2.0
     source = "Arias (1970)"
 
     def of(self, motion: GroundMotion) -> float:
-        """In m/s."""
+        """Return the Arias intensity [m/s]."""
         return measure(motion).arias
 
 
 class CumulativeVelocity(MotionMeasure):
-    """The integral of the size of the acceleration."""
+    """Cumulative absolute velocity, the integral of the absolute acceleration."""
 
     name, title, unit, power = "CAV", "cumulative absolute velocity", "m/s", 1.0
     source = "EPRI (1988)"
 
     def of(self, motion: GroundMotion) -> float:
-        """In m/s."""
+        """Return the cumulative absolute velocity [m/s]."""
         a, b = motion.acceleration[:-1], motion.acceleration[1:]
         ends = np.abs(a) + np.abs(b)
         # Where the sign changes two triangles, a^2 and b^2 over twice the difference.
@@ -96,24 +96,24 @@ class CumulativeVelocity(MotionMeasure):
 
 
 class Duration75(MotionMeasure):
-    """From 5 to 75 % of the Arias intensity."""
+    """Significant duration from 5 to 75 % of the Arias intensity."""
 
     name, title, unit, power = "D5-75", "time from 5 to 75 % of the Arias intensity", "s", 0.0
     source = "Somerville et al. (1997)"
 
     def of(self, motion: GroundMotion) -> float | None:
-        """In s; none of a motion that is zero throughout."""
+        """Return the duration [s]; None for a motion that is zero throughout."""
         return _duration(motion, 0.75)
 
 
 class Duration95(MotionMeasure):
-    """From 5 to 95 % of the Arias intensity."""
+    """Significant duration from 5 to 95 % of the Arias intensity."""
 
     name, title, unit, power = "D5-95", "time from 5 to 95 % of the Arias intensity", "s", 0.0
     source = "Trifunac and Brady (1975)"
 
     def of(self, motion: GroundMotion) -> float | None:
-        """In s; none of a motion that is zero throughout."""
+        """Return the duration [s]; None for a motion that is zero throughout."""
         return _duration(motion, 0.95)
 
 
@@ -123,13 +123,13 @@ def _duration(motion: GroundMotion, share: float) -> float | None:
 
 
 class MeanPeriod(MotionMeasure):
-    """The mean of the periods of the Fourier spectrum, each with the square of its amplitude."""
+    """Mean of the periods of the Fourier spectrum, weighted with the squared amplitudes."""
 
     name, title, unit, power = "Tm", "mean period of the Fourier spectrum", "s", 0.0
     source = "Rathje, Abrahamson and Bray (1998)"
 
     def of(self, motion: GroundMotion) -> float | None:
-        """In s; none of a motion without anything between 0.25 and 20 Hz."""
+        """Return the mean period [s]; None for a motion without content between 0.25 and 20 Hz."""
         largest = float(np.abs(motion.acceleration).max())
         if largest == 0:
             return None
@@ -144,13 +144,13 @@ class MeanPeriod(MotionMeasure):
 
 
 class SpectrumIntensity(MotionMeasure):
-    """The integral of the pseudo-velocity of 5 % over periods from 0.1 to 2.5 s."""
+    """Integral of the pseudo-velocity at 5 % damping over periods from 0.1 to 2.5 s."""
 
     name, title, unit, power = "SI", "Housner's spectrum intensity, 5 %", "m", 1.0
     source = "Housner (1952), of the pseudo-velocity"
 
     def of(self, motion: GroundMotion) -> float:
-        """In m."""
+        """Return the spectrum intensity [m]."""
         periods = np.linspace(*HOUSNER, PERIODS)
         sv = response_spectrum(motion, periods, DAMPING).sv
         return float(((sv[1:] + sv[:-1]) / 2 * np.diff(periods)).sum())
@@ -158,7 +158,7 @@ class SpectrumIntensity(MotionMeasure):
 
 @dataclass(frozen=True)
 class _Spectral(MotionMeasure):
-    """What is read from a response spectrum at one period."""
+    """A measure read from a response spectrum at one period."""
 
     period: float = field(metadata={"unit": "s"})
     damping: float = field(default=DAMPING, metadata={"unit": "%"})
@@ -168,30 +168,30 @@ class _Spectral(MotionMeasure):
 
 
 class SpectralAcceleration(_Spectral):
-    """Pseudo-acceleration of an oscillator."""
+    """Spectral pseudo-acceleration at a period."""
 
     name, title, unit, power = "Sa", "pseudo-acceleration of an oscillator", "g", 1.0
     usual = ("Sa(0.3)", "Sa(1.0)", "Sa(3.0)")
 
     def of(self, motion: GroundMotion) -> float:
-        """Over standard gravity."""
+        """Return the pseudo-acceleration [standard gravity]."""
         return float(response_spectrum(motion, self.period, self.damping).sa[0])
 
 
 class SpectralDisplacement(_Spectral):
-    """Displacement of an oscillator."""
+    """Spectral displacement at a period."""
 
     name, title, unit, power = "Sd", "displacement of an oscillator", "m", 1.0
     usual = ("Sd(1.0)",)
 
     def of(self, motion: GroundMotion) -> float:
-        """Relative to the ground, in m."""
+        """Return the displacement of the oscillator relative to the ground [m]."""
         return float(response_spectrum(motion, self.period, self.damping).sd[0])
 
 
 @dataclass(frozen=True)
 class AverageSpectralAcceleration(MotionMeasure):
-    """The geometric mean of the pseudo-accelerations at a hundred periods, evenly spaced from the first to the last."""
+    """Geometric mean of the pseudo-accelerations at a hundred evenly spaced periods."""
 
     low: float = field(metadata={"unit": "s"})
     high: float = field(metadata={"unit": "s", "after": ":"})
@@ -208,55 +208,55 @@ class AverageSpectralAcceleration(MotionMeasure):
             raise InputError(f"{self.name} goes from a shorter to a longer period, got {self.low:g} and {self.high:g}")
 
     def of(self, motion: GroundMotion) -> float:
-        """Over standard gravity."""
+        """Return the mean pseudo-acceleration [standard gravity]."""
         found = response_spectrum(motion, np.linspace(self.low, self.high, AVERAGED), self.damping).sa
         return float(np.exp(np.log(found).mean())) if found.all() else 0.0
 
 
 class AccelerationOverUplift(RelativeMeasure):
-    """The a of a pulse [paper, Eq. 40]: 1 is needed to uplift."""
+    """Peak acceleration over the uplift acceleration, a of a pulse [paper, Eq. 40]; uplift requires 1."""
 
     name, title, to = "PGA/(g lambda)", "peak acceleration over that at uplift", "PGA"
     source = "DeJong and Dimitrakopoulos (2014), Eq. 40"
 
     def relative(self, value: Any, structure: Reference) -> Any:
-        """Of a peak acceleration over standard gravity."""
+        """Return the ratio for a peak acceleration [standard gravity]."""
         return value * STANDARD_GRAVITY / structure.uplift
 
 
 class VelocityOverUplift(RelativeMeasure):
-    """The velocity of the ground over that which the acceleration at uplift gives in 1/p."""
+    """Peak velocity over the velocity that the uplift acceleration gives in the time 1/p."""
 
     name, title, to, needs = "p PGV/(g lambda)", "p times the peak velocity over g lambda", "PGV", ("p",)
 
     def relative(self, value: Any, structure: Reference) -> Any:
-        """Of a peak velocity in m/s."""
+        """Return the ratio for a peak velocity [m/s]."""
         return structure.p * value / structure.uplift
 
 
 class VelocityOverImpulse(RelativeMeasure):
-    """The velocity of the ground over the step of it that just overturns the structure from rest."""
+    """Peak velocity over the velocity step of the ground that just overturns the structure from rest."""
 
     name, title, to, needs = "PGV/v_imp", "peak velocity over the step that overturns", "PGV", ("v_imp",)
 
     def relative(self, value: Any, structure: Reference) -> Any:
-        """Of a peak velocity in m/s."""
+        """Return the ratio for a peak velocity [m/s]."""
         return value / structure.v_imp
 
 
 class UniformDuration(RunMeasure):
-    """How long in all the acceleration is g lambda or more in size."""
+    """Total time during which the absolute acceleration is at least the uplift acceleration, g lambda."""
 
     name, title, unit = "Du", "time with an acceleration of g lambda or more", "s"
     source = "Bolt (1973), of the acceleration at uplift"
 
     def of(self, motion: GroundMotion, structure: Reference) -> float:
-        """In s."""
+        """Return the duration [s]."""
         return motion.dt * float(_share_above(motion.acceleration, float(structure.uplift)).sum())
 
 
 def _share_above(acceleration: Reals, level: float) -> Reals:
-    """Of each interval the part in which a straight line is `level` or more in size."""
+    """Return the fraction of each sampling interval in which the absolute acceleration is at least `level`."""
     low = np.minimum(acceleration[:-1], acceleration[1:])
     high = np.maximum(acceleration[:-1], acceleration[1:])
     width = high - low
