@@ -483,9 +483,8 @@ class Assembly(LinkedBodies):
         if not grains:
             return ""
         verb = "weighs" if len(grains) == 1 else "weigh"
-        names = ", ".join([*grains[:NAMED], *(["..."] if grains[NAMED:] else [])])
         return (
-            f"{names} {verb} no more than {LIGHT:g} of the whole: the analysis does not see whether that moves "
+            f"{in_short(grains, most=NAMED)} {verb} no more than {LIGHT:g} of the whole: the analysis does not see whether that moves "
             "earlier. Leave it out, or analyse it alone."
         )
 
@@ -661,9 +660,9 @@ class Assembly(LinkedBodies):
     def _joint_forces(self, direction: Direction) -> Forces | None:
         """Return the joint forces of one state at uplift, if they do not form a line of thrust; else None."""
         found = self._thrust(direction)
-        if found.chain:
+        if found.chain or not found.passages:
             return None
-        name = f"forces in the joints at uplift, {self._collapse(direction).multiplier:.3g} g, in one of many states"
+        name = f"forces in the joints at uplift, {self._collapse(direction).multiplier:.3g} g, in one state of equilibrium"
         points, forces = zip(*((each.point, each.force) for each in found.passages), strict=True)
         return Forces(name, points, forces, direction)
 

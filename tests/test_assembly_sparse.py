@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from itertools import combinations, pairwise
 
@@ -140,6 +141,20 @@ def test_the_friction_needed_is_a_bracket():
             reached.append(problem.greatest(problem.bearings.rays())[0] / problem.strength)
         assert reached[0] >= found.multiplier * (1 - 2e-9), seed
         assert reached[1] < found.multiplier * (1 - 1e-10), seed
+
+
+def test_the_friction_needed_is_the_same_by_interior_points(monkeypatch):
+    """Large walls are solved by interior points, whose multipliers are as exact only if they are corrected."""
+    needed = []
+    for large in (LARGE, 0):
+        monkeypatch.setattr("mechanisms._assembly.programme.LARGE", large)
+        needed.append([])
+        for seed in range(0, 12):
+            blocks, joints, direction = jumble(seed)
+            with suppress(DoesNotStand, NothingMoves):
+                needed[-1].append(friction(collapse(blocks, joints, (), direction)).needed)
+    assert len(needed[0]) > 6 and any(needed[0])
+    assert needed[1] == [one if one is None else approx(one, rel=1e-6, abs=1e-12) for one in needed[0]]
 
 
 @pytest.mark.parametrize("root", [0.0312, 0.4, 0.99999])

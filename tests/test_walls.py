@@ -209,14 +209,20 @@ class TestWhatHasNoModel:
             moved = [part[0] - rest.outlines[0] for part, rest in zip(outlines, shown.parts, strict=True)]
             # The flow is associated: it rises by the friction times how far it slides, all corners alike.
             way = (direction + 0.05j) / abs(1 + 0.05j)
-            size = abs(shown.parts[0].centroid - shown.parts[1].centroid)
-            across = complex(abs((shown.parts[0].centroid - shown.parts[1].centroid).real), 1.25)
-            assert size == pytest.approx(abs(across))
+            size = abs(1.0 + 2.5j)
             for each_moved in moved:
                 assert each_moved == pytest.approx(np.full(4, 0.999 * STARTED * size * way), abs=1e-9)
         assert shown.usual == dict.fromkeys(Direction, 1.0)
         titles = [axes.get_title() for axes in draw_structure(shown, "two blocks").axes]
         assert titles.count("positive\nas it starts") == 1
+
+    def test_a_single_block_moves_as_far_as_can_be_seen(self):
+        one = {**SLIDES, "blocks": {"low": SLIDES["blocks"]["low"]}}
+        structure = Assembly(**one)
+        shown = picture(structure, collapses(structure))
+        outlines, _ = shown.placed(1.0)
+        moved = outlines[0][0] - shown.parts[0].outlines[0]
+        assert abs(moved) == pytest.approx(np.full(4, 0.999 * STARTED * abs(1 + 1j)))
 
     def test_ties_are_drawn_as_they_are_at_rest(self):
         """Whether one is slack depends on a motion that there is none of."""

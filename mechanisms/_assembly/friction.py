@@ -107,7 +107,7 @@ class _FrictionSearch:
     def carries(self, mu: float) -> bool:
         """Return whether joints with at most the friction `mu` carry the multiplier; narrows the bracket."""
         rays = self.problem.bearings.rays(mu)
-        reached, forces, raw = self.problem.greatest(rays)
+        reached, forces, raw = self.problem.greatest(rays, exact=True)
         state = rays.mix.T @ forces
         if reached >= self.multiplier * (1 - SAME):
             self._carried += 1

@@ -100,11 +100,14 @@ class Start:
     ----------
     centroids : mapping of str to complex
         Centroids of all bodies, in their order [m].
+    size : float
+        Diagonal of the box around their outlines [m].
     found : mapping of Direction to CollapseMechanism
         The mechanisms.
     """
 
     centroids: Mapping[str, complex]
+    size: float
     found: Mapping[Direction, CollapseMechanism]
 
     def motion(self, phi: Reals, direction: Direction) -> list[RigidMotion]:
@@ -114,10 +117,9 @@ class Start:
             name: rate for group, rate in zip(mechanism.groups, mechanism.velocities, strict=True) for name in group
         }
         at = np.array(list(self.centroids.values()))
-        low, high = box_around([at])
         velocity = np.array([rates.get(name, (0j, 0.0)) for name in self.centroids])
         speed = np.abs(velocity[:, 0] + 1j * velocity[:, 1] * at).max()
-        velocity *= STARTED * abs(high - low) / speed
+        velocity *= STARTED * self.size / speed
         zero, still = np.zeros_like(phi), np.zeros(phi.shape, np.complex128)
         return [
             RigidMotion(0j, v * phi + still, v + still, still, turn.real * phi, turn.real + zero, zero)
@@ -541,14 +543,12 @@ def _picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism])
     bodies, sketch = mechanism.bodies(), mechanism.sketch()
     phi_cr: dict[Direction, float | None] = dict.fromkeys(mechanism.directions)
     limit = dict.fromkeys(mechanism.directions, FURTHEST)
-    start = None
-    if all(each.lead or not each.velocities for each in found.values()):
+    starts = not all(each.lead or not each.velocities for each in found.values())
+    if not starts:
         phi_cr = {direction: _critical(mechanism, direction) for direction in mechanism.directions}
         limit = {direction: FURTHEST * mechanism.limit(direction) for direction in mechanism.directions}
-    else:
-        start = Start({body.name: body.centroid for body in bodies}, found)
     seen = {direction: limit[direction] if phi is None else phi for direction, phi in phi_cr.items()}
-    if start is None and not (min(seen.values()) > 0 and extent(mechanism) > TINIEST):
+    if not starts and not (min(seen.values()) > 0 and extent(mechanism) > TINIEST):
         raise StructureError("it is too small to be drawn: check the sizes and their units")
     parts = tuple(
         DrawnPart(
@@ -566,7 +566,7 @@ def _picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism])
     for direction in mechanism.directions:
         phi = np.linspace(0.0, seen[direction], 5)
         hinges = sketch.hinges.get(direction, ())
-        if not (hinges or start):
+        if not (hinges or starts):
             hinges = _found(bodies, mechanism.motion(phi, direction))
         pins += [pin for hinge in hinges for pin in _pins(hinge, direction, parts)]
     ground = tuple(np.asarray(each, np.complex128) for each in sketch.ground) or _level_ground(parts, pins)
@@ -577,6 +577,10 @@ def _picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism])
     copies = {body.name: [(k, part.shift) for k, part in enumerate(parts) if part.name == body.name] for body in bodies}
     loads = tuple(carried(mechanism, copies))
     ties = tuple(strands(mechanism, copies, [part.centroid for part in parts]))
+    start = None
+    if starts:
+        low, high = box_around([outline for part in parts for outline in part.outlines])
+        start = Start({body.name: body.centroid for body in bodies}, abs(high - low), found)
     return Picture(mechanism, parts, tuple(pins), phi_cr, limit, ground, sketch, loads, ties, start)
 
 

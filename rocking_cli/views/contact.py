@@ -95,8 +95,8 @@ def contact_words(found: ContactDemand, mechanism: Mechanism) -> str:
     sums = _sums(found, mechanism)
     if sums == "whole" and all(mechanism.contacts(direction) for direction in mechanism.directions):
         said.append(
-            "Statics alone does not determine the force at each joint, as there are more joints than needed: the "
-            "forces are sums over the whole structure, on level ground, and a single joint may require more friction."
+            "Statics alone does not determine the force at each joint: the forces are sums over the whole structure, "
+            "on level ground, and a single joint may require more friction."
         )
     elif sums == "whole":
         said.append(
