@@ -282,7 +282,8 @@ def test_answers_can_be_pickled_with_their_plots():
         copy = pickle.loads(pickle.dumps(answer))
         assert copy.to_dict() == answer.to_dict() and copy.sentences == answer.sentences
         columns = answer.columns()
-        assert all(np.array_equal(copy.columns()[name], columns[name]) for name in columns)
+        for name, values in columns.items():
+            np.testing.assert_array_equal(copy.columns()[name], values)
         assert len(copy.plot().axes) == len(answer.plot().axes)
         assert pickle.loads(pickle.dumps(copy)).to_dict() == answer.to_dict()
     many = pickle.loads(pickle.dumps(rk.respond_each(block, "sine:0.3g:0.8s", models="nonlinear")))

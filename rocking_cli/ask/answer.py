@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from html import escape
@@ -43,6 +43,8 @@ class Answer(Generic[R]):
         Returns the result as columns by name.
     figure : callable
         Returns the plot of the result.
+    blocks : callable, optional
+        Returns the columns in blocks of rows, one after the other, if there may be very many.
     """
 
     question: str
@@ -50,13 +52,14 @@ class Answer(Generic[R]):
     view: View
     columns: Callable[[], Columns]
     figure: Callable[[], Figure]
+    blocks: Callable[[], Iterable[Columns]] | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a pickle keeps: everything but a plot whose function is not that of a module."""
         data = self.view.data() if callable(self.view.data) else self.view.data
-        columns, figure = partial(_found, self.columns()), self.figure
+        columns, figure = partial(_kept, self.columns()), self.figure
         figure = figure if isinstance(figure, partial) else partial(_not_kept, self.question)
-        return {**vars(self), "view": View(data, self.view.parts), "columns": columns, "figure": figure}
+        return {**vars(self), "view": View(data, self.view.parts), "columns": columns, "figure": figure, "blocks": None}
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name == "result":
@@ -150,7 +153,7 @@ def _not_kept(question: str) -> Figure:
     )
 
 
-def _found(columns: Columns) -> Columns:
+def _kept(columns: Columns) -> Columns:
     return columns
 
 

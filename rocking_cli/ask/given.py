@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
+from rocking_cli.core.size import doubts
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
 from rocking_cli.excitation.records import read_record
+from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.io.json_text import json_text
 from rocking_cli.structure import Structure
 from rocking_cli.structure_file import load_structure
@@ -21,14 +24,34 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-StructureLike = Mechanism | str | Path
-"""Mechanism, or its YAML file."""
-Motion = GroundMotion | Pulse | str | Path
+WIDEST_OPENING = 1000.0  # over D_cr
+StructureLike = Mechanism | Structure | str | Path
+"""Mechanism, or its YAML file, or a structure that was prepared."""
+Motion = GroundMotion | Pulse | Scaled | str | Path
 """Ground motion or pulse, file of a record, or pulse as text such as `sine:0.6g:0.8s`."""
 
 
-def structure_of(given: StructureLike) -> Structure:
-    """Read a structure from its file, or take a mechanism, named by its kind if it has no name. Raises `InputError`."""
+def structure_of(given: StructureLike, opening: float | None = None) -> Structure:
+    """Read a structure from its file, or take a mechanism, named by its kind if it has no name.
+
+    With `opening`, that is the largest opening of its joints up to which a history is valid, over D_cr.
+
+    Raises
+    ------
+    InputError
+        If the file, or the opening, is not valid.
+    """
+    structure = _structure_of(given)
+    if opening is None:
+        return structure
+    if not 0 <= opening <= WIDEST_OPENING:
+        raise InputError(Problem(f"must be from 0 to {WIDEST_OPENING:g}, got {opening:g}", field="`opening`"))
+    return replace(structure, mechanism=structure.mechanism.model_copy(update={"opening": opening}), _models={})
+
+
+def _structure_of(given: StructureLike) -> Structure:
+    if isinstance(given, Structure):
+        return given
     if isinstance(given, Mechanism):
         return Structure(given if given.name else given.model_copy(update={"name": given.mechanism}))
     if not isinstance(given, str | Path):
@@ -66,7 +89,19 @@ def kind_of(given: object) -> str:
 
 def each_of(given: Any) -> list[Any]:
     """Return a list or tuple as a list, and one thing as a list of one."""
-    return list(given) if isinstance(given, list | tuple) else [given]
+    return list(given) if isinstance(given, list | tuple) and not isinstance(given, Scaled) else [given]
+
+
+def signs_of(polarity: str | int) -> tuple[int, ...]:
+    """Return the polarities of an argument: 1 as given, -1 reversed, or "both". Raises `InputError`."""
+    if str(polarity) not in ("1", "-1", "both"):
+        raise InputError(Problem(f"must be 1, -1 or 'both', got {polarity!r}", field="`polarity`"))
+    return (1, -1) if polarity == "both" else (int(polarity),)
+
+
+def doubts_of(mechanism: Mechanism) -> list[str]:
+    """Return the doubts about the sizes and places of a structure."""
+    return [f"{mechanism.name}: {doubt}" for doubt in doubts(mechanism)]
 
 
 def models_of(given: str | Sequence[str] | None) -> tuple[ModelName, ...]:

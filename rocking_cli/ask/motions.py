@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import Motion, StructureLike, models_of, motion_of, structure_of
+from rocking_cli.ask.given import Motion, StructureLike, doubts_of, models_of, motion_of, structure_of
 from rocking_cli.dynamics.history import RTOL
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.floor import Floor
@@ -83,7 +83,7 @@ def respond_around(
     *,
     models: str | Sequence[str] | None = None,
     scale: float = 1.0,
-    release: float | str | None = None,
+    release: Release | float | str | None = None,
     rtol: float = RTOL,
 ) -> Answer[AzimuthResponses]:
     """Compute the response of a structure in every direction between two components.
@@ -120,8 +120,9 @@ def respond_around(
 
     ready = structure_of(structure)
     chosen = models_of(models) if models is not None else ready.default_models
-    tilt = Release.of(release).ratio(ready) if release is not None else None
-    found = all_around(ready, chosen, (motion_of(one), motion_of(other)), scale, release=tilt, rtol=rtol)
+    tilt = release if release is None or isinstance(release, Release) else Release.of(release)
+    ratio = tilt.ratio(ready) if tilt is not None else None
+    found = all_around(ready, chosen, (motion_of(one), motion_of(other)), scale, release=ratio, rtol=rtol)
 
     def table() -> Columns:
         return columns(found)
@@ -133,4 +134,4 @@ def respond_around(
         first, second = (side.phi_cr is None for side in ready.statics)
         return draw_azimuths(found, heading(ready.mechanism), style.over((first, second), math=True))
 
-    return Answer("all directions", found, view(ready, found), table, figure)
+    return Answer("all directions", found, view(ready, found, doubts_of(ready.mechanism)), table, figure)

@@ -2,41 +2,66 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rocking_cli.ask.answer import MappingAnswer
-from rocking_cli.ask.given import Motion, StructureLike, models_of, motion_of, structure_of
-from rocking_cli.core import Mechanism
-from rocking_cli.dynamics.history import RTOL, TAIL, History
-from rocking_cli.dynamics.model import ModelName
-from rocking_cli.engines import default_models
-from rocking_cli.engines import respond as histories
-from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.ask.given import Motion, StructureLike, doubts_of, models_of, signs_of, structure_of
+from rocking_cli.ask.ground_motions import MotionOptions, Motions
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.dynamics.history import FINEST_RTOL, RTOL, TAIL, History
+from rocking_cli.dynamics.model import MODELS, ModelName
+from rocking_cli.engines import default_models, engine_of
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.structure import Structure
+from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.studies.release import Release
+from rocking_cli.studies.response import Question, Response
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.io.tables import Columns
-    from rocking_cli.studies.contact import ContactDemand
+
+
+class ResponseAnswer(MappingAnswer[ModelName, History]):
+    """Histories by model, of the first polarity if there are two; and all that `Response` has as attributes."""
+
+    result: Response
 
 
 def respond(
     structure: StructureLike,
-    motion: Motion | None = None,
+    motion: Motion | Motions | None = None,
     *,
     models: str | Sequence[str] | None = None,
-    scale: float = 1.0,
-    release: float | str | None = None,
+    polarity: str | int = "1",
+    vertical: GroundMotion | str | Path | None = None,
+    vertical_dt: float | None = None,
+    vertical_channel: str | None = None,
+    with_pulse: str | None = None,
+    release: Release | float | str | None = None,
     tail: float = TAIL,
     rtol: float = RTOL,
-) -> MappingAnswer[ModelName, History]:
+    neighbours: int = 0,
+    amplitude_deviation: float = Neighbourhood.amplitude,
+    slenderness_deviation: float | None = None,
+    restitution_deviation: float | None = None,
+    opening: float | None = None,
+    impacts: bool = False,
+    contact: bool = False,
+    title: str | None = None,
+    watch: Watcher = SILENT,
+    **options: Unpack[MotionOptions],
+) -> ResponseAnswer:
     """Compute the response of a structure to a ground motion, a release or both; `respond_each` is for many.
 
     Parameters
@@ -46,9 +71,13 @@ def respond(
     motion : GroundMotion, Pulse, str or Path, optional
         The motion, its file, or a pulse as text.
     models : str or sequence of str, optional
-        Models "nonlinear", "linear1" or "linear2"; all by default.
-    scale : float
-        Scale factor on the motion; a negative one reverses it.
+        Models "nonlinear", "linear1" or "linear2"; by default all, or the nonlinear one alone if the others mislead.
+    polarity : {"1", "-1", "both"}
+        Polarity of the motion: as given, reversed, or one after the other.
+    vertical, vertical_dt, vertical_channel : path, float, str, optional
+        File of the vertical component of the motion, its sampling interval [s] and its channel.
+    with_pulse : str, optional
+        Shape of the pulse in the record under which the response is computed as well, or "best".
     release : float or str, optional
         Initial tilt of a release from rest: a fraction of phi_cr, between -1 and 1, or an angle such as "0.05rad";
         negative is anticlockwise.
@@ -56,11 +85,29 @@ def respond(
         Length of output after the end of the record [s].
     rtol : float
         Relative error tolerance per step of the nonlinear integration.
+    neighbours : int
+        Number of neighbouring motions to simulate as well; 0 for none.
+    amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
+        Standard deviations of the neighbours: of ln amplitude, of ln slenderness and of restitution; by default those
+        of the structure.
+    opening : float, optional
+        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    impacts : bool
+        Whether the answer lists the impacts.
+    contact : bool
+        Whether the plot shows the friction required; it does if the structure gives `friction`.
+    title : str, optional
+        Title of tables and plot; by default the name of the structure.
+    watch : Watcher
+        Told what was read, and what is doubtful about it.
+    **options
+        How the motion is read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionOptions`.
 
     Returns
     -------
-    MappingAnswer of str to History
-        Time histories, by model.
+    ResponseAnswer
+        Time histories, by model. `runs` has those of each polarity, `neighbours` the outcomes of the neighbours,
+        `contacts` the contact demands, `fit` and `to_pulse` the pulse and the response to it.
 
     Raises
     ------
@@ -83,42 +130,86 @@ def respond(
     >>> answer["nonlinear"].words
     'rocks'
     """
+    from rocking_cli.studies.response import response_of
+    from rocking_cli.views.response import view
+
+    if not FINEST_RTOL <= rtol < 1:
+        what = f"{rtol:g} is not a number from {FINEST_RTOL:g} to below 1: smaller errors are below rounding"
+        raise InputError(Problem(what, field="`rtol`"))
+    ready = structure_of(structure, opening)
+    motions = Motions.of(() if motion is None else motion, options)
+    given = motions.one(ready.growth, watch) if motions else None
+    if given is None and release is None:
+        raise InputError("no excitation is given: give a motion or a `release`")
+    if vertical is not None and given is not None:
+        if not isinstance(vertical, GroundMotion):
+            vertical = motions.vertical(given, vertical, vertical_dt, vertical_channel, watch)
+        given = given._replace(motion=replace(given.motion, vertical=vertical))
+    tilt = release if release is None or isinstance(release, Release) else Release.of(release)
+    question = Question(
+        signs_of(polarity),
+        tilt.ratio(ready) if tilt is not None else None,
+        tail,
+        rtol,
+        with_pulse,
+        Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation),
+        tilt is not None and tilt.is_angle,
+    )
+    chosen = models_of(models) if models is not None else usual_models(ready, watch)
+    ready.models(chosen)
+    watch.compile()
+    response = response_of(ready, chosen, given, question)
+    if (fit := response.fit) is not None:
+        watch.note(
+            f"pulse: {fit.pulse.title}, a_p = {fit.pulse.amplitude / STANDARD_GRAVITY:.4g} g, "
+            f"T_p = {fit.pulse.period:.4g} s, from {fit.start:.4g} s, sign {fit.sign:+d}: "
+            f"{100 * fit.captured:.0f} % of the energy of the velocity"
+        )
+    title = heading(ready.mechanism) if title is None else title
+    shown = view(response, ready, question, str(polarity), title, doubts_of(ready.mechanism), impacts=impacts)
+    figure = partial(_figure, response, ready, title, contact=contact or ready.mechanism.friction is not None)
+    blocks = partial(_blocks, response, ready)
+    return ResponseAnswer("response", response, shown, partial(_columns, response, ready), figure, blocks)
+
+
+def usual_models(structure: Structure, watch: Watcher = SILENT) -> tuple[ModelName, ...]:
+    """Return the models that do not mislead for a structure, with a note on the others."""
+    names = default_models(structure)
+    if len(names) < len(MODELS):
+        lacking = f"the engine {engine_of(structure).name} has no linear models"
+        watch.note(f"nonlinear history only: {structure.why_no_block or structure.misleading or lacking}")
+    return names
+
+
+def _blocks(response: Response, structure: Structure) -> Iterator[dict[str, NDArray[np.float64]]]:
+    """Yield the histories of the first polarity, then those of the second, or those under the pulse alone."""
     from rocking_cli.studies.contact import Contacts
-    from rocking_cli.views.response import runs_view
-
-    ready = structure_of(structure)
-    shaking = motion_of(motion).scaled(scale) if motion is not None else None
-    chosen = models_of(models) if models is not None else default_models(ready)
-    tilt = Release.of(release).ratio(ready) if release is not None else None
-    found = histories(ready, shaking, models=chosen, release=tilt, tail=tail, rtol=rtol)
-    title = heading(ready.mechanism) + (f", {shaking.name}" if shaking is not None else "")
-    nonlinear = found.get("nonlinear")
-    contacts = {1: Contacts(ready.mechanism).check(nonlinear, shaking)} if nonlinear is not None else {}
-
-    columns = partial(_history_columns, found, shaking, ready.mechanism)
-    figure = partial(_history_figure, found, shaking, ready, title, contacts)
-    return MappingAnswer("response", found, runs_view(title, {1: found}, ready.mechanism, contacts), columns, figure)
-
-
-def _history_columns(found: Mapping[ModelName, History], shaking: GroundMotion | None, mechanism: Mechanism) -> Columns:
     from rocking_cli.studies.movements import Watched
     from rocking_cli.views import history_table
 
-    runs = {str(name): run for name, run in found.items()}
-    blocks = list(history_table.blocks(runs, shaking, watched=Watched(mechanism)))
+    first, *others = response.runs.values()
+    runs: dict[str, History] = dict(first.items())
+    runs |= {f"reversed {name}": run for other in others for name, run in other.items()}
+    runs |= {f"pulse {name}": run for name, run in (response.to_pulse or {}).items()}
+    contacts = Contacts(structure.mechanism)
+    shear = {"nonlinear": contacts.base_shear(first["nonlinear"], response.first)} if "nonlinear" in first else {}
+    yield from history_table.blocks(runs, response.first, watched=Watched(structure.mechanism), base_shear=shear)
+
+
+def _columns(response: Response, structure: Structure) -> Columns:
+    blocks = list(_blocks(response, structure))
     return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
 
 
-def _history_figure(
-    found: Mapping[ModelName, History],
-    shaking: GroundMotion | None,
-    ready: Structure,
-    title: str,
-    contacts: Mapping[int, ContactDemand],
-) -> Figure:
+def _figure(response: Response, structure: Structure, title: str, *, contact: bool) -> Figure:
     from rocking_cli.plotting.history import draw_history
     from rocking_cli.studies.movements import Watched
 
-    checked = list(contacts.values()) if ready.mechanism.friction is not None else []
-    watched = Watched(ready.mechanism)
-    return draw_history(found, shaking, title, uplift=ready.uplift, contacts=checked, watched=watched)
+    first, *others = response.runs.values()
+    fit, alone = response.fit, response.to_pulse
+    pulse = (fit, alone) if fit is not None and alone is not None else None
+    checked = list(response.contacts.values()) if contact else []
+    return draw_history(
+        first, response.first, title, others[0] if others else None, pulse, structure.uplift, checked,
+        Watched(structure.mechanism),
+    )  # fmt: skip

@@ -102,6 +102,8 @@ def write_report(
 
 
 def _scaled(given: Motion) -> Scaled:
+    if isinstance(given, Scaled):
+        return given
     read = _read(given)
     if isinstance(read, Pulse):
         return Scaled(read.sampled(), 1.0, pulse=read)

@@ -132,7 +132,7 @@ def command(
 
         excitation = Excitation([], site=read_site(Path(site)))
     found = _design(structure, vary.field, span, until, excitation, points)
-    output.write(lambda: [columns(found)], lambda: _draw(found))
+    output.write_made(lambda: [columns(found)], lambda: _draw(found))
     terminal.show(view(found, excitation), as_json=output.as_json)
     if bad:
         ctx.exit(INCOMPLETE)

@@ -106,7 +106,7 @@ def command(
 
     for each, file in zip(mechanisms, good, strict=True):
         structures.warn_misleading(Structure(each, file), "linear")
-    output.write(lambda: [table(found)], draw)
+    output.write_made(lambda: [table(found)], draw)
     verdict = terminal.as_typed(" ".join(judge(found)))
     terminal.show(view(found, verdict), as_json=output.as_json)
     if bad:

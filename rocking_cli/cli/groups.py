@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any
 
 import click
-from click.core import ParameterSource
 
 from rocking_cli.cli import options, terminal
 from rocking_cli.cli.defaults import from_default
@@ -19,14 +18,15 @@ from rocking_cli.cli.quantities import Azimuth
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.dynamics.model import ModelName
+    from rocking_cli.ask.answer import Answer
+    from rocking_cli.ask.ground_motions import Motions
     from rocking_cli.excitation.pulses import Pulse
     from rocking_cli.excitation.records.sensor import Gain, Quantity
     from rocking_cli.io.tables import Columns
     from rocking_cli.processing.floor import Floor
+    from rocking_cli.processing.listed import Listed
     from rocking_cli.processing.reading import Reading
     from rocking_cli.studies.neighbours import Neighbourhood
-    from rocking_cli.studies.release import Release
 
 SPELLED = {"quantity": "from", "other": "with"}  # options by the names of their parameters
 
@@ -131,6 +131,19 @@ class GroundMotions(Scaling, ReadingOptions):
         """Return whether any ground motion is given."""
         return bool(self.records or self.pulses)
 
+    @property
+    def motions(self) -> Motions:
+        """Motions, and how to read and scale them; the user's defaults are for files that do not state the value."""
+        from rocking_cli.ask.ground_motions import Motions
+
+        usual = self.reading
+        dt, units, channel = (
+            None if from_default(name) else getattr(usual, name) for name in ("dt", "units", "channel")
+        )
+        typed = replace(usual, dt=dt, units=units, channel=channel)
+        given: tuple[Path | str, ...] = (*map(Path, self.records), *self.pulses)
+        return Motions(given, typed, *self.scaling, usual=usual if usual != typed else None)
+
     def check(self, vertical: str | None = None) -> None:
         """Raise if an option has no effect; `units` and `dt` also apply to the vertical component beside a pulse."""
         reading = ("units", "dt", "channel") if vertical is None else ("channel",)
@@ -178,21 +191,6 @@ class SizedPulse:
 
 
 @dataclass(frozen=True)
-class Vertical:
-    """The vertical component of a single motion."""
-
-    vertical: str | None
-    vertical_dt: float | None
-    vertical_channel: str | None
-
-    def __post_init__(self) -> None:
-        if self.vertical is None and (self.vertical_dt is not None or self.vertical_channel is not None):
-            raise click.UsageError(
-                "--vertical-dt and --vertical-channel require a vertical component: give --vertical FILE."
-            )
-
-
-@dataclass(frozen=True)
 class Near:
     """Options of the neighbouring motions."""
 
@@ -212,28 +210,6 @@ class Near:
 
 
 @dataclass(frozen=True)
-class HistoryOptions:
-    """Models, initial state, length and accuracy of time histories."""
-
-    models: tuple[str, ...]
-    release: Release | None
-    tail: float
-    rtol: float
-    with_pulse: str | None
-
-    @property
-    def by_default(self) -> bool:
-        """Whether the models are the default: the option was left out."""
-        context = click.get_current_context()
-        return context.get_parameter_source("models") is ParameterSource.DEFAULT
-
-    @property
-    def names(self) -> tuple[ModelName, ...]:
-        """Names of the models."""
-        return cast("tuple[ModelName, ...]", self.models)
-
-
-@dataclass(frozen=True)
 class Output:
     """The files to write, and whether the result is one JSON object."""
 
@@ -241,7 +217,25 @@ class Output:
     plot: Path | None
     as_json: bool
 
-    def write(self, table: Callable[[], Iterable[Columns]], draw: Callable[[], Figure]) -> None:
+    def keep_apart(self, *read: str | Listed | None) -> None:
+        """Raise `InputError` if an output would overwrite a file that is read, or a table cannot be written."""
+        from rocking_cli.io.files import keep_apart
+        from rocking_cli.io.tables import check_table
+
+        files = [str(each.path) if isinstance(each, tuple) else each for each in read]
+        keep_apart([("--out", self.out), ("--plot", self.plot)], files)
+        check_table(self.out)
+
+    def write(self, answer: Answer[Any]) -> None:
+        """Write the requested table and plot of an answer, make each only if needed, and report them."""
+        if self.out is not None:
+            from rocking_cli.cli import table_files
+
+            table_files.write(self.out, answer.blocks() if answer.blocks is not None else [answer.columns()])
+        if self.plot is not None:
+            write_picture(self.plot, answer.figure())
+
+    def write_made(self, table: Callable[[], Iterable[Columns]], draw: Callable[[], Figure]) -> None:
         """Write the requested table and plot, make each only if needed, and report them."""
         if self.out is not None:
             from rocking_cli.cli import table_files
@@ -249,3 +243,8 @@ class Output:
             table_files.write(self.out, table())
         if self.plot is not None:
             write_picture(self.plot, draw())
+
+    def show(self, answer: Answer[Any]) -> None:
+        """Write the requested files of an answer, and show it."""
+        self.write(answer)
+        terminal.show(answer.view, as_json=self.as_json)

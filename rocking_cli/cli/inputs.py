@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rocking_cli.cli import motion_files, terminal
 from rocking_cli.excitation.scaled import Scaled
 
 if TYPE_CHECKING:
-    from rocking_cli.cli.groups import GroundMotions, Vertical
+    from rocking_cli.cli.groups import GroundMotions
     from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.excitation.pulses import Pulse
     from rocking_cli.processing.listed import Listed
@@ -49,27 +48,6 @@ def introduce(what: str, motion: GroundMotion) -> None:
         f"{what}: {motion.name} ({motion.format}), {ground.npts} points, dt = {ground.dt:g} s, "
         f"in {motion.unit}, PGA = {ground.pga_g:.4g} g{motion_files.done(motion)}"
     )
-
-
-def read_vertical(vertical: Vertical, reading: Reading) -> GroundMotion:
-    """Read a vertical component: interval and channel of its own, all else as for the horizontal one."""
-    from rocking_cli.errors import InputError, Problem, renamed
-
-    arguments = {"channel": "vertical_channel"}
-    if vertical.vertical_dt is not None or reading.dt is None:
-        arguments["dt"] = "vertical_dt"
-    assert vertical.vertical is not None
-    try:
-        motion = reading.vertical(vertical.vertical, vertical.vertical_dt, vertical.vertical_channel)
-    except InputError as error:
-        found: list[Problem] = []
-        for each in renamed(error, arguments).problems:
-            if each.hint and "`dt`" in each.hint:  # it was meant for the other component
-                each = replace(each, hint="give the interval of the vertical component with `vertical_dt`")
-            found.append(each)
-        raise InputError(*found) from None
-    introduce("vertical", motion)
-    return motion
 
 
 def make(specification: str) -> tuple[Pulse, GroundMotion]:
@@ -115,13 +93,10 @@ def warn(motion: GroundMotion, p: float) -> None:
     motion_files.warn(motion, doubts(ground, measure(ground)) + coarse_for(motion, p))
 
 
-def gather(
-    records: Sequence[Listed], asked: GroundMotions, p: float, vertical: Vertical | None = None, *, several: bool
-) -> tuple[list[Scaled], int]:
+def gather(records: Sequence[Listed], asked: GroundMotions, p: float, *, several: bool) -> tuple[list[Scaled], int]:
     """Return the motions for a structure of a frequency parameter `p`, and the number of unusable ones.
 
     A single motion is reported in full, and an error in it ends the command. Of `several`, each is reported by itself.
-    `vertical` may be the vertical component of a single motion.
     """
     if several:
         return motion_files.gather(records, asked.pulses, asked.reading, asked.scaling, p, "this structure")
@@ -133,6 +108,4 @@ def gather(
         file = records[0].path
         motion = read("record", records[0], reading)
         reading = records[0].reading(reading)
-    if vertical is not None and vertical.vertical is not None:
-        motion = replace(motion, vertical=read_vertical(vertical, reading))
     return [Scaled(motion, judge(motion, p, *asked.scaling), pulse, file)], 0

@@ -163,7 +163,7 @@ def _compare(
 
         return draw_comparison(found, views.comparison_title(found))
 
-    output.write(lambda: [views.comparison_table(found)], draw)
+    output.write_made(lambda: [views.comparison_table(found)], draw)
     terminal.show(views.comparison_view(found, mechanisms), as_json=output.as_json)
 
 
@@ -194,7 +194,7 @@ def _map(
 
         return draw_map(found, views.map_title(found), dimensionless=dimensionless)
 
-    output.write(lambda: [views.map_table(found, mechanism)], draw)
+    output.write_made(lambda: [views.map_table(found, mechanism)], draw)
     terminal.show(views.map_view(found, mechanism, dimensionless=dimensionless), as_json=output.as_json)
 
 

@@ -174,7 +174,7 @@ def _give(results: ShownSpectra, output: Output) -> None:
 
         return draw_spectra(results.spectra, results.fractiles, title(results))
 
-    output.write(lambda: [table(results)], draw)
+    output.write_made(lambda: [table(results)], draw)
     terminal.show(view(results), as_json=output.as_json)
 
 

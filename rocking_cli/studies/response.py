@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -56,8 +56,8 @@ class Question:
 
 
 @dataclass(frozen=True, eq=False)
-class Response:
-    """Response of a structure to one ground motion.
+class Response(Mapping[ModelName, History]):
+    """Response of a structure to one ground motion: histories by model, those of the first polarity if there are two.
 
     Parameters
     ----------
@@ -85,6 +85,15 @@ class Response:
     to_pulse: Histories | None = None
     contacts: Mapping[int, ContactDemand] = field(default_factory=dict)
     to_pulse_contact: ContactDemand | None = None
+
+    def __getitem__(self, model: ModelName) -> History:
+        return next(iter(self.runs.values()))[model]
+
+    def __iter__(self) -> Iterator[ModelName]:
+        return iter(next(iter(self.runs.values())))
+
+    def __len__(self) -> int:
+        return len(next(iter(self.runs.values())))
 
 
 def response_of(structure: Structure, names: Sequence[ModelName], given: Scaled | None, asked: Question) -> Response:

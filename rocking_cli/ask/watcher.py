@@ -1,0 +1,51 @@
+"""Callbacks of a verb: what it reports while it works, and what it cannot use."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+
+from rocking_cli.errors import RockingError
+
+Advance = Callable[[int], None]
+"""Function to call with the number of pieces of work that are done since the last call."""
+
+
+class Watcher:
+    """Watcher of a verb. This one is silent, and one motion or structure that cannot be used ends the verb.
+
+    Derive from it to show the progress of a long study, or to leave out bad records and go on:
+
+    >>> class Patient(Watcher):
+    ...     def leave_out(self, error):
+    ...         print("left out:", error)
+    """
+
+    def note(self, text: str) -> None:
+        """Take a note, such as which record was read."""
+
+    def warn(self, text: str) -> None:
+        """Take a warning, such as of a record that drifts."""
+
+    def leave_out(self, error: RockingError) -> None:
+        """Take the error of one of several motions or structures: return to go on without it, or raise."""
+        raise error
+
+    def compile(self, *, exact: bool = False) -> None:
+        """Prepare for time histories, or for exact responses to pulses: their kernel may have to be compiled."""
+
+    def progress(self, total: int, what: str) -> AbstractContextManager[Advance]:
+        """Begin work of this many pieces, which `what` names; yields the function that counts them."""
+        return nullcontext(_count_nothing)
+
+    def histories(self, total: int, *, exact: bool = False) -> AbstractContextManager[Advance]:
+        """Begin this many time histories, or exact responses to pulses, and compile their kernel first."""
+        self.compile(exact=exact)
+        return self.progress(total, "histories")
+
+
+def _count_nothing(count: int, failed: int = 0) -> None:
+    """Ignore progress."""
+
+
+SILENT = Watcher()

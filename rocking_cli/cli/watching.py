@@ -1,0 +1,46 @@
+"""The terminal as the watcher of a verb: notes and progress, and what was left out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+
+import click
+
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.cli import terminal, waiting
+from rocking_cli.errors import INCOMPLETE, RockingError
+
+
+class OnTerminal(Watcher):
+    """Watcher that prints, and goes on without the motions and structures that cannot be used."""
+
+    def __init__(self) -> None:
+        self.left_out = 0
+
+    def note(self, text: str) -> None:
+        """Print a note."""
+        terminal.note(text)
+
+    def warn(self, text: str) -> None:
+        """Print a warning."""
+        terminal.warning(text)
+
+    def leave_out(self, error: RockingError, name: str = "") -> None:
+        """Print an error, after the name of what it is about, and count it."""
+        terminal.error(f"{name}: {error}" if name else str(error))
+        terminal.debug_traceback(error)
+        self.left_out += 1
+
+    def compile(self, *, exact: bool = False) -> None:
+        """Compile the kernel if this machine has not yet."""
+        waiting.compile_first(exact=exact)
+
+    def progress(self, total: int, what: str) -> AbstractContextManager[Callable[[int], None]]:
+        """Show a progress bar."""
+        return terminal.progress(total, what)
+
+    def end(self) -> None:
+        """End the command; with the exit code of an incomplete answer if anything was left out."""
+        if self.left_out:
+            click.get_current_context().exit(INCOMPLETE)
