@@ -15,7 +15,9 @@ from rocking_cli.errors import RockingError
 from rocking_cli.views.view import View, heading
 
 if TYPE_CHECKING:
-    from rocking_cli.excitation.scaled import Scaled
+    from rocking_cli.ask.ground_motions import Motions
+    from rocking_cli.cli.watching import OnTerminal
+    from rocking_cli.structure import Structure
     from rocking_cli.views.view import Table
 
 # The models and the pulses that are fitted stand here again so that `--help` needs no numpy.
@@ -126,9 +128,8 @@ def command(files: tuple[str, ...], asked: GroundMotions, output: Output, **ques
     """
     _check(asked, output, question)
     question["polarity"] = asked.polarity
-    from rocking_cli.ask.respond import respond, usual_models
+    from rocking_cli.ask.respond import respond
     from rocking_cli.cli.watching import OnTerminal
-    from rocking_cli.views.several import Several
 
     structure, watch = inputs.structure(files, asked.records), OnTerminal()
     if asked.all_azimuths:
@@ -138,45 +139,51 @@ def command(files: tuple[str, ...], asked: GroundMotions, output: Output, **ques
         return
     motions = asked.motions
     output.keep_apart(*files, *motions.records, question["vertical"])
-    several = motions.count > 1
-    if several and question["vertical"] is not None:
+    if motions.count > 1:
+        _show_each(structure, motions, output, question, watch)
+    else:
+        output.show(respond(structure, motions or None, watch=watch, **question))
+    watch.end()
+
+
+def _show_each(
+    structure: Structure, motions: Motions, output: Output, question: dict[str, Any], watch: OnTerminal
+) -> None:
+    """Ask for the response to each of several motions, and show a row for each in one table."""
+    from rocking_cli.ask.respond import respond, usual_models
+    from rocking_cli.views.several import Several
+
+    if question["vertical"] is not None:
         raise click.UsageError("--vertical applies to a single motion: give one --record FILE or one --pulse PULSE.")
-    given: list[Scaled | None] = list(motions.gather(structure.growth, watch)) if motions else [None]
-    if question["vertical"] is not None and given[0] is not None:
-        dt, channel = question.pop("vertical_dt"), question.pop("vertical_channel")
-        question["vertical"] = motions.vertical(given[0], question["vertical"], dt, channel, watch)
-    outs, plots = (motion_files.separate(path, given, several=several) for path in (output.out, output.plot))
+    given = motions.gather(structure.growth, watch)
+    outs, plots = (motion_files.separate(path, given, several=True) for path in (output.out, output.plot))
     places = [Output(out, plot, output.as_json) for out, plot in zip(outs, plots, strict=True)]
-    for place in places if several else []:
-        place.keep_apart(*files, *motions.records)
+    for place in places:
+        place.keep_apart(structure.file, *motions.records)
     question["models"] = question["models"] or usual_models(structure, watch)
     table = Several(structure, question["models"])
     details: list[Table | str] = []
     with watch.progress(len(given), "motions") as advance:
         for motion, place in zip(given, places, strict=True):
-            name = motion.motion.name if motion is not None else "release"
-            title = heading(structure.mechanism) + (f", under {name}" if several else "")
+            name = motion.motion.name
+            title = f"{heading(structure.mechanism)}, under {name}"
             try:
                 answer = respond(structure, motion, title=title, watch=watch, **question)
             except RockingError as error:
-                if not several:
-                    raise
                 watch.leave_out(error, name)
                 refused = error
                 continue
             finally:
                 advance(1)
             place.write(answer)
-            if output.as_json or not several:
-                terminal.show(answer.view, as_json=output.as_json)
-            else:
-                table.add(answer.result)
-                details += ["", *answer.view.parts] if question["impacts"] else []
-    if several and watch.left_out == motions.count:
+            table.add(answer.result)
+            details += ["", *answer.view.parts] if question["impacts"] else []
+            if output.as_json:
+                terminal.show(answer.view, as_json=True)
+    if watch.left_out == motions.count:
         click.get_current_context().exit(refused.exit_code)
-    if several and not output.as_json:
+    if not output.as_json:
         terminal.show(View({}, [*table.parts(), *details]), as_json=False)
-    watch.end()
 
 
 def _check(asked: GroundMotions, output: Output, question: Mapping[str, Any]) -> None:

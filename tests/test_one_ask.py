@@ -1,0 +1,74 @@
+"""A command asks the verb of its name: what its options say, the arguments of the verb say by the same names."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+from importlib import import_module
+from typing import get_type_hints
+
+import click
+import pytest
+
+import rocking_cli as rk
+from rocking_cli.ask.ground_motions import MotionOptions, ReadingOptions
+from rocking_cli.cli.main import COMMANDS
+from tests.elsewhere import PROJECT
+
+WITHOUT = {
+    "results": "reads the store that `fragility` writes",
+    "figure": "recomputes the figures of the paper into a folder",
+    "mechanisms": "lists plugins: `rk.mechanisms`",
+    "measures": "lists plugins",
+    "new": "prints starters",
+    "info": "describes the installation",
+    "warm": "compiles kernels",
+    "completion": "prints a script for a shell",
+}
+"""Commands that ask nothing about a structure or a motion."""
+OF_THE_TERMINAL = {"as_json", "as_csv", "plot", "out", "page", "curves", "nrml", "sheet", "help", "version"}
+"""Options that say where an answer goes, and in which form."""
+NAMED = {"records": "motions", "pulses": "motions", "file": "structure", "files": "structures"}
+MOST = 40
+
+
+def asked(name):
+    command = import_module(f"rocking_cli.cli.{name}").command
+    return [param for param in command.params if param.name not in OF_THE_TERMINAL and not getattr(param, "hidden", 0)]
+
+
+def usual(option):
+    """The default of an option; None where there is none, which versions of click spell differently."""
+    return option.default if isinstance(option.default, str | int | float | tuple) else None
+
+
+VERBS = [name for name in COMMANDS if name not in WITHOUT]
+
+
+@pytest.mark.parametrize("name", VERBS)
+def test_what_a_command_can_do_python_can_do_by_the_same_names(name):
+    verb = getattr(rk, name)
+    arguments = inspect.signature(verb).parameters
+    more = MotionOptions if name != "select" else ReadingOptions
+    loose = set(get_type_hints(more)) if "options" in arguments else set()
+    missing, other = [], []
+    for param in asked(name):
+        word = NAMED.get(param.name, param.name)
+        spelled = next((each for each in (word, word.removesuffix("s"), param.name) if each in arguments), None)
+        if spelled is None and param.name not in loose:
+            missing.append(param.name)
+        elif spelled is not None and isinstance(param, click.Option) and param.name not in NAMED and not param.required:
+            default = arguments[spelled].default
+            if name == "respond" and param.name == "neighbours":
+                assert default == 0
+            elif (given := usual(param) or None) != (default or None):
+                other.append((param.name, given, default))
+    assert not missing and not other
+
+
+@pytest.mark.parametrize("name", VERBS)
+def test_the_function_of_a_command_is_short(name):
+    tree = ast.parse((PROJECT / "rocking_cli" / "cli" / f"{name}.py").read_text(encoding="utf-8"))
+    (function,) = (each for each in tree.body if isinstance(each, ast.FunctionDef) and each.name == "command")
+    body = function.body[1:]
+    assert body[-1].end_lineno - body[0].lineno + 1 <= MOST
