@@ -37,8 +37,8 @@ from rocking_cli.text import printable
 from rocking_cli.views import assessment_words as words
 from rocking_cli.views.contact import COLUMNS as CONTACT_COLUMNS
 from rocking_cli.views.contact import contact_row
-from rocking_cli.views.equivalent_block import EquivalentSide, is_symmetric, sentence, sides_of, without
-from rocking_cli.views.parameters import PARAMETERS, values
+from rocking_cli.views.equivalent_block import EquivalentSide, is_symmetric, sentence, sides_of
+from rocking_cli.views.parameters import PARAMETERS
 
 BINS = 6000  # of all motions together: each curve has some two samples for a bin
 FEWEST, MOST = 300, 2500  # of one motion
@@ -164,7 +164,7 @@ def _shown(content: Assessment) -> list[EquivalentSide]:
 
 def _parameters(content: Assessment) -> list[dict[str, Any]]:
     shown = _shown(content)
-    blocks = [values(side.block) if side.block is not None else without(side) for side in shown]
+    blocks = [side.parameters for side in shown]
     rows = [
         {
             "symbol": each.symbol,
