@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.record_set import RecordSet
 from rocking_cli.studies.subsets import STARTS
 from rocking_cli.studies.target_spectrum import TargetSpectrum
 from rocking_cli.text import cut
-from rocking_cli.views.column import Column, data_of, of, rounded, table_of
 from rocking_cli.views.view import ABSENT, Table, View, number
 
 NAME = 40  # characters of an event or a station in the table
@@ -44,43 +42,9 @@ class ShownSet:
     unusable: Sequence[str] = ()
 
 
-class ChosenRecord(NamedTuple):
-    """A record of a set: its file, the motion as read, and its scale factor."""
-
-    file: str | None
-    motion: GroundMotion
-    factor: float
-
-    @property
-    def pga(self) -> float:
-        """The PGA of the scaled record [g]."""
-        return self.factor * self.motion.of_ground.pga_g
-
-
-def _short(name: str) -> str:
-    return cut(name or ABSENT, NAME)
-
-
-COLUMNS: tuple[Column[ChosenRecord], ...] = (
-    Column("file", of("file")),
-    Column("name", of("motion.name"), head="record", text=True),
-    Column("event", of("motion.origin.event"), head="earthquake", form=_short, text=True),
-    Column("station", of("motion.origin.station"), head="station", form=_short, text=True),
-    Column("magnitude", of("motion.origin.magnitude")),
-    Column("distance", of("motion.origin.distance"), "km"),
-    Column("factor", of("factor"), head="factor"),
-    Column("pga", of("pga"), "g", "PGA as\nscaled [g]", rounded(3)),
-)
-
-
 def view(results: ShownSet) -> View:
     """Show the records and their factors, the range of the mean over the target, and remarks."""
-    parts: list[Table | str] = [
-        table_of(title(results), COLUMNS, _chosen(results)),
-        _range(results),
-        verdict(results),
-        search(results),
-    ]
+    parts: list[Table | str] = [_records(results), _range(results), verdict(results), search(results)]
     parts += [said for said in (_left_out(results), _silent(results)) if said]
     return View(lambda: data(results), parts)
 
@@ -101,7 +65,16 @@ def data(results: ShownSet) -> dict[str, Any]:
         "fits": found.fits,
         "least": float(ratio.min()),
         "most": float(ratio.max()),
-        "records": [data_of(COLUMNS, each) for each in _chosen(results)],
+        "records": [
+            {
+                "file": results.files[k],
+                "name": found.candidates.motions[k].name,
+                **found.candidates.motions[k].origin._asdict(),
+                "factor": factor,
+                "pga": factor * found.candidates.motions[k].of_ground.pga_g,
+            }
+            for k, factor in _chosen(found)
+        ],
         "spectrum": {
             "period": found.candidates.periods.tolist(),
             "target": found.candidates.target.tolist(),
@@ -121,7 +94,7 @@ def data(results: ShownSet) -> dict[str, Any]:
 def table(results: ShownSet) -> dict[str, Sequence[object]]:
     """Return the columns of the spectra: the target, the mean, and each scaled record."""
     found = results.found
-    names = [each.motion.name for each in _chosen(results)]
+    names = [found.candidates.motions[k].name for k, _ in _chosen(found)]
     return {
         "period [s]": found.candidates.periods.tolist(),
         "target Sa [g]": found.candidates.target.tolist(),
@@ -187,16 +160,24 @@ def ratio_in_words(value: float, within: tuple[float, float]) -> str:
     return shown
 
 
-def _chosen(results: ShownSet) -> list[ChosenRecord]:
-    found = results.found
-    return [
-        ChosenRecord(results.files[k], found.candidates.motions[k], factor)
-        for k, factor in zip(found.chosen.tolist(), found.factors.tolist(), strict=True)
-    ]
+def _chosen(found: RecordSet) -> list[tuple[int, float]]:
+    return list(zip(found.chosen.tolist(), found.factors.tolist(), strict=True))
 
 
 def _records_in_words(count: int) -> str:
     return "1 record" if count == 1 else f"{count} records"
+
+
+def _records(results: ShownSet) -> Table:
+    """Return a table with a row for each record of the set."""
+    found = results.found
+    rows = []
+    for k, factor in _chosen(found):
+        motion = found.candidates.motions[k]
+        event, station = (cut(each or ABSENT, NAME) for each in (motion.origin.event, motion.origin.station))
+        rows.append([motion.name, event, station, f"{factor:.4g}", f"{factor * motion.of_ground.pga_g:.3g}"])
+    heads = ["record", "earthquake", "station", "factor", "PGA as\nscaled [g]"]
+    return Table(title(results), heads, rows, numbers=(3, 4))
 
 
 def _range(results: ShownSet) -> Table:
