@@ -1,7 +1,8 @@
-"""Keep what the commands print for the shipped examples, and compare two such states of the program.
+"""Keep what the commands print for the shipped examples, compare two such states, and write the keys of all JSON.
 
     python scripts/outputs.py keep FOLDER           # run all commands with the program that this Python imports
     python scripts/outputs.py compare BEFORE AFTER  # exit code 1 if anything but sentences differs
+    python scripts/outputs.py keys FOLDER           # write tests/json_keys.txt from what was kept
 
 To keep the outputs of another commit, check it out beside this one and put it first on PYTHONPATH. Compared are exit
 codes, keys, numbers, truth values and nulls of the JSON, and the heads and numbers of written tables; sentences that
@@ -79,17 +80,107 @@ ONCE = (
     "new study",
 )
 
+FOR_KEYS = (
+    "info --json",
+    "warm --json",
+    "completion bash --json",
+    "new block --json",
+    "figure 5 --json",
+    "animate examples/block.yaml --pulse ricker:0.4g:1s --out moving.html --json",
+    "select examples/accel.csv --target examples/target.csv --count 1 --band 0.2:2 --json",
+    "overturning examples/block.yaml --points 5 --json",
+    "overturning --compare examples/block.yaml examples/frame.yaml --points 5 --json",
+    "report examples/frame.yaml --json",
+)
+"""Commands of which only the keys are held: their values depend on the machine, or others have the like."""
+
+NAMES = ("answers", "levels", "libraries", "measures", "points", "polarities", "ties", "versions")
+"""Keys of objects whose own keys are names."""
+GIVEN = ("default", "environment", "example")
+"""Keys of values that have the form of what is described, or of the machine."""
+INDENT = "  "
+KEYS = PROJECT / "tests" / "json_keys.txt"
+
 
 def commands() -> list[str]:
     """Return all commands to run, those that fail on purpose among them."""
     starters = ("facade", "parapet", "gable", "pinnacle", "corner", "bell_cell", "column_with_tendon", "statue")
-    names = [file.stem for file in sorted((PROJECT / "mechanisms").glob("*.py")) if not file.stem.startswith("_")]
+    names = mechanisms()
     return [
         *(command.format(file) for file in STRUCTURES for command in OF_EACH),
         *ONCE,
-        *(f"new {name}" for name in (*starters, *names) if name != "__init__"),
-        *(f"mechanisms {name} --json" for name in names if name != "__init__"),
+        *FOR_KEYS,
+        *(f"new {name}" for name in (*starters, *names)),
+        *(f"mechanisms {name} --json" for name in names),
     ]
+
+
+def mechanisms() -> list[str]:
+    """Return the names of the files of mechanisms."""
+    return [file.stem for file in sorted((PROJECT / "mechanisms").glob("*.py")) if not file.stem.startswith("_")]
+
+
+def questions() -> dict[str, list[str]]:
+    """Return the commands that print JSON, and the examples that each is asked of, `""` if it names its own."""
+    asked = {command: STRUCTURES for command in OF_EACH if "--json" in command}
+    asked["mechanisms {0} --json"] = mechanisms()
+    return asked | {command: [""] for command in (*ONCE, *FOR_KEYS) if "--json" in command}
+
+
+def key_paths(data: dict[str, Any], parents: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
+    """Yield each key below its parents, with `[]` if it has a list; `*` stands for names.
+
+    >>> list(key_paths({"motions": [{"name": "a"}], "points": {"top": {"at": [1, 2]}}}))
+    [('motions[]',), ('motions[]', 'name'), ('points',), ('points', '*'), ('points', '*', 'at[]')]
+    """
+    for key, value in data.items():
+        name, values = "*" if parents[-1:] and parents[-1] in NAMES else key, [value]
+        while any(isinstance(each, list) for each in values):
+            name += "[]"
+            values = [item for each in values if isinstance(each, list) for item in each]
+        yield (*parents, name)
+        for each in values:
+            if isinstance(each, dict) and key not in GIVEN:
+                yield from key_paths(each, (*parents, name))
+
+
+def keys_of(out: str) -> set[tuple[str, ...]]:
+    """Return all keys in the JSON that a command printed, an object a line."""
+    return {path for line in out.splitlines() for path in key_paths(json.loads(line))}
+
+
+def write_keys(folder: Path) -> None:
+    """Write the keys of the JSON of all commands as trees, with the examples where fewer have a key than its parent."""
+    kept = json.loads((folder / "outputs.json").read_text(encoding="utf-8"))
+    lines = []
+    for command, examples in questions().items():
+        having: dict[tuple[str, ...], list[str]] = {}
+        for example in examples:
+            for path in keys_of(kept[command.format(example)]["out"]):
+                having.setdefault(path, []).append(example)
+        lines.append(command)
+        for path in sorted(having):
+            some = having[path]
+            shown = "" if some == having.get(path[:-1], examples) else f"  {' '.join(some)}"
+            lines.append(f"{INDENT * len(path)}{path[-1]}{shown}")
+    KEYS.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def held_keys() -> dict[tuple[str, str], set[tuple[str, ...]]]:
+    """Return the keys that the file holds, by command and example."""
+    held: dict[tuple[str, str], set[tuple[str, ...]]] = {}
+    for line in KEYS.read_text(encoding="utf-8").splitlines():
+        name, _, some = line.strip().partition("  ")
+        depth = (len(line) - len(line.lstrip())) // len(INDENT)
+        if depth == 0:
+            command, path, having = line, (), [questions()[line]]
+            held |= {(command, example): set() for example in questions()[command]}
+            continue
+        path = (*path[: depth - 1], name)
+        having[depth:] = [some.split() or having[depth - 1]]
+        for example in having[depth]:
+            held[command, example].add(path)
+    return held
 
 
 def keep(folder: Path) -> None:
@@ -122,6 +213,8 @@ def compare(before: Path, after: Path) -> int:
     wrong: list[str] = []
     sentences: dict[tuple[str, str], str] = {}
     for command in sorted({*one, *other}):
+        if command in FOR_KEYS:
+            continue
         if command not in one or command not in other:
             wrong.append(f"{command}: only {'before' if command in one else 'after'}")
             continue
@@ -183,5 +276,7 @@ if __name__ == "__main__":
     what, *folders = sys.argv[1:]
     if what == "keep":
         keep(Path(folders[0]).resolve())
+    elif what == "keys":
+        write_keys(Path(folders[0]))
     else:
         sys.exit(compare(*map(Path, folders)))

@@ -228,7 +228,7 @@ def test_a_type_checker_accepts_the_page(maker, tmp_path):
 
 FILES = sorted((PROJECT / "rocking_cli" / "ask").glob("*.py"))
 VERBS = [f".ask.{path.stem}" for path in FILES if ">>>" in path.read_text(encoding="utf-8")]
-MODULES = ("", *VERBS, ".dynamics.batch", ".dynamics.exact", ".names", ".units")
+MODULES = ("", *VERBS, ".dynamics.batch", ".dynamics.exact", ".names", ".units", ".views.column")
 
 
 @pytest.mark.parametrize("name", MODULES)

@@ -20,7 +20,7 @@ from rocking_cli.dynamics.holding import joints_in_words
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies import contact
 from rocking_cli.studies.contact import Contacts, _stretches
-from rocking_cli.views.contact import contact_row, contact_words
+from rocking_cli.views.contact import contact_columns, contact_words
 from rocking_cli.views.view import number
 from tests.conftest import EXAMPLES
 from tests.following import respond
@@ -375,7 +375,7 @@ def test_forces_in_a_row_are_in_kN_as_they_are_in_sentences():
     heavy, none = Block(width=0.7, height=2.8, mass=20e3), Block(width=0.7, height=2.8)
     for structure, unit, per in ((heavy, "kN", 1000), (none, "N/kg", 1)):
         _, found = checked(structure, shaking(0.4))
-        row = contact_row(found, structure)
+        row = [column.cell(found) for column in contact_columns(structure)]
         assert row[5] == f"{found.base_shear / per:.4g} {unit}" and row[6] == f"{found.least_normal / per:.4g} {unit}"
 
 

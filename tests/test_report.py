@@ -22,7 +22,8 @@ from rocking_cli.excitation.records import read_record
 from rocking_cli.report.page import symbols
 from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.neighbours import Neighbourhood
-from rocking_cli.views.parameters import values
+from rocking_cli.views.column import data_of
+from rocking_cli.views.parameters import PARAMETERS
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, PROJECT, RECORDS
 from tests.following import respond
 from tests.test_cli import run, run_json
@@ -220,7 +221,7 @@ class TestContent:
 
     def test_every_parameter_is_defined(self):
         block = EquivalentBlock(**{name: float(k) for k, name in enumerate(EquivalentBlock.__dataclass_fields__)})
-        assert block.as_dict().items() <= values(block).items()
+        assert block.as_dict().items() <= data_of(PARAMETERS, block).items()
 
     def test_symbols_have_subscripts_and_nothing_else_does(self):
         assert symbols("φ_cr/κ₁ & a_p") == "φ<sub>cr</sub>/κ₁ &amp; a<sub>p</sub>"

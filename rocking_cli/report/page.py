@@ -35,10 +35,9 @@ from rocking_cli.studies.movements import Watched
 from rocking_cli.studies.overturning import Region
 from rocking_cli.text import printable
 from rocking_cli.views import assessment_words as words
-from rocking_cli.views.contact import COLUMNS as CONTACT_COLUMNS
-from rocking_cli.views.contact import contact_row
-from rocking_cli.views.equivalent_block import EquivalentSide, is_symmetric, sentence, sides_of, without
-from rocking_cli.views.parameters import PARAMETERS, values
+from rocking_cli.views.contact import contact_columns
+from rocking_cli.views.equivalent_block import EquivalentSide, is_symmetric, sentence, sides_of
+from rocking_cli.views.parameters import PARAMETERS
 
 BINS = 6000  # of all motions together: each curve has some two samples for a bin
 FEWEST, MOST = 300, 2500  # of one motion
@@ -67,6 +66,7 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
     environment.filters["symbols"] = symbols
     environment.filters["greek"] = _greek
     bins = int(np.clip(BINS // max(1, len(content.results)), FEWEST, MOST))
+    demands = contact_columns(content.mechanism)
     page = environment.get_template("report.html").render(
         content=content,
         verified=verified,
@@ -93,14 +93,14 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         contacts=[
             [
                 each.given.motion.name + (", reversed" if sign < 0 else ""),
-                *contact_row(contact, content.mechanism),
+                *(column.cell(contact) for column in demands),
                 _known(each.runs[sign]["nonlinear"]),
             ]
             for each in content.results
             for sign, contact in each.contacts.items()
         ],
         checked=any(contact.followed for each in content.results for contact in each.contacts.values()),
-        contact_columns=["ground motion", *CONTACT_COLUMNS, "outcome known"],
+        contact_columns=["ground motion", *(column.head for column in demands), "outcome known"],
         margins=_still(draw_margins({each.given.motion.name: each.margin for each in content.results}, ""), "margins")
         if content.results
         else None,
@@ -164,7 +164,7 @@ def _shown(content: Assessment) -> list[EquivalentSide]:
 
 def _parameters(content: Assessment) -> list[dict[str, Any]]:
     shown = _shown(content)
-    blocks = [values(side.block) if side.block is not None else without(side) for side in shown]
+    blocks = [side.parameters for side in shown]
     rows = [
         {
             "symbol": each.symbol,

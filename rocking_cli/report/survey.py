@@ -13,7 +13,7 @@ from rocking_cli.report.figures import inline_svg
 from rocking_cli.report.page import symbols
 from rocking_cli.studies.survey import Survey
 from rocking_cli.text import printable
-from rocking_cli.views.survey import cells, has_unknown, headings, sentences, title
+from rocking_cli.views.survey import sentences, table, title
 
 MOST = 10_000  # rows of a page: browsers lay out more of them for many seconds
 SYMBOLS = {"lambda": "λ", "phi_cr": "φ_cr", "kappa2": "κ₂", "eta": "η"}
@@ -36,8 +36,7 @@ def render(found: Survey, source: str, about: Sequence[str]) -> str:
         trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
     environment.filters["symbols"] = symbols
-    heads = [_symbolic(each) for each in headings(found)]
-    unknown = has_unknown(found)
+    rows = table(found, MOST, longest=None)
     left_out = max(0, len(found.rows) - MOST)
     page = environment.get_template("survey.html").render(
         source=source,
@@ -45,9 +44,9 @@ def render(found: Survey, source: str, about: Sequence[str]) -> str:
         title=title(found),
         said=[each.replace("`", "") for each in sentences(found)],
         picture=Markup(inline_svg(draw_survey(found, ""), "survey")) if found.rows else None,
-        columns=heads,
-        words=[1, 2],
-        rows=[cells(rank, each, None, unknown=unknown) for rank, each in enumerate(found.rows[:MOST], 1)],
+        columns=[_symbolic(each) for each in rows.columns],
+        words=[k for k in range(len(rows.columns)) if k not in rows.numbers],
+        rows=rows.rows,
         left_out=f"The table lists the first {MOST:,} of {len(found.rows):,} structures." if left_out else "",
         bad=[(each.line if each.line is not None else "", each.name, each.reason) for each in found.bad[:MOST]],
         bad_count=len(found.bad),

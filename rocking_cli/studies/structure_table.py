@@ -33,7 +33,7 @@ _UNIT = re.compile(r"(.*?)\s*\[([^\]]*)\]\s*", re.DOTALL)
 
 
 @dataclass(frozen=True)
-class Column:
+class FieldColumn:
     """A column that holds a field.
 
     Parameters
@@ -157,7 +157,7 @@ class StructureTable(Sequence["TableRow"]):
             raise found
         return found
 
-    def _columns(self) -> list[Column]:
+    def _columns(self) -> list[FieldColumn]:
         found, problems, taken = [], [], dict[tuple[str, ...], str]()
         sheet = self.sheet
         for place, heading in enumerate(sheet.headings):
@@ -174,7 +174,7 @@ class StructureTable(Sequence["TableRow"]):
                 message = f"is the same field as {cut(one_line(taken[path]))}"
                 problems.append(Problem(message, sheet.file, sheet.line, field=shown, hint="take one of them away"))
             taken[path] = heading
-            found.append(Column(place, shown, path, unit))
+            found.append(FieldColumn(place, shown, path, unit))
         if problems:
             raise InputError(*problems)
         if not found:
@@ -337,7 +337,7 @@ def _types(cls: type[Mechanism] | None, place: Place) -> frozenset[Any]:
     return frozenset(types_at(cls, place)) if cls is not None else frozenset()
 
 
-def _value(text: str, column: Column, types: frozenset[Any], *, decimal_comma: bool) -> Any:
+def _value(text: str, column: FieldColumn, types: frozenset[Any], *, decimal_comma: bool) -> Any:
     """Read a cell: a number, a list of numbers, or a text; texts with units are converted later, at the field."""
     if str in types and not types & {float, int}:
         return text
@@ -349,7 +349,7 @@ def _value(text: str, column: Column, types: frozenset[Any], *, decimal_comma: b
     return _one(text, column, decimal_comma=decimal_comma)
 
 
-def _one(text: str, column: Column, *, decimal_comma: bool) -> Any:
+def _one(text: str, column: FieldColumn, *, decimal_comma: bool) -> Any:
     if decimal_comma and THOUSANDS.fullmatch(text):
         hint = "write numbers without thousands separators"
         raise InputError(

@@ -7,9 +7,8 @@ from rocking_cli.studies.movements import Watched
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.views import assessment_words as words
 from rocking_cli.views import processing, verification
-from rocking_cli.views.equivalent_block import sides_of, without
+from rocking_cli.views.equivalent_block import sides_of
 from rocking_cli.views.margin import margin_data
-from rocking_cli.views.parameters import values
 from rocking_cli.views.response import HistoryDetails, fit_data, runs_data
 from rocking_cli.views.view import View
 
@@ -26,10 +25,7 @@ def view(content: Assessment, verified: Verification | None = None) -> View:
         },
         "answer": words.in_a_sentence(content),
         "doubts": words.doubts(content),
-        "parameters": {
-            side.direction.label: values(side.block) if side.block is not None else without(side)
-            for side in sides_of(content.structure)
-        },
+        "parameters": {side.direction.label: side.parameters for side in sides_of(content.structure)},
         "no_block": content.structure.why_no_block,
         "motions": [
             {

@@ -7,8 +7,9 @@ from typing import Any
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.contacts import MASONRY
-from rocking_cli.studies.contact import NEAR_PEAK, NONE, ContactDemand
-from rocking_cli.views.view import number
+from rocking_cli.studies.contact import NEAR_PEAK, ContactDemand
+from rocking_cli.views.column import Column, of, rounded
+from rocking_cli.views.view import ABSENT, number
 
 BEYOND = ": the result is not valid beyond that time"
 
@@ -38,27 +39,27 @@ def contact_data(found: ContactDemand, mechanism: Mechanism) -> dict[str, Any]:
     }
 
 
-COLUMNS = (
-    "friction required",
-    "at joint",
-    "at [s]",
-    "for [s]",
-    "at impacts",
-    "base shear",
-    "least normal force",
-    "contact lost",
-)
-"""Headings of the rows of `contact_row`."""
-
-
-def contact_row(found: ContactDemand, mechanism: Mechanism) -> list[str]:
-    """Return the demands as cells of a table row."""
+def contact_columns(mechanism: Mechanism) -> list[Column[ContactDemand]]:
+    """Return the columns of the demands on a structure; forces are per unit mass if it has no masses."""
     per, unit = (1000, "kN") if mechanism.has_mass else (1, "N/kg")
-    numbers = [number(each, 3) for each in (found.time, found.duration, found.impact_friction)]
-    least = f"{number(found.least_normal / per, 4)} {unit}" if not isnan(found.least_normal) else number(NONE)
-    lost = f"at {number(found.lost, 4)} s" if not isnan(found.lost) else "never"
-    shear = f"{number(found.base_shear / per, 4)} {unit}" if not isnan(found.base_shear) else number(NONE)
-    return [number(found.friction_needed, 3), found.joint or "-", *numbers, shear, least, lost]
+
+    def force(value: float) -> str:
+        return ABSENT if isnan(value) else f"{number(value / per, 4)} {unit}"
+
+    return [
+        Column("", of("friction_needed"), head="friction required", form=rounded(3)),
+        Column("", lambda found: found.joint or None, head="at joint", text=True),
+        Column("", of("time"), head="at [s]", form=rounded(3)),
+        Column("", of("duration"), head="for [s]", form=rounded(3)),
+        Column("", of("impact_friction"), head="at impacts", form=rounded(3)),
+        Column("", of("base_shear"), head="base shear", form=force),
+        Column("", of("least_normal"), head="least normal force", form=force, text=True),
+        Column("", of("lost"), head="contact lost", form=_lost, text=True),
+    ]
+
+
+def _lost(time: float) -> str:
+    return "never" if isnan(time) else f"at {number(time, 4)} s"
 
 
 def contact_words(found: ContactDemand, mechanism: Mechanism) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import degrees, isclose
+from math import degrees, isclose, nan
 from typing import Any, NamedTuple
 
 from rocking_cli.core import Direction, EquivalentBlock, Mechanism, Statics, one_block
@@ -12,8 +12,9 @@ from rocking_cli.core.equivalence import AGREEMENT, alike
 from rocking_cli.core.restitution import why_none
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.structure import Structure
+from rocking_cli.views.column import data_of
 from rocking_cli.views.hung import hung_data, hung_in_words
-from rocking_cli.views.parameters import PARAMETERS, values
+from rocking_cli.views.parameters import PARAMETERS
 from rocking_cli.views.restitution import restitution_source, restitution_used
 from rocking_cli.views.view import Table, View, heading, number
 
@@ -36,13 +37,13 @@ def view(structure: Structure) -> View:
     }
     shown = sides[:1] if is_symmetric(structure) else sides
     per_mass = "" if mechanism.has_mass else ", per unit mass"
-    columns = [values(side.block) if side.block is not None else without(side) for side in shown]
+    columns = [side.parameters for side in shown]
     rows = [
         [
             each.key,
             *(number(column[each.key]) for column in columns),
             each.unit_of(mass=mechanism.has_mass),
-            each.short + (per_mass if each.of_mass else ""),
+            each.words + (per_mass if each.of_mass else ""),
         ]
         for each in PARAMETERS
     ]
@@ -87,6 +88,16 @@ class EquivalentSide(NamedTuple):
     block: EquivalentBlock | None
     eta: float
 
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The parameters by key; without an equivalent block, NaN for those that require one."""
+        if self.block is not None:
+            return data_of(PARAMETERS, self.block)
+        known = {"lambda": self.statics.lambda_, "eta": self.eta}
+        if self.statics.phi_cr is not None:
+            known["phi_cr"] = self.statics.phi_cr
+        return {each.key: known.get(each.key, nan) for each in PARAMETERS}
+
 
 def sides_of(structure: Structure) -> list[EquivalentSide]:
     """Return the directions in which a structure can rock, with their statics and blocks."""
@@ -108,20 +119,11 @@ def is_symmetric(structure: Structure) -> bool:
     return alike(*structure.statics) and isclose(*structure.etas, rel_tol=AGREEMENT)
 
 
-def without(side: EquivalentSide) -> dict[str, float]:
-    """Return the parameters that exist without an equivalent block; NaN for the others."""
-    known = {"lambda": side.statics.lambda_, "eta": side.eta}
-    if side.statics.phi_cr is not None:
-        known["phi_cr"] = side.statics.phi_cr
-    return {each.key: known.get(each.key, float("nan")) for each in PARAMETERS}
-
-
 def _data(side: EquivalentSide) -> dict[str, Any]:
     """Return the parameters of a direction as plain data; null if there is no equivalent block."""
-    found: dict[str, Any] = values(side.block) if side.block is not None else without(side)
     advice = preferred_kappa(side.block) if side.block is not None else None
     return {
-        **found,
+        **side.parameters,
         "prefer": advice.prefer if advice is not None else None,
         "lambda_ratio": advice.ratio if advice is not None else None,
         "stiffening": side.statics.stiffening,
@@ -155,16 +157,14 @@ def sentence(side: EquivalentSide) -> str:
 
 def table(found: Sequence[Structure]) -> dict[str, list[Any]]:
     """Return a table of several structures, with a row for each direction."""
-    rows: list[list[Any]] = []
-    for structure in found:
-        mechanism = structure.mechanism
-        per_mass = "no" if mechanism.has_mass else "yes"
-        for side in sides_of(structure):
-            shown = values(side.block) if side.block is not None else without(side)
-            rows.append([mechanism.name, mechanism.mechanism, side.direction.label, *shown.values(), per_mass])
-    units = [f"{each.key} [{each.unit}]" if each.unit else each.key for each in PARAMETERS]
-    names = ["name", "mechanism", "direction", *units, "per unit mass"]
-    return {name: [row[k] for row in rows] for k, name in enumerate(names)}
+    rows = [(structure.mechanism, side, side.parameters) for structure in found for side in sides_of(structure)]
+    return {
+        "name": [mechanism.name for mechanism, _, _ in rows],
+        "mechanism": [mechanism.mechanism for mechanism, _, _ in rows],
+        "direction": [side.direction.label for _, side, _ in rows],
+        **{each.heading: [parameters[each.key] for _, _, parameters in rows] for each in PARAMETERS},
+        "per unit mass": ["no" if mechanism.has_mass else "yes" for mechanism, _, _ in rows],
+    }
 
 
 def warnings(structure: Structure) -> Iterator[str]:

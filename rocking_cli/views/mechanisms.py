@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 from pydantic import BaseModel
@@ -17,9 +18,9 @@ from rocking_cli.core.hung.ties import Face, Place, Tie
 from rocking_cli.core.strength import Strength
 from rocking_cli.core.uncertainty import Uncertainty
 from rocking_cli.units import units_of
-from rocking_cli.views.view import ABSENT, Table, View
+from rocking_cli.views.column import Column, table_of
+from rocking_cli.views.view import Table, View
 
-COLUMNS = ["field", "symbol", "unit", "bounds", "default", "meaning"]
 BOUNDS = (
     ("gt", ">"),
     ("ge", ">="),
@@ -28,6 +29,21 @@ BOUNDS = (
     ("min_length", "entries >="),
     ("max_length", "entries <="),
 )
+
+
+def _default(row: Mapping[str, Any]) -> str | None:
+    return "required" if row["required"] else None if row["default"] is None else str(row["default"])
+
+
+COLUMNS: tuple[Column[Mapping[str, Any]], ...] = (
+    Column("", itemgetter("field"), head="field", text=True),
+    Column("", itemgetter("symbol"), head="symbol", text=True),
+    Column("", itemgetter("unit"), head="unit", text=True),
+    Column("", itemgetter("bounds"), head="bounds", text=True),
+    Column("", _default, head="default", text=True),
+    Column("", itemgetter("description"), head="meaning", text=True),
+)
+"""Columns of the fields of a file, whose rows are the data."""
 
 
 class InstalledMechanism(NamedTuple):
@@ -67,7 +83,7 @@ def view(cls: type[Mechanism], package: str) -> View:
     kinds = dict.fromkeys(tuple(row["units"]) for row in rows if len(row["units"]) > 1)
     taken = "; ".join(", ".join(units) for units in kinds)
     parts: list[Table | str] = [
-        Table(f"{cls.mechanism}: {cls.title}", COLUMNS, _cells(rows)),
+        table_of(f"{cls.mechanism}: {cls.title}", COLUMNS, rows),
         f"A number without a unit is in the unit of its field. Accepted units, as in 800 mm: {taken}.",
         f"package:  {package}\nsource:   {cls.source}\nverified: {cls.verified or 'not yet'}"
         + (f"\ncaution:  {cls.caution}" if cls.caution else ""),
@@ -94,12 +110,12 @@ def part(name: str) -> View:
     for where, model in models.items():
         rows = fields(model)
         data["fields"][where or name] = rows
-        tables += [Table(f"{name}: {title}" if not where else f"{where}: {model.__doc__}", COLUMNS, _cells(rows))]
+        tables += [table_of(f"{name}: {title}" if not where else f"{where}: {model.__doc__}", COLUMNS, rows)]
     for kind in Tie.kinds() if name == "ties" else ():
         rows = [row for row in fields(kind, Tie) if not row["common"] and row["field"] != "law"]
         where = f"law: {kind.model_fields['law'].default}"
         data["fields"][where] = rows
-        tables += [Table(f"{where}: {kind.__doc__}", COLUMNS, _cells(rows))]
+        tables += [table_of(f"{where}: {kind.__doc__}", COLUMNS, rows)]
     return View(data, tables)
 
 
@@ -135,20 +151,6 @@ def _is_common(cls: type[BaseModel], key: str, common: type[BaseModel]) -> bool:
     """Return whether the base class has a field that this class does not define again."""
     own = cls.__mro__[: cls.__mro__.index(common)] if issubclass(cls, common) else [cls]
     return not any(key in vars(each).get("__annotations__", {}) for each in own)
-
-
-def _cells(rows: Sequence[Mapping[str, Any]]) -> list[list[str]]:
-    return [
-        [
-            row["field"],
-            row["symbol"],
-            row["unit"],
-            row["bounds"],
-            "required" if row["required"] else ABSENT if row["default"] is None else str(row["default"]),
-            row["description"],
-        ]
-        for row in rows
-    ]
 
 
 def checked(name: str, package: str, file: str | None, verdicts: Sequence[Verdict]) -> View:

@@ -2,35 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple
+from dataclasses import dataclass
 
 from rocking_cli.core import EquivalentBlock
+from rocking_cli.views.column import Column, of
 
 
-class Parameter(NamedTuple):
-    """A parameter of the equivalent block of one direction.
+@dataclass(frozen=True)
+class Parameter(Column[EquivalentBlock]):
+    """A parameter of the equivalent block of one direction; its words are for readers of the paper.
 
     Parameters
     ----------
-    key, unit : str
-        Key and unit in JSON and on terminals.
     symbol : str
         Symbol in print; an underscore starts a subscript.
-    short : str
-        Short description, for readers of the paper.
     meaning : str
         Description for a reader who does not know the parameter.
-    of : callable
-        Returns the value for an equivalent block.
     """
 
-    key: str
-    unit: str
-    symbol: str
-    short: str
-    meaning: str
-    of: Callable[[EquivalentBlock], float]
+    symbol: str = ""
+    meaning: str = ""
 
     @property
     def printed_unit(self) -> str:
@@ -50,113 +41,114 @@ class Parameter(NamedTuple):
 PARAMETERS = (
     Parameter(
         "p",
+        of("p"),
         "rad/s",
-        "p",
-        "frequency parameter: small for large structures",
-        "Frequency parameter. Near φ_cr the rotation grows as exp(p t) with time t. Large structures have a small p.",
-        lambda block: block.p,
+        words="frequency parameter: small for large structures",
+        symbol="p",
+        meaning="Frequency parameter. Near φ_cr the rotation grows as exp(p t) with time t. Large structures have a "
+        "small p.",
     ),
     Parameter(
         "phi_cr",
+        of("phi_cr"),
         "rad",
-        "φ_cr",
-        "critical rotation: unstable equilibrium",
-        "Critical rotation. The structure is in unstable equilibrium there; beyond it, its weight overturns it.",
-        lambda block: block.phi_cr,
+        words="critical rotation: unstable equilibrium",
+        symbol="φ_cr",
+        meaning="Critical rotation. The structure is in unstable equilibrium there; beyond it, its weight overturns "
+        "it.",
     ),
     Parameter(
         "lambda",
+        of("lambda_"),
         "g",
-        "λ",
-        "ground acceleration at uplift",
-        "Uplift acceleration. A steady ground acceleration above λ times the structure's gravity g causes uplift.",
-        lambda block: block.lambda_,
+        words="ground acceleration at uplift",
+        symbol="λ",
+        meaning="Uplift acceleration. A steady ground acceleration above λ times the structure's gravity g causes "
+        "uplift.",
     ),
     Parameter(
         "lambda_lin",
+        of("lambda_lin"),
         "g",
-        "λ_lin",
-        "uplift acceleration of the linearised mechanism",
-        "Uplift acceleration of the linearised mechanism. If it differs much from λ, the structure is not slender.",
-        lambda block: block.lambda_lin,
+        words="uplift acceleration of the linearised mechanism",
+        symbol="λ_lin",
+        meaning="Uplift acceleration of the linearised mechanism. If it differs much from λ, the structure is not "
+        "slender.",
     ),
     Parameter(
         "kappa1",
+        of("kappa1"),
         "",
-        "κ₁",
-        "phi/theta that keeps lambda_lin",
-        "Scaling φ = κ₁ θ from the rotation θ of the equivalent block to φ of the structure, chosen to keep λ_lin.",
-        lambda block: block.kappa1,
+        words="phi/theta that keeps lambda_lin",
+        symbol="κ₁",
+        meaning="Scaling φ = κ₁ θ from the rotation θ of the equivalent block to φ of the structure, chosen to keep "
+        "λ_lin.",
     ),
     Parameter(
         "kappa2",
+        of("kappa2"),
         "",
-        "κ₂",
-        "phi/theta that keeps lambda",
-        "Scaling φ = κ₂ θ from the rotation θ of the equivalent block to φ, chosen to keep λ, the true uplift "
+        words="phi/theta that keeps lambda",
+        symbol="κ₂",
+        meaning="Scaling φ = κ₂ θ from the rotation θ of the equivalent block to φ, chosen to keep λ, the true uplift "
         "acceleration.",
-        lambda block: block.kappa2,
     ),
     Parameter(
         "theta_cr1",
+        of("theta_cr1"),
         "rad",
-        "θ_cr,1",
-        "critical rotation of the block, kappa1",
-        "Critical rotation of the equivalent block with κ₁: φ_cr/κ₁.",
-        lambda block: block.theta_cr1,
+        words="critical rotation of the block, kappa1",
+        symbol="θ_cr,1",
+        meaning="Critical rotation of the equivalent block with κ₁: φ_cr/κ₁.",
     ),
     Parameter(
         "theta_cr2",
+        of("theta_cr2"),
         "rad",
-        "θ_cr,2",
-        "critical rotation of the block, kappa2",
-        "Critical rotation of the equivalent block with κ₂: φ_cr/κ₂.",
-        lambda block: block.theta_cr2,
+        words="critical rotation of the block, kappa2",
+        symbol="θ_cr,2",
+        meaning="Critical rotation of the equivalent block with κ₂: φ_cr/κ₂.",
     ),
     Parameter(
         "eta",
+        of("eta"),
         "",
-        "η",
-        "restitution of an impact ending this direction",
-        "Coefficient of restitution: rate of rotation just after an impact that ends motion in this direction, over "
+        words="restitution of an impact ending this direction",
+        symbol="η",
+        meaning="Coefficient of restitution: rate of rotation just after an impact that ends motion in this "
+        "direction, over "
         "the rate just before.",
-        lambda block: block.eta,
     ),
     Parameter(
         "v_imp",
+        of("v_imp"),
         "m/s",
-        "v_imp",
-        "ground velocity step that just overturns it",
-        "Velocity step of the ground that just overturns the structure from rest, without linearisation.",
-        lambda block: block.v_imp,
+        words="ground velocity step that just overturns it",
+        symbol="v_imp",
+        meaning="Velocity step of the ground that just overturns the structure from rest, without linearisation.",
     ),
     Parameter(
         "I_eq",
+        of("I_eq"),
         "kg m2",
-        "I_eq",
-        "linearised inertia",
-        "Moment of inertia of the mechanism at φ_cr.",
-        lambda block: block.I_eq,
+        words="linearised inertia",
+        symbol="I_eq",
+        meaning="Moment of inertia of the mechanism at φ_cr.",
     ),
     Parameter(
         "G_eq",
+        of("G_eq"),
         "kg m",
-        "G_eq",
-        "linearised restoring moment over g",
-        "Rate at which the restoring moment over g decreases with rotation at φ_cr.",
-        lambda block: block.G_eq,
+        words="linearised restoring moment over g",
+        symbol="G_eq",
+        meaning="Rate at which the restoring moment over g decreases with rotation at φ_cr.",
     ),
     Parameter(
         "B_eq",
+        of("B_eq"),
         "kg m",
-        "B_eq",
-        "linearised drive of the ground",
-        "Moment by which the ground drives the mechanism at φ_cr, over its acceleration.",
-        lambda block: block.B_eq,
+        words="linearised drive of the ground",
+        symbol="B_eq",
+        meaning="Moment by which the ground drives the mechanism at φ_cr, over its acceleration.",
     ),
 )
-
-
-def values(block: EquivalentBlock) -> dict[str, float]:
-    """Return the parameters of a block, by key."""
-    return {each.key: each.of(block) for each in PARAMETERS}

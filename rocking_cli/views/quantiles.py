@@ -10,6 +10,7 @@ from rocking_cli.names import OVERTURNS, UNKNOWN, percent
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.studies.fragility.intensity import label
 from rocking_cli.studies.fragility.quantiles import SHARES, Group, Quantiles
+from rocking_cli.views.column import Column, data_of, of, rounded, table_of
 from rocking_cli.views.view import ABSENT, Table, View, number
 
 
@@ -36,22 +37,13 @@ def _tables(found: Quantiles) -> Iterator[Table | str]:
     """Yield two tables: runs that rock without overturning, with the shares of the others; and all runs."""
     over = f"against {label(found.measure)}{'' if found.stripes else ', in tenths'}"
     shares = [f"{100 * share:g} %" for share in SHARES]
-    doubtful = bool(found.unknown)
-    rocking = [
-        [
-            number(each.x, 4),
-            f"{each.runs}",
-            percent(each.no_uplift / each.runs),
-            percent(each.overturned / each.runs),
-            *([percent(each.unknown / each.runs)] if doubtful else []),
-            *(number(value, 3) for value in each.rocking),
-        ]
-        for each in found.groups
-    ]
-    names = [label(found.measure), "runs", "no\nuplift", "over-\nturned", *(["un-\nknown"] if doubtful else [])]
-    names += [f"rocking\n{share}" for share in shares]
+    peaks = [_peak(k, f"rocking\n{share}") for k, share in enumerate(shares)]
     yield ""
-    yield Table(f"{found.structure}: peaks of the runs that rock, {over}", names, rocking, numbers=range(len(names)))
+    yield table_of(
+        f"{found.structure}: peaks of the runs that rock, {over}",
+        [*_columns(found, checked=True), *peaks],
+        found.groups,
+    )
     every = [[number(each.x, 4), *map(_ratio, _ranks(each))] for each in found.groups]
     names = [label(found.measure), *shares]
     yield ""
@@ -75,20 +67,30 @@ def _data(found: Quantiles, *, checked: bool) -> dict[str, Any]:
         "unit": parse_measure(found.measure).unit,
         "groups": "stripes" if found.stripes else "tenths",
         "shares": list(SHARES),
-        "intensities": [_group(each, checked=checked) for each in found.groups],
+        "intensities": [data_of(_columns(found, checked=checked), each) for each in found.groups],
     }
 
 
-def _group(each: Group, *, checked: bool) -> dict[str, Any]:
-    return {
-        "x": each.x,
-        "from": each.low,
-        "to": each.high,
-        "runs": each.runs,
-        "distinct_records": each.records,
-        "no_uplift": each.no_uplift / each.runs,
-        "overturned": each.overturned / each.runs,
-        "unknown": each.unknown / each.runs if checked else None,
-        "rocking": list(each.rocking),
-        "all": list(_ranks(each)),
-    }
+def _columns(found: Quantiles, *, checked: bool) -> list[Column[Group]]:
+    """Return the columns of an intensity; the share of unknown outcomes does not exist if nothing was checked."""
+    return [
+        Column("x", of("x"), head=label(found.measure)),
+        Column("from", of("low")),
+        Column("to", of("high")),
+        Column("runs", of("runs"), head="runs"),
+        Column("distinct_records", of("records")),
+        Column("no_uplift", lambda group: group.no_uplift / group.runs, head="no\nuplift", form=percent),
+        Column("overturned", lambda group: group.overturned / group.runs, head="over-\nturned", form=percent),
+        Column(
+            "unknown",
+            lambda group: group.unknown / group.runs if checked else None,
+            head="un-\nknown" if found.unknown else None,
+            form=percent,
+        ),
+        Column("rocking", lambda group: list(group.rocking)),
+        Column("all", lambda group: list(_ranks(group))),
+    ]
+
+
+def _peak(k: int, head: str) -> Column[Group]:
+    return Column("", lambda group: group.rocking[k], head=head, form=rounded(3))

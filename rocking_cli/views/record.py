@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rocking_cli.views import processing
 from rocking_cli.views import response_spectrum as spectra
+from rocking_cli.views.column import Column, data_of, lines_of, of, rounded
 from rocking_cli.views.view import ABSENT, Table, number
 
 if TYPE_CHECKING:
@@ -42,34 +43,52 @@ class Examined(NamedTuple):
     spectrum: ResponseSpectrum | None = None
 
 
+def _channel(record: Examined) -> str | None:
+    """Return the channel of a record from a file with several; readers put it into the name of the motion."""
+    return record.motion.name.partition(f"{Path(record.file).name} channel ")[2] or None
+
+
+def _folded(name: str) -> str:
+    """Break a name at blanks into lines of a column's width."""
+    return "\n".join(wrap(name, HEADING, break_long_words=False, break_on_hyphens=False))
+
+
+AS_READ: tuple[Column[Examined], ...] = (
+    Column("file", of("file")),
+    Column("name", of("motion.name")),
+    Column("format", of("motion.format"), head="format", form=_folded),
+    Column("channel", _channel, head="channel"),
+    Column("unit", of("motion.unit"), head="unit in the file"),
+    Column("origin", lambda record: record.motion.origin._asdict()),
+    Column("", lambda record: record.motion.origin.event or None, head="earthquake", form=_folded),
+    Column("", lambda record: record.motion.origin.station or None, head="station", form=_folded),
+    Column("", of("motion.origin.magnitude"), head="magnitude", form=number),
+    Column("", of("motion.origin.distance"), "km", "distance"),
+    Column("npts", of("motion.npts"), head="points"),
+    Column("dt", of("motion.dt"), "s", "dt", number),
+    Column("duration", of("motion.duration"), "s", "duration", number),
+    Column("", lambda record: "\n".join(record.motion.processing) or None, head="processed"),
+    Column("factor", of("factor"), head="scaled by", form=number),
+)
+MEASURED: tuple[Column[Examined], ...] = (
+    Column("pga", of("measures.pga"), "g", "PGA"),
+    Column("pgv", of("measures.pgv"), "m/s", "PGV"),
+    Column("pgd", of("measures.pgd"), "m", "PGD"),
+    Column("arias_intensity", of("measures.arias"), "m/s", "Arias intensity"),
+    Column("significant_duration", of("measures.significant_duration"), "s", "5-95 % duration"),
+    Column("t_5", of("measures.t_5"), "s", "from"),
+    Column("t_95", of("measures.t_95"), "s", "to"),
+    Column("mean_acceleration", of("measures.mean"), "g", "mean acceleration", rounded(2)),
+    Column("final_velocity", of("measures.final_velocity"), "m/s"),
+    Column("final_displacement", of("measures.final_displacement"), "m"),
+    Column("p_dt", of("p_dt"), head="p dt", form=rounded(2)),
+)
+
+
 def data(record: Examined) -> dict[str, Any]:
     """Return a record as plain data."""
-    motion, measures = record.motion, record.measures
-    found: dict[str, Any] = {
-        "file": record.file,
-        "name": motion.name,
-        "format": motion.format,
-        "channel": _channel(record),
-        "unit": motion.unit,
-        "origin": motion.origin._asdict(),
-        "npts": motion.npts,
-        "dt": motion.dt,
-        "duration": motion.duration,
-        "factor": record.factor,
-        **processing.data(motion),
-        "pga": measures.pga,
-        "pgv": measures.pgv,
-        "pgd": measures.pgd,
-        "arias_intensity": measures.arias,
-        "significant_duration": measures.significant_duration,
-        "t_5": measures.t_5,
-        "t_95": measures.t_95,
-        "mean_acceleration": measures.mean,
-        "final_velocity": measures.final_velocity,
-        "final_displacement": measures.final_displacement,
-        "p_dt": record.p_dt,
-        "warnings": [doubt._asdict() for doubt in record.doubts],
-    }
+    found = data_of(AS_READ, record) | processing.data(record.motion) | data_of(MEASURED, record)
+    found["warnings"] = [doubt._asdict() for doubt in record.doubts]
     if record.pulses:
         from rocking_cli.views.pulse_fits import fits_data
 
@@ -109,44 +128,10 @@ def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | st
 
 def _rows(records: Sequence[Examined]) -> list[list[str]]:
     """Return the rows of the table: a label, a cell for each record, a unit."""
-    rows = [
-        ("format", [_folded(r.motion.format) for r in records], ""),
-        ("channel", [_channel(r) or ABSENT for r in records], ""),
-        ("unit in the file", [r.motion.unit for r in records], ""),
-        ("earthquake", [_folded(r.motion.origin.event or ABSENT) for r in records], ""),
-        ("station", [_folded(r.motion.origin.station or ABSENT) for r in records], ""),
-        ("magnitude", [number(r.motion.origin.magnitude) for r in records], ""),
-        ("distance", [number(r.motion.origin.distance, 4) for r in records], "km"),
-        ("points", [str(r.motion.npts) for r in records], ""),
-        ("dt", [number(r.motion.dt) for r in records], "s"),
-        ("duration", [number(r.motion.duration) for r in records], "s"),
-        ("processed", ["\n".join(r.motion.processing) or ABSENT for r in records], ""),
-        ("scaled by", [number(r.factor) for r in records], ""),
-        ("PGA", [number(r.measures.pga, 4) for r in records], "g"),
-        ("PGV", [number(r.measures.pgv, 4) for r in records], "m/s"),
-        ("PGD", [number(r.measures.pgd, 4) for r in records], "m"),
-        ("Arias intensity", [number(r.measures.arias, 4) for r in records], "m/s"),
-        ("5-95 % duration", [number(r.measures.significant_duration, 4) for r in records], "s"),
-        ("from", [number(r.measures.t_5, 4) for r in records], "s"),
-        ("to", [number(r.measures.t_95, 4) for r in records], "s"),
-        ("mean acceleration", [number(r.measures.mean, 2) for r in records], "g"),
-        ("p dt", [number(r.p_dt, 2) for r in records], ""),
-        *((str(each), [number(r.asked[each], 4) for r in records], each.unit) for each in records[0].asked),
-    ]
     silent = {"channel": ABSENT, "processed": ABSENT, "scaled by": "1", "p dt": ABSENT}  # says nothing if all are this
     silent |= dict.fromkeys(("earthquake", "station", "magnitude", "distance"), ABSENT)
     return [
         [label, *cells, unit]
-        for label, cells, unit in rows
+        for label, *cells, unit in lines_of([*AS_READ, *MEASURED], records)
         if label not in silent or any(cell != silent[label] for cell in cells)
-    ]
-
-
-def _channel(record: Examined) -> str | None:
-    """Return the channel of a record from a file with several; readers put it into the name of the motion."""
-    return record.motion.name.partition(f"{Path(record.file).name} channel ")[2] or None
-
-
-def _folded(name: str) -> str:
-    """Break a name at blanks into lines of a column's width."""
-    return "\n".join(wrap(name, HEADING, break_long_words=False, break_on_hyphens=False))
+    ] + [[str(each), *(number(record.asked[each], 4) for record in records), each.unit] for each in records[0].asked]

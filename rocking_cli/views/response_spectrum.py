@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking_cli.views.column import Column, of
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
@@ -14,31 +15,27 @@ if TYPE_CHECKING:
     from rocking_cli.processing.oscillator import ResponseSpectrum
 
 
+ORDINATES: tuple[Column[ResponseSpectrum], ...] = (
+    Column("period", of("periods"), "s"),
+    Column("sa", of("sa"), "g", name="pseudo Sa"),
+    Column("sv", of("sv"), "m/s", name="pseudo Sv"),
+    Column("sd", of("sd"), "m", name="Sd"),
+)
+"""Columns whose values are arrays, over all periods."""
+
+
 def data(spectrum: ResponseSpectrum) -> dict[str, Any]:
     """Return a spectrum as plain data, in s, standard gravity, m/s and m."""
-    return {
-        "damping": spectrum.damping,
-        "period": spectrum.periods.tolist(),
-        "sa": spectrum.sa.tolist(),
-        "sv": spectrum.sv.tolist(),
-        "sd": spectrum.sd.tolist(),
-    }
+    return {"damping": spectrum.damping} | {column.key: column.of(spectrum).tolist() for column in ORDINATES}
 
 
 def table(spectra: Mapping[str, ResponseSpectrum]) -> Columns:
     """Return spectra as columns, one motion below the other."""
     found = list(spectra.values())
-
-    def joined(name: str) -> Any:
-        return np.concatenate([getattr(each, name) for each in found])
-
     return {
         "record": [name for name, each in spectra.items() for _ in each.periods],
         "damping": [each.damping for each in found for _ in each.periods],
-        "period [s]": joined("periods").tolist(),
-        "pseudo Sa [g]": joined("sa").tolist(),
-        "pseudo Sv [m/s]": joined("sv").tolist(),
-        "Sd [m]": joined("sd").tolist(),
+        **{column.heading: np.concatenate([column.of(each) for each in found]).tolist() for column in ORDINATES},
     }
 
 

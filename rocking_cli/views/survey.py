@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import isnan
-from typing import Any
-
-import numpy as np
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import percent
 from rocking_cli.studies.survey import Bad, Survey, Surveyed
 from rocking_cli.text import cut, one_line
-from rocking_cli.views.view import ABSENT, Table, View, number
+from rocking_cli.views.column import Column, data_of, frame_of, of, table_of
+from rocking_cli.views.view import Table, View, number
 
 TOP = 20
 NAME = 30  # characters of a name in the table
@@ -30,6 +29,47 @@ RANKED = {
 }
 
 
+class RankedStructure(NamedTuple):
+    """A row of a survey: the rank of a structure, from 1, and its results."""
+
+    rank: int
+    found: Surveyed
+
+
+def _peak(peak: float) -> str:
+    return "no uplift" if peak == 0 else number(peak, 3)
+
+
+STRUCTURE: tuple[Column[RankedStructure], ...] = (
+    Column("rank", of("rank"), head="rank"),
+    Column("name", of("found.name"), head="name", form=one_line, text=True),
+    Column("mechanism", of("found.mechanism"), head="mechanism", text=True),
+    Column("row", of("found.row")),
+    Column("line", of("found.line")),
+)
+OF_SITE: Column[RankedStructure] = Column("ratio", of("found.ratio"), head="ratio")
+UNDER_MOTIONS: tuple[Column[RankedStructure], ...] = (
+    Column("overturned", of("found.under.overturned"), head="overturn\nit", form=percent),
+    Column("unknown", of("found.under.unknown"), head="unknown", form=percent),
+    Column("peak_ratio", of("found.under.peak_ratio"), head="largest\npeak", form=_peak),
+    Column("peak_over", of("found.under.over"), text=True),
+    Column("worst", of("found.under.worst"), text=True),
+)
+PARAMETERS: tuple[Column[RankedStructure], ...] = (
+    Column("lambda", of("found.lambda_"), head="lambda"),
+    Column("uplift", of("found.uplift"), "g"),
+    Column("direction", of("found.direction"), text=True),
+    Column("p", of("found.p"), "rad/s", "p\n[rad/s]"),
+    Column("phi_cr", of("found.phi_cr"), "rad", "phi_cr\n[rad]"),
+    Column("kappa1", of("found.kappa1")),
+    Column("kappa2", of("found.kappa2"), head="kappa2"),
+    Column("eta", of("found.eta"), head="eta"),
+    Column("no_block", of("found.no_block"), text=True),
+    Column("doubt", of("found.doubt"), text=True),
+    Column("caution", of("found.caution"), text=True),
+)
+
+
 def view(found: Survey, top: int = TOP) -> View:
     """Show the most vulnerable structures, and how many of all overturn."""
     parts: list[Table | str] = []
@@ -40,10 +80,11 @@ def view(found: Survey, top: int = TOP) -> View:
 
 def data(found: Survey) -> dict[str, Any]:
     """Return a survey as plain data."""
+    applying = _columns(found)
     return {
         "ranked_by": found.by,
         "motions": list(found.motions),
-        "rows": [_row(rank, each) for rank, each in enumerate(found.rows, 1)],
+        "rows": [data_of(applying, row) for row in _ranked(found)],
         "bad": [
             {"row": each.row, "line": each.line, "name": one_line(each.name), "reason": each.reason}
             for each in found.bad
@@ -51,40 +92,14 @@ def data(found: Survey) -> dict[str, Any]:
     }
 
 
-def _row(rank: int, each: Surveyed) -> dict[str, Any]:
-    shaken: dict[str, Any] = {}
-    if each.under is not None:
-        shaken = {
-            "overturned": each.under.overturned,
-            "unknown": each.under.unknown,
-            "peak_ratio": each.under.peak_ratio,
-            "peak_over": each.under.over,
-            "worst": each.under.worst,
-        }
-    verified = {} if each.ratio is None else {"ratio": each.ratio}
-    return {
-        "rank": rank,
-        "name": each.name,
-        "mechanism": each.mechanism,
-        "row": each.row,
-        "line": each.line,
-        **verified,
-        **shaken,
-        "lambda": each.lambda_,
-        "uplift": each.uplift,
-        "direction": each.direction,
-        "p": each.p,
-        "phi_cr": each.phi_cr,
-        "kappa1": each.kappa1,
-        "kappa2": each.kappa2,
-        "eta": each.eta,
-        "no_block": each.no_block,
-        "doubt": each.doubt,
-        "caution": each.caution,
-    }
+def _columns(found: Survey) -> list[Column[RankedStructure]]:
+    """Return the columns that apply to a survey."""
+    ratio = [OF_SITE] if found.by == "ratio" else []
+    return [*STRUCTURE, *ratio, *(UNDER_MOTIONS if found.motions else ()), *PARAMETERS]
 
 
-UNITS = {"uplift": "g", "p": "rad/s", "phi_cr": "rad"}
+def _ranked(found: Survey, start: int = 0, stop: int | None = None) -> list[RankedStructure]:
+    return [RankedStructure(rank, each) for rank, each in enumerate(found.rows[start:stop], start + 1)]
 
 
 def blocks(found: Survey, *, for_spreadsheets: bool) -> Iterator[Columns]:
@@ -95,20 +110,17 @@ def blocks(found: Survey, *, for_spreadsheets: bool) -> Iterator[Columns]:
 
 def columns(found: Survey, start: int = 0, stop: int | None = None, *, for_spreadsheets: bool = False) -> Columns:
     """Return some of the rows as columns of a table."""
-    rows = [_row(rank, each) for rank, each in enumerate(found.rows, 1)][start:stop]
+    rows = _ranked(found, start, stop)
     if not rows:
         return {"rank": [], "name": [], "lambda": []}
-    made: dict[str, Any] = {}
-    for key, value in rows[0].items():
-        head = f"{key} [{UNITS[key]}]" if key in UNITS else key
-        cells = [row[key] for row in rows]
-        if isinstance(value, float) or key == "unknown":
-            made[head] = np.array(cells, dtype=np.float64)
-        elif isinstance(value, int):
-            made[head] = cells
-        else:
-            texts = [one_line(each) if each is not None else "" for each in cells]
-            made[head] = [f"'{each}" if for_spreadsheets and each.startswith(FORMULA) else each for each in texts]
+    applying = _columns(found)
+    made = frame_of(applying, rows)
+    for column in applying:
+        if column.text:
+            texts = map(one_line, made[column.heading])
+            made[column.heading] = [
+                f"'{each}" if for_spreadsheets and each.startswith(FORMULA) else each for each in texts
+            ]
     return made
 
 
@@ -117,45 +129,13 @@ def has_unknown(found: Survey) -> bool:
     return any(each.under is not None and each.under.unknown for each in found.rows)
 
 
-def headings(found: Survey) -> list[str]:
-    """Return the headings of the columns of `cells`."""
-    shaken = ["overturn\nit", *(["unknown"] if has_unknown(found) else []), "largest\npeak"] if found.motions else []
-    ratio = ["ratio"] if found.by == "ratio" else []
-    return ["rank", "name", "mechanism", *ratio, *shaken, "lambda", "p\n[rad/s]", "phi_cr\n[rad]", "kappa2", "eta"]
-
-
-def cells(rank: int, each: Surveyed, longest: int | None = NAME, *, unknown: bool = False) -> list[str]:
-    """Return the cells of a structure, with the share of unknown outcomes if requested."""
-    name = one_line(each.name)
-    shaken = []
-    if each.under is not None:
-        doubtful = each.under.unknown
-        shaken = [percent(each.under.overturned)]
-        shaken += [ABSENT if doubtful is None else percent(doubtful)] if unknown else []
-        shaken.append(_peak(each))
-    numbers = (each.lambda_, each.p, each.phi_cr, each.kappa2, each.eta)
-    return [
-        str(rank),
-        cut(name, longest) if longest is not None else name,
-        each.mechanism,
-        *([] if each.ratio is None else [number(each.ratio, 4)]),
-        *shaken,
-        *(number(value, 4) for value in numbers),
-    ]
-
-
-def _peak(each: Surveyed) -> str:
-    assert each.under is not None
-    peak = each.under.peak_ratio
-    return ABSENT if isnan(peak) else "no uplift" if peak == 0 else f"{peak:.3g}"
-
-
-def table(found: Survey, top: int) -> Table:
-    """Return a table of the first rows."""
-    heads = headings(found)
-    unknown = has_unknown(found)
-    rows = [cells(rank, each, unknown=unknown) for rank, each in enumerate(found.rows[:top], 1)]
-    return Table(title(found), heads, rows, numbers=[0, *range(3, len(heads))])
+def table(found: Survey, top: int, longest: int | None = NAME) -> Table:
+    """Return a table of the first rows, with names of at most `longest` characters."""
+    shown = [column for column in _columns(found) if column.key != "unknown" or has_unknown(found)]
+    whole = table_of(title(found), shown, _ranked(found, stop=top))
+    if longest is None:
+        return whole
+    return replace(whole, rows=[[rank, cut(name, longest), *cells] for rank, name, *cells in whole.rows])
 
 
 def title(found: Survey) -> str:

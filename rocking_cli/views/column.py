@@ -1,0 +1,119 @@
+"""A column of a table, declared once for JSON, files, frames, terminals and pages, and the layouts of rows.
+
+A view lists its columns at the top of its file. Whoever adds a number to an answer adds a line there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from math import nan
+from operator import attrgetter as of
+from typing import Any, Generic, TypeVar
+
+from rocking_cli.views.view import ABSENT, Table, number
+
+__all__ = ["Column", "data_of", "frame_of", "lines_of", "of", "rounded", "table_of"]
+
+R = TypeVar("R")
+
+
+def shown(value: Any) -> str:
+    """Format a value as it is, but a number with four digits."""
+    return number(value, 4) if isinstance(value, float) else str(value)
+
+
+def rounded(digits: int) -> Callable[[float], str]:
+    """Return a format of numbers with some digits; a dash for those that do not exist."""
+    return lambda value: number(value, digits)
+
+
+@dataclass(frozen=True)
+class Column(Generic[R]):
+    """A quantity of a row, and how it is named and shown.
+
+    Parameters
+    ----------
+    key : str
+        Key in JSON; empty for a column that JSON has not.
+    of : callable
+        Returns the value of a row; `of("block.p")` reads attributes.
+    unit : str
+        Unit of the value.
+    head : str, optional
+        Heading on terminals and pages, with its line breaks; None for a column that they have not.
+    form : callable
+        Formats a value that exists for terminals and pages.
+    name : str, optional
+        Heading in files and frames, without the unit; the key by default, None for a column that they have not.
+    words : str
+        What the quantity is, for readers.
+    text : bool
+        Whether values are words: aligned to the left, and empty in files if they do not exist.
+    """
+
+    key: str
+    of: Callable[[R], Any]
+    unit: str = ""
+    head: str | None = None
+    form: Callable[[Any], str] = shown
+    name: str | None = ""
+    words: str = ""
+    text: bool = False
+
+    @property
+    def heading(self) -> str:
+        """The heading in files and frames, with the unit."""
+        return f"{self.name or self.key} [{self.unit}]" if self.unit else self.name or self.key
+
+    def cell(self, row: R) -> str:
+        """Return the value of a row as it is shown; a dash if it does not exist."""
+        value = self.of(row)
+        return ABSENT if value is None else self.form(value)
+
+    def filed(self, row: R) -> Any:
+        """Return the value of a row as files have it: what does not exist is NaN, or an empty text."""
+        value = self.of(row)
+        return value if value is not None else "" if self.text else nan
+
+
+def data_of(columns: Iterable[Column[R]], row: R) -> dict[str, Any]:
+    """Return a row as plain data.
+
+    Examples
+    --------
+    >>> name, p = Column("name", str, head="", text=True), Column("p", len, "rad/s", "p\\n[rad/s]")
+    >>> data_of([name, p], "wall")
+    {'name': 'wall', 'p': 4}
+    >>> frame_of([name, p], ["wall", "arch"])
+    {'name': ['wall', 'arch'], 'p [rad/s]': [4, 4]}
+    >>> table_of("Structures", [name, p], ["wall"])
+    Table(title='Structures', columns=['', 'p\\n[rad/s]'], rows=[['wall', '4']], numbers=[1])
+    >>> lines_of([p], ["wall", "arch"])
+    [['p\\n[rad/s]', '4', '4', 'rad/s']]
+    """
+    return {column.key: column.of(row) for column in columns if column.key}
+
+
+def frame_of(columns: Iterable[Column[R]], rows: Sequence[R]) -> dict[str, list[Any]]:
+    """Return rows as columns by their headings, as files and frames have them."""
+    return {
+        column.heading: [column.filed(row) for row in rows]
+        for column in columns
+        if column.name is not None and (column.name or column.key)
+    }
+
+
+def table_of(title: str, columns: Iterable[Column[R]], rows: Iterable[R]) -> Table:
+    """Return a table with a line for each row."""
+    seen = [column for column in columns if column.head is not None]
+    heads = [column.head or "" for column in seen]
+    numbers = [k for k, column in enumerate(seen) if not column.text]
+    return Table(title, heads, [[column.cell(row) for column in seen] for row in rows], numbers)
+
+
+def lines_of(columns: Iterable[Column[R]], rows: Sequence[R]) -> list[list[str]]:
+    """Return the lines of a table with a column for each row: the heading, a cell for each row, and the unit."""
+    return [
+        [column.head, *(column.cell(row) for row in rows), column.unit] for column in columns if column.head is not None
+    ]
