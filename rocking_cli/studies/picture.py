@@ -400,7 +400,8 @@ class Picture:
     @cached_property
     def extent(self) -> tuple[complex, complex]:
         """Lower left and upper right corner of the structure at rest [m]."""
-        return box_around([each for part in self.parts for each in part.outlines] + [self._points])
+        points = np.array([*(part.centroid for part in self.parts), *(pin.point for pin in self.pins)])
+        return box_around([outline for part in self.parts for outline in part.outlines] + [points])
 
     @cached_property
     def reach(self) -> tuple[complex, complex]:
@@ -412,10 +413,6 @@ class Picture:
     def walls(self) -> tuple[Points, ...]:
         """Side walls behind a structure that rocks to one side only, as lines like those of the ground [m]."""
         return walls(self.mechanism, *self.extent)
-
-    @property
-    def _points(self) -> Points:
-        return np.array([*(part.centroid for part in self.parts), *(pin.point for pin in self.pins)])
 
     def as_dict(self) -> dict[str, Any]:
         """Return the whole drawing as plain data, for a page: points are [x, y] in m, angles in rad.

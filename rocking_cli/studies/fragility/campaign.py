@@ -94,7 +94,8 @@ def prepare(
     asked = {
         "name": study.name,
         "definition": given.model_dump(mode="json", exclude_unset=True, by_alias=True),
-        "hazard": _hazard(study),
+        # As plain data, so that the store does not need the file.
+        "hazard": study.hazard and [study.hazard.intensity.tolist(), study.hazard.annual_rate.tolist()],
         "weights": [source.entry.weight for source in study.sources],
     }
     if known is None:
@@ -270,13 +271,6 @@ def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, t
         sides = both_statics(mechanism)
         return 0.0, min(side.lambda_ for side in sides), (sides[0].reference, sides[1].reference)
     return *weaker(found, asked.model), (found.positive.phi_cr, found.negative.phi_cr)
-
-
-def _hazard(study: Study) -> list[list[float]] | None:
-    """Return the hazard curve as plain data, so that the store does not need the file."""
-    if study.hazard is None:
-        return None
-    return [list(map(float, study.hazard.intensity)), list(map(float, study.hazard.annual_rate))]
 
 
 def _displacements(study: Study, plan: Plan, known: dict[str, Any]) -> dict[str, Any]:

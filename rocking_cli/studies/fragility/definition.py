@@ -89,14 +89,6 @@ def _right(given: dict[str, Any], name: str, sound: Sound) -> list[Any]:
     return [own(each) for k, each in entries if sound(name, k)]
 
 
-def _twice(given: dict[str, Any], name: str, sound: Sound) -> Iterator[tuple[Place, str]]:
-    """Yield an error for each entry that a list repeats."""
-    values = _right(given, name, sound)
-    for k, value in enumerate(values):
-        if value in values[:k] and value not in values[k + 1 :]:
-            yield (name,), f"{' and '.join(value) if isinstance(value, list) else value} is given twice"
-
-
 def _pair(values: list[str]) -> list[str]:
     """Refuse a measure paired with itself: a surface over the two is a curve."""
     if values[0] == values[1]:
@@ -290,7 +282,10 @@ class Definition(Sampling, Common):
         if checks_sliding(given) and sound("model") and given.get("model", "nonlinear") != "nonlinear":
             yield ("limit_states",), "sliding requires `model: nonlinear`: linear models do not give the joint forces"
         for name in ("polarities", "eta", "limit_states", "measures", "bivariate"):
-            yield from _twice(given, name, sound)
+            values = _right(given, name, sound)
+            for k, value in enumerate(values):
+                if value in values[:k] and value not in values[k + 1 :]:
+                    yield (name,), f"{' and '.join(value) if isinstance(value, list) else value} is given twice"
 
     @property
     def fitted_measures(self) -> list[str]:
@@ -336,11 +331,8 @@ def _wrong_sets(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, st
     known = Levels.model_validate(levels).levels()
     for k in of_sets:
         if sound("records", k) and not among(entries[k]["level"], known):
-            yield ("records", k, "level"), f"{entries[k]['level']:g} is not one of the levels {_said(known)}"
-
-
-def _said(levels: list[float]) -> str:
-    return ", ".join(f"{each:g}" for each in levels[:10]) + (", ..." if len(levels) > 10 else "")
+            shown = ", ".join(f"{level:g}" for level in known[:10]) + (", ..." if len(known) > 10 else "")
+            yield ("records", k, "level"), f"{entries[k]['level']:g} is not one of the levels {shown}"
 
 
 def checks_sliding(given: dict[str, Any]) -> bool:

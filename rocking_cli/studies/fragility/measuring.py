@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from rocking_cli.core import Mechanism, NoEquivalentBlock, equivalent_block
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.intensity import Measure, RunMeasure, parse_measure
 from rocking_cli.processing.intensity.base import Reference
 from rocking_cli.studies.fragility.intensity import PGA, PGV, SCALE
@@ -83,7 +82,8 @@ def complete(
             continue
         for name, values in new.items():
             if np.isnan(values[k]):
-                values[k] = bases[name].value(motions[k].of_ground) if name in bases else _stated(motions[k], name)
+                value = bases[name].value(motions[k].of_ground) if name in bases else getattr(motions[k].origin, name)
+                values[k] = nan if value is None else value
     plan = replace(plan, measured=replace(plan.measured, of_record={**plan.measured.of_record, **new}))
     plan = _without_unscalable(plan)
     for k, record in enumerate(plan.records):
@@ -92,12 +92,6 @@ def complete(
                 if np.isnan(values[usable, k]).any():
                     values[:, k] = _of_runs(plan, of_run[name], motions, k, usable)
     return replace(plan, measured=replace(plan.measured, of_run={**plan.measured.of_run, **runs}))
-
-
-def _stated(motion: GroundMotion, name: str) -> float:
-    """Return a value that a record states of its earthquake, such as the magnitude; NaN if it does not."""
-    found: float | None = getattr(motion.origin, name)
-    return nan if found is None else float(found)
 
 
 def _copied(known: Mapping[str, Reals], name: str, *shape: int) -> Reals:

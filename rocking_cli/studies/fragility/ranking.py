@@ -221,7 +221,9 @@ def _rank(
             left_out[name] = "not known of it, or nowhere above zero"
             continue
         log = np.log(np.where(there, x, 1.0))
-        twin = next((other for other, its in logs.items() if there.all() and its.size and _constant(log - its)), None)
+        twin = next(
+            (other for other, its in logs.items() if there.all() and its.size and np.ptp(log - its) <= SAME), None
+        )
         if twin is not None:
             alike[name] = twin
             continue
@@ -275,10 +277,6 @@ def rocking(store: Store, plan: Plan, structure: str) -> tuple[Integers, Reals]:
         ids.append(found.id[rocks])
         peaks.append(np.log(found.peak_ratio[rocks]))
     return np.concatenate(ids), np.concatenate(peaks)
-
-
-def _constant(values: Reals) -> bool:
-    return bool(np.ptp(values) <= SAME)
 
 
 def _dispersion(found: Fragility) -> float:

@@ -454,7 +454,7 @@ class Store:
         self._connection.execute(f"PRAGMA application_id = {MARK}")
         version = VERSION if self.with_joints else WITHOUT_MEASURED if slides else WITHOUT_SLIDING
         self._connection.execute(f"PRAGMA user_version = {version}")
-        self._insert("sample", [_as_row(each) for each in plan.trials])
+        self._insert("sample", [_as_row(trial) for trial in plan.trials])
         self._insert("record", [tuple(asdict(each).values()) for each in plan.records])
         self._insert("eta", [(None if eta != eta else eta,) for eta in plan.etas])
         self._insert("level", [(each,) for each in plan.levels])

@@ -37,7 +37,7 @@ from rocking_cli.studies.fragility.definition import (
     usable_entries,
     usable_part,
 )
-from rocking_cli.studies.fragility.distributions import Distribution, draw
+from rocking_cli.studies.fragility.distributions import draw
 from rocking_cli.studies.fragility.hazard import HazardCurve, read_hazard
 from rocking_cli.studies.fragility.sets import Sets
 from rocking_cli.studies.fragility.sources import Source
@@ -186,12 +186,16 @@ def load_study(path: str | Path) -> Study:
         for source in _sources(document, ("records", k), path.parent, entry, common or Common())
     ]
     sources = _apart(sources)
-    _refuse_repeated(document, "records", [_unlike_others(source) for source in sources])
+    places = [source.path.resolve().as_posix() if source.path else source.file for source in sources]
+    unlike = [_in_words(place, source.entry) for place, source in zip(places, sources, strict=True)]
+    _refuse_repeated(document, "records", unlike)
     _refuse_repeated(document, "structures", [each.name or "" for each in structures if each is not None])
     if checks_sliding(document.data):
         for (_, entry), structure in zip(entries, structures, strict=True):
             if structure is not None and structure.friction is None and "friction" not in entry.vary:
-                document.problems.append(_without_friction(path.parent / entry.file))
+                what = "is missing: the limit state sliding is whether joints need more friction than there is"
+                hint = "give that of its joints, such as `friction: 0.6`"
+                document.problems.append(Problem(what, str(path.parent / entry.file), field="friction", hint=hint))
     hazard = _hazard(document, path.parent)
     sampling = usable_part(Sampling, {key: document.data[key] for key in Sampling.model_fields if key in document.data})
     samples: list[Sample] = []
@@ -234,11 +238,6 @@ def _of_file(document: Document, place: Place, name: str, file: Path, error: Inp
         else document.at(place, f"{name}: {each.field + ' ' if each.field else ''}{each.message}", each.hint)
         for each in error.problems
     ]
-
-
-def _without_friction(file: Path) -> Problem:
-    what = "is missing: the limit state sliding is whether joints need more friction than there is"
-    return Problem(what, str(file), field="friction", hint="give that of its joints, such as `friction: 0.6`")
 
 
 def _varied(document: Document, place: Place) -> list[str]:
@@ -339,12 +338,6 @@ def _apart(sources: Sequence[Source]) -> list[Source]:
     ]
 
 
-def _unlike_others(source: Source) -> str:
-    """Return a text that identifies a record: file or pulse, channel, azimuth and level; it may occur only once."""
-    place = source.path.resolve().as_posix() if source.path else source.file
-    return _in_words(place, source.entry)
-
-
 def _select(document: Document, place: Place, pattern: str, folder: Path) -> list[Path]:
     try:
         return select(pattern, folder)
@@ -390,7 +383,12 @@ def _samples(
     """Return the samples of a structure; samples that cannot be built are reported as problems of its `vary`."""
     if not entry.vary or any(name not in type(structure).model_fields for name in entry.vary):
         return [Sample(k, 0, {}, structure)]
-    columns = {name: _drawn(sampling, structure, name, each) for name, each in entry.vary.items()}
+    columns: dict[str, list[float]] = {}
+    for name, distribution in entry.vary.items():
+        stream = f"{structure.name}.{name}"
+        columns[name] = draw(
+            distribution, sampling.samples, seed=sampling.seed, stream=stream, method=sampling.sampling
+        ).tolist()
     samples, wrong = [], []
     for number in range(sampling.samples):
         drawn = {name: values[number] for name, values in columns.items()}
@@ -405,11 +403,3 @@ def _samples(
         hint = "bound the distributions with `low` and `high`"
         document.problems.append(document.at(("structures", k, "vary"), what, hint))
     return samples
-
-
-def _drawn(sampling: Sampling, structure: Mechanism, name: str, distribution: Distribution) -> list[float]:
-    stream = f"{structure.name}.{name}"
-    values = draw(
-        distribution, sampling.samples, seed=sampling.seed, stream=stream, method=sampling.sampling
-    )  # fmt: skip
-    return [float(each) for each in values]
