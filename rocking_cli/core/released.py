@@ -226,12 +226,10 @@ class Pieces:
 
     def _spread(self, spot: Spot, way: Points) -> Reals:
         """Return the derivative of a point's velocity along a unit vector by all coordinates, shape (n, 3 pieces)."""
-        return self._velocity(self._piece(spot), self._carried(self._piece(spot), spot.at), way)
-
-    def _velocity(self, name: str, at: Points, way: Points) -> Reals:
+        name = self._piece(spot)
         found = np.zeros((self.phi.size, 3 * len(self._parts)))
         k = self._column[name]
-        found[:, k : k + 3] = self._factors(name, at, way)
+        found[:, k : k + 3] = self._factors(name, self._carried(name, spot.at), way)
         return found
 
     def _factors(self, name: str, at: Points, way: Points) -> Reals:

@@ -116,17 +116,14 @@ def _concerns(data: Any, error: ErrorDetails, errors: Iterable[ErrorDetails]) ->
 def _of_words(errors: Iterable[ErrorDetails]) -> list[ErrorDetails]:
     """Return the errors without those that a wrong word is not a number, where a number or a word is allowed."""
     errors = list(errors)
-    words = {error["loc"][:-1] for error in errors if error["type"] == "literal_error" and _is_branch(error["loc"][-1])}
+    wrong = [error["loc"] for error in errors if error["type"] == "literal_error"]
+    # The last part is pydantic's name of a union's branch that accepts words only.
+    words = {place[:-1] for place in wrong if str(place[-1]).startswith("literal[")}
     return [
         error
         for error in errors
         if not (error["type"] == "float_type" and isinstance(error["input"], str) and error["loc"][:-1] in words)
     ]
-
-
-def _is_branch(part: int | str) -> bool:
-    """Return whether a part of a path is pydantic's name of a union's branch that accepts words only."""
-    return isinstance(part, str) and part.startswith("literal[")
 
 
 BOUNDS = {

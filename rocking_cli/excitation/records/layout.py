@@ -413,12 +413,11 @@ def _plain(name: str) -> str:
 
 def _listed(channels: Sequence[Channel]) -> str:
     """Return text that lists all channels with number, name, points and peak, or why they cannot be used."""
-    return "".join(
-        f"\n    {place}: {channel.name + ', ' if channel.name else ''}{channel.acceleration.size} points, "
-        f"{channel.flaw.message if channel.flaw else _peak(channel)}"
-        for place, channel in enumerate(channels, start=1)
-    )
-
-
-def _peak(channel: Channel) -> str:
-    return f"PGA {float(np.abs(channel.acceleration).max()) / STANDARD_GRAVITY:.4g} g"
+    out = ""
+    for place, channel in enumerate(channels, start=1):
+        out += f"\n    {place}: {channel.name + ', ' if channel.name else ''}{channel.acceleration.size} points, "
+        if channel.flaw:
+            out += channel.flaw.message
+        else:
+            out += f"PGA {float(np.abs(channel.acceleration).max()) / STANDARD_GRAVITY:.4g} g"
+    return out
