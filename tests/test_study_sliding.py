@@ -19,7 +19,7 @@ from rocking_cli.studies.fragility.store import COLUMNS, Store
 from rocking_cli.studies.fragility.study import load_study
 from tests.conftest import EXAMPLES
 from tests.following import respond
-from tests.stores import RUNS, Sound, as_before_joints, attack, command, version_of
+from tests.stores import RUNS, Sound, attack, command, version_of
 from tests.test_contact import of_a_block
 from tests.test_study_runs import carry_out, dump, finished, program, wait_until_some_are_finished
 
@@ -165,11 +165,8 @@ def test_all_else_is_as_without_it(whole, tmp_path):
         assert np.array_equal(getattr(with_it, name), getattr(without, name), equal_nan=True), name
     said = "\n".join(dump(tmp_path / "without.db"))
     assert "slide_time" not in said and "sliding" not in said.replace(str(EXAMPLES), "")
-    places = (whole[2], tmp_path / "without.db")
-    older = [as_before_joints(place, tmp_path / f"older{k}.db") for k, place in enumerate(places)]
-    versions = [version_of(place) for place in (*places, *older)]
-    assert versions == [store_file.VERSION] * 2 + [store_file.WITHOUT_MEASURED, store_file.WITHOUT_SLIDING]
-    assert versions == [5, 5, 3, 2]
+    versions = [version_of(place) for place in (whole[2], tmp_path / "without.db")]
+    assert versions == [store_file.VERSION] * 2 == [6, 6]
 
 
 @pytest.mark.parametrize("size", [1, 7, 1000])
