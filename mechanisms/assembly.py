@@ -418,9 +418,10 @@ class Assembly(LinkedBodies):
         """Return letter, joint and point of each hinge, from the left."""
         hinges = self._groups(direction).hinges
         order = from_the_left([hinge.point for hinge in hinges])
+        letters = [chr(65 + n) if n < 26 else f"{chr(65 + n // 26 - 1)}{chr(65 + n % 26)}" for n in range(len(order))]
         return [
-            (_letter(n) + direction.prime, self._contacts[hinges[k].contact], hinges[k].point)
-            for n, k in enumerate(order)
+            (letter + direction.prime, self._contacts[hinges[k].contact], hinges[k].point)
+            for letter, k in zip(letters, order, strict=True)
         ]
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
@@ -680,7 +681,3 @@ def from_the_left(points: Sequence[complex]) -> list[int]:
 def _name(contact: analysis.AssemblyContact) -> str:
     """Return the name of a joint from its two bodies."""
     return f"{contact.a} and {contact.b}"
-
-
-def _letter(k: int) -> str:
-    return chr(65 + k) if k < 26 else f"{chr(65 + k // 26 - 1)}{chr(65 + k % 26)}"

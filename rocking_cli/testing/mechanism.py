@@ -470,7 +470,8 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
         ):
             what = f"{name} of coefficients with a load and a tie, {direction.label} direction,"
             _near(what, phi, getattr(says, name), getattr(own, name) + added, 1e-6 * big, "bodies and load give")
-        turned = _quotient([each.Q for each in _around(laden, phi, direction, step)], step).real
+        beside = [laden.coefficients(phi + shift * step, direction).Q for shift in SHIFTS]
+        turned = _quotient(beside, step).real
         _near(
             f"dQ, {direction.label} direction,",
             phi,
@@ -710,10 +711,6 @@ def _liveliest(structure: Mechanism) -> Spot:
         spots += [Spot(body.name, complex(corner)) for shape in shapes or [[body.centroid]] for corner in shape]
     follow = structure.followed(np.zeros(1), Direction.POSITIVE)
     return max(spots, key=lambda spot: abs(complex(follow(spot).dz[0])))
-
-
-def _around(structure: Mechanism, phi: Reals, direction: Direction, step: float) -> list[Coefficients]:
-    return [structure.coefficients(phi + shift * step, direction) for shift in SHIFTS]
 
 
 def _agree(what: str, said: float, found: float) -> None:
