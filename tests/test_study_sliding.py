@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.studies.contact import Contacts
-from rocking_cli.studies.fragility import store_file, tally, units
+from rocking_cli.studies.fragility import store_file, tally, work_units
 from rocking_cli.studies.fragility.campaign import prepare
 from rocking_cli.studies.fragility.store import COLUMNS, Store
 from rocking_cli.studies.fragility.study import load_study
@@ -180,9 +180,9 @@ def test_a_unit_can_be_sent_elsewhere(whole, tmp_path):
     with Store.writing(tmp_path / "study.db") as kept:
         prepared = prepare(load_study(whole[0]), kept)
         plan, samples = prepared.plan, prepared.study.samples
-        made = list(units.units(plan, samples, prepared.motions, "nonlinear", kept.finished, 4096, checked=True))
-    assert max(len(each.id) for each in made) <= units.CHECKED
-    found = np.concatenate([units.carry_out(pickle.loads(pickle.dumps(each))).slide_time for each in made])
+        made = list(work_units.units(plan, samples, prepared.motions, "nonlinear", kept.finished, 4096, checked=True))
+    assert max(len(each.id) for each in made) <= work_units.CHECKED
+    found = np.concatenate([work_units.carry_out(pickle.loads(pickle.dumps(each))).slide_time for each in made])
     assert np.array_equal(found, rows_of(whole[2]).slide_time, equal_nan=True)
 
 
@@ -204,7 +204,7 @@ def test_a_run_that_cannot_be_followed_to_its_rest_has_failed(whole, tmp_path, m
     def fails(*args, **options):
         raise SolverError("too small steps")
 
-    monkeypatch.setattr(units, "follow", fails)
+    monkeypatch.setattr(work_units, "follow", fails)
     carry_out(whole[0], tmp_path / "other.db", jobs=1)
     failed, rows = rows_of(tmp_path / "other.db"), rows_of(whole[2])
     assert np.array_equal(failed.outcome == 2, np.isfinite(rows.uplift_time))

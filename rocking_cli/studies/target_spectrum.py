@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.excitation.records.record_units import CHOICES, UNITS, canonical, header_units
 from rocking_cli.excitation.records.text import numbers_in
-from rocking_cli.excitation.records.units import CHOICES, UNITS, canonical, header_units
 from rocking_cli.io.files import read_bytes
 
 Reals = NDArray[np.float64]

@@ -18,7 +18,7 @@ if TYPE_CHECKING:  # fits need scipy, and what would be run needs no fit
     from rocking_cli.studies.fragility.assess import Bivariate, Fragility, UnknownRuns
     from rocking_cli.studies.fragility.curves import Estimate, FragilityCurve, Surface
     from rocking_cli.studies.fragility.definition import Definition, Limit
-    from rocking_cli.studies.fragility.hazard import Rate
+    from rocking_cli.studies.fragility.hazard_curve import Rate
     from rocking_cli.studies.fragility.plan import Plan
     from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.study import Study

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, NOT_SAID, STANDARD_GRAVITY, Doubt, GroundMotion, Origin
 from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.record_units import CHOICES, UNITS, canonical, resolve_unit
 from rocking_cli.excitation.records.text import check_interval, numbers_in, sensible
-from rocking_cli.excitation.records.units import CHOICES, UNITS, canonical, resolve_unit
 from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, split_numbers
 from rocking_cli.patterns import regex
 

@@ -15,8 +15,8 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import NOT_SAID, GroundMotion
 from rocking_cli.excitation.records.layout import lines_of, whole_number
 from rocking_cli.excitation.records.origins import of_peer
+from rocking_cli.excitation.records.record_units import UNITS, resolve_unit
 from rocking_cli.excitation.records.text import check_interval, numbers_in, only_channel, usable
-from rocking_cli.excitation.records.units import UNITS, resolve_unit
 from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, odd_row, split_numbers
 from rocking_cli.patterns import regex
 

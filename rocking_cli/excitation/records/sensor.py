@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import of_samples
-from rocking_cli.excitation.records.units import UNITS, canonical, header_units, resolve_unit
+from rocking_cli.excitation.records.record_units import UNITS, canonical, header_units, resolve_unit
 from rocking_cli.patterns import regex
 from rocking_cli.text import did_you_mean, exact
 from rocking_cli.units import KINDS

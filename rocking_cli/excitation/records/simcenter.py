@@ -15,8 +15,8 @@ from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
 from rocking_cli.excitation.records.layout import in_si
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import of_info
+from rocking_cli.excitation.records.record_units import resolve_unit
 from rocking_cli.excitation.records.text import check_interval, only_channel, sensible
-from rocking_cli.excitation.records.units import resolve_unit
 from rocking_cli.excitation.records.widths import PrintedRows, odd_digits
 
 TITLE = "SimCenter JSON"

@@ -26,7 +26,7 @@ from rocking_cli.studies.fragility.reached import rotations
 from rocking_cli.studies.fragility.sources import KeptMotions
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import Sample, Study, digest
-from rocking_cli.studies.fragility.units import carry_out, unit_size, units
+from rocking_cli.studies.fragility.work_units import carry_out, unit_size, units
 from rocking_cli.studies.fragility.workers import Workers
 
 Progress = Callable[[int, int], None]

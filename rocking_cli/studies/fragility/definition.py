@@ -23,7 +23,7 @@ from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import parse_steps
 from rocking_cli.studies.fragility.displacements import is_quantity, spelt
 from rocking_cli.studies.fragility.distributions import Distribution, Positive
-from rocking_cli.studies.fragility.hazard import wrong_points
+from rocking_cli.studies.fragility.hazard_curve import wrong_points
 from rocking_cli.studies.fragility.intensity import PGA, no_levels, spelled
 from rocking_cli.studies.fragility.intensity import SCALE as SCALE
 from rocking_cli.studies.fragility.observed import SAME
