@@ -220,10 +220,10 @@ def joints_of(
             modes(mechanism, direction, _at(table, cells), side.reference)
             for (direction, table), side in zip(sides, statics, strict=True)
         ]
-    found = [each for each, _ in answers if each is not None]
+    found = [one for one, _ in answers if one is not None]
     if len(found) < len(sides):
         return None
-    labels = list(dict.fromkeys(each.label for one in found for each in one.contacts if each.held is None))
+    labels = list(dict.fromkeys(contact.label for one in found for contact in one.contacts if contact.held is None))
     contacts, bearing = _contacts(mechanism, found, labels)
     most = max(one.force.shape[1] for one in found)
     weight = mechanism.gravity * sum(body.mass for body in mechanism.weighed())

@@ -301,17 +301,17 @@ class Picture:
         speeds = [np.array([size * motion.dpsi[0], motion.carry(0j)[1][0]]) for motion in motions]
         along = [name for hinge in self.sketch.hinges.get(direction, ()) for name in hinge.bodies]
         of_body = dict(zip((body.name for body in self.mechanism.bodies()), speeds, strict=True))
-        found: list[Points] = []
+        speeds_of_links: list[Points] = []
         links: dict[str, int | None] = {}
         for name in [*(name for name in along if name in of_body), *of_body]:
             here = of_body[name]
             if np.abs(here).max() <= SAME * size:
                 links[name] = None
                 continue
-            alike = [k for k, each in enumerate(found) if np.abs(here - each).max() <= SAME * size]
+            alike = [k for k, speed in enumerate(speeds_of_links) if np.abs(here - speed).max() <= SAME * size]
             if not alike:
-                found.append(here)
-            links[name] = alike[0] if alike else len(found) - 1
+                speeds_of_links.append(here)
+            links[name] = alike[0] if alike else len(speeds_of_links) - 1
         return {name: links[name] for name in of_body}
 
     @cached_property

@@ -243,23 +243,23 @@ def survey(
         largest peak, then by uplift acceleration; with a site by the ratio of its code. Structures that rank equal keep
         their order.
     """
-    found: list[Surveyed | Bad | None] = [None] * len(entries)
+    results: list[Surveyed | Bad | None] = [None] * len(entries)
     site = of_each(site) if site is not None else None
 
     def work(first: int, stop: int) -> None:
-        found[first:stop] = _part(entries, motions, polarities, site, opening, first, stop)
+        results[first:stop] = _part(entries, motions, polarities, site, opening, first, stop)
 
     if processes is None:
         in_parts(work, len(entries), PART, threads, progress)
     else:
         whole = partial(_part, entries, motions, polarities, site, opening)
         for first, part in in_processes(whole, len(entries), PART, processes):
-            found[first : first + len(part)] = part
+            results[first : first + len(part)] = part
             if progress is not None:
                 progress(len(part))
     by = "ratio" if site is not None else "response" if motions else "lambda"
-    good = sorted((each for each in found if isinstance(each, Surveyed)), key=ORDERS[by])
-    return Survey(good, [each for each in found if isinstance(each, Bad)], [each.name for each in motions], by)
+    good = sorted((result for result in results if isinstance(result, Surveyed)), key=ORDERS[by])
+    return Survey(good, [each for each in results if isinstance(each, Bad)], [each.name for each in motions], by)
 
 
 def _part(

@@ -163,20 +163,20 @@ def fixed_width(file: str, lines: Lines, block: RecordBlock, *, last: bool = Tru
             leaving.append(index)
             cells = split_numbers(row)
             try:
-                found = _floats(file, index, row, cells, block)
+                numbers = _floats(file, index, row, cells, block)
             except InputError as error:
                 unread = unread or error
-                found = [math.nan] * len(cells)
+                numbers = [math.nan] * len(cells)
         else:
-            found = _floats(file, index, row, cells, block)
-        values.extend(found)
+            numbers = _floats(file, index, row, cells, block)
+        values.extend(numbers)
     remarks: tuple[Doubt, ...] = ()
     rows = index - block.start
     if leaving:
         if 2 * len(leaving) <= rows and not lines.edited:
             raise InputError(_out_of_columns(file, lines, leaving, rows, block))
         if unread is not None:
-            raise InputError(*(replace(each, hint=_TOUCHING.format(block.width)) for each in unread.problems))
+            raise InputError(*(replace(problem, hint=_TOUCHING.format(block.width)) for problem in unread.problems))
         remarks = (_no_columns(leaving, rows, block),)
     if len(values) != block.count:
         excerpt = lines[index].strip()[:100] if index < len(lines) else None

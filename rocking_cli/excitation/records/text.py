@@ -81,7 +81,7 @@ def read(
         table = _table(file, lines, start, delimiter, names, commas=commas)
         _refuse_a_single_sample(file, start, table)
         choice = choose(file, table, names, channel, _increases if wanted.uneven else _increases_evenly, wanted)
-        header = [each for each in header if each[0] not in label_lines]
+        header = [entry for entry in header if entry[0] not in label_lines]
         header += [(number, str(names[choice.column])) for number in label_lines[:1]]
     elif channel is not None and channel.strip().lower() != names[-1].name.lower():
         only_channel(file, channel)
@@ -109,9 +109,9 @@ def read(
         try:
             own = _interval(file, lines, start, table[choice.time], column)
         except InputError:
-            if not wanted.uneven or (found := _on_grid(file, lines, start, table[choice.time], values)) is None:
+            if not wanted.uneven or (gridded := _on_grid(file, lines, start, table[choice.time], values)) is None:
                 raise
-            own, values, uneven = found
+            own, values, uneven = gridded
         check_interval(file, None, own, dt)
         dt = own
     assert dt is not None  # none at all was refused above

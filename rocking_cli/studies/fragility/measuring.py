@@ -133,16 +133,16 @@ def _without_unscalable(plan: Plan) -> Plan:
 def _of_runs(plan: Plan, measure: RunMeasure, motions: KeptMotions, k: int, usable: Bools) -> Reals:
     """Return a measure of the runs of a record, shape (samples, levels); equal samples are computed once."""
     samples, _, _, levels, _ = plan.shape
-    found = np.full((samples, levels), np.nan)
+    values = np.full((samples, levels), np.nan)
     known: dict[tuple[float, ...], float] = {}
     for sample in np.flatnonzero(usable).tolist():
         place = np.full(levels, sample)
         factors = plan.factors(place, np.full(levels, k), np.arange(levels))
         of = plan.reference(np.array([sample]))
-        structure = [float(np.asarray(each)[0]) for each in (of.p, of.lambda_, of.gravity, of.v_imp)]
+        structure = [float(np.asarray(number)[0]) for number in (of.p, of.lambda_, of.gravity, of.v_imp)]
         for level, factor in enumerate(factors.tolist()):
             key = (factor, *structure)
             if key not in known:
                 known[key] = measure.value(motions[k].of_ground.scaled(factor), Reference(*structure))
-            found[sample, level] = known[key]
-    return found
+            values[sample, level] = known[key]
+    return values

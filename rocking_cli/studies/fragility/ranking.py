@@ -189,13 +189,13 @@ def rank(
     names = candidates(plan, definition)
     against = covariates(plan) if against is None else against
     asked = definition.model_copy(update={"measures": names, "bivariate": [], "hazard": None})
-    found = []
+    rankings = []
     for structure, tally in counted(store, plan, asked, progress).items():
         if tally.runs.any():
-            fitted = {(each.measure, each.limit): each for each in curves(tally, structure, asked, None)}
+            fitted = {(curve.measure, curve.limit): curve for curve in curves(tally, structure, asked, None)}
             ranking = _rank(store, plan, structure, names, fitted, against)
-            found.append(replace(ranking, unknown=tally.unknown_if_checked))
-    return found
+            rankings.append(replace(ranking, unknown=tally.unknown_if_checked))
+    return rankings
 
 
 def _rank(

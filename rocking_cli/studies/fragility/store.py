@@ -591,10 +591,10 @@ class Store:
         def table(name: str, kind: Any) -> list[Any]:
             names = [each.name for each in fields(kind)]
             rows = self._connection.execute(f"SELECT {', '.join(names)} FROM {name} ORDER BY id")
-            found = [dict(zip(names, row, strict=True)) for row in rows]
-            for each in found if kind is Trial else []:
-                each["drawn"] = json.loads(each["drawn"])
-            return TypeAdapter(list[kind]).validate_python(found)
+            entries = [dict(zip(names, row, strict=True)) for row in rows]
+            for entry in entries if kind is Trial else []:
+                entry["drawn"] = json.loads(entry["drawn"])
+            return TypeAdapter(list[kind]).validate_python(entries)
 
         trials, records, levels = table("sample", Trial), table("record", Record), column("level", float)
         measured = self._connection.execute("SELECT measure, sample, record, level, value FROM measured ORDER BY id")

@@ -261,19 +261,19 @@ def _sources(document: Document, place: Place, folder: Path, entry: RecordEntry,
     other = _select(document, (*place, "with"), entry.other, folder) if entry.other is not None else []
     vertical = None
     if entry.vertical is not None:
-        found = _select(document, (*place, "vertical"), entry.vertical, folder)
-        if max(len(files), len(found)) > 1:
+        verticals = _select(document, (*place, "vertical"), entry.vertical, folder)
+        if max(len(files), len(verticals)) > 1:
             what = "a vertical component belongs to a single record: give each record its own entry"
             document.problems.append(document.at((*place, "vertical"), what))
             return []
-        vertical = found[0] if found else None
+        vertical = verticals[0] if verticals else None
     if other and max(len(files), len(other)) > 1:
         what = "a second component belongs to one record: give each record an entry of its own"
         document.problems.append(document.at((*place, "with"), what))
         return []
     if other:  # a pattern stands for the one file
         entry = entry.model_copy(update={"other": _shown(other[0], folder)})
-    return [one for each in files for one in _of_file_or_list(document, place, folder, entry, common, each, vertical)]
+    return [one for file in files for one in _of_file_or_list(document, place, folder, entry, common, file, vertical)]
 
 
 def _of_file_or_list(
@@ -299,13 +299,13 @@ def _of_file_or_list(
     except InputError as error:
         document.problems += _of_file(document, _within(document, place, "file"), str(entry.file), file, error)
         return []
-    found = []
-    for each in listed:
-        assert each.entry is not None
-        own = RecordEntry.model_validate(_together(entry, each.entry))
-        shown = _shown(each.path, folder)
-        found.append(Source(_at_level(shown, own), own, each.reading(reading), shown, each.path))
-    return found
+    sources = []
+    for item in listed:
+        assert item.entry is not None
+        own = RecordEntry.model_validate(_together(entry, item.entry))
+        shown = _shown(item.path, folder)
+        sources.append(Source(_at_level(shown, own), own, item.reading(reading), shown, item.path))
+    return sources
 
 
 def _together(entry: RecordEntry, listed: Entry) -> dict[str, Any]:
