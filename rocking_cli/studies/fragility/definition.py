@@ -14,13 +14,13 @@ from pydantic_core import PydanticCustomError
 from rocking_cli.core.fields import Name, Restitution
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.errors import InputError
-from rocking_cli.io.field_problems import place_of, problems
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text
 from rocking_cli.processing.entry import Entry, FloorText, Steps
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import parse_steps
+from rocking_cli.studies.file_part import Part, Sound, problems_of
 from rocking_cli.studies.fragility.displacements import is_quantity, spelt
 from rocking_cli.studies.fragility.distributions import Distribution, Positive
 from rocking_cli.studies.fragility.hazard_curve import wrong_points
@@ -28,7 +28,6 @@ from rocking_cli.studies.fragility.intensity import PGA, no_levels, spelled
 from rocking_cli.studies.fragility.intensity import SCALE as SCALE
 from rocking_cli.studies.fragility.observed import SAME
 from rocking_cli.studies.fragility.sets import among
-from rocking_cli.studies.fragility.together import Part, Sound, between_fields
 from rocking_cli.studies.fragility.varied import in_units_of_fields
 
 UPLIFT, OVERTURNING, SLIDING = "uplift", "overturning", "sliding"
@@ -342,7 +341,6 @@ def checks_sliding(given: dict[str, Any]) -> bool:
 
 
 HINT = "see the example in docs/fragility.md"
-WORDS = {"owner": "the study", "lister": HINT}
 PARTS = (("file", "name"), ("file", "vertical"), ("file",), ("pulse",))  # of an entry, each worth a look by itself
 Piece = TypeVar("Piece", bound=BaseModel)
 
@@ -373,14 +371,7 @@ def read_definition(path: Path) -> tuple[Document, Definition | None]:
     try:
         return document, Definition.model_validate(document.data)
     except ValidationError as error:
-        found: Any = error.errors(include_url=False)
-    known = {(each.field, each.line) for each in of_units}
-    alone = [each for each in found if each["type"] != "geometry"]  # what is wrong between fields is found below
-    wrong = problems(document, Definition, alone, **WORDS)
-    document.problems += [each for each in wrong if (each.field, each.line) not in known]
-    places = {place_of(document.data, each) for each in alone}
-    for place, message in between_fields(Definition, document.data, places):
-        document.problems.append(document.at(place, message))
+        document.problems += problems_of(document, Definition, error, owner="the study", lister=HINT, known=of_units)
     return document, None
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from rocking_cli.io.yaml_file import Place
-from rocking_cli.studies.fragility.together import Part, Sound
+from rocking_cli.studies.file_part import Part, Sound
 
 Reals = NDArray[np.float64]
 Positive = Annotated[float, Field(gt=0)]
