@@ -21,7 +21,7 @@ from rocking_cli.studies.fragility import workers as places
 from rocking_cli.studies.fragility.campaign import prepare, run
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
-from rocking_cli.studies.fragility.units import carry_out, unit_size, units
+from rocking_cli.studies.fragility.work_units import carry_out, unit_size, units
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 RECORDS, LEVELS = 100, 20

@@ -271,8 +271,8 @@ def weakest(lambda_at: Callable[[Mapping[str, float]], float], names: Sequence[s
         k = int(values.argmin())
         low = EDGE if k == 0 else float(shares[k - 1])
         high = 1 - EDGE if k == SCAN - 1 else float(shares[k + 1])
-        found = minimize_scalar(at, bounds=(low, high), method="bounded", options={"xatol": FINE})
-        return {names[0]: float(found.x)}
+        minimum = minimize_scalar(at, bounds=(low, high), method="bounded", options={"xatol": FINE})
+        return {names[0]: float(minimum.x)}
     coarse = shares[::2]
     grid = [(float(one), float(other)) for one in coarse for other in coarse]
     start = min(grid, key=lambda pair: at(*pair))
@@ -280,4 +280,4 @@ def weakest(lambda_at: Callable[[Mapping[str, float]], float], names: Sequence[s
         lambda pair: at(*pair), start,
         method="Nelder-Mead", bounds=Bounds([EDGE] * 2, [1 - EDGE] * 2), options={"xatol": FINE, "fatol": 0.0},
     )  # fmt: skip
-    return dict(zip(names, (float(each) for each in result.x), strict=True))
+    return dict(zip(names, (float(place) for place in result.x), strict=True))

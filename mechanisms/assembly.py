@@ -197,15 +197,17 @@ class Assembly(LinkedBodies):
         for direction in self.directions:
             self._check_collapses(direction)
         for direction in self.directions:
-            found = self._collapse(direction)
-            if not found.unique:
-                ways = in_short(list(dict.fromkeys(in_short(each.moves, " and ") for each in found.several)), "; ")
+            collapse = self._collapse(direction)
+            if not collapse.unique:
+                ways = in_short(
+                    list(dict.fromkeys(in_short(shared.moves, " and ") for shared in collapse.several)), "; "
+                )
                 what = "Change a size or a density by a little, or tie what should not part"
-                if self.friction is not None and isclose(found.multiplier, self.friction, rel_tol=SLIDING):
+                if self.friction is not None and isclose(collapse.multiplier, self.friction, rel_tol=SLIDING):
                     what = "This equals the friction given: the blocks slide, and no rocking model exists for sliding"
                 raise self._refused(
                     ("blocks",),
-                    f"in the {direction.label} direction several mechanisms start at {found.multiplier:.6g} g, "
+                    f"in the {direction.label} direction several mechanisms start at {collapse.multiplier:.6g} g, "
                     f"with these moving blocks: {ways}. {what}",
                 )
             self._check_lead(direction)
@@ -306,9 +308,9 @@ class Assembly(LinkedBodies):
         return found[0]
 
     @cached_property
-    def _guides(self) -> Sequence[analysis.AssemblyGuide]:
+    def _guides(self) -> Sequence[Guide]:
         return [
-            analysis.AssemblyGuide(name, each.slide, complex(*each.at), complex(*each.along))
+            Guide(name, (each.slide,), complex(*each.at), complex(*each.along))
             for name, each in (self.supports or {}).items()
         ]
 
@@ -346,9 +348,9 @@ class Assembly(LinkedBodies):
     def _linkage(self, direction: Direction) -> LinkageMotion:
         if direction not in self.directions:
             raise StructureError(f"it cannot rock in the {direction.label} direction")
-        found = self._groups(direction)
-        if found.slides:
-            where = in_short([self._joint(k) for k in found.slides])
+        mechanism = self._groups(direction)
+        if mechanism.slides:
+            where = in_short([self._joint(k) for k in mechanism.slides])
             raise StructureError(
                 f"in the {direction.label} direction the mechanism slides between {where} at "
                 f"{self._collapse(direction).multiplier:.4g} g: no rocking model exists for sliding. `rocking "
@@ -358,17 +360,16 @@ class Assembly(LinkedBodies):
             Pin(letter, tuple(name for name in (contact.a, contact.b) if name in self.blocks), at)
             for letter, contact, at in self._hinges(direction)
         ]
-        guides = [Guide(guide.name, (guide.body,), guide.at, guide.along) for guide in found.guides]
-        fixed = [(group[0], name) for group in found.groups for name in group[1:]]
-        centres = {name: each.body.centroid for name, each in self._members.items()}
-        rest = [name for name in found.rest if name in self.blocks]
+        fixed = [(group[0], name) for group in mechanism.groups for name in group[1:]]
+        centres = {name: member.body.centroid for name, member in self._members.items()}
+        rest = [name for name in mechanism.rest if name in self.blocks]
         lead = self._lead(direction)
         try:
-            linkage = LinkageMotion(centres, [*pins, *guides], lead, direction, fixed, rest)
+            linkage = LinkageMotion(centres, [*pins, *mechanism.guides], lead, direction, fixed, rest)
         except NoMotion as error:
             why = error.reason
-            if found.lifted:
-                joints = [self._joint(k) for k in found.lifted]
+            if mechanism.lifted:
+                joints = [self._joint(k) for k in mechanism.lifted]
                 why = (
                     f"{in_short(joints, ' and ')} open at both ends but still carry shear, because joints without "
                     f"friction never slide: give `friction`, or `friction_of: {{{joints[0]}: 0}}`"
@@ -383,8 +384,8 @@ class Assembly(LinkedBodies):
             raise StructureError(f"in the {direction.label} direction {why}") from None
         self._check_slips_off(direction, linkage)
         turns = float(linkage.motions(np.zeros(1))[lead].dpsi[0])
-        number = next(k for k, group in enumerate(found.groups) if lead in group)
-        if turns * found.velocity[number, 2] < 0:
+        number = next(k for k, group in enumerate(mechanism.groups) if lead in group)
+        if turns * mechanism.velocity[number, 2] < 0:
             raise StructureError(
                 f"in the {direction.label} direction {lead} turns the other way as the rest goes {direction.label}: "
                 "let another block lead"
@@ -418,9 +419,10 @@ class Assembly(LinkedBodies):
         """Return letter, joint and point of each hinge, from the left."""
         hinges = self._groups(direction).hinges
         order = from_the_left([hinge.point for hinge in hinges])
+        letters = [chr(65 + n) if n < 26 else f"{chr(65 + n // 26 - 1)}{chr(65 + n % 26)}" for n in range(len(order))]
         return [
-            (_letter(n) + direction.prime, self._contacts[hinges[k].contact], hinges[k].point)
-            for n, k in enumerate(order)
+            (letter + direction.prime, self._contacts[hinges[k].contact], hinges[k].point)
+            for letter, k in zip(letters, order, strict=True)
         ]
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
@@ -434,7 +436,7 @@ class Assembly(LinkedBodies):
             names = tuple(name for name in (contact.a, contact.b) if name in self.blocks)
             joints.append(Joint(letter, at, names, normal=contact.normal, face=face if face in self.blocks else None))
         for guide in found.guides:
-            joints.append(Joint(guide.name, guide.at, (guide.body,), slide=guide.along / abs(guide.along)))
+            joints.append(Joint(guide.name, guide.at, guide.bodies, slide=guide.along / abs(guide.along)))
         return joints
 
     def contacts(self, direction: Direction) -> Sequence[Contact] | None:
@@ -456,7 +458,7 @@ class Assembly(LinkedBodies):
             found.append(Contact((a, b), points, contact.normal, face, contact.friction, name=_name(contact)))
         for guide in self._guides:
             along = guide.along / abs(guide.along)
-            found.append(Contact((None, guide.body), (guide.at,), 1j * along, held="slide", name=guide.name))
+            found.append(Contact((None, guide.bodies[0]), (guide.at,), 1j * along, held="slide", name=guide.name))
         return found
 
     # What is said of it
@@ -504,12 +506,12 @@ class Assembly(LinkedBodies):
 
     def collapse(self, direction: Direction) -> CollapseMechanism:
         """Return the weakest mechanism of a direction. Raises `StructureError` if there is none."""
-        found = self._groups(direction)
+        mechanism = self._groups(direction)
         state = self._collapse(direction)
         friction, thrust = self._needed(direction), self._thrust(direction)
-        parts = {name: "+".join(group) for group in found.groups for name in group}
-        no_model = "" if found.slides else self._no_model(direction)
-        moves = not found.slides and not no_model
+        parts = {name: "+".join(group) for group in mechanism.groups for name in group}
+        no_model = "" if mechanism.slides else self._no_model(direction)
+        moves = not mechanism.slides and not no_model
         valid = self._valid_to(direction) if moves else None
         return CollapseMechanism(
             lambda_=self.uplift(direction) if moves else state.multiplier,
@@ -523,10 +525,10 @@ class Assembly(LinkedBodies):
                 )
                 for letter, contact, at in self._hinges(direction)
             ],
-            groups=found.groups,
-            rest=[name for name in found.rest if name in self.blocks],
-            lifted=[self._joint(k) for k in found.lifted],
-            slides=[self._joint(k) for k in found.slides],
+            groups=mechanism.groups,
+            rest=[name for name in mechanism.rest if name in self.blocks],
+            lifted=[self._joint(k) for k in mechanism.lifted],
+            slides=[self._joint(k) for k in mechanism.slides],
             glued=[self._joint(k) for k in friction.glued],
             with_usual=self._with_usual(direction),
             no_model=no_model,
@@ -534,8 +536,8 @@ class Assembly(LinkedBodies):
             valid_to=valid[0] if valid else None,
             opens=self._joint(valid[1]) if valid else "",
             held_by=valid[2] if valid else None,
-            thrust=[(self._joint(each.contact), each.point, each.force) for each in thrust.passages],
-            velocities=[(complex(vx, vy), float(turn)) for vx, vy, turn in found.velocity],
+            thrust=[(self._joint(passage.contact), passage.point, passage.force) for passage in thrust.passages],
+            velocities=[(complex(vx, vy), float(turn)) for vx, vy, turn in mechanism.velocity],
             idle=state.idle,
         )
 
@@ -679,7 +681,3 @@ def from_the_left(points: Sequence[complex]) -> list[int]:
 def _name(contact: analysis.AssemblyContact) -> str:
     """Return the name of a joint from its two bodies."""
     return f"{contact.a} and {contact.b}"
-
-
-def _letter(k: int) -> str:
-    return chr(65 + k) if k < 26 else f"{chr(65 + k // 26 - 1)}{chr(65 + k % 26)}"

@@ -243,10 +243,10 @@ class Linkage(LinkedBodies):
 
     def _images(self, direction: Direction) -> Mapping[str, str]:
         """Return the mirror image of each body, which is another body or the same."""
-        bodies = [each.body for each in self._whole.values()]
-        points = [z for each in self._whole.values() for shape in each.outlines for z in shape]
+        bodies = [member.body for member in self._whole.values()]
+        points = [z for member in self._whole.values() for shape in member.outlines for z in shape]
         size = max(abs(z - self._middle) for z in [*points, *(body.centroid for body in bodies)])
-        found = {}
+        images = {}
         for body in bodies:
             at = complex(2 * self._middle - body.centroid.real, body.centroid.imag)
             near = [
@@ -261,12 +261,12 @@ class Linkage(LinkedBodies):
                     direction.label,
                     f"{body.name} has no mirror image among the bodies: give the joints of both directions",
                 )
-            found[body.name] = near[0]
+            images[body.name] = near[0]
         for name, crack in (self.cracks or {}).items():
-            if found[crack.body] != crack.body or crack.cut == "vertical":
+            if images[crack.body] != crack.body or crack.cut == "vertical":
                 why = f"the crack {name} has no mirror image: give the joints of both directions"
                 raise geometry_error(direction.label, why)
-        return found
+        return images
 
     @cached_property
     def _held(self) -> Mapping[Direction, PlacedSide]:
@@ -332,19 +332,19 @@ class Linkage(LinkedBodies):
     def contacts(self, direction: Direction) -> Sequence[Contact] | None:
         if direction not in self._held:
             return None
-        found, rests = [], self._linkages[direction].resting
-        for each in self._held[direction].joints:
-            if not isinstance(each, Guide) or len(each.bodies) == 1:
-                found += of_joints([self._joint(each, direction)], self.friction)
+        bearing, rests = [], self._linkages[direction].resting
+        for joint in self._held[direction].joints:
+            if not isinstance(joint, Guide) or len(joint.bodies) == 1:
+                bearing += of_joints([self._joint(joint, direction)], self.friction)
                 continue
             # A point of the first body on a line that turns with the second.
-            point, line = (None if name in rests else name for name in each.bodies)
-            along = each.along / abs(each.along)
-            found.append(Contact((line, point), (each.at,), 1j * along, face=line, held="slide"))
+            point, line = (None if name in rests else name for name in joint.bodies)
+            along = joint.along / abs(joint.along)
+            bearing.append(Contact((line, point), (joint.at,), 1j * along, face=line, held="slide"))
         # What is fixed, and a crack of the other direction alone, stays closed.
-        found += [Contact(pair, (self._members[pair[0]].body.centroid,), held="fixed")
+        bearing += [Contact(pair, (self._members[pair[0]].body.centroid,), held="fixed")
                   for pair in self._held[direction].fixed if not rests.intersection(pair)]  # fmt: skip
-        return found
+        return bearing
 
     def _letter(self, name: str, direction: Direction) -> str:
         """Return the letter of a joint, with a prime for a mirror image."""

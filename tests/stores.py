@@ -20,7 +20,7 @@ from typing import Any
 from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
-from rocking_cli.studies.fragility.store import COLUMNS, JOINTS, RunRows, Store
+from rocking_cli.studies.fragility.store import COLUMNS, Store
 from rocking_cli.studies.fragility.store_file import MARK
 from tests.conftest import EXAMPLES
 
@@ -67,17 +67,6 @@ def version_of(place: Path) -> int:
     """The version in the header of a store."""
     with closing(sqlite3.connect(place)) as connection:
         return int(connection.execute("PRAGMA user_version").fetchone()[0])
-
-
-def as_before_joints(store: Path, place: Path) -> Path:
-    """Write a copy of a store, without measured values, in the layout of versions that did not check joints."""
-    with Store.reading(store) as new, Store.writing(place) as old:
-        plan = new.plan()
-        rows = new.runs(0, plan.size)
-        old.with_joints = False
-        old.begin(plan, new.facts())
-        old.add(RunRows(**{name: getattr(rows, name) for name in rows.columns if name not in JOINTS}))
-    return place
 
 
 class Sound:

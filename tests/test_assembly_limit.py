@@ -16,7 +16,6 @@ from mechanisms._assembly import (
     AssemblyBlock,
     AssemblyContact,
     AssemblyFault,
-    AssemblyGuide,
     AssemblyHinge,
     AssemblyLinkage,
     ContactFault,
@@ -37,7 +36,7 @@ from mechanisms._assembly import (
 from mechanisms._assembly.rays import Rays
 from mechanisms._assembly.unique import kept_rays
 from mechanisms.arch import Arch
-from rocking_cli.core import Direction, annular_sector, four_bar, polygon
+from rocking_cli.core import Direction, Guide, annular_sector, four_bar, polygon
 from tests.reference_mechanics import Voussoirs
 
 POSITIVE, NEGATIVE = Direction.POSITIVE, Direction.NEGATIVE
@@ -576,7 +575,7 @@ def test_a_wall_held_at_its_top_has_the_weakest_hinge_of_its_formula(k):
     # The hinge of the upper body is on the left face; the load at k t from there, held where it acts.
     top = complex(k * t, h)
     dead[-1] += [0, load, load * (top - courses[-1].centroid).real]
-    guide = AssemblyGuide("floor", "c29", top, 1j)
+    guide = Guide("floor", ("c29",), top, 1j)
     joints = contacts(courses, FLOOR)
     found = collapse(courses, joints, [guide], dead=dead, live=live)
     xi = np.arange(1, n) / n
@@ -915,7 +914,7 @@ def test_a_joint_that_is_lifted_bears_no_more():
 
 def test_a_wall_held_at_its_top_stays_held_when_displaced():
     low, top = rectangle("low", 0, 0, 0.3, 2), rectangle("top", 0, 2, 0.3, 3)
-    blocks, guide = [low, top], AssemblyGuide("floor", "top", 0.15 + 3j, 1j)
+    blocks, guide = [low, top], Guide("floor", ("top",), 0.15 + 3j, 1j)
     joints = contacts(blocks, FLOOR)
     made = linkage(blocks, joints, [guide], collapse(blocks, joints, [guide]))
 

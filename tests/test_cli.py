@@ -597,9 +597,9 @@ def test_the_default_block_is_a_structure():
 def test_the_units_offered_are_those_the_readers_know():
     """Written twice so that `--help` needs no numpy."""
     from rocking_cli.cli.quantities import UNITS
-    from rocking_cli.excitation.records import units
+    from rocking_cli.excitation.records import record_units
 
-    assert set(UNITS) == set(units.UNITS)
+    assert set(UNITS) == set(record_units.UNITS)
 
 
 @pytest.mark.parametrize("command", ["respond", "margin"])

@@ -8,7 +8,6 @@ import click
 import pytest
 
 from rocking_cli.cli.main import COMMANDS
-from rocking_cli.cli.options import Renamed
 from rocking_cli.excitation.records import read_record
 from tests.test_cli import run
 
@@ -68,20 +67,11 @@ def test_what_is_no_such_quantity_is_said(arguments, words):
     assert words in " ".join(run(*arguments, code=2).stderr.split())
 
 
-# Old names
+# Names
 
 
 def commands():
     return {name: import_module(f"rocking_cli.cli.{name}").command for name in COMMANDS}
-
-
-def test_every_old_name_stands_for_an_option_of_today_and_is_none_itself():
-    renamed = {name: command for name, command in commands().items() if isinstance(command, Renamed)}
-    assert len(renamed) >= 6
-    for name, command in renamed.items():
-        today = {word for each in command.params if isinstance(each, click.Option) for word in each.opts}
-        for old, new in command.renamed.items():
-            assert new in today and old not in today, (name, old)
 
 
 def test_one_name_is_one_thing_in_every_command():
@@ -96,36 +86,10 @@ def test_one_name_is_one_thing_in_every_command():
     assert all(kind and kind.startswith(("FILE", "FOLDER")) for kind in meant["--plot"])
 
 
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        (("overturning", BLOCK, *FEW, "--periods", "0.2:4"), ("overturning", BLOCK, *FEW, "--period", "0.2:4")),
-        (("overturning", BLOCK, *FEW, "--accelerations=0.1g:2g"), ("overturning", BLOCK, *FEW, "--ag", "0.1g:2g")),
-        (("overturning", *FEW, "--pulse", "half_sine"), ("overturning", *FEW, "--shape", "half_sine")),
-        (("error", BLOCK, "--accel", "3"), ("error", BLOCK, "--a", "3")),
-        (("record", ACCEL, "--pulse"), ("record", ACCEL, "--fit-pulse")),
-    ],
-)
-def test_an_old_name_does_the_same_with_a_note_beside_the_result(old, new):
-    before, today = run(*old, "--json"), run(*new, "--json")
-    assert before.stdout == today.stdout
-    name = next(word for word in old if word.startswith("--") and word not in (*new, "--points"))
-    assert (
-        f"{name.partition('=')[0]} has been renamed to {next(w for w in new if w.startswith('--') and w not in old)}"
-        in (before.stderr)
-    )
-    assert "has been renamed" not in today.stderr
-
-
-def test_a_file_called_like_an_old_name_is_a_file(tmp_path):
+def test_a_file_called_like_an_option_is_a_file(tmp_path):
     (tmp_path / "--pulse").write_bytes(Path(ACCEL).read_bytes())
     result = run("record", "--", "--pulse")
-    assert "has been renamed" not in result.stderr and "mean acceleration" in result.stdout
-
-
-def test_where_pictures_and_figures_go_by_their_old_names(tmp_path):
-    assert "--folder has been renamed to --out" in run("figure", "3", "--folder", "there").stderr
-    assert sorted(path.name for path in (tmp_path / "there").iterdir()) == ["figure3.csv", "figure3.png"]
+    assert "mean acceleration" in result.stdout
 
 
 # Where a clean record goes
@@ -140,11 +104,6 @@ def test_a_clean_record_goes_to_the_file_or_into_the_folder_that_is_named(tmp_pa
     (tmp_path / "folder.csv").mkdir()
     run("record", ACCEL, "--out", "folder.csv")
     assert (tmp_path / "folder.csv" / "accel.csv").exists()
-
-
-def test_to_csv_writes_into_this_folder_as_it_did(tmp_path):
-    assert "--to csv has been renamed to --out" in run("record", ACCEL, "--to", "csv").stderr
-    assert [path.name for path in tmp_path.iterdir()] == ["accel.csv"]
 
 
 @pytest.mark.parametrize(

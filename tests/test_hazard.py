@@ -12,7 +12,7 @@ from scipy.stats import norm
 from rocking_cli.errors import InputError
 from rocking_cli.studies.fragility.curves import Estimate, FragilityCurve
 from rocking_cli.studies.fragility.fit import Fit
-from rocking_cli.studies.fragility.hazard import HazardCurve, annual_rate, read_hazard
+from rocking_cli.studies.fragility.hazard_curve import HazardCurve, annual_rate, read_hazard
 
 COVARIANCE = np.array([[0.02, 0.015], [0.015, 0.03]])
 

@@ -17,8 +17,8 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.records import layout, read_record
+from rocking_cli.excitation.records.record_units import UNITS
 from rocking_cli.excitation.records.registry import FALLBACK, Readers, load_readers, reader_for, takes_bytes
-from rocking_cli.excitation.records.units import UNITS
 from tests.conftest import FORMATS, NEEDS_RECORDS, RECORDS, record
 
 G = STANDARD_GRAVITY

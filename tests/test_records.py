@@ -19,8 +19,8 @@ from hypothesis import strategies as st
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.records import peer, read_record, text
+from rocking_cli.excitation.records.record_units import canonical, header_units
 from rocking_cli.excitation.records.times import on_grid
-from rocking_cli.excitation.records.units import canonical, header_units
 from tests.conftest import NEEDS_RECORDS, record
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"

@@ -103,35 +103,18 @@ def test_the_old_store_stays_where_the_new_one_cannot_be_made(sound, place, monk
     assert place.read_bytes() == old and names(place.parent) == ["study.db"]
 
 
-def test_a_store_without_checksums_is_read_with_a_word_and_taken_over(sound, place):
+@pytest.mark.parametrize("version", [0, 1, 5])
+def test_a_store_of_another_layout_is_refused_and_kept_by_restart(sound, place, version):
     with closing(sqlite3.connect(place, isolation_level=None)) as connection:
-        connection.executescript(
-            "ALTER TABLE run DROP COLUMN checksum; DELETE FROM study WHERE key = 'seal'; PRAGMA user_version = 1"
-        )
+        connection.execute(f"PRAGMA user_version = {version}")
     old = place.read_bytes()
-    looked = command("results", place, "--json")
-    assert looked.exit_code == 0 and shown(looked.stdout) == sound.shown
-    assert "without checksums: damage to its runs cannot be detected" in looked.stderr
-    run = command("fragility", sound.study, "--store", place, "--json")
-    assert shown(run.stdout) == sound.shown and "240 of 240 runs are in the store already" in run.stderr
-    assert place.with_name("study.before.db").read_bytes() == old
-    after = command("results", place, "--json")
-    assert after.exit_code == 0 and not after.stderr
-
-
-def test_a_store_without_checksums_may_be_broken_too(sound, place):
-    with closing(sqlite3.connect(place, isolation_level=None)) as connection:
-        connection.executescript(
-            "ALTER TABLE run DROP COLUMN checksum; PRAGMA user_version = 1; UPDATE sample SET p = 'wide' WHERE id = 2;"
-            "UPDATE run SET outcome = 'fell' WHERE id = 3; UPDATE run SET outcome = 9 WHERE id = 4"
-        )
     for arguments in (["results", place], ["fragility", sound.study, "--store", place]):
         result = command(*arguments)
-        assert result.exit_code == 2 and "damaged" in result.stderr
-    with closing(sqlite3.connect(place, isolation_level=None)) as connection:
-        connection.execute("UPDATE sample SET p = 2.0 WHERE id = 2")
-    result = command("results", place)
-    assert result.exit_code == 5 and "2 runs are damaged and left out: run 3 (" in result.stderr
+        assert result.exit_code == 2 and "this store is of an earlier version of rocking" in result.stderr
+        assert "run the study again with" in result.stderr
+    run = command("fragility", sound.study, "--store", place, "--restart", "--json")
+    assert run.exit_code == 0 and shown(run.stdout) == sound.shown
+    assert place.with_name("study.before.db").read_bytes() == old
 
 
 def test_a_damaged_run_is_named_and_run_again(sound, place):

@@ -23,7 +23,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity import Reference, parse_measure
 from rocking_cli.processing.reading import Reading
-from rocking_cli.studies.fragility import assess, curves, sources, store, store_file, tally, units, workers
+from rocking_cli.studies.fragility import assess, curves, sources, store, store_file, tally, work_units, workers
 from rocking_cli.studies.fragility.campaign import differences, prepare, run
 from rocking_cli.studies.fragility.definition import RecordEntry
 from rocking_cli.studies.fragility.intensity import ALWAYS
@@ -132,7 +132,7 @@ class TestSameResults:
         assert dump(tmp_path / "other.db") == dump(whole[2])
 
     def test_whatever_memory_there_is_for_records(self, whole, tmp_path, monkeypatch):
-        monkeypatch.setattr(units, "SAMPLES", 1)
+        monkeypatch.setattr(work_units, "SAMPLES", 1)
         monkeypatch.setattr("rocking_cli.studies.fragility.sources.KEPT", 1)
         carry_out(whole[0], tmp_path / "other.db", jobs=2)
         assert dump(tmp_path / "other.db") == dump(whole[2])
@@ -145,7 +145,7 @@ class TestSameResults:
             if len(done) == 3:
                 raise OSError("the machine is on fire")
             done.append(unit)
-            return units.carry_out(unit)
+            return work_units.carry_out(unit)
 
         place = tmp_path / "other.db"
         monkeypatch.setattr("rocking_cli.studies.fragility.campaign.carry_out", breaks)
@@ -155,7 +155,8 @@ class TestSameResults:
             assert 0 < kept.count()[0] < whole[1].plan.total
         ran = []
         monkeypatch.setattr(
-            "rocking_cli.studies.fragility.campaign.carry_out", lambda unit: ran.append(unit) or units.carry_out(unit)
+            "rocking_cli.studies.fragility.campaign.carry_out",
+            lambda unit: ran.append(unit) or work_units.carry_out(unit),
         )
         before = whole[1].plan.total - carry_out(whole[0], place, jobs=2).finished
         assert sum(len(unit.id) for unit in ran) == before  # nothing twice
@@ -564,12 +565,12 @@ def test_a_reader_that_takes_its_time_does_not_stop_the_study(whole, tmp_path, m
 
 
 def test_units_hold_few_models(tmp_path, monkeypatch):
-    monkeypatch.setattr(units, "MODELS", 3)
+    monkeypatch.setattr(work_units, "MODELS", 3)
     path = write(tmp_path, STUDY.replace("samples: 4", "samples: 20"), count=2)
     with Store.writing(tmp_path / "study.db") as kept:
         prepared = prepare(load_study(path), kept)
         study, plan = prepared.study, prepared.plan
-        made = list(units.units(plan, study.samples, prepared.motions, "nonlinear", kept.finished, 1000))
+        made = list(work_units.units(plan, study.samples, prepared.motions, "nonlinear", kept.finished, 1000))
     assert max(len(each.models) for each in made) == 3
     assert np.concatenate([each.id for each in made]).tolist() == list(range(plan.total))
 

@@ -13,13 +13,13 @@ from click.testing import CliRunner
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.studies.contact import Contacts
-from rocking_cli.studies.fragility import store_file, tally, units
+from rocking_cli.studies.fragility import store_file, tally, work_units
 from rocking_cli.studies.fragility.campaign import prepare
 from rocking_cli.studies.fragility.store import COLUMNS, Store
 from rocking_cli.studies.fragility.study import load_study
 from tests.conftest import EXAMPLES
 from tests.following import respond
-from tests.stores import RUNS, Sound, as_before_joints, attack, command, version_of
+from tests.stores import RUNS, Sound, attack, command, version_of
 from tests.test_contact import of_a_block
 from tests.test_study_runs import carry_out, dump, finished, program, wait_until_some_are_finished
 
@@ -165,11 +165,8 @@ def test_all_else_is_as_without_it(whole, tmp_path):
         assert np.array_equal(getattr(with_it, name), getattr(without, name), equal_nan=True), name
     said = "\n".join(dump(tmp_path / "without.db"))
     assert "slide_time" not in said and "sliding" not in said.replace(str(EXAMPLES), "")
-    places = (whole[2], tmp_path / "without.db")
-    older = [as_before_joints(place, tmp_path / f"older{k}.db") for k, place in enumerate(places)]
-    versions = [version_of(place) for place in (*places, *older)]
-    assert versions == [store_file.VERSION] * 2 + [store_file.WITHOUT_MEASURED, store_file.WITHOUT_SLIDING]
-    assert versions == [5, 5, 3, 2]
+    versions = [version_of(place) for place in (whole[2], tmp_path / "without.db")]
+    assert versions == [store_file.VERSION] * 2 == [6, 6]
 
 
 @pytest.mark.parametrize("size", [1, 7, 1000])
@@ -183,9 +180,9 @@ def test_a_unit_can_be_sent_elsewhere(whole, tmp_path):
     with Store.writing(tmp_path / "study.db") as kept:
         prepared = prepare(load_study(whole[0]), kept)
         plan, samples = prepared.plan, prepared.study.samples
-        made = list(units.units(plan, samples, prepared.motions, "nonlinear", kept.finished, 4096, checked=True))
-    assert max(len(each.id) for each in made) <= units.CHECKED
-    found = np.concatenate([units.carry_out(pickle.loads(pickle.dumps(each))).slide_time for each in made])
+        made = list(work_units.units(plan, samples, prepared.motions, "nonlinear", kept.finished, 4096, checked=True))
+    assert max(len(each.id) for each in made) <= work_units.CHECKED
+    found = np.concatenate([work_units.carry_out(pickle.loads(pickle.dumps(each))).slide_time for each in made])
     assert np.array_equal(found, rows_of(whole[2]).slide_time, equal_nan=True)
 
 
@@ -207,7 +204,7 @@ def test_a_run_that_cannot_be_followed_to_its_rest_has_failed(whole, tmp_path, m
     def fails(*args, **options):
         raise SolverError("too small steps")
 
-    monkeypatch.setattr(units, "follow", fails)
+    monkeypatch.setattr(work_units, "follow", fails)
     carry_out(whole[0], tmp_path / "other.db", jobs=1)
     failed, rows = rows_of(tmp_path / "other.db"), rows_of(whole[2])
     assert np.array_equal(failed.outcome == 2, np.isfinite(rows.uplift_time))

@@ -26,7 +26,7 @@ from rocking_cli.studies.fragility.displacements import kept
 from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.studies.fragility.quantiles import all_quantiles
 from rocking_cli.studies.fragility.ranking import judge, rank
-from rocking_cli.studies.fragility.store import JOINTS, UNKNOWN, Endings, RunRows, Store
+from rocking_cli.studies.fragility.store import UNKNOWN, Endings, Store
 from rocking_cli.studies.fragility.study import load_study
 from tests.conftest import EXAMPLES
 from tests.following import build_model
@@ -120,7 +120,7 @@ def test_the_store_says_it_in_words(whole):
     with closing(sqlite3.connect(whole.place)) as connection:
         (version,) = connection.execute("PRAGMA user_version").fetchone()
         words = connection.execute("SELECT outcome, known_to, fell_to FROM runs").fetchall()
-    assert version == 5
+    assert version == 6
     assert [each[0] == "unknown" for each in words] == [each.unknown for each in whole.histories]
     assert all((word == "unknown") == (known_to is not None) for word, known_to, _ in words)
     assert not any(fell_to for word, _, fell_to in words if word == "unknown")
@@ -343,27 +343,6 @@ def test_pictures_hatch_what_is_not_known(whole, tmp_path):
     figure = draw_surface(surface, ("PGA", "PGV"), "a portal")
     assert any(text.get_text() == f"unknown outcome ({surface.unknown})" for text in figure.legends[0].get_texts())
     figure.savefig(io.BytesIO(), format="png", dpi=30)
-
-
-def test_an_older_store_is_shown_and_not_continued(whole, tmp_path):
-    place = tmp_path / "study.db"
-    with Store.reading(whole.place) as held:
-        facts, plan = held.facts(), held.plan()
-    del facts["description"]["structures"]["portal"]["opening"]
-    before = {name: getattr(whole.rows, name) for name in whole.rows.columns if name not in JOINTS}
-    before["outcome"] = np.where(before["outcome"] == UNKNOWN, 0, before["outcome"])
-    with Store.writing(place) as held:
-        held.with_joints = False
-        held.begin(plan, facts)
-        held.add(RunRows(**before))
-    with closing(sqlite3.connect(place)) as connection:
-        assert connection.execute("PRAGMA user_version").fetchone()[0] <= 4
-    data = json.loads(command("results", place, "--json").stdout)
-    assert data["outcomes"][0]["unknown"] is None and "did not check the joints" in data["notes"][0]
-    assert {(each["unknown"], each["unknown_share"], each["lower"]) for each in data["curves"]} == {(None, None, None)}
-    assert {each["unknown"] for each in data["quantiles"][0]["intensities"]} == {None}
-    refused = command("fragility", whole.path, "--store", place)
-    assert refused.exit_code == 2 and "structures.portal.opening was absent, is now 0.005" in refused.stderr
 
 
 def test_joints_that_are_not_known_are_a_caution_and_null(tmp_path):

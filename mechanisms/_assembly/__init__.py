@@ -7,7 +7,6 @@ the weakest mechanism, `friction` the coefficient of friction that it requires, 
 
 from mechanisms._assembly.blocks import AssemblyBlock as AssemblyBlock
 from mechanisms._assembly.blocks import AssemblyContact as AssemblyContact
-from mechanisms._assembly.blocks import AssemblyGuide as AssemblyGuide
 from mechanisms._assembly.contacts import contacts as contacts
 from mechanisms._assembly.displaced import STEPS as STEPS
 from mechanisms._assembly.displaced import Admissible as Admissible

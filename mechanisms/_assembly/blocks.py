@@ -82,25 +82,3 @@ class AssemblyContact:
         return replace(
             self, a=self.b, b=self.a, start=self.end, end=self.start, normal=-self.normal, faces=self.faces[::-1]
         )
-
-
-@dataclass(frozen=True)
-class AssemblyGuide:
-    """A support without friction that restrains a point of a block to a line of the ground, in both senses.
-
-    Parameters
-    ----------
-    name : str
-        Name of the guide.
-    body : str
-        The restrained block.
-    at : complex
-        The restrained point [m].
-    along : complex
-        The direction in which the point may move.
-    """
-
-    name: str
-    body: str
-    at: complex
-    along: complex

@@ -75,7 +75,9 @@ def contacts(
         [0.0 if k >= len(blocks) else gap * size if within is None else within for k, size in enumerate(sizes)]
     )
     thick = {block.name: thickness_of(z) for block, z in zip(blocks, outlines, strict=False)}
-    _none_thinner(blocks, thick, reach)
+    for block, tolerance in zip(blocks, reach.tolist(), strict=False):  # the largest distance of its faces in contact
+        if thick[block.name] <= tolerance:
+            raise _thin(block.name, thick[block.name], tolerance)
     for i, j in _near(outlines, reach):
         if i >= len(blocks):
             continue  # ground on ground
@@ -97,13 +99,6 @@ def contacts(
         lambda one, other: gap * min(size[one], size[other]) if within is None else within,
     )
     return _with_friction(found, per_pair or {})
-
-
-def _none_thinner(blocks: Sequence[AssemblyBlock], thick: Mapping[str, float], reach: Reals) -> None:
-    """Raise `ContactFault` if a block is not thicker than the largest distance of its faces in contact."""
-    for block, tolerance in zip(blocks, reach.tolist(), strict=False):
-        if thick[block.name] <= tolerance:
-            raise _thin(block.name, thick[block.name], tolerance)
 
 
 def _none_bridged(

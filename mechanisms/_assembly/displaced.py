@@ -13,14 +13,14 @@ from functools import cached_property
 
 import numpy as np
 
-from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, AssemblyGuide
+from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
 from mechanisms._assembly.faults import NoAnswer
 from mechanisms._assembly.mechanism import Opening
 from mechanisms._assembly.programme import TOLERANCE, least
 from mechanisms._assembly.rays import Bearings, Frame, scaled
 from mechanisms._assembly.sparse import beside, solved, solver, weighted_squares
 from mechanisms._assembly.unique import velocity_space
-from rocking_cli.core import Reals
+from rocking_cli.core import Guide, Reals
 
 BALANCED = 1e-6  # of the weight: forces that joints need not carry may be no more, or they are not in balance
 HELD = 1e-9  # of the weight: a tension that counts as none
@@ -35,7 +35,7 @@ ENDS = {Opening.CLOSED: (0, 1), Opening.START: (0,), Opening.END: (1,), Opening.
 def remaining(
     blocks: Sequence[AssemblyBlock],
     contacts: Sequence[AssemblyContact],
-    guides: Sequence[AssemblyGuide],
+    guides: Sequence[Guide],
     states: Sequence[Opening],
 ) -> Bearings:
     """Return the joints that a mechanism leaves, in their position at rest, from the state of each; none may slide."""
@@ -122,7 +122,7 @@ class DisplacedAssembly:
             If the forces do work on the mechanism, so that they are not in equilibrium.
         """
         n = len(self.frame.names)
-        cases = np.array([scaled(each, self.frame, self.weight) for each in forces.reshape(-1, n, 3)])
+        cases = np.array([scaled(on_blocks, self.frame, self.weight) for on_blocks in forces.reshape(-1, n, 3)])
         free = self._free
         largest = np.maximum(np.abs(cases).max(axis=1), 1.0)
         off = np.abs(cases @ free).max(axis=1, initial=0.0) / largest
@@ -143,12 +143,12 @@ class DisplacedAssembly:
         high = np.append(np.full(rays.count, np.inf), 1.0)
         answers = []
         for case in cases:
-            found = least(cost, equal, -case, low, high)
-            if found is None:
+            optimum = least(cost, equal, -case, low, high)
+            if optimum is None:
                 raise NoAnswer("no forces in the joints balance those on the displaced blocks")
-            blame = np.where(rays.one_sided, found.at_lower[:-1], 0.0)
+            blame = np.where(rays.one_sided, optimum.at_lower[:-1], 0.0)
             decides = int(rays.contact[blame.argmax()]) if blame.max(initial=0.0) > HELD else None
-            answers.append(Admissible(-found.value, decides, found.x[:-1] - found.value * rays.one_sided))
+            answers.append(Admissible(-optimum.value, decides, optimum.x[:-1] - optimum.value * rays.one_sided))
         return answers
 
     def near(self, forces: Reals, state: Reals) -> Reals | None:

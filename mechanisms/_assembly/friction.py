@@ -64,7 +64,9 @@ def friction(found: Collapse) -> Friction:
     elif limit < MOST:
         search.bound(limit, shown)
     elif not search.carries(MOST):
-        shown, glued = _glued(found, multiplier)
+        # The state with the least shear beyond the greatest friction, and the joints that have such shear.
+        shown, beyond, _ = _beyond(problem, multiplier, MOST, _most(found, problem.bearings.rays(MOST)))
+        glued = tuple(int(k) for k in np.flatnonzero(np.abs(beyond) > SAME))
         return Friction(None, glued, *problem.by_contact(problem.weight * shown))
     if not (most < MOST and not _may_carry(found, search)) and not search.carries(0.0):
         while search.high - search.low > FINE * search.high:
@@ -191,13 +193,6 @@ def _most(found: Collapse, rays: Rays) -> Reals:
     """Return upper bounds of the rays at the greatest multiplier: zero for rays that do work on the mechanism."""
     field = (found.velocity * np.array([1.0, 1.0, found.problem.frame.size])).ravel()
     return np.where(rays.one_sided & (rays.rates @ field > STILL * np.abs(field).max()), 0.0, np.inf)
-
-
-def _glued(found: Collapse, multiplier: float) -> tuple[Reals, tuple[int, ...]]:
-    """Return a state with the least shear beyond the greatest friction, and the joints that have such shear."""
-    most = _most(found, found.problem.bearings.rays(MOST))
-    state, beyond, _ = _beyond(found.problem, multiplier, MOST, most)
-    return state, tuple(int(k) for k in np.flatnonzero(np.abs(beyond) > SAME))
 
 
 def _beyond(

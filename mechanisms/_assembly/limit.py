@@ -13,13 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, AssemblyGuide
+from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
 from mechanisms._assembly.faults import DoesNotStand, NothingMoves, listed
 from mechanisms._assembly.problem import NOTHING, STRONGEST, AssemblyProblem
 from mechanisms._assembly.rays import moving
 from mechanisms._assembly.smallest import smallest
 from mechanisms._assembly.unique import kept_rays, mechanisms_of, velocity_space
-from rocking_cli.core import Direction, Reals
+from rocking_cli.core import Direction, Guide, Reals
 
 NOISE = 1e-11  # of the fastest velocity: a rate that is rounding
 
@@ -93,7 +93,7 @@ class Collapse:
 def collapse(
     blocks: Sequence[AssemblyBlock],
     contacts: Sequence[AssemblyContact],
-    guides: Sequence[AssemblyGuide] = (),
+    guides: Sequence[Guide] = (),
     direction: Direction = Direction.POSITIVE,
     *,
     dead: Reals | None = None,
@@ -108,7 +108,7 @@ def collapse(
         Blocks that can move.
     contacts : sequence of AssemblyContact
         Joints of the assembly.
-    guides : sequence of AssemblyGuide
+    guides : sequence of Guide
         Supports that restrain a point in both senses.
     direction : Direction
         Direction of the live forces: positive towards +x.

@@ -8,12 +8,12 @@ from enum import Enum
 
 import numpy as np
 
-from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, AssemblyGuide
+from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
 from mechanisms._assembly.joined import JoinedNames
 from mechanisms._assembly.limit import Collapse
 from mechanisms._assembly.rays import Frame, VelocityRows
 from mechanisms._assembly.unique import velocity_space
-from rocking_cli.core import Reals
+from rocking_cli.core import Guide, Reals
 
 STILL = 1e-8  # of the fastest velocity: a rate that is none
 SAME_PLACE = 1e-6  # of the size of the whole: hinges that are one
@@ -63,7 +63,7 @@ class AssemblyLinkage:
         Velocity of the point (0, 0) of each group [m/s], and its rotation, anticlockwise [rad/s].
     hinges : tuple of AssemblyHinge
         A point shared by k groups is k - 1 of them.
-    guides : tuple of AssemblyGuide
+    guides : tuple of Guide
         Guides of groups that move.
     states : tuple of Opening
         State of each joint.
@@ -76,7 +76,7 @@ class AssemblyLinkage:
     rest: tuple[str, ...]
     velocity: Reals
     hinges: tuple[AssemblyHinge, ...]
-    guides: tuple[AssemblyGuide, ...]
+    guides: tuple[Guide, ...]
     states: tuple[Opening, ...]
     freedom: int
 
@@ -94,7 +94,7 @@ class AssemblyLinkage:
 def linkage(
     blocks: Sequence[AssemblyBlock],
     contacts: Sequence[AssemblyContact],
-    guides: Sequence[AssemblyGuide],
+    guides: Sequence[Guide],
     found: Collapse,
 ) -> AssemblyLinkage:
     """Return the groups, hinges and guides of a mechanism.
@@ -133,7 +133,7 @@ def linkage(
             origin = complex(vx, vy) - 1j * omega * block.centroid
             velocity[first[block.name]] = origin.real, origin.imag, omega
     hinges = _hinges(contacts, states, number, SAME_PLACE * size)
-    held = tuple(guide for guide in guides if guide.body in number)
+    held = tuple(guide for guide in guides if guide.bodies[0] in number)
     return AssemblyLinkage(
         tuple(groups),
         (*(name for name, does in moves.items() if not does), *ground),
@@ -180,7 +180,7 @@ def _hinges(
 def _freedom(
     groups: Sequence[tuple[str, ...]],
     hinges: Sequence[AssemblyHinge],
-    guides: Sequence[AssemblyGuide],
+    guides: Sequence[Guide],
     number: dict[str, int],
     size: float,
 ) -> int:
@@ -191,6 +191,6 @@ def _freedom(
         (still if h.one is None else h.one, still if h.other is None else h.other, h.point, way)
         for h in hinges for way in (1 + 0j, 1j)
     ]  # fmt: skip
-    rows += [(still, number[g.body], g.at, 1j * g.along / abs(g.along)) for g in guides]
+    rows += [(still, number[g.bodies[0]], g.at, 1j * g.along / abs(g.along)) for g in guides]
     one, other, points, ways = (np.array(each) for each in zip(*rows, strict=True)) if rows else (np.zeros(0, int),) * 4
     return int(velocity_space(frame.rates(VelocityRows(one, other, points, ways)), frame).shape[1])

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, AssemblyGuide
+from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
 from mechanisms._assembly.faults import NothingMoves
 from mechanisms._assembly.programme import least
 from mechanisms._assembly.rays import Bearings, Frame, Rays, moving, scaled
 from mechanisms._assembly.sparse import beside, unit_columns
-from rocking_cli.core import Direction, Reals
+from rocking_cli.core import Direction, Guide, Reals
 
 STRONGEST = 1e4  # multiplier beyond which nothing counts as moving
 NOTHING = 1e-9  # of the weight: a force that is none; of the multiplier: what is no more than none
@@ -37,7 +37,7 @@ class AssemblyProblem:
         cls,
         blocks: Sequence[AssemblyBlock],
         contacts: Sequence[AssemblyContact],
-        guides: Sequence[AssemblyGuide] = (),
+        guides: Sequence[Guide] = (),
         direction: Direction = Direction.POSITIVE,
         *,
         dead: Reals | None = None,

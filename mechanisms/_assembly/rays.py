@@ -19,10 +19,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, AssemblyGuide
+from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
 from mechanisms._assembly.sparse import Sparse, from_entries
 from mechanisms._polygons import Points
-from rocking_cli.core import Reals
+from rocking_cli.core import Guide, Reals
 
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.intp]
@@ -114,7 +114,7 @@ class Bearings:
         cls,
         frame: Frame,
         contacts: Sequence[AssemblyContact],
-        guides: Sequence[AssemblyGuide],
+        guides: Sequence[Guide],
         ends: Sequence[tuple[int, ...]] | None = None,
     ) -> Bearings:
         """Return the forces of guides, and of joints that bear at the given `ends`; by default at both ends."""
@@ -129,7 +129,7 @@ class Bearings:
             rows += [(a, b, each.ends[end], each.normal, a, face) for end in at]
             rows.append((a, b, each.ends[at[0]], -1j * each.normal, a, face))
         for guide in guides:
-            body = number[guide.body]
+            body = number[guide.bodies[0]]
             rows.append((-1, body, guide.at, 1j * guide.along / abs(guide.along), body, -1))
         one, other, points, ways, carried, turned = zip(*rows, strict=True) if rows else ((),) * 6
         return cls(

@@ -61,7 +61,7 @@ def fragility(
     """
     from rocking_cli.studies.fragility import assess, campaign, table, workers
     from rocking_cli.studies.fragility.definition import Definition
-    from rocking_cli.studies.fragility.hazard import HazardCurve
+    from rocking_cli.studies.fragility.hazard_curve import HazardCurve
     from rocking_cli.studies.fragility.intensity import label
     from rocking_cli.studies.fragility.quantiles import all_quantiles
     from rocking_cli.studies.fragility.store import Store

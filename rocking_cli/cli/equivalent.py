@@ -8,6 +8,7 @@ import click
 
 from rocking_cli.cli import options, terminal
 from rocking_cli.cli.groups import Output, SizedPulse
+from rocking_cli.cli.help import Command
 from rocking_cli.errors import INCOMPLETE, InputError
 
 if TYPE_CHECKING:
@@ -26,11 +27,7 @@ def _eta(ctx: click.Context, param: click.Parameter, value: str) -> float | str:
     return eta
 
 
-@click.command(
-    cls=options.Renamed,
-    renamed={"--pulse": "--shape"},
-    short_help="Find the equivalent pulses of several structures.",
-)
+@click.command(cls=Command, short_help="Find the equivalent pulses of several structures.")
 @click.argument("files", metavar="FILE FILE...", nargs=-1, type=click.Path())
 @options.sized_pulse("1", "-1", required=True)
 @click.option(

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from rocking_cli.cli import options, terminal
+from rocking_cli.cli.help import Command
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import Finite
 from rocking_cli.views.view import heading
@@ -24,11 +25,7 @@ def _checked(
     return values
 
 
-@click.command(
-    cls=options.Renamed,
-    renamed={"--accel": "--a"},
-    short_help="Compute the errors of the equivalent block.",
-)
+@click.command(cls=Command, short_help="Compute the errors of the equivalent block.")
 @click.argument("file", required=False, type=click.Path())
 @click.option(
     "--at", "amplitudes", type=Finite(), multiple=True, default=(0.5,), show_default="0.5", metavar="RATIO",

@@ -9,6 +9,7 @@ import click
 
 from rocking_cli.cli import motion_files, options, terminal
 from rocking_cli.cli.groups import ReadingOptions
+from rocking_cli.cli.help import Command
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
@@ -19,11 +20,7 @@ NUMBERS = ("3", "5", "6", "7", "8", "10", "11", "12", "13", "14", "15")
 OF_HISTORIES = {14, 15}
 
 
-@click.command(
-    cls=options.Renamed,
-    renamed={"--folder": "--out"},
-    short_help="Recompute the figures of the paper: plots and data.",
-)
+@click.command(cls=Command, short_help="Recompute the figures of the paper: plots and data.")
 @click.argument("number", type=click.Choice([*NUMBERS, "all"]))
 @click.option(
     "--record",

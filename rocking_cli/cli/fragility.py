@@ -11,6 +11,7 @@ import click
 
 from rocking_cli.cli import endings, options, terminal
 from rocking_cli.cli.defaults import from_default
+from rocking_cli.cli.help import Command
 from rocking_cli.cli.study_output import CurveOutput, show_study
 from rocking_cli.errors import INCOMPLETE
 
@@ -45,11 +46,7 @@ class Running:
         return workers.cluster(self.scheduler) if self.scheduler is not None else workers.threads(self.jobs)
 
 
-@click.command(
-    cls=options.Renamed,
-    renamed={"--pictures": "--plot"},
-    short_help="Run a fragility study and fit its curves.",
-)
+@click.command(cls=Command, short_help="Run a fragility study and fit its curves.")
 @click.argument("file", metavar="STUDY.yaml", type=click.Path())
 @click.option("--check", is_flag=True, help="Show what would be run, without running it.")
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help=options.HELP["jobs"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import wraps
 from pathlib import Path
@@ -10,8 +10,8 @@ from typing import Any
 
 import click
 
-from rocking_cli.cli import complete, terminal
-from rocking_cli.cli.help import Command, RecordOption
+from rocking_cli.cli import complete
+from rocking_cli.cli.help import RecordOption
 from rocking_cli.cli.quantities import (
     AMPLITUDE,
     INTERVAL,
@@ -142,32 +142,6 @@ curve_plots: Decorator = click.option(
     "--plot", metavar="FOLDER", help="Plot every curve into this folder, created if missing."
 )
 """The folder of the plots of a fragility study: `plot`."""
-
-
-class Renamed(Command):
-    """Command with options that had other names, which still work, with a note on the new name.
-
-    Parameters
-    ----------
-    renamed : mapping of str to str
-        The current option by its old name, such as `{"--periods": "--period"}`.
-    """
-
-    def __init__(self, *args: Any, renamed: Mapping[str, str], **more: Any) -> None:
-        super().__init__(*args, **more)
-        self.renamed = renamed
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Replace old names of options by those of today, and read the command line."""
-        end = args.index("--") if "--" in args else len(args)
-        return super().parse_args(ctx, [*map(self._today, args[:end]), *args[end:]])
-
-    def _today(self, argument: str) -> str:
-        old, equals, value = argument.partition("=")
-        if old not in self.renamed:
-            return argument
-        terminal.note(f"{old} has been renamed to {self.renamed[old]}")
-        return f"{self.renamed[old]}{equals}{value}"
 
 
 def grouped(**groups: type) -> Decorator:

@@ -9,6 +9,7 @@ import click
 
 from rocking_cli.cli import options, terminal
 from rocking_cli.cli.groups import Output, polarities
+from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import AMPLITUDE, NUMBER, PERIOD, Finite, Range
 from rocking_cli.errors import INCOMPLETE, InputError
 
@@ -52,11 +53,7 @@ class Plane:
     points: int | None
 
 
-@click.command(
-    cls=options.Renamed,
-    renamed={"--pulse": "--shape", "--periods": "--period", "--accelerations": "--ag"},
-    short_help="Map the pulses that overturn a structure.",
-)
+@click.command(cls=Command, short_help="Map the pulses that overturn a structure.")
 @click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
 @click.option(
     "--compare", is_flag=True, help="Compare the smallest overturning amplitudes of several FILEs instead of a map."

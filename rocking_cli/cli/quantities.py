@@ -51,8 +51,8 @@ class Unit(click.Choice):  # type: ignore[type-arg,unused-ignore]  # generic in 
         """Return the name of a spelling, or fail naming the option and the choices."""
         if value in UNITS:
             return value
+        from rocking_cli.excitation.records.record_units import canonical
         from rocking_cli.excitation.records.sensor import quantity_of
-        from rocking_cli.excitation.records.units import canonical
 
         found = canonical(str(value))
         if found is None and quantity_of(str(value)) is not None:
@@ -180,12 +180,12 @@ class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # gene
 def _acceleration(number: float, spelling: str) -> float:
     """Return an acceleration in g; its unit may have any spelling found in the headers of records."""
     from rocking_cli.excitation.base import STANDARD_GRAVITY
-    from rocking_cli.excitation.records import units
+    from rocking_cli.excitation.records import record_units
 
-    unit = units.canonical(spelling)
+    unit = record_units.canonical(spelling)
     if unit is None:
         raise UnitError(f"{spelling!r} is not a unit of acceleration", f"give one of {', '.join(UNITS)}")
-    return number if unit == "g" else number * units.UNITS[unit] / STANDARD_GRAVITY
+    return number if unit == "g" else number * record_units.UNITS[unit] / STANDARD_GRAVITY
 
 
 class Azimuth(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only

@@ -13,6 +13,7 @@ import click
 
 from rocking_cli.cli import motion_files, options, terminal
 from rocking_cli.cli.groups import Output, ReadingOptions, Scaling
+from rocking_cli.cli.help import Command
 from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import PERIOD, Range, Share
 from rocking_cli.errors import INCOMPLETE, InputError, Problem
@@ -58,18 +59,7 @@ class More:
         return structures.prepared([self.structure])
 
 
-def _folder_of_today(ctx: click.Context, param: click.Parameter, value: str | None) -> None:
-    """Accept `--to csv`, the old option that wrote into this folder."""
-    if value is not None:
-        terminal.note("--to csv has been renamed to --out, with a file or a folder: --out . is this folder")
-        ctx.params["out"] = Path()
-
-
-@click.command(
-    cls=options.Renamed,
-    renamed={"--pulse": "--fit-pulse"},
-    short_help="Inspect records: contents, strength and possible defects.",
-)
+@click.command(cls=Command, short_help="Inspect records: contents, strength and possible defects.")
 @click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path())
 @options.reading
 @options.scaling("1", "-1", "both")
@@ -107,7 +97,6 @@ def _folder_of_today(ctx: click.Context, param: click.Parameter, value: str | No
     "--period", type=Range(PERIOD), metavar="LOW:HIGH", help="Periods of the spectrum, in s.  [default: 0.02:10]"
 )
 @click.option("--damping", type=Share(), callback=options.share, help=f"{options.HELP['damping']}  [default: 5%]")
-@click.option("--to", type=click.Choice(["csv"]), hidden=True, expose_value=False, callback=_folder_of_today)
 @options.plot("Plot one record, or the spectra")
 @options.as_json
 @click.pass_context

@@ -7,13 +7,12 @@ from pathlib import Path
 import click
 
 from rocking_cli.cli import complete, options, terminal
+from rocking_cli.cli.help import Command
 from rocking_cli.cli.study_output import CurveOutput, Tables, show_study
 from rocking_cli.errors import INCOMPLETE
 
 
-@click.command(
-    cls=options.Renamed, renamed={"--pictures": "--plot"}, short_help="Summarise and export the store of a study."
-)
+@click.command(cls=Command, short_help="Summarise and export the store of a study.")
 @click.argument("file", metavar="STORE.db", type=click.Path())
 @options.out(".csv", ".parquet", what="Write all runs (.csv or .parquet).")
 @click.option(

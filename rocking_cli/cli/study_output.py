@@ -109,7 +109,7 @@ def _fitted(
     import numpy as np
 
     from rocking_cli.studies.fragility import assess
-    from rocking_cli.studies.fragility.hazard import HazardCurve
+    from rocking_cli.studies.fragility.hazard_curve import HazardCurve
 
     points = store.fact("hazard")
     hazard = HazardCurve(*np.array(points)) if points is not None else None

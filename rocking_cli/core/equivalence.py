@@ -149,8 +149,9 @@ def _held_to_numbers(mechanism: Mechanism) -> Iterator[None]:
     except ArithmeticError as error:
         raise _beyond_range(error) from error
     except PluginError as error:
-        if _too_large(error.__cause__):
-            raise _beyond_range(error.__cause__) from error
+        cause = error.__cause__  # an overflow is caused by sizes that are too large, not by the plugin
+        if isinstance(cause, OverflowError) or (isinstance(cause, FloatingPointError) and "overflow" in str(cause)):
+            raise _beyond_range(cause) from error
         raise
     except RockingError:
         raise
@@ -163,11 +164,6 @@ def _beyond_range(error: BaseException | None) -> StructureError:
     return StructureError(
         f"its equivalent block is beyond the range of numbers ({error}): check the sizes and their units"
     )
-
-
-def _too_large(error: BaseException | None) -> bool:
-    """Return whether an error is an overflow, caused by sizes that are too large and not by the plugin."""
-    return isinstance(error, OverflowError) or (isinstance(error, FloatingPointError) and "overflow" in str(error))
 
 
 def _one_direction(mechanism: Mechanism, direction: Direction, found: Statics) -> EquivalentBlock:

@@ -29,10 +29,6 @@ LATER = {"dampers": "a damper", "inerters": "an inerter"}
 POWERS = {"m": 1, "m2": 2, "m3": 3, "kg m2": 2}  # of a length, by the unit of a field
 
 
-def _is_mass(unit: object) -> bool:
-    return isinstance(unit, str) and re.match(r"(kg|t)\b", unit) is not None
-
-
 def _multiplied(value: Any, factor: float) -> Any:
     """Return a number, or every number of nested lists, times a factor; other values are returned unchanged."""
     if isinstance(value, (list, tuple)):
@@ -224,9 +220,11 @@ class Given(Described):
         By default, whether a field with a unit of mass, such as kg or kg/m3, is given. A mechanism that has its masses
         from elsewhere overrides this property.
         """
-        extras = {key: info.json_schema_extra for key, info in type(self).model_fields.items()}
-        of_mass = [key for key, extra in extras.items() if isinstance(extra, dict) and _is_mass(extra.get("unit"))]
-        return any(getattr(self, key) is not None for key in of_mass)
+        for key, info in type(self).model_fields.items():
+            unit = info.json_schema_extra.get("unit") if isinstance(info.json_schema_extra, dict) else None
+            if isinstance(unit, str) and re.match(r"(kg|t)\b", unit) and getattr(self, key) is not None:
+                return True
+        return False
 
     @property
     def is_laden(self) -> bool:

@@ -37,7 +37,7 @@ from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.restitution import kinematic_restitution
 from rocking_cli.core.sketch import Sketch
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.plugins.errors import guard
+from rocking_cli.plugins.errors import failed, guard
 
 ANSWERS = (
     "bodies", "motion", "limit", "sketch", "joints", "pieces", "piece_at", "contacts", "alike", "volume", "total_mass",
@@ -101,7 +101,7 @@ class Mechanism(Given, ABC):
     def __pydantic_init_subclass__(cls, **named: Any) -> None:
         """Wrap the methods of a plugin, so that any failure in them is reported as an error of the plugin."""
         super().__pydantic_init_subclass__(**named)
-        guard(cls, ANSWERS, _failed, but=RefusedFields)
+        guard(cls, ANSWERS, failed("mechanism", "mechanism"), but=RefusedFields)
         for name in OF_THE_BARE:
             if isfunction(own := vars(cls).get(name)):
                 setattr(cls, name, _of_the_bare(own))
@@ -376,7 +376,3 @@ def _of_the_bare(own: Callable[..., Any]) -> Callable[..., Any]:
         return own(self, *args, **named) if self.is_bare else general(self, *args, **named)
 
     return answer
-
-
-def _failed(cls: type, method: str) -> str:
-    return f"the mechanism {getattr(cls, 'mechanism', cls.__name__)} failed in {method}"

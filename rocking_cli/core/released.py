@@ -226,12 +226,10 @@ class Pieces:
 
     def _spread(self, spot: Spot, way: Points) -> Reals:
         """Return the derivative of a point's velocity along a unit vector by all coordinates, shape (n, 3 pieces)."""
-        return self._velocity(self._piece(spot), self._carried(self._piece(spot), spot.at), way)
-
-    def _velocity(self, name: str, at: Points, way: Points) -> Reals:
+        name = self._piece(spot)
         found = np.zeros((self.phi.size, 3 * len(self._parts)))
         k = self._column[name]
-        found[:, k : k + 3] = self._factors(name, at, way)
+        found[:, k : k + 3] = self._factors(name, self._carried(name, spot.at), way)
         return found
 
     def _factors(self, name: str, at: Points, way: Points) -> Reals:
@@ -268,26 +266,26 @@ class Pieces:
         at, g = mechanism.coefficients(self.phi, direction), mechanism.gravity
         # phi.. = -(J phi.^2 + (g + v_g'') G + Q + s B u_g'')/I   [Eq. 8]
         turning = -np.stack([g * at.G + at.Q, int(direction) * at.B, at.J, at.G], axis=-1) / at.I[:, None]
-        found = np.zeros((n, 3 * len(self._parts), 4))
+        forces = np.zeros((n, 3 * len(self._parts), 4))
         along = self.momentum(self.dq)
-        found += along[..., None] * turning[:, None, :]
-        found[..., RATE] += self.momentum(self.ddq)
-        for each in self._parts:
-            k = self._column[each.body.name]
-            found[:, k, PUSH] += each.body.mass
-            found[:, k + 1, ONE] += each.body.mass * g
-            found[:, k + 1, WEIGHT] += each.body.mass
+        forces += along[..., None] * turning[:, None, :]
+        forces[..., RATE] += self.momentum(self.ddq)
+        for part in self._parts:
+            k = self._column[part.body.name]
+            forces[:, k, PUSH] += part.body.mass
+            forces[:, k + 1, ONE] += part.body.mass * g
+            forces[:, k + 1, WEIGHT] += part.body.mass
         for thing in self._masses:
             across, up = (self._spread(thing.spot, np.full(n, way)) for way in (1 + 0j, 1j))
-            found[..., PUSH] += thing.mass * thing.horizontal * across
-            found[..., ONE] += thing.mass * thing.weight * g * up
-            found[..., WEIGHT] += thing.mass * thing.weight * up
+            forces[..., PUSH] += thing.mass * thing.horizontal * across
+            forces[..., ONE] += thing.mass * thing.weight * g * up
+            forces[..., WEIGHT] += thing.mass * thing.weight * up
             # The point of a body has an acceleration of its own beside those of the coordinates: -psi.^2 times its arm.
             name = self._piece(thing.spot)
             arm = self._carried(name, thing.spot.at) - self._centres[name][0]
             inwards = -(self._motions[name].dpsi ** 2) * arm
             moved = thing.horizontal * inwards.real[:, None] * across + thing.vertical * inwards.imag[:, None] * up
-            found[..., RATE] += thing.mass * moved
+            forces[..., RATE] += thing.mass * moved
 
         def follow(spot: Spot) -> object:
             return self._path(spot)
@@ -297,8 +295,8 @@ class Pieces:
                 if self._moves(push.spot):
                     size = np.abs(push.force)
                     way = np.where(size > 0, push.force, 1.0) / np.where(size > 0, size, 1.0)
-                    found[..., ONE] -= size[:, None] * self._spread(push.spot, way.astype(np.complex128))
-        return found
+                    forces[..., ONE] -= size[:, None] * self._spread(push.spot, way.astype(np.complex128))
+        return forces
 
     def _path(self, spot: Spot) -> object:
         from rocking_cli.core.hung.attached import Path

@@ -112,7 +112,10 @@ def follow(
     """
     every = motion.every if motion is not None else 1
     dt = every * motion.dt if motion is not None else RELEASE_DT  # between the samples that are kept
-    npts = _samples(motion) if motion is not None else 0
+    npts = 0
+    if motion is not None:  # the samples that are kept cover both components
+        longest = motion.vertical.duration if motion.vertical is not None else 0.0
+        npts = (max(motion.npts, ceil(longest / motion.dt) + 1) - 1) // every + 1
     samples = max(npts, 1) + round(min(tail / dt, 2.0 * MOST_SAMPLES))
     if samples > MOST_SAMPLES:
         many = f"{samples:,}" if samples < MOST_SAMPLES + npts else f"more than {MOST_SAMPLES:,}"
@@ -153,9 +156,3 @@ def follow(
         ends_at_limit=model.ends_at_limit,
         check=check_of(model.joints, marks[0]),
     )
-
-
-def _samples(motion: GroundMotion) -> int:
-    """Return how many samples of the horizontal component to keep, so that they cover both components."""
-    longest = motion.vertical.duration if motion.vertical is not None else 0.0
-    return (max(motion.npts, ceil(longest / motion.dt) + 1) - 1) // motion.every + 1

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core import Mechanism
 from rocking_cli.core.released import ONE, PUSH, RATE, Released, Undetermined, impulses, released
 from rocking_cli.core.statics import Statics
 from rocking_cli.core.strength import Strength
@@ -208,7 +208,10 @@ def joints_of(
     sides = list(zip(mechanism.sides, tables, strict=True))
     redundant = False
     try:
-        answers = [_determined(mechanism, direction, _at(table, cells)) for direction, table in sides]
+        answers: list[tuple[Released | None, Reals | None]] = [
+            (released(mechanism, direction, _at(table, cells)), impulses(mechanism, direction.opposite))
+            for direction, table in sides
+        ]
     except Undetermined as error:
         if not error.redundant:
             return None
@@ -217,10 +220,10 @@ def joints_of(
             modes(mechanism, direction, _at(table, cells), side.reference)
             for (direction, table), side in zip(sides, statics, strict=True)
         ]
-    found = [each for each, _ in answers if each is not None]
+    found = [one for one, _ in answers if one is not None]
     if len(found) < len(sides):
         return None
-    labels = list(dict.fromkeys(each.label for one in found for each in one.contacts if each.held is None))
+    labels = list(dict.fromkeys(contact.label for one in found for contact in one.contacts if contact.held is None))
     contacts, bearing = _contacts(mechanism, found, labels)
     most = max(one.force.shape[1] for one in found)
     weight = mechanism.gravity * sum(body.mass for body in mechanism.weighed())
@@ -245,11 +248,6 @@ def joints_of(
         redundant, _calm(within, tables, statics),
         len(mechanism.bodies()) == 1,
     )  # fmt: skip
-
-
-def _determined(mechanism: Mechanism, direction: Direction, phi: Reals) -> tuple[Released | None, Reals | None]:
-    """Return the tables of contact forces of a direction, and its impulses. Raises `Undetermined`."""
-    return released(mechanism, direction, phi), impulses(mechanism, direction.opposite)
 
 
 def _at(table: DirectionTable, cells: int) -> Reals:

@@ -151,7 +151,11 @@ def completed(model: Model, mechanism: Mechanism) -> Model:
     """Return a model with its scatter, and either made one-sided or, if it rocks both ways, with bounds of eta."""
     model = replace(model, scatter=_scatter(mechanism))
     if not mechanism.rocks_both_ways:
-        return _one_sided(model, mechanism.directions[0])
+        # It never uplifts in the other direction, and it rebounds at an impact.
+        direction, numbers = mechanism.directions[0], model.numbers.copy()
+        numbers[0 if direction < 0 else 1, LAMBDA] = np.inf
+        numbers[:, ONE_SIDED] = 1.0
+        return replace(model, numbers=numbers, one_sided=direction, most_eta=(1.0, 1.0))
     most_eta = mechanism.greatest_restitution(Direction.POSITIVE), mechanism.greatest_restitution(Direction.NEGATIVE)
     return replace(model, most_eta=most_eta)
 
@@ -164,14 +168,6 @@ def _scatter(mechanism: Mechanism) -> Scatter:
         usual if given.restitution is None else given.restitution,
         SLENDERNESS if given.slenderness is None else given.slenderness,
     )
-
-
-def _one_sided(model: Model, direction: Direction) -> Model:
-    """Return a model that never uplifts in the other direction, and that rebounds at an impact."""
-    numbers = model.numbers.copy()
-    numbers[0 if direction < 0 else 1, LAMBDA] = np.inf
-    numbers[:, ONE_SIDED] = 1.0
-    return replace(model, numbers=numbers, one_sided=direction, most_eta=(1.0, 1.0))
 
 
 def nonlinear_model(mechanism: Mechanism, statics: tuple[Statics, Statics], etas: tuple[float, float]) -> Model:
@@ -196,13 +192,16 @@ def nonlinear_model(mechanism: Mechanism, statics: tuple[Statics, Statics], etas
         row[ETA], row[RATE] = eta, table.rest_rate
         row[REST] = REST_RATE * p * side.reference / table.rest_rate
         row[Q_END], row[PER_CELL], row[P], row[GRAVITY] = table.end, 1 / table.cell, p, mechanism.gravity
-        row[HELD] = _held_at_rest(mechanism, direction)
+        rest = mechanism.coefficients(np.zeros(1), direction)
+        row[HELD] = rest.Q[0] / (mechanism.gravity * rest.B[0])  # the part of lambda that does not scale with g
         numbers.append(row)
     forces, angles, certain = (
         np.stack([getattr(table, part) for table in tables], axis=1) for part in ("forces", "angles", "certain")
     )
-    tied = any(table.held.size for table in tables)
-    held = np.stack([_rows(table.held, len(table.forces)) for table in tables], axis=1) if tied else np.zeros((0, 2, 5))
+    held = np.zeros((0, 2, 5))
+    if any(table.held.size for table in tables):
+        none = np.zeros((len(forces), 5))
+        held = np.stack([table.held if table.held.size else none for table in tables], axis=1)
     corners = np.stack([table.corners for table in tables], axis=1)
     phi_cr = statics[0].reference, statics[1].reference
     ends = statics[0].phi_cr is None, statics[1].phi_cr is None
@@ -213,22 +212,12 @@ def nonlinear_model(mechanism: Mechanism, statics: tuple[Statics, Statics], etas
     )  # fmt: skip
 
 
-def _rows(held: Reals, count: int) -> Reals:
-    return held if held.size else np.zeros((count, 5))
-
-
 def _rate(mechanism: Mechanism, direction: Direction, statics: Statics) -> float:
     """Return the rate of the motion in a direction [rad/s]: p, or else a frequency from the moment at rest."""
     at = mechanism.coefficients(np.array([0.0, statics.reference]), direction)
     if statics.phi_cr is not None and (stiffness := -float(at.stiffness(mechanism.gravity)[1])) > 0:
         return sqrt(mechanism.gravity * stiffness / float(at.I[1]))  # Eq. 17
     return sqrt(mechanism.gravity * float(at.restoring(mechanism.gravity)[0]) / (float(at.I[0]) * statics.reference))
-
-
-def _held_at_rest(mechanism: Mechanism, direction: Direction) -> float:
-    """Return the part of lambda that does not scale with g, Q(0)/(g B(0))."""
-    rest = mechanism.coefficients(np.zeros(1), direction)
-    return float(rest.Q[0] / (mechanism.gravity * rest.B[0]))
 
 
 def with_held(model: Model, mechanism: Mechanism, blocks: tuple[EquivalentBlock, EquivalentBlock]) -> Model:

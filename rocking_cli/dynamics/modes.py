@@ -96,19 +96,19 @@ def modes(mechanism: Mechanism, direction: Direction, phi: Reals, critical: floa
     jump = there.jump(mechanism)
     for velocity in _thrown(there, jump) if jump is not None else ():
         follow(velocity, 0)
-    found = [each for each in known.values() if each is not None]
-    labels = [Contact((None, None), (0j,), name=there.label(each)) for each in found]
+    existing = [mode for mode in known.values() if mode is not None]
+    labels = [Contact((None, None), (0j,), name=there.label(mode)) for mode in existing]
     names: dict[str, int] = {}
     for k, label in enumerate(labels):  # several modes may open one joint most
         names[label.name] = names.get(label.name, 0) + 1
         again = f" ({names[label.name]})" if names[label.name] > 1 else ""
         labels[k] = Contact((None, None), (0j,), name=f"{label.name}{again}")
-    force = np.stack([each.force for each in found], axis=1) if found else np.zeros((phi.size, 0, 4))
-    compliance = np.stack([each.compliance for each in found], axis=1) if found else np.zeros((phi.size, 0))
+    force = np.stack([mode.force for mode in existing], axis=1) if existing else np.zeros((phi.size, 0, 4))
+    compliance = np.stack([mode.compliance for mode in existing], axis=1) if existing else np.zeros((phi.size, 0))
     struck = None
     if jump is not None:  # a mode that does not exist at rest has no impulse that could be missing
-        struck = np.array([each.velocity[0] @ jump * each.exists[0] for each in found]).reshape(-1, 2)
-    rows: list[tuple[tuple[int, ...], int | None]] = [((k,), k) for k in range(len(found))]
+        struck = np.array([mode.velocity[0] @ jump * mode.exists[0] for mode in existing]).reshape(-1, 2)
+    rows: list[tuple[tuple[int, ...], int | None]] = [((k,), k) for k in range(len(existing))]
     return Modes(Released(labels, rows, force, compliance), struck)
 
 

@@ -186,12 +186,14 @@ def bearing(histories: Mapping[ModelName, History], called: Mapping[ModelName, s
     called : mapping of str to str
         Names of the models in the sentences.
     """
-    found = agreements(histories)
-    if not found:
+    agreed = agreements(histories)
+    if not agreed:
         return _without_the_structure(histories, called)
     best = histories["nonlinear"]
-    said = [_bears(called[name], each, histories[name], best) for name, each in found.items()]
-    if any(each.peak_error is not None and each.grade is not Grade.DISREGARD for each in found.values()):
+    said = [_bears(called[name], agreement, histories[name], best) for name, agreement in agreed.items()]
+    if any(
+        agreement.peak_error is not None and agreement.grade is not Grade.DISREGARD for agreement in agreed.values()
+    ):
         said.append(
             "This holds for this ground motion only; under another one the equivalent block may be more or less "
             "accurate."

@@ -13,14 +13,13 @@ from rocking_cli.dynamics.history import RTOL, TAIL, History, check_rtol
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.plugins.errors import blame, guard
+from rocking_cli.plugins.errors import blame, failed, guard
 from rocking_cli.structure import Structure
 
 Knowledge = Literal["linear models", "releases", "vertical components", "joints"]
 
 
-def _failed(own: Any, method: str) -> str:
-    return f"the engine {own.name} failed in {method}"
+_failed = failed("engine", "name")
 
 
 class Engine(ABC):
@@ -122,9 +121,9 @@ class Engine(ABC):
         if lacking := [what for what, is_needed in needed.items() if is_needed and what not in self.knows]:
             raise InputError(f"the engine {self.name} does not simulate {' or '.join(lacking)}")
         found = self.history(structure, motion, model=model, release=release or 0.0, tail=tail, rtol=rtol)
-        with blame(_failed(self, "history"), type(self).__module__):
+        with blame(_failed(type(self), "history"), type(self).__module__):
             if fault := _fault(found, model, checks_joints="joints" in self.knows):
-                raise PluginError(f"{_failed(self, 'history')}: {fault}")
+                raise PluginError(f"{_failed(type(self), 'history')}: {fault}")
         return found
 
 

@@ -60,7 +60,9 @@ class Measures:
 
 def arias_build_up(motion: GroundMotion) -> Reals:
     """Return the Arias intensity up to each sample [m/s]; divided by its last value, this is a Husid plot."""
-    return from_zero(_squared(motion)) * (pi / (2 * STANDARD_GRAVITY))
+    a, b = motion.acceleration[:-1], motion.acceleration[1:]
+    squared = motion.dt / 3 * (a * a + a * b + b * b)  # integral over each sampling interval [m2/s3]
+    return from_zero(squared) * (pi / (2 * STANDARD_GRAVITY))
 
 
 def time_of_share(motion: GroundMotion, share: float) -> float | None:
@@ -108,12 +110,6 @@ def measure(motion: GroundMotion) -> Measures:
     if not all(isfinite(value) for value in (found.pgv, found.pgd, found.arias)):
         raise InputError(f"{motion.name}: accelerations of {motion.pga_g:.3g} g are beyond the range of numbers")
     return found
-
-
-def _squared(motion: GroundMotion) -> Reals:
-    """Return the integral of the squared acceleration over each sampling interval [m2/s3]."""
-    a, b = motion.acceleration[:-1], motion.acceleration[1:]
-    return motion.dt / 3 * (a * a + a * b + b * b)
 
 
 def _peak_velocity(motion: GroundMotion, v: Reals) -> float:

@@ -43,9 +43,9 @@ def select(place: str, folder: Path | None = None) -> list[Path]:
     if pattern.is_absolute():
         base, pattern = Path(pattern.anchor), pattern.relative_to(pattern.anchor)
     try:
-        found = sorted(each for each in base.glob(str(pattern)) if each.is_file() and not each.name.startswith("."))
+        files = sorted(file for file in base.glob(str(pattern)) if file.is_file() and not file.name.startswith("."))
     except (ValueError, NotImplementedError) as error:
         raise InputError(Problem(f"not a pattern of file names: {error}", place)) from None
-    if not found:
+    if not files:
         raise InputError(Problem("no file matches this pattern", place, hint="check the path"))
-    return found
+    return files

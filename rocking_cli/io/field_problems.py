@@ -54,20 +54,20 @@ def problems(
 
 def of_arguments(model: type[BaseModel], errors: Iterable[ErrorDetails], owner: str) -> list[Problem]:
     """Return the errors of a validation of arguments in Python as problems, each with the name of its argument."""
-    found: dict[Place, Problem] = {}
+    by_place: dict[Place, Problem] = {}
     errors = _of_words(errors)
     places = [_place_in(model, error) for error in errors]
     for error, place in zip(errors, places, strict=True):
         if error["type"] in OF_KIND and isinstance(error["input"], dict | list) and place[-1:] != error["loc"][-1:]:
             others = zip(errors, places, strict=True)
-            if any(at[: len(place)] == place and (each["type"] not in OF_KIND or at != place) for each, at in others):
+            if any(at[: len(place)] == place and (other["type"] not in OF_KIND or at != place) for other, at in others):
                 continue  # of another branch of a union than the one that was meant
         place = place or tuple(error["loc"][:1])
         if error["type"] == "geometry":
             place = (*place, *error["ctx"]["field"])
         message, hint = say(model, place or (owner,), error, owner, f"`rocking mechanisms {owner}` lists the fields")
-        found.setdefault(place, Problem(message, field=spell(place) if place else None, hint=hint))
-    return list(found.values())
+        by_place.setdefault(place, Problem(message, field=spell(place) if place else None, hint=hint))
+    return list(by_place.values())
 
 
 def _place_in(model: type[BaseModel], error: ErrorDetails) -> Place:
@@ -105,28 +105,25 @@ def _concerns(data: Any, error: ErrorDetails, errors: Iterable[ErrorDetails]) ->
     for part in place:
         given = given.get(part) if isinstance(given, dict) else given[part]
     if isinstance(given, str):
-        others = {each["type"] for each in errors if place_of(data, each) == place}
+        others = {other["type"] for other in errors if place_of(data, other) == place}
         return error["type"] not in ("model_type", "dict_type", "list_type") or "literal_error" not in others
     if not isinstance(given, dict | list) or error["type"] in OF_KIND[type(given)]:
         return True
-    found = [(each["type"], place_of(data, each)) for each in errors]
-    return not any(at[: len(place)] == place and (kind not in OF_KIND or len(at) > len(place)) for kind, at in found)
+    kinds = [(other["type"], place_of(data, other)) for other in errors]
+    return not any(at[: len(place)] == place and (kind not in OF_KIND or len(at) > len(place)) for kind, at in kinds)
 
 
 def _of_words(errors: Iterable[ErrorDetails]) -> list[ErrorDetails]:
     """Return the errors without those that a wrong word is not a number, where a number or a word is allowed."""
     errors = list(errors)
-    words = {error["loc"][:-1] for error in errors if error["type"] == "literal_error" and _is_branch(error["loc"][-1])}
+    wrong = [error["loc"] for error in errors if error["type"] == "literal_error"]
+    # The last part is pydantic's name of a union's branch that accepts words only.
+    words = {place[:-1] for place in wrong if str(place[-1]).startswith("literal[")}
     return [
         error
         for error in errors
         if not (error["type"] == "float_type" and isinstance(error["input"], str) and error["loc"][:-1] in words)
     ]
-
-
-def _is_branch(part: int | str) -> bool:
-    """Return whether a part of a path is pydantic's name of a union's branch that accepts words only."""
-    return isinstance(part, str) and part.startswith("literal[")
 
 
 BOUNDS = {

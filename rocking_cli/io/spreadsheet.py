@@ -77,7 +77,8 @@ def parse_sheet(raw: bytes, file: str) -> Spreadsheet:
     if found := re.match(r"(?i)\s*\"?sep=(.)\"?\r?\n", text):  # what some spreadsheets begin with
         text, skipped = text[found.end() :], found[0].count("\n")
     first = next((line for line in _LINE_END.split(text[:100_000]) if line.strip(" \t,;")), "")
-    separator = found[1] if found else _separator(first)
+    bare = re.sub(r'"[^"]*"|\[[^\]]*\]', "", first)
+    separator = found[1] if found else max(SEPARATORS, key=bare.count)
     lines = _cells(text, separator, file, skipped)
     try:
         line, headings = next(lines)
@@ -102,12 +103,6 @@ def _decoded(raw: bytes, file: str) -> str:
     if "\0" in text:
         raise InputError(Problem("this is not a table: it is binary", file, hint="save the sheet as CSV"))
     return text
-
-
-def _separator(line: str) -> str:
-    """Return the character that separates the cells of a line: the most frequent one outside of quotes."""
-    bare = re.sub(r'"[^"]*"|\[[^\]]*\]', "", line)
-    return max(SEPARATORS, key=bare.count)
 
 
 def _cells(text: str, separator: str, file: str, skipped: int) -> Iterator[tuple[int, list[str]]]:

@@ -66,12 +66,18 @@ def guard(
             setattr(cls, name, _guarded(method, cls.__module__, what, but))
 
 
+def failed(kind: str, attribute: str) -> Callable[[Any, str], str]:
+    """Return the beginning of messages on failures of a kind of plugin, whose name is in an attribute, for `guard`."""
+    return lambda own, method: f"the {kind} {getattr(own, attribute, own.__name__)} failed in {method}"
+
+
 def own_traceback(error: BaseException | None) -> str | None:
     """Return the traceback of a plugin's error that caused this one; None if there is none."""
     while error is not None:
         if isinstance(error, PluginError) and error.__cause__ is not None:
             told = traceback.TracebackException.from_exception(error.__cause__)
-            own = [frame for frame in told.stack if not _on_the_way(frame.filename)]
+            # Frames that only call or import the plugin are of no use to its author.
+            own = [frame for frame in told.stack if frame.filename != __file__ and "importlib" not in frame.filename]
             told.stack = traceback.StackSummary.from_list(own or list(told.stack))
             return "".join(told.format()).rstrip("\n")
         error = error.__cause__
@@ -96,11 +102,6 @@ def _guarded(
             return method(self, *args, **named)
 
     return guarded
-
-
-def _on_the_way(file: str) -> bool:
-    """Return whether a frame of the traceback only calls or imports a plugin, and is of no use to its author."""
-    return file == __file__ or "importlib" in file
 
 
 def _place(module: str, error: BaseException) -> str:

@@ -10,8 +10,8 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.records.record_units import canonical
 from rocking_cli.excitation.records.sensor import Gain, units_of
-from rocking_cli.excitation.records.units import canonical
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import Factor, parse_steps

@@ -74,13 +74,9 @@ class Reading:
             step = max(step, smallest_step(second))
             measured = turned(measured, second, self.azimuth)
         corrected = process(measured, self.steps, accelerations=quantity == "acceleration")
-        return self.on_floor(as_acceleration(corrected, quantity, self._left_of(step)))
-
-    def _left_of(self, step: float) -> float:
-        """Return the size that a step of the last digit has after the corrections; 0 after a low-pass filter."""
-        for each in self.steps:
+        for each in self.steps:  # what they make of a step of the last digit
             step *= 0.0 if isinstance(each, Lowpass) else abs(each.by) if isinstance(each, Factor) else 1.0
-        return step
+        return self.on_floor(as_acceleration(corrected, quantity, step))
 
     def pair(self, file: str | Path) -> tuple[GroundMotion, GroundMotion]:
         """Return the two components, each processed by itself before their rotation, which is linear.

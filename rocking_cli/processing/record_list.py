@@ -46,20 +46,20 @@ def read_list(path: Path) -> list[Listed]:
     try:
         known = RecordList.model_validate(document.data)
     except ValidationError as error:
-        found: Any = error.errors(include_url=False)
-        raise InputError(*problems(document, RecordList, found, owner="the list", lister=HINT)) from None
+        errors: Any = error.errors(include_url=False)
+        raise InputError(*problems(document, RecordList, errors, owner="the list", lister=HINT)) from None
     listed: list[Listed] = []
     for k, entry in enumerate(known.records):
         if entry.file is None:
             document.problems.append(document.at(("records", k), "names no file"))
             continue
         try:
-            found = select(entry.file, path.parent)
-            if any(is_list(each) for each in found):
+            files = select(entry.file, path.parent)
+            if any(is_list(file) for file in files):
                 what = "is a list of records itself: name the records in it"
                 document.problems.append(document.at(("records", k, "file"), what))
                 continue
-            listed += [Listed(each, entry, path.parent) for each in found]
+            listed += [Listed(file, entry, path.parent) for file in files]
         except InputError as error:
             place = ("records", k, "file")
             document.problems += [document.at(place, f"{one.file}: {one.message}", one.hint) for one in error.problems]

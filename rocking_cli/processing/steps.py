@@ -257,12 +257,9 @@ class Resample(Step):
             if motion.npts / ratio > self.MOST:
                 message = f"this would make {motion.npts / ratio:.3g} samples; at most {self.MOST:.3g} are allowed"
                 raise self.refused(motion, message)
-            return self._finer(motion)
+            time = self.dt * np.arange(floor(motion.duration / self.dt * (1 + 1e-12)) + 1)
+            return _of_samples(motion, np.interp(time, motion.time, motion.acceleration), self.dt)
         return self._coarser(motion, ratio)
-
-    def _finer(self, motion: GroundMotion) -> GroundMotion:
-        time = self.dt * np.arange(floor(motion.duration / self.dt * (1 + 1e-12)) + 1)
-        return _of_samples(motion, np.interp(time, motion.time, motion.acceleration), self.dt)
 
     def _coarser(self, motion: GroundMotion, ratio: float) -> GroundMotion:
         """Return the motion at a coarser interval by scipy.signal.resample_poly, which applies a low-pass filter.

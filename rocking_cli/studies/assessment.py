@@ -34,7 +34,7 @@ from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 from rocking_cli.studies.overturning import OverturningMap, Region, overturning_map
 from rocking_cli.studies.picture import Picture, picture
 from rocking_cli.studies.trust import trust
-from rocking_cli.studies.under_pulses import PulsedModel, outcomes, parse_shape, pulsed_model
+from rocking_cli.studies.under_pulses import outcomes, parse_shape, pulsed_model
 
 AMPLITUDES, ACCELERATIONS = (0.25, 0.5, 0.75), (1.5, 2.0, 4.0)  # at which the error of the block is said
 FITTED = ("sine", "ricker")  # the pulses with an amplitude and a period and nothing else: a map has these two axes
@@ -325,11 +325,12 @@ def _error_of_block(structure: Structure) -> tuple[Sequence[Linearisation], Sequ
 
 def versions(mechanism: Mechanism) -> dict[str, str]:
     """Return the versions of this package, of the mechanism's package, of Python and of the packages for computing."""
+    registry, name = Registry(), mechanism.mechanism
     return {
         "rocking-cli": version("rocking-cli"),
-        f"mechanism {mechanism.mechanism}": _plugin(mechanism),
+        f"mechanism {name}": registry.package_of(name) if name in registry else "not installed as a plugin",
         "Python": platform.python_version(),
-        **{name: version(name) for name in PACKAGES},
+        **{package: version(package) for package in PACKAGES},
         **ways.versions(),
     }
 
@@ -337,11 +338,6 @@ def versions(mechanism: Mechanism) -> dict[str, str]:
 def steps(given: Sequence[Scaled]) -> int:
     """Return the number of steps of which `gather` reports the progress."""
     return len(given) + 2
-
-
-def _plugin(mechanism: Mechanism) -> str:
-    registry = Registry()
-    return registry.package_of(mechanism.mechanism) if mechanism.mechanism in registry else "not installed as a plugin"
 
 
 def _result(structure: Structure, given: Scaled, polarities: Sequence[int], around: Neighbourhood) -> MotionResult:
@@ -425,19 +421,15 @@ def _maps(structure: Structure, results: Sequence[MotionResult]) -> list[PulseMa
 
 
 def _map(structure: Structure, shape: Pulse, marks: Sequence[tuple[str, PulseFit]]) -> OverturningMap:
+    """Return the map of a pulse shape that shows all marked pulses."""
     under = pulsed_model(structure, "nonlinear", shape, (1, -1))
-    periods, tops = _axes(under, [fit.pulse for _, fit in marks])
-    omega = under.period(np.linspace(*periods, POINTS))
-    a = np.linspace(tops / POINTS, tops, POINTS)
+    usual = [2 * pi / (omega * under.p) for omega in OMEGAS]
+    pulses = [fit.pulse for _, fit in marks]
+    periods = [*usual, *(pulse.period / BEYOND for pulse in pulses), *(pulse.period * BEYOND for pulse in pulses)]
+    strongest = max([TALLEST, *(BEYOND * pulse.amplitude / under.unit for pulse in pulses)])
+    omega = under.period(np.linspace(min(periods), max(periods), POINTS))
+    a = np.linspace(strongest / POINTS, strongest, POINTS)
     return overturning_map(under, shape, omega, a, polarities=(1, -1))
-
-
-def _axes(structure: PulsedModel, pulses: Sequence[Pulse]) -> tuple[tuple[float, float], float]:
-    """Return the range of periods [s] and the largest dimensionless amplitude a of a map that shows all pulses."""
-    usual = [2 * pi / (omega * structure.p) for omega in OMEGAS]
-    periods = [*usual, *(each.period / BEYOND for each in pulses), *(each.period * BEYOND for each in pulses)]
-    strongest = max([TALLEST, *(BEYOND * each.amplitude / structure.unit for each in pulses)])
-    return (min(periods), max(periods)), strongest
 
 
 def amplitude_in_g(fit: PulseFit) -> float:

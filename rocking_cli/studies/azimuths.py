@@ -86,16 +86,16 @@ def all_around(
     azimuths = np.arange(0.0, 360.0, STEP)
     motions = [turned(*pair, azimuth).scaled(scale) for azimuth in azimuths.tolist()]
     followed = structure.models(models)
-    found = respond_many(
+    responses = respond_many(
         followed, motions, Runs.every(len(followed), len(motions)), release=release, rtol=rtol, only_peaks=True
     )
-    if found.failed.any():
-        k = int(found.failed.argmax()) % azimuths.size
+    if responses.failed.any():
+        k = int(responses.failed.argmax()) % azimuths.size
         raise SolverError(f"the motion at an azimuth of {azimuths[k]:g} degrees could not be simulated")
-    each = [slice(k * azimuths.size, (k + 1) * azimuths.size) for k in range(len(followed))]
+    parts = [slice(k * azimuths.size, (k + 1) * azimuths.size) for k in range(len(followed))]
     outcomes = {
-        model.name: found.by_field(lambda values, part=part: values[part])
-        for model, part in zip(followed, each, strict=True)
+        model.name: responses.by_field(lambda values, part=part: values[part])
+        for model, part in zip(followed, parts, strict=True)
     }
     pga = np.array([motion.pga_g for motion in motions])
     checked = all(model.is_linear or model.joints is not None for model in followed)

@@ -23,16 +23,16 @@ def collapses(mechanism: Mechanism) -> Mapping[Direction, CollapseMechanism]:
     MechanismError
         If the structure has no mechanism in any direction.
     """
-    found: dict[Direction, CollapseMechanism] = {}
+    mechanisms: dict[Direction, CollapseMechanism] = {}
     for direction in mechanism.directions:
         try:
-            each = mechanism.collapse(direction)
+            weakest = mechanism.collapse(direction)
         except MechanismError as error:
             raise of_structure(error, mechanism.name or mechanism.mechanism) from error
-        if each is None:
+        if weakest is None:
             hint = "`rocking new assembly` prints one; `rocking equiv` has the uplift of any structure"
             raise InputError(
                 Problem(f"{mechanism.name} is not an assembly of blocks: its mechanism is given", hint=hint)
             )
-        found[direction] = each
-    return found
+        mechanisms[direction] = weakest
+    return mechanisms

@@ -33,25 +33,17 @@ class Compiled:
 
 def compile_kernel(kernel: str) -> Compiled:
     """Compile a kernel, or load it if it was compiled before, and return how long this took."""
+    from rocking_cli.studies.under_pulses import linear_block
+
     before, began = ways.is_ready(kernel), monotonic()
     ways.prepare(kernel)
     if kernel == HISTORIES:
-        _follow()
+        from rocking_cli.dynamics.history import follow
+
+        follow(linear_block(0.5).model, None, release=0.5)
     else:
-        _answer_exactly()
+        from rocking_cli.dynamics.exact_batch import exact_many
+        from rocking_cli.excitation.pulses.shapes import Sine
+
+        exact_many(linear_block(0.5).equivalence, Sine(1.0, 1.0), 2.0, 1.0, kappa=2, gravity=1.0)
     return Compiled(kernel, before, monotonic() - began)
-
-
-def _follow() -> None:
-    from rocking_cli.dynamics.history import follow
-    from rocking_cli.studies.under_pulses import linear_block
-
-    follow(linear_block(0.5).model, None, release=0.5)
-
-
-def _answer_exactly() -> None:
-    from rocking_cli.dynamics.exact_batch import exact_many
-    from rocking_cli.excitation.pulses.shapes import Sine
-    from rocking_cli.studies.under_pulses import linear_block
-
-    exact_many(linear_block(0.5).equivalence, Sine(1.0, 1.0), 2.0, 1.0, kappa=2, gravity=1.0)

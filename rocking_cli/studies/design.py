@@ -264,32 +264,32 @@ def design(
         return _at(structure, field, value, aim, excitation)[0]
 
     values = np.linspace(*span, points)
-    found, reasons, behind = np.full(points, nan), dict[int, str](), list[Neighbours | None]()
+    numbers, reasons, behind = np.full(points, nan), dict[int, str](), list[Neighbours | None]()
     for k, value in enumerate(values.tolist()):
-        found[k], near, reason = _at(structure, field, value, aim, excitation)
+        numbers[k], near, reason = _at(structure, field, value, aim, excitation)
         behind.append(near)
         if reason is not None:
             reasons[k] = reason
         if progress is not None:
             progress(1)
-    monotone = _is_monotone(found)
+    monotone = _is_monotone(numbers)
 
     def edge(inside: int, outside: int) -> float:
         ends = float(values[inside]), float(values[outside])
-        if aim.metric.shaken and (not monotone or isnan(found[outside])):
+        if aim.metric.shaken and (not monotone or isnan(numbers[outside])):
             return ends[0]
-        if aim.metric.shaken or isnan(found[outside]):
+        if aim.metric.shaken or isnan(numbers[outside]):
             closest = (COARSE if aim.metric.shaken else FINEST) * abs(ends[1] - ends[0])
             return _last_that_holds(metric, aim, *ends, closest)
         return _edge(metric, aim, *ends)
 
-    met = [aim.holds(each) for each in found.tolist()]
+    met = [aim.holds(number) for number in numbers.tolist()]
     holds = _ranges(values, met, edge)
     whole = all(met)
     value = None if whole or not holds else holds[-1][0] if met[-1] else holds[0][1] if met[0] else None
     return Design(
-        structure.name, field, structure.unit_of(field), aim, structure.value_of(field), values, found, holds, monotone,
-        value, _not_built(values, reasons), behind, structure.mechanism.own_caution(),
+        structure.name, field, structure.unit_of(field), aim, structure.value_of(field), values, numbers, holds,
+        monotone, value, _not_built(values, reasons), behind, structure.mechanism.own_caution(),
         _taken_otherwise(structure, field, span, aim, excitation),
     )  # fmt: skip
 
@@ -325,16 +325,16 @@ def _at(
 ) -> tuple[float, Neighbours | None, str | None]:
     """Return the metric at a value, and the neighbours behind it; or NaN, and why it does not exist."""
     try:
-        found, near = aim.metric.at(structure.varied(field, value), excitation)
+        number, near = aim.metric.at(structure.varied(field, value), excitation)
     except InputError as error:
-        return nan, None, "; ".join(str(Problem(each.message, field=each.field)) for each in error.problems)
+        return nan, None, "; ".join(str(Problem(problem.message, field=problem.field)) for problem in error.problems)
     except (MechanismError, SolverError) as error:
         return nan, None, str(error)
-    if isnan(found):
+    if isnan(number):
         return nan, None, structure.why_no_block or f"{aim.metric.name} does not exist"
     if near is not None and near.unknown and aim.wants_more:
         return nan, near, f"{percent(near.unknown)} of the neighbouring motions have an unknown outcome"
-    return found, near, None
+    return number, near, None
 
 
 def _is_monotone(metric: Reals) -> bool:

@@ -20,7 +20,7 @@ from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.verdict import CLOSE
 from rocking_cli.engines import engine_of
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
-from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.under_pulses import check_eta, uplift, weakest
@@ -165,7 +165,10 @@ def equivalent(
             raise InputError(Problem(reason, field="one_sided"))
     first = _equivalence(mechanisms[0])
     ground = pulse.sampled().scaled(polarity)
-    direction = _lifted_first(first, pulse, ground, polarity, mechanisms[0].gravity)
+    # The direction in which the pulse uplifts first; if it uplifts in none, the one of a stronger pulse.
+    lifts = {d: -d * ground.acceleration > first[d].lambda_ * mechanisms[0].gravity for d in Direction}
+    lifted = [d for d in Direction if lifts[d].any()]
+    direction = min(lifted, key=lambda d: int(lifts[d].argmax())) if lifted else weakest(first, pulse, (polarity,))
     block = first[direction]
     scaling: ModelName = "linear1" if kappa == 1 else "linear2"
     a = pulse.amplitude / (mechanisms[0].gravity * uplift(block, scaling))  # Eq. 40
@@ -196,15 +199,6 @@ def _equivalence(mechanism: Mechanism) -> Equivalence:
         return equivalent_block(mechanism)
     except MechanismError as error:
         raise of_structure(error, _name(mechanism)) from error
-
-
-def _lifted_first(
-    equivalence: Equivalence, pulse: Pulse, ground: GroundMotion, polarity: int, gravity: float
-) -> Direction:
-    """Return the direction in which the pulse uplifts first; if it uplifts in none, the one of a stronger pulse."""
-    lifts = {d: -d * ground.acceleration > equivalence[d].lambda_ * gravity for d in Direction}
-    lifted = [d for d in Direction if lifts[d].any()]
-    return min(lifted, key=lambda d: int(lifts[d].argmax())) if lifted else weakest(equivalence, pulse, (polarity,))
 
 
 def _shared_eta(eta: float | Literal["first", "own"], block: EquivalentBlock, first: Mechanism) -> float | None:

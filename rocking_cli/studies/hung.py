@@ -128,7 +128,8 @@ def carried(mechanism: Mechanism, copies: Copies) -> Iterator[Carried]:
             point, name = load.spot.at + shift, load.name if k == 0 else ""
             if isinstance(load, PointMass):
                 mass = load.mass / count
-                yield Carried(name, _mass(mass), part, point, mass=mass)
+                text = f"{mass / TONNE:.3g} t" if mass >= TONNE else f"{mass:.3g} kg"
+                yield Carried(name, text, part, point, mass=mass)
             else:
                 force = load.in_direction(mechanism.directions[0]) / count
                 text = f"{three_digits(abs(force) / 1000)} kN" if force else "0"
@@ -190,7 +191,3 @@ def _bed(bed: SpringBed, part: int, shift: complex, centroid: complex) -> Iterat
     for share in (np.arange(BED) + 0.5) / BED:
         at = bed.start.at + complex(share) * (bed.end.at - bed.start.at) + shift
         yield TiePiece(End(None, at, 1.5 * out), End(part, at), "symbol")
-
-
-def _mass(mass: float) -> str:
-    return f"{mass / TONNE:.3g} t" if mass >= TONNE else f"{mass:.3g} kg"

@@ -148,16 +148,18 @@ def margin(
         if progress is not None:
             progress(int((~left).sum()) * around.count)
         some = factors[left]
-        each = Draws(*(np.concatenate([values] * some.size) if some.size else values[:0] for values in draws))
-        found = follow(
-            model, motion, each, scale=some.repeat(around.count), polarity=sign, threads=threads, progress=progress
+        repeated = Draws(*(np.concatenate([values] * some.size) if some.size else values[:0] for values in draws))
+        outcomes = follow(
+            model, motion, repeated, scale=some.repeat(around.count), polarity=sign, threads=threads, progress=progress
         )
-        fell, doubtful = (of.reshape(some.size, around.count).mean(axis=1) for of in (found.overturned, found.unknown))
+        fell, doubtful = (
+            of.reshape(some.size, around.count).mean(axis=1) for of in (outcomes.overturned, outcomes.unknown)
+        )
         overturned[left] = np.maximum(overturned[left], fell)
         at_most[left] = np.maximum(at_most[left], fell + doubtful)
     at_most = np.maximum(at_most, overturned)
     uplifts = [least_uplift(model, motion.scaled(sign)) for sign in polarities]
-    least = min((each for each in uplifts if each is not None), default=None)
+    least = min((uplift for uplift in uplifts if uplift is not None), default=None)
     return Margin(around, least, factors, overturned, at_most - overturned, checked=model.joints is not None)
 
 

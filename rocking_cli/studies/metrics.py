@@ -145,8 +145,8 @@ def _of_codes(name: str) -> Metric | None:
     own: dict[str, Number] = {}
     for key in codes():
         try:
-            if (found := codes()[key].numbers.get(name)) is not None:
-                own[key] = found
+            if (number := codes()[key].numbers.get(name)) is not None:
+                own[key] = number
         except MechanismError as error:
             leave_out(error)
     if not own:
@@ -156,14 +156,16 @@ def _of_codes(name: str) -> Metric | None:
         if one.of_structure is not None:
             structure.statics  # noqa: B018 - what does not stand is refused with its name
             with _blamed(first, name):
-                return min(one.of_structure(structure.mechanism, each) for each in structure.mechanism.directions)
+                return min(
+                    one.of_structure(structure.mechanism, direction) for direction in structure.mechanism.directions
+                )
         assert excitation is not None and excitation.site is not None
         key = excitation.site.site.code
         of = own[key].of
         assert of is not None  # else it is of the structure
-        found = verify(structure, excitation.site).directions.values()
+        verified = verify(structure, excitation.site).directions.values()
         with _blamed(key, name):
-            return min((value for each in found if (value := of(each)) is not None), default=nan)
+            return min((value for direction in verified if (value := of(direction)) is not None), default=nan)
 
     first, one = next(iter(own.items()))
     return Metric(name, one.unit, one.meaning, value, sited=one.of_structure is None, codes=tuple(own))

@@ -46,16 +46,16 @@ def intensities(
     PluginError
         If the plugin of a measure fails.
     """
-    bare = [str(each) for each in measures if each.is_relative]
+    bare = [str(measure) for measure in measures if measure.is_relative]
     if bare and structure is None:
         raise InputError(Problem(f"{', '.join(bare)}: relative to what is shaken", hint="give a `structure`"))
-    found: dict[Measure, float] = {}
-    for each in measures:
-        if isinstance(each, RunMeasure):
+    values: dict[Measure, float] = {}
+    for measure in measures:
+        if isinstance(measure, RunMeasure):
             assert structure is not None
-            found[each] = each.value(motion, structure)
+            values[measure] = measure.value(motion, structure)
         else:
-            assert each.base is not None
-            value = each.base.value(motion)
-            found[each] = float(value if structure is None else each.relative(value, structure))
-    return found
+            assert measure.base is not None
+            value = measure.base.value(motion)
+            values[measure] = float(value if structure is None else measure.relative(value, structure))
+    return values

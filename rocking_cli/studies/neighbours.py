@@ -106,7 +106,10 @@ class Neighbourhood:
         """Draw the neighbours of a model."""
         own = self.of(model)
         assert own.restitution is not None and own.slenderness is not None
-        amplitude, restitution, slenderness = self._uniform()
+        # A Latin hypercube, with less scatter than random numbers.
+        random = np.random.default_rng(SEED)
+        amplitude, one, other = (np.arange(self.count) + random.random((3, self.count))) / max(self.count, 1)
+        restitution, slenderness = random.permutation(one), random.permutation(other)
         wide = np.exp(own.slenderness * _normal(slenderness))
         etas = [
             _below(restitution, eta, own.restitution, most) for eta, most in zip(model.eta, model.most_eta, strict=True)
@@ -116,12 +119,6 @@ class Neighbourhood:
             1 + model.weight_share * (wide - 1),
             np.stack(etas, axis=-1),
         )
-
-    def _uniform(self) -> tuple[Reals, Reals, Reals]:
-        """Return three uniform numbers for each neighbour: a Latin hypercube, with less scatter than random ones."""
-        random = np.random.default_rng(SEED)
-        one, other, third = (np.arange(self.count) + random.random((3, self.count))) / max(self.count, 1)
-        return one, random.permutation(other), random.permutation(third)
 
 
 def _normal(uniform: Reals) -> Reals:

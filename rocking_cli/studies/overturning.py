@@ -284,10 +284,10 @@ def compare(
     narrower than a step, 0.7 % of a - 1, may be missed. If joints may open, the same is done below the amplitude found
     for the least that overturns or is of unknown outcome.
     """
-    for each in structures:
-        _check_range(each, periods, top * STANDARD_GRAVITY / each.unit)
-    found = [_least(each, shape, periods, top, polarities, progress) for each in structures]
-    least, possible = (np.array(each) / STANDARD_GRAVITY for each in zip(*found, strict=True))
+    for structure in structures:
+        _check_range(structure, periods, top * STANDARD_GRAVITY / structure.unit)
+    amplitudes = [_least(structure, shape, periods, top, polarities, progress) for structure in structures]
+    least, possible = (np.array(rows) / STANDARD_GRAVITY for rows in zip(*amplitudes, strict=True))
     return Comparison(tuple(structures), shape, tuple(polarities), periods, least, possible, top)
 
 
@@ -340,14 +340,14 @@ class _OverturningSearch:
                 break
             start = (np.minimum(NEAREST, beyond[left] / BELOW) if turn == 0 else beyond[left] / BELOW)[:, None]
             scan = start * (beyond[left, None] / start) ** np.linspace(0, 1, SCAN)
-            found = self._shaken(np.repeat(self.periods[left], SCAN), scan.ravel(), report=turn < PASSES)
-            falls = counts(found).reshape(scan.shape).copy()
+            shaken = self._shaken(np.repeat(self.periods[left], SCAN), scan.ravel(), report=turn < PASSES)
+            falls = counts(shaken).reshape(scan.shape).copy()
             falls[:, -1] |= np.isfinite(high[left])  # the least so far
             some = falls.any(axis=1)
             left, scan, first = left[some], scan[some], falls[some].argmax(axis=1)
-            each = np.arange(left.size)
-            low[left] = np.where(first > 0, scan[each, np.maximum(first - 1, 0)], 0.0)
-            high[left] = beyond[left] = scan[each, first]
+            row = np.arange(left.size)
+            low[left] = np.where(first > 0, scan[row, np.maximum(first - 1, 0)], 0.0)
+            high[left] = beyond[left] = scan[row, first]
             left = left[first < SCAN - 1]
         some = np.isfinite(high)
         for _ in range(HALVINGS if some.any() else 0):

@@ -303,17 +303,17 @@ class Picture:
         speeds = [np.array([size * motion.dpsi[0], motion.carry(0j)[1][0]]) for motion in motions]
         along = [name for hinge in self.sketch.hinges.get(direction, ()) for name in hinge.bodies]
         of_body = dict(zip((body.name for body in self.mechanism.bodies()), speeds, strict=True))
-        found: list[Points] = []
+        speeds_of_links: list[Points] = []
         links: dict[str, int | None] = {}
         for name in [*(name for name in along if name in of_body), *of_body]:
             here = of_body[name]
             if np.abs(here).max() <= SAME * size:
                 links[name] = None
                 continue
-            alike = [k for k, each in enumerate(found) if np.abs(here - each).max() <= SAME * size]
+            alike = [k for k, speed in enumerate(speeds_of_links) if np.abs(here - speed).max() <= SAME * size]
             if not alike:
-                found.append(here)
-            links[name] = alike[0] if alike else len(found) - 1
+                speeds_of_links.append(here)
+            links[name] = alike[0] if alike else len(speeds_of_links) - 1
         return {name: links[name] for name in of_body}
 
     @cached_property
@@ -402,7 +402,8 @@ class Picture:
     @cached_property
     def extent(self) -> tuple[complex, complex]:
         """Lower left and upper right corner of the structure at rest [m]."""
-        return box_around([each for part in self.parts for each in part.outlines] + [self._points])
+        points = np.array([*(part.centroid for part in self.parts), *(pin.point for pin in self.pins)])
+        return box_around([outline for part in self.parts for outline in part.outlines] + [points])
 
     @cached_property
     def reach(self) -> tuple[complex, complex]:
@@ -414,10 +415,6 @@ class Picture:
     def walls(self) -> tuple[Points, ...]:
         """Side walls behind a structure that rocks to one side only, as lines like those of the ground [m]."""
         return walls(self.mechanism, *self.extent)
-
-    @property
-    def _points(self) -> Points:
-        return np.array([*(part.centroid for part in self.parts), *(pin.point for pin in self.pins)])
 
     def as_dict(self) -> dict[str, Any]:
         """Return the whole drawing as plain data, for a page: points are [x, y] in m, angles in rad.

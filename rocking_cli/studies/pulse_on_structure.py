@@ -50,11 +50,13 @@ def answers(
         The result of `sampled_histories` for the same arguments.
     """
     gravity = structure.mechanism.gravity
-    found: dict[str, Answer] = {str(name): each for name, each in sampled.items()}
+    outcomes: dict[str, Answer] = {str(name): history for name, history in sampled.items()}
     for name, kappa in KAPPAS.items():
         if name not in sampled:
-            found[name] = exact_response(structure.equivalence, pulse, kappa=kappa, gravity=gravity, polarity=polarity)
-    return {name: found[name] for name in (*KAPPAS, "nonlinear")}
+            outcomes[name] = exact_response(
+                structure.equivalence, pulse, kappa=kappa, gravity=gravity, polarity=polarity
+            )
+    return {name: outcomes[name] for name in (*KAPPAS, "nonlinear")}
 
 
 def outcome(answer: Answer) -> ExactResponse | History:

@@ -102,7 +102,10 @@ def response_of(structure: Structure, names: Sequence[ModelName], given: Scaled 
     follow = partial(respond, structure, models=names, release=asked.release, tail=asked.tail, rtol=asked.rtol)
     under = {sign: given.motion.scaled(sign * given.factor) if given is not None else None for sign in asked.signs}
     first = under[asked.signs[0]]
-    fit = _find(first, asked.with_pulse) if first is not None and asked.with_pulse is not None else None
+    fit: PulseFit | None = None
+    if first is not None and asked.with_pulse is not None:
+        fits = fit_pulses(first, tuple(FITTED) if asked.with_pulse == BEST else (asked.with_pulse,), ("velocity",))
+        fit = max(fits, key=lambda one: one.captured)
     runs = {sign: follow(motion) for sign, motion in under.items()}
     best: ModelName = "nonlinear" if "nonlinear" in names else names[0]
     near = {
@@ -124,9 +127,3 @@ def response_of(structure: Structure, names: Sequence[ModelName], given: Scaled 
     alone = follow(pulse)
     checked_alone = contacts.check(alone["nonlinear"], pulse) if "nonlinear" in alone else None
     return Response(given, first, runs, near, fit, alone, checked, checked_alone)
-
-
-def _find(motion: GroundMotion, shape: str) -> PulseFit:
-    """Return the pulse of a shape, or of the best shape, that captures most energy of the velocity of a motion."""
-    fits = fit_pulses(motion, tuple(FITTED) if shape == BEST else (shape,), ("velocity",))
-    return max(fits, key=lambda each: each.captured)

@@ -158,12 +158,12 @@ class StructureTable(Sequence["TableRow"]):
         return found
 
     def _columns(self) -> list[FieldColumn]:
-        found, problems, taken = [], [], dict[tuple[str, ...], str]()
+        columns, problems, taken = [], [], dict[tuple[str, ...], str]()
         sheet = self.sheet
         for place, heading in enumerate(sheet.headings):
             if not heading or heading.startswith(NOTE):
                 continue
-            name, unit = (each[1], each[2].strip()) if (each := _UNIT.fullmatch(heading)) else (heading, "")
+            name, unit = (match[1], match[2].strip()) if (match := _UNIT.fullmatch(heading)) else (heading, "")
             shown = cut(one_line(heading))
             try:
                 path = words(name)
@@ -174,12 +174,12 @@ class StructureTable(Sequence["TableRow"]):
                 message = f"is the same field as {cut(one_line(taken[path]))}"
                 problems.append(Problem(message, sheet.file, sheet.line, field=shown, hint="take one of them away"))
             taken[path] = heading
-            found.append(FieldColumn(place, shown, path, unit))
+            columns.append(FieldColumn(place, shown, path, unit))
         if problems:
             raise InputError(*problems)
-        if not found:
+        if not columns:
             raise InputError(Problem("the table has no headings", sheet.file, sheet.line, hint="mechanism,name,..."))
-        return found
+        return columns
 
     def _check_fields(self) -> None:
         """Check the headings against the fields of all mechanisms in the rows."""

@@ -120,8 +120,10 @@ def best(problem: SubsetProblem, seed: int, progress: Callable[[int], object] = 
     found: Best | None = None
     rng = np.random.default_rng(seed)
     for start in range(STARTS):
-        begun = [] if start == 0 else [int(rng.integers(len(problem.curves)))]
-        one = _exchanged(problem, _grown(problem, begun))
+        members = [] if start == 0 else [int(rng.integers(len(problem.curves)))]
+        while len(members) < problem.count:
+            members.append(_added(problem, members)[0])
+        one = _exchanged(problem, members)
         if one.better(found):
             found = one
         progress(1)
@@ -197,13 +199,6 @@ def _picked(members: Integers, judged: Judged) -> Best:
     kept = kept[judged.rms[kept] <= judged.rms[kept].min() + SAME]
     k = int(kept[0])
     return Best(members[k], float(judged.excess[k]), float(judged.rms[k]), float(np.exp(judged.common[k])))
-
-
-def _grown(problem: SubsetProblem, members: list[int]) -> list[int]:
-    """Add the best curve to a set until it has enough."""
-    while len(members) < problem.count:
-        members = [*members, _added(problem, members)[0]]
-    return members
 
 
 def _exchanged(problem: SubsetProblem, members: list[int]) -> Best:

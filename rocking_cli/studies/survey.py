@@ -243,26 +243,26 @@ def survey(
         largest peak, then by uplift acceleration; with a site by the ratio of its code. Structures that rank equal keep
         their order.
     """
-    found: list[Surveyed | Bad | None] = [None] * len(entries)
+    results: list[Surveyed | Bad | None] = [None] * len(entries)
     site = of_each(site) if site is not None else None
 
     def work(first: int, stop: int) -> None:
-        found[first:stop] = _part(entries, range(first, stop), motions, polarities, site, opening)
+        results[first:stop] = _part(entries, motions, polarities, site, opening, first, stop)
 
     if processes is None:
         in_parts(work, len(entries), PART, threads, progress)
     else:
-        whole = partial(_places, entries, motions, polarities, site, opening)
+        whole = partial(_part, entries, motions, polarities, site, opening)
         for first, part in in_processes(whole, len(entries), PART, processes):
-            found[first : first + len(part)] = part
+            results[first : first + len(part)] = part
             if progress is not None:
                 progress(len(part))
     by = "ratio" if site is not None else "response" if motions else "lambda"
-    good = sorted((each for each in found if isinstance(each, Surveyed)), key=ORDERS[by])
-    return Survey(good, [each for each in found if isinstance(each, Bad)], [each.name for each in motions], by)
+    good = sorted((result for result in results if isinstance(result, Surveyed)), key=ORDERS[by])
+    return Survey(good, [each for each in results if isinstance(each, Bad)], [each.name for each in motions], by)
 
 
-def _places(
+def _part(
     entries: Sequence[SurveyEntry],
     motions: Sequence[GroundMotion],
     polarities: Sequence[int],
@@ -272,22 +272,10 @@ def _places(
     stop: int,
 ) -> list[Surveyed | Bad | None]:
     """Return the results of the structures from index `first` to before `stop`, in any process."""
-    return _part(entries, range(first, stop), motions, polarities, site, opening)
-
-
-def _part(
-    entries: Sequence[SurveyEntry],
-    places: range,
-    motions: Sequence[GroundMotion],
-    polarities: Sequence[int],
-    site: SiteFile | None,
-    opening: float | None,
-) -> list[Surveyed | Bad | None]:
-    """Return the results of some structures."""
     ready: dict[int, Structure] = {}
     models: dict[int, Model] = {}
-    found: list[Surveyed | Bad | None] = [None] * len(places)
-    for k, place in enumerate(places):
+    found: list[Surveyed | Bad | None] = [None] * (stop - first)
+    for k, place in enumerate(range(first, stop)):
         entry = entries[place]
         try:
             made = entry.make()
@@ -304,9 +292,12 @@ def _part(
         for k, structure in ready.items():
             one = found[k]
             assert isinstance(one, Surveyed)
-            found[k] = _with(
-                one, answers.get(k, Under(0.0, 0.0, motions[0].name, _over(structure))), entries[places[k]]
-            )
+            over = "phi_cr" if all(side.phi_cr is not None for side in structure.statics) else "limit"
+            answer = answers.get(k, Under(0.0, 0.0, motions[0].name, over))
+            if isinstance(answer, SolverError):
+                found[k] = Bad(one.row, entries[first + k].line, one.name, answer)
+            else:
+                found[k] = replace(one, under=answer)
     return found
 
 
@@ -352,10 +343,6 @@ def _may_lift(structure: Structure, motions: Sequence[GroundMotion]) -> bool:
     return any(each.vertical is not None or each.pga_g >= least * (1 - 1e-9) for each in motions)
 
 
-def _over(structure: Structure) -> str:
-    return "phi_cr" if all(side.phi_cr is not None for side in structure.statics) else "limit"
-
-
 def _under(
     models: Sequence[Model], motions: Sequence[GroundMotion], polarities: Sequence[int]
 ) -> list[Under | SolverError]:
@@ -390,12 +377,6 @@ def _of_one(
     over = "limit" if any(model.ends_at_limit) else "phi_cr"
     unknown = doubtful.size / len(motions) if model.joints is not None else None
     return Under(fell.size / len(motions), float(peaks[most]) if stays.any() else nan, worst, over, unknown)
-
-
-def _with(one: Surveyed, under: Under | SolverError, entry: SurveyEntry) -> Surveyed | Bad:
-    if isinstance(under, SolverError):
-        return Bad(one.row, entry.line, one.name, under)
-    return replace(one, under=under)
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.excitation.records.record_units import CHOICES, UNITS, canonical, header_units
 from rocking_cli.excitation.records.text import numbers_in
-from rocking_cli.excitation.records.units import CHOICES, UNITS, canonical, header_units
 from rocking_cli.io.files import read_bytes
 
 Reals = NDArray[np.float64]
@@ -133,7 +133,10 @@ def read_target(path: Path) -> TargetSpectrum:
             problems.append(Problem(message, shown, hint=COLUMNS))
         else:
             excerpt = lines[used[point]].strip()[:100]
-            problems.append(Problem(message, shown, used[point] + 1, excerpt=excerpt, hint=_what_to_do(message)))
+            hint = "put the lines in the order of their periods, each once; a step needs two periods a little apart"
+            if "negative" in message:
+                hint = "correct or leave out this line"
+            problems.append(Problem(message, shown, used[point] + 1, excerpt=excerpt, hint=hint))
     if problems:
         raise InputError(*problems[:LISTED])
     return TargetSpectrum(shown, periods, sa * UNITS[unit or "g"] / STANDARD_GRAVITY, unit)
@@ -145,12 +148,6 @@ def doubts(target: TargetSpectrum) -> list[str]:
     if highest <= ODD:
         return []
     return [f"{target.name} reaches {highest:.4g} g: name its unit in a heading, such as period [s],Sa [m/s2]"]
-
-
-def _what_to_do(message: str) -> str:
-    if "negative" in message:
-        return "correct or leave out this line"
-    return "put the lines in the order of their periods, each once; a step needs two periods a little apart"
 
 
 def _row(file: str, number: int, line: str) -> list[float]:

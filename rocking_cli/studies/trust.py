@@ -79,7 +79,11 @@ def trust(curves: Sequence[Linearisation], asked: Sequence[Linearisation]) -> st
     prefer = preferred(asked)
     order = (1, 2) if prefer == 1 else (2, 1)
     one, two = (_on(kappa, errors(asked, kappa)) for kappa in order)
-    said = [f"{_where(asked)}: {one}; {two}."]
+    amplitudes = ", ".join(f"{r:g}" for r in asked[0].amplitude.tolist())
+    accelerations = ", ".join(f"{a:g}" for a in asked[0].acceleration.tolist())
+    worse = ", in the worse of the two directions" if len(asked) > 1 else ""
+    where = f"At phi/phi_cr = {amplitudes} and {accelerations} times the uplift acceleration{worse}"
+    said = [f"{where}: {one}; {two}."]
     if prefer is None:
         said.append("Rely on neither at these amplitudes: use the nonlinear time history of `rocking respond`.")
     elif prefer == 0:
@@ -89,14 +93,6 @@ def trust(curves: Sequence[Linearisation], asked: Sequence[Linearisation]) -> st
     if prefer is not None and min(errors(asked, kappa).grade for kappa in (1, 2)) is Grade.ESTIMATE:
         said.append("Base decisions on the nonlinear time history of `rocking respond`.")
     return " ".join([*said, *_ranges(curves, order[0])])
-
-
-def _where(asked: Sequence[Linearisation]) -> str:
-    """Return the amplitudes and accelerations in words, and that they are of the worse of two directions."""
-    amplitudes = ", ".join(f"{r:g}" for r in asked[0].amplitude.tolist())
-    accelerations = ", ".join(f"{a:g}" for a in asked[0].acceleration.tolist())
-    worse = ", in the worse of the two directions" if len(asked) > 1 else ""
-    return f"At phi/phi_cr = {amplitudes} and {accelerations} times the uplift acceleration{worse}"
 
 
 def _on(kappa: int, found: Errors) -> str:

@@ -212,20 +212,20 @@ def derivatives_are_those_of_the_motion(structure: Mechanism) -> None:
         phi = np.linspace(0.02, 1.0, 9) * top
         here = structure.motion(phi, direction)
         steps = (step, FINER * step)  # over a bend of a derivative, which it may have, the wider one says nothing
-        around = [structure.motion(phi + shift * each, direction) for each in steps for shift in SHIFTS]
+        around = [structure.motion(phi + shift * step, direction) for step in steps for shift in SHIFTS]
         for body, motion, *moved in zip(structure.bodies(), here, *around, strict=True):
             _, dz, ddz = motion.carry(body.centroid)
             speed = _size(structure) + np.abs(dz).max()
             for what, values, derivative, size in (
-                ("dq", [each.carry(body.centroid)[0] for each in moved], dz, speed),
-                ("ddq", [each.carry(body.centroid)[1] for each in moved], ddz, speed + np.abs(ddz).max()),
-                ("dpsi", [each.psi for each in moved], motion.dpsi, 1 + np.abs(motion.dpsi).max()),
-                ("ddpsi", [each.dpsi for each in moved], motion.ddpsi, 1 + np.abs(motion.ddpsi).max()),
+                ("dq", [place.carry(body.centroid)[0] for place in moved], dz, speed),
+                ("ddq", [place.carry(body.centroid)[1] for place in moved], ddz, speed + np.abs(ddz).max()),
+                ("dpsi", [place.psi for place in moved], motion.dpsi, 1 + np.abs(motion.dpsi).max()),
+                ("ddpsi", [place.dpsi for place in moved], motion.ddpsi, 1 + np.abs(motion.ddpsi).max()),
             ):
-                wide, fine = (_quotient(values[k : k + 4], each) for k, each in zip((0, 4), steps, strict=True))
-                found = np.where(np.abs(wide - derivative) <= np.abs(fine - derivative), wide, fine)
+                wide, fine = (_quotient(values[k : k + 4], step) for k, step in zip((0, 4), steps, strict=True))
+                quotient = np.where(np.abs(wide - derivative) <= np.abs(fine - derivative), wide, fine)
                 what = f"{what} of {body.name}, {direction.label} direction,"
-                _near(what, phi, derivative, found, 1e-6 * size, "the difference quotient is")
+                _near(what, phi, derivative, quotient, 1e-6 * size, "the difference quotient is")
 
 
 def energies_agree_with_coefficients(structure: Mechanism) -> None:
@@ -237,11 +237,11 @@ def energies_agree_with_coefficients(structure: Mechanism) -> None:
         here = structure.coefficients(phi, direction)
         around = [structure.coefficients(phi + shift * step, direction) for shift in SHIFTS]
         for name, values, value, size in (
-            ("G", [each.V for each in around], here.G, np.abs(here.G).max()),
-            ("J", [each.I / 2 for each in around], here.J, here.I.max()),
+            ("G", [beside.V for beside in around], here.G, np.abs(here.G).max()),
+            ("J", [beside.I / 2 for beside in around], here.J, here.I.max()),
         ):
-            found, what = _quotient(values, step), f"{name} in the {direction.label} direction"
-            _near(what, phi, value, found, 1e-6 * size, "the difference quotient is")
+            quotient, what = _quotient(values, step), f"{name} in the {direction.label} direction"
+            _near(what, phi, value, quotient, 1e-6 * size, "the difference quotient is")
 
 
 def coefficients_are_those_of_the_bodies(structure: Mechanism) -> None:
@@ -470,7 +470,8 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
         ):
             what = f"{name} of coefficients with a load and a tie, {direction.label} direction,"
             _near(what, phi, getattr(says, name), getattr(own, name) + added, 1e-6 * big, "bodies and load give")
-        turned = _quotient([each.Q for each in _around(laden, phi, direction, step)], step).real
+        beside = [laden.coefficients(phi + shift * step, direction).Q for shift in SHIFTS]
+        turned = _quotient(beside, step).real
         _near(
             f"dQ, {direction.label} direction,",
             phi,
@@ -710,10 +711,6 @@ def _liveliest(structure: Mechanism) -> Spot:
         spots += [Spot(body.name, complex(corner)) for shape in shapes or [[body.centroid]] for corner in shape]
     follow = structure.followed(np.zeros(1), Direction.POSITIVE)
     return max(spots, key=lambda spot: abs(complex(follow(spot).dz[0])))
-
-
-def _around(structure: Mechanism, phi: Reals, direction: Direction, step: float) -> list[Coefficients]:
-    return [structure.coefficients(phi + shift * step, direction) for shift in SHIFTS]
 
 
 def _agree(what: str, said: float, found: float) -> None:

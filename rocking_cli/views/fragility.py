@@ -18,7 +18,7 @@ if TYPE_CHECKING:  # fits need scipy, and what would be run needs no fit
     from rocking_cli.studies.fragility.assess import Bivariate, Fragility, UnknownRuns
     from rocking_cli.studies.fragility.curves import Estimate, FragilityCurve, Surface
     from rocking_cli.studies.fragility.definition import Definition, Limit
-    from rocking_cli.studies.fragility.hazard import Rate
+    from rocking_cli.studies.fragility.hazard_curve import Rate
     from rocking_cli.studies.fragility.plan import Plan
     from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.study import Study
@@ -123,7 +123,7 @@ def view(
         those = [each for each in surfaces if (each.structure, each.measures) == (structure, measures)]
         parts += _surfaces(structure, measures, those, confidence)
     parts += [*without_block(plan), *out_of_reach(store, plan, definition)]
-    parts += (notes := [*_unknown_in_words(outcomes), *_unchecked_in_words(store, outcomes)])
+    parts += (notes := [*_unknown_in_words(outcomes), *_unchecked_in_words(outcomes)])
     parts += (nowhere := _nowhere(plan, definition, curves) if finished else [])
     data = {
         "study": name,
@@ -289,16 +289,11 @@ def _are(number: int) -> str:
     return "are" if number != 1 else "is"
 
 
-def _unchecked_in_words(store: Store, outcomes: Sequence[UnknownRuns]) -> list[str]:
+def _unchecked_in_words(outcomes: Sequence[UnknownRuns]) -> list[str]:
     """Return a sentence on the structures whose joints were not checked; empty without any."""
     unchecked = [each.structure for each in outcomes if not each.checked]
     if not unchecked:
         return []
-    if not store.with_joints:
-        return [
-            "Caution: an earlier version wrote this store and did not check the joints: run the study again from "
-            "scratch to check them."
-        ]
     return [
         f"Caution: the joints of {' and '.join(unchecked)} are not checked: the mechanism does not say which of them "
         "stay closed."

@@ -71,7 +71,7 @@ class ExactCurve:
         if interlock is None:
             return None
         spot = next(each.spot for each in self.chain.mechanism.hung.elements if each.name == INTERLOCK)  # type: ignore[attr-defined]
-        phi = self._way(self.chain.mechanism.limit(self.chain.direction))
+        phi = np.linspace(0.0, self.chain.mechanism.limit(self.chain.direction), STEPS + 1)[:-1]
         over = self._slid(spot, phi) >= interlock.overlap
         if not over.any():
             return None
@@ -80,10 +80,6 @@ class ExactCurve:
     def _slid(self, spot: Spot, phi: Reals) -> Reals:
         path = self.chain.mechanism.followed(phi, self.chain.direction)(spot).z
         return np.asarray(np.abs((path - spot.at).real))
-
-    @staticmethod
-    def _way(end: float) -> Reals:
-        return np.linspace(0.0, end, STEPS + 1)[:-1]
 
     @cached_property
     def end(self) -> float:

@@ -214,9 +214,9 @@ class TableSpectrum:
         square, linear, constant = 4 * q * s, 3 * (p * s + q * r), 2 * p * r
         with np.errstate(divide="ignore", invalid="ignore"):
             root = np.sqrt(linear**2 - 4 * square * constant)
-            found = [(-linear + sign * root) / (2 * square) for sign in (1, -1)]
-            found = [*found, -constant / linear]  # where it is no square, or nearly none
-        return np.concatenate([each[(each > low) & (each < high)] for each in found])
+            roots = [(-linear + sign * root) / (2 * square) for sign in (1, -1)]
+            roots = [*roots, -constant / linear]  # where it is no square, or nearly none
+        return np.concatenate([turns[(turns > low) & (turns < high)] for turns in roots])
 
     def _check(self, period: float) -> None:
         last = self.points[-1][0]

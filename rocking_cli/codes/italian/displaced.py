@@ -93,16 +93,12 @@ class DisplacedChain:
         here, beside = (self._follow(Spot(body, at)) for at in (block.at, block.at + 1))
         velocity = complex(here.dz[0])
         now, spin = complex(here.z[0]), (complex(beside.dz[0]) - velocity) / (complex(beside.z[0]) - complex(here.z[0]))
-        lifted = self._lift(block)
+        own = [weight for weight in self.chain.weights if weight.spot.body in block.bodies]
+        lifts = [weight.carried * float(self._follow(weight.spot).dz[0].imag) for weight in own]
+        lifted = sum(lifts) / (block.P or 1.0)  # y' of the barycentre of the weights that it carries
         turns = -s * spin.imag
         centre = None if abs(turns) < TURNS else now - velocity / (1j * spin.imag)
         return Moved(block, s * (now - block.at).real, now, turns, centre, s * velocity.real, lifted)
-
-    def _lift(self, block: ChainBlock) -> float:
-        """Return y' of the barycentre of the weights that a block carries [m/rad]."""
-        own = [each for each in self.chain.weights if each.spot.body in block.bodies]
-        lifts = [each.carried * float(self._follow(each.spot).dz[0].imag) for each in own]
-        return sum(lifts) / (block.P or 1.0)
 
     @property
     def lifted(self) -> float:

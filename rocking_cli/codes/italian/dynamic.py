@@ -60,16 +60,16 @@ def peaks(
     """
     under = [motion.scaled(sign) if sign != 1 else motion for sign in signs]
     follow = partial(engine_of(structure).follow, structure)
-    own = [follow(each) for each in under]
+    own = [follow(curve) for curve in under]
     factors = {curve.confidence for curve in curves.values()}
-    weaker = {FC: own if FC == 1 else [follow(with_confidence(each, FC)) for each in under] for FC in factors}
-    found = {}
+    weaker = {FC: own if FC == 1 else [follow(with_confidence(curve, FC)) for curve in under] for FC in factors}
+    of_direction = {}
     for direction, curve in curves.items():
         d, known_to = _largest(curve, direction, own)
         d_FC, known_to_FC = _largest(curve, direction, weaker[curve.confidence])
         slow = None if known_to_FC is None else sqrt(curve.confidence) * known_to_FC
-        found[direction] = RecordPeak(motion.name, d_FC, d, slow, known_to)
-    return found
+        of_direction[direction] = RecordPeak(motion.name, d_FC, d, slow, known_to)
+    return of_direction
 
 
 def with_histories(

@@ -13,8 +13,8 @@ from rocking_cli.codes.italian.demand import (
     GroundSpectrum,
     TableSpectrum,
 )
-from rocking_cli.codes.italian.hazard import Hazard
 from rocking_cli.codes.italian.site import ItalianSite
+from rocking_cli.codes.italian.site_hazard import Hazard
 
 LARGEST = 1e6  # g: no ground shakes so; a capacity beyond is none
 AS_LARGE = 1e-13  # relative: a demand that scales with a_g

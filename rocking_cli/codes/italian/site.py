@@ -16,7 +16,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.yaml_file import Place
 from rocking_cli.processing.floor import Floor
-from rocking_cli.studies.fragility.together import Part, Sound
+from rocking_cli.studies.file_part import Part, Sound
 from rocking_cli.studies.verification.site_file import Site
 
 SIZES = ("ag", "F0", "TC", "S")
@@ -53,20 +53,15 @@ class StateGround(Part):
             for name in SIZES:
                 if name not in there:
                     yield (name,), f"is missing: {cls.model_fields[name].description}"
-        yield from _late_corner(given, sound)
+        known = all(given.get(name) is not None and sound(name) for name in ("ag", "TC"))
+        if known and given["TC"] > (TD := 4.0 * given["ag"] + 1.6):
+            yield ("TC",), f"is above T_D = 4 a_g/g + 1.6 = {TD:.4g} s: got {given['TC']:g} s"
         yield from _no_function(given, sound)
 
     @classmethod
     def _needs_sizes(cls, given: dict[str, Any]) -> bool:
         """Return whether the parameters are required if there is no spectrum."""
         return True
-
-
-def _late_corner(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
-    if given.get("ag") is None or given.get("TC") is None or not (sound("ag") and sound("TC")):
-        return
-    if given["TC"] > (TD := 4.0 * given["ag"] + 1.6):
-        yield ("TC",), f"is above T_D = 4 a_g/g + 1.6 = {TD:.4g} s: got {given['TC']:g} s"
 
 
 def _no_function(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:

@@ -11,7 +11,6 @@ from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.displaced import DisplacedChain
 from rocking_cli.core import Mechanism
-from rocking_cli.core.hung.attached import Follow, Spot
 from rocking_cli.core.hung.elements import ConstantForce, Spring
 from rocking_cli.core.hung.ties import Tie
 
@@ -52,24 +51,16 @@ def pulls(curve: ExactCurve, d: float) -> Sequence[Pull]:
     found = []
     for thing in chain.mechanism.hung.elements:
         if isinstance(thing, Spring):
-            e = thing.elongation(follow)[0]
-            found.append(
-                Pull(thing.name, float(thing.force(e)[0]), float(e[0]), _over(float(e[0]), lengths[thing.name]))
-            )
+            e, length = thing.elongation(follow)[0], lengths[thing.name]
+            strain = float(e[0]) / length if length else None
+            found.append(Pull(thing.name, float(thing.force(e)[0]), float(e[0]), strain))
         elif isinstance(thing, ConstantForce) and thing.name in loads:
             force = thing.in_direction(chain.direction)
             if chain.direction * force.real < 0:
-                found.append(Pull(thing.name, abs(force), _against(thing.spot, force, follow), None))
+                moved = complex(follow(thing.spot).z[0]) - thing.spot.at
+                against = -(moved.conjugate() * force).real / abs(force)
+                found.append(Pull(thing.name, abs(force), against, None))
     return found
-
-
-def _over(elongation: float, length: float) -> float | None:
-    return elongation / length if length else None
-
-
-def _against(spot: Spot, force: complex, follow: Follow) -> float:
-    moved = complex(follow(spot).z[0]) - spot.at
-    return -(moved.conjugate() * force).real / abs(force)
 
 
 def furthest(curve: ExactCurve, d: float) -> tuple[float, float]:

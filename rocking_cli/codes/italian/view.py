@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli import names
@@ -10,7 +10,6 @@ from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian import words
 from rocking_cli.codes.italian.results import (
     Dynamic,
-    ItalianMethod,
     ItalianVerification,
     ItalianVerified,
     LimitState,
@@ -50,7 +49,12 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
         yield from words.beyond_first(each, found.first)
         yield from each.remarks
         if each.dynamic is not None:
-            yield _records(each.dynamic)
+            rows = [
+                [record.name, *(_peak(record, each.dynamic, confident) for confident in (True, False))]
+                for record in each.dynamic.records
+            ]
+            heads = ["record", "with FC", "without"]
+            yield Table("Time histories: largest d [m]", heads, rows, numbers=(1, 2))
             yield from words.of_histories(each.dynamic, each.exact.confidence)
 
     def data(self, found: ItalianVerification, each: ItalianVerified) -> dict[str, Any]:
@@ -144,11 +148,6 @@ def _methods(each: ItalianVerified) -> Table:
     return Table("Capacity by method", [*heads, "clause", ""], rows, numbers=range(1, len(heads)))
 
 
-def _records(found: Dynamic) -> Table:
-    rows = [[each.name, *(_peak(each, found, confident) for confident in (True, False))] for each in found.records]
-    return Table("Time histories: largest d [m]", ["record", "with FC", "without"], rows, numbers=(1, 2))
-
-
 def _peak(record: RecordPeak, found: Dynamic, confident: bool) -> str:
     d, known_to = record.peak(confident=confident), record.known_to(confident=confident)
     if known_to is not None:
@@ -160,7 +159,11 @@ def _peak(record: RecordPeak, found: Dynamic, confident: bool) -> str:
 
 def _data(each: ItalianVerified) -> dict[str, Any]:
     control = each.exact.control
-    periods = _return_periods(each.methods)
+    periods = {  # if the hazard is known
+        key: {"years": method.return_period, "beyond": method.beyond}
+        for key, method in each.methods.items()
+        if method.return_period is not None
+    }
     return {
         "control": {"x": control.at.real, "y": control.at.imag, "body": control.body},
         "alpha0": each.chain.alpha0,
@@ -205,12 +208,6 @@ def _pulls(each: ItalianVerified) -> list[Table]:
     heads = ["", "at", "force\n[kN]", "elongation\n[m]", "elongation\n[%]"]
     title = "Ties, and forces against the motion with the way of their points"
     return [Table(title, heads, rows, numbers=(2, 3, 4))] if rows else []
-
-
-def _return_periods(methods: Mapping[str, ItalianMethod]) -> dict[str, dict[str, Any]]:
-    """Return the capacity of each method as a return period, if the hazard is known."""
-    known = {key: each for key, each in methods.items() if each.return_period is not None}
-    return {key: {"years": each.return_period, "beyond": each.beyond} for key, each in known.items()}
 
 
 def _histories(found: Dynamic) -> dict[str, Any]:

@@ -9,10 +9,10 @@ from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum
 from rocking_cli.codes.italian.ground import SiteGround
-from rocking_cli.codes.italian.hazard import LONGEST, SHORTEST, return_period
 from rocking_cli.codes.italian.remarks import TEXTS
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import FURTHER, RULES, STATES
+from rocking_cli.codes.italian.site_hazard import LONGEST, SHORTEST, return_period
 from rocking_cli.codes.italian.ties import STRETCHED, WIDE, carried, elastic, furthest, pulls
 from rocking_cli.core.hung.ties import Tie
 from rocking_cli.excitation.base import STANDARD_GRAVITY

@@ -88,7 +88,11 @@ def beyond_first(found: ItalianVerified, first: str) -> Iterator[str]:
 
 def of_histories(found: Dynamic, FC: float) -> Iterator[str]:
     """State what the records are, and the result of the time histories, with FC (the verdict) and without it."""
-    yield _belonging(found)
+    (only,) = found.allowed
+    yield (
+        f"The records belong to {only} and are checked against this limit state alone. "
+        f"{MOVES[found.motions.kind].format(floor=found.motions.floor)}."
+    )
     for confident in (True, False) if FC != 1 else (True,):
         yield _of_some(found, confident=confident)
     if FC != 1:
@@ -116,15 +120,6 @@ MOVES = {
     "of_floor": "The motions are taken as motions of the floor, as stated, and not of the ground",
 }
 """What the motions of the histories are, by `Moves`."""
-
-
-def _belonging(found: Dynamic) -> str:
-    """State to which limit state the records belong, and what they are motions of."""
-    (state,) = found.allowed
-    return (
-        f"The records belong to {state} and are checked against this limit state alone. "
-        f"{MOVES[found.motions.kind].format(floor=found.motions.floor)}."
-    )
 
 
 def _of_some(found: Dynamic, *, confident: bool) -> str:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.attached import Follow, Push, Spot
 from rocking_cli.core.kinematics import Direction, Points, Reals
-from rocking_cli.plugins.errors import guard
+from rocking_cli.plugins.errors import failed, guard
 
 Sense = Literal["tension", "compression"]
 Question = Literal["linear models", "equivalent block", "sizes", "verification"]
@@ -35,10 +35,6 @@ NO_ANSWER: dict[Question, str] = {
 TOGETHER = 1e-9  # m, and of the distance from the origin: points that are nearer at rest are one
 ROUNDING = 1e-14  # m, and of that distance: elongations that are none
 NEAR = 1e-6  # rad or so: two points that met at rest are still so near that their distance is its derivative times phi
-
-
-def _failed(cls: type, method: str) -> str:
-    return f"the element {cls.__name__} failed in {method}"
 
 
 class Element(ABC):
@@ -58,7 +54,11 @@ class Element(ABC):
         """Wrap the methods of elements of other packages, so that their failures name that package."""
         super().__init_subclass__(**named)
         if cls.__module__.partition(".")[0] != __name__.partition(".")[0]:
-            guard(cls, ("force", "slope", "energy", "slack_at", "elongation", "act", "forces"), _failed)
+            guard(
+                cls,
+                ("force", "slope", "energy", "slack_at", "elongation", "act", "forces"),
+                failed("element", "__name__"),
+            )
 
     @property
     @abstractmethod

@@ -8,7 +8,7 @@ from dataclasses import fields
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses.base import COARSE, Pulse, Segment
-from rocking_cli.excitation.records.units import UNITS
+from rocking_cli.excitation.records.record_units import UNITS
 from rocking_cli.patterns import regex
 from rocking_cli.plugins.installed import origin
 from rocking_cli.plugins.points import Point

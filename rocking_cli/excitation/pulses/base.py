@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.plugins.errors import guard
+from rocking_cli.plugins.errors import failed, guard
 
 Reals = NDArray[np.float64]
 FINE = 4000  # samples to a period of a history alone: its peak is right to 1e-6 of itself from 1.01 times uplift on
@@ -82,7 +82,7 @@ class Pulse(ABC):
     def __init_subclass__(cls, **named: Any) -> None:
         """Wrap the methods of a shape, so that any failure in them is reported as an error of the plugin."""
         super().__init_subclass__(**named)
-        guard(cls, ("__post_init__", "shape", "velocity_shape", "segments"), _failed)
+        guard(cls, ("__post_init__", "shape", "velocity_shape", "segments"), failed("pulse", "name"))
 
     def __post_init__(self) -> None:
         for what in ("amplitude", "period"):
@@ -181,10 +181,6 @@ def _amplitude(value: float) -> str:
     texts = (f"{value / STANDARD_GRAVITY:.{digits}g}" for digits in range(1, DIGITS + 1))
     in_g = [f"{text}g" for text in texts if float(text) * STANDARD_GRAVITY == value]
     return min([*in_g[:1], f"{_shortest(value)}m/s2"], key=len)
-
-
-def _failed(cls: type, method: str) -> str:
-    return f"the pulse {getattr(cls, 'name', cls.__name__)} failed in {method}"
 
 
 def _with_its_impulse(curve: Reals) -> Reals:

@@ -97,13 +97,15 @@ def read_measured(
         if type(error) is not InputError:  # of a plugin that failed: what it says is its own
             raise
         raise InputError(*map(_short, error.problems)) from None
-    motion = _multiplied(motion, gain)
+    if gain is not None:
+        said = (*motion.processing, f"gain {gain}")
+        motion = replace(motion, acceleration=gain.size * motion.acceleration, unit=gain.text, processing=said)
     if Path(file).name == name:
         return motion, wanted.quantity
     # A file of an archive is named after the archive, and is one of its channels if there are several.
     inside = motion.name.removeprefix(Path(file).name).removeprefix(" channel ")
-    said = ":".join(part for part in (member, inside) if part)
-    return replace(motion, name=f"{name} channel {said}" if said else name), wanted.quantity
+    chosen = ":".join(part for part in (member, inside) if part)
+    return replace(motion, name=f"{name} channel {chosen}" if chosen else name), wanted.quantity
 
 
 def _wanted(quantity: Quantity | None, gain: Gain | None, units: str | None, *, uneven: bool) -> Wanted:
@@ -132,13 +134,6 @@ def _must_be_asked(reader: Reader, wanted: Wanted, file: str) -> bool:
         message = f"a file of this format ({reader.TITLE}) gives accelerations, and says their unit"
         raise InputError(Problem(message, file, hint="leave `gain` and `from` out"))
     return False
-
-
-def _multiplied(motion: GroundMotion, gain: Gain | None) -> GroundMotion:
-    if gain is None:
-        return motion
-    said = (*motion.processing, f"gain {gain}")
-    return replace(motion, acceleration=gain.size * motion.acceleration, unit=gain.text, processing=said)
 
 
 def _short(problem: Problem) -> Problem:

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.records.record_units import header_units, is_unit, other_quantity
 from rocking_cli.excitation.records.sensor import Wanted, plural, quantity_of
-from rocking_cli.excitation.records.units import header_units, is_unit, other_quantity
 from rocking_cli.patterns import regex
 
 MOST = 1000  # columns of a table

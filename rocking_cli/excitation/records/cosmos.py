@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import Doubt, GroundMotion, Origin
+from rocking_cli.excitation.records.header_fields import Field, read_head
 from rocking_cli.excitation.records.layout import (
     Channel,
     RecordBlock,
@@ -23,7 +23,7 @@ from rocking_cli.excitation.records.layout import (
     whole_number,
 )
 from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.excitation.records.origins import first_match, magnitude, origin
+from rocking_cli.excitation.records.origins import magnitude, origin
 from rocking_cli.excitation.records.stated import peak_doubts
 from rocking_cli.excitation.records.text import numbers_in
 from rocking_cli.patterns import regex
@@ -42,7 +42,6 @@ _DATA = regex(
 )
 _WIDTH = regex(r"\( *\d*[A-Z](\d+)(?:\.\d+)?(?:E\d*)? *\)", re.I)
 _LONG = 300  # characters; the format has 80
-_AZIMUTH = regex(r"Sta Chan?\.?:? *\S+: *(.*?) *\(", re.I)
 _CODE = regex(r"units *=[^(,]*\((\d{1,3})\)", re.I)
 _UNIT_CODES = {2: "g", 4: "cm/s2"}
 _END = regex(r"End-of-data for Chan *(\S+)", re.I)
@@ -51,8 +50,13 @@ _DT_MS, _DT_RAW = 62, 34
 _PEAK, _PEAK_TIME = 64, 65  # of the values, and when [s]
 _DISTANCE = 17  # from the epicentre [km]
 _UNSET = -999
-_EVENT = regex(r"^\s*(?:Rec(?:or)?d of )?(.*\b(?:19|20)\d\d\b.*)", re.I)
-_STATION = regex(r"Statn No: *\S+ +Code: *(\S+)(?: +[A-Z]{2,5} +(\S.*))?")  # the code, and the name behind the agency
+_FIELDS = {
+    "azimuth": Field(regex(r"^Sta Chan?\.?:? *\S+: *(.*?) *\(", re.I)),
+    "event": Field(regex(r"^\s*(?:Rec(?:or)?d of )?(.*\b(?:19|20)\d\d\b.*)", re.I), line=2),  # if it has a year
+    # The code, and the name behind the agency.
+    "station": Field(regex(r"^Statn No: *\S+ +Code: *(\S+)(?: +[A-Z]{2,5} +(\S.*))?")),
+    "hypocentre": Field(regex(r"^(Hypocenter.*)")),
+}
 _LINE = 10_000  # characters looked at of the first line
 _TEXT_LINES, _HEADER_VALUES, _COMMENT_LINES = 1000, 10_000, 100_000  # more than any header has
 
@@ -106,9 +110,8 @@ def _headers(file: str, lines: Lines, start: int) -> _Headers:
         message = "a channel must begin here, with a line that says (Format v01.20 with 13 text lines)"
         hint = "the file may have been cut or edited: download it again"
         raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=hint))
-    index = start + whole_number(file, start + 1, lines[start], first[3], "number of text lines", most=_TEXT_LINES)
-    text = lines[start:index]
-    azimuth = next((match[1] for line in text if (match := _AZIMUTH.match(line))), "")
+    count = whole_number(file, start + 1, lines[start], first[3], "number of text lines", most=_TEXT_LINES)
+    head, index = read_head(file, lines, _FIELDS, count, start), start + count
     reals, reals_line = np.array([]), start + 1
     for kind in ("integer", "real"):
         match = _NUMBERS.match(lines[index]) if index < len(lines) else None
@@ -124,16 +127,10 @@ def _headers(file: str, lines: Lines, start: int) -> _Headers:
     if index < len(lines) and (match := _COMMENTS.match(lines[index])):
         what = "number of comment lines"
         index += 1 + whole_number(file, index + 1, lines[index], match[1], what, least=0, most=_COMMENT_LINES)
-    return _Headers(azimuth, reals, reals_line, index, _origin(text, reals))
-
-
-def _origin(text: Sequence[str], reals: NDArray[np.float64]) -> Origin:
-    """Return the origin: earthquake (in the second line, if this has a year), station, magnitude and distance."""
-    station = next((match for line in text if (match := _STATION.match(line))), None)
-    hypocentre = next((line for line in text if line.startswith("Hypocenter")), "")
+    code, name = head["station"].groups if "station" in head.items else (None, None)
     distance = reals[_DISTANCE - 1] if reals.size >= _DISTANCE else None
-    where = (station[2] or station[1]) if station is not None else None
-    return origin(first_match(_EVENT, text[1:2]), where, magnitude(hypocentre), distance)
+    where = origin(head.text("event"), name or code, magnitude(head.text("hypocentre") or ""), distance)
+    return _Headers(head.text("azimuth") or "", reals, reals_line, index, where)
 
 
 def _history(file: str, lines: Lines, headers: _Headers, index: int, units: str | None) -> tuple[Channel | str, int]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import replace
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.header_fields import Field, read_head
 from rocking_cli.excitation.records.layout import (
     Channel,
     RecordBlock,
@@ -30,11 +30,19 @@ TITLE = "CSMIP V1"
 SIGN = "a first line that begins with UNCORRECTED ACCELEROGRAM DATA"
 
 FIRST = regex(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.I)
-_CHANNEL = regex(r"CHAN(?:NEL)? +\d+: *(.*?) *(?:\(STA CHN.*)?$", re.I)
-_COUNT = regex(r"NO\. OF POINTS *= *(\d+)", re.I)
-_LENGTH = regex(r"RECORD LENGTH *= *(\S+) *SEC", re.I)
+_FIELDS = {
+    "channel": Field(regex(r"^\s*CHAN(?:NEL)? +\d+: *(.*?) *(?:\(STA CHN.*)?$", re.I)),
+    "length": Field(regex(r"RECORD LENGTH *= *(\S+) *SEC", re.I)),
+}
+_OF_FILM = {
+    "count": Field(regex(r"NO\. OF POINTS *= *(\d+)", re.I), "number of points", " (NO. OF POINTS)"),
+    "unit": Field(
+        regex(r"UNITS OF UNCOR \w+ (?:ARE|IS) (?:SEC AND )?(.*?) *\.? *(?: {2,}.*)?$", re.I),
+        "unit",
+        " (UNITS OF UNCOR ACCEL ARE SEC AND ...)",
+    ),
+}
 _AT_LEAST, _SHARE = 1.0, 0.02  # s, and of its length: what the length of a record may be rounded or cut by
-_UNITS = regex(r"UNITS OF UNCOR \w+ (?:ARE|IS) (?:SEC AND )?(.*?) *\.? *(?: {2,}.*)?$", re.I)
 # What announces samples at a constant interval: its number of points, kind, interval or rate, unit and format.
 _EVENLY = (
     regex(r" *(\d+) +POINTS OF (\w+) +DATA EQUALLY SPACED AT +(?P<dt>\S+) *SEC\b\.?(.*)", re.I),
@@ -78,8 +86,8 @@ def _channel(file: str, lines: Lines, start: int, units: str | None) -> tuple[Ch
         message = "a channel must begin with the line UNCORRECTED ACCELEROGRAM DATA here"
         hint = "the file may have been cut or edited, or its number of points is wrong: download it again"
         raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=hint))
-    head = lines[start : start + _TEXT_LINES]
-    name = next((match[1] for line in head if (match := _CHANNEL.match(line.strip()))), "")
+    head = read_head(file, lines, _FIELDS, _TEXT_LINES, start)
+    name = head.text("channel") or ""
     index = start + _TEXT_LINES
     for size, width in (_INTEGERS, _REALS):
         _, index, _ = fixed_width(file, lines, RecordBlock(index, size, width, start + 1), last=False)
@@ -87,11 +95,11 @@ def _channel(file: str, lines: Lines, start: int, units: str | None) -> tuple[Ch
     for pattern in _EVENLY:
         if match := pattern.match(line):
             found, end = _evenly(file, lines, index, match, name, units)
-            length = next(((n, m[1]) for n, line in enumerate(head, start + 1) if (m := _LENGTH.search(line))), None)
-            if length is not None:
+            if length := head.items.get("length"):
                 lasting = found.acceleration.size * found.dt
                 tolerance = max(_AT_LEAST, _SHARE * lasting)
-                found = replace(found, remarks=found.remarks + length_doubts(lasting, *length, tolerance))
+                doubts = length_doubts(lasting, length.line_number, length.groups[0], tolerance)
+                found = replace(found, remarks=found.remarks + doubts)
             return found, end
     return _film(file, lines, start, index, name, units)
 
@@ -118,19 +126,9 @@ def _evenly(
 
 def _film(file: str, lines: Lines, start: int, index: int, name: str, units: str | None) -> tuple[Channel, int]:
     """Read pairs of time and acceleration from line index `index` on; return them and the index after them."""
-    head = lines[start : start + _TEXT_LINES]
-    count_line, count_text = _find(file, head, start, _COUNT, "number of points (NO. OF POINTS)")
-    unit_line, spelling = _find(file, head, start, _UNITS, "unit (UNITS OF UNCOR ACCEL ARE SEC AND ...)")
-    unit = old_unit(file, unit_line, spelling, units)
-    count = whole_number(file, count_line, lines[count_line - 1], count_text, "number of points", least=2)
-    pairs, end, remarks = fixed_width(file, lines, RecordBlock(index, 2 * count, _PAIRS, count_line))
+    head = read_head(file, lines, _OF_FILM, _TEXT_LINES, start)
+    unit = old_unit(file, head["unit"].line_number, head["unit"].groups[0], units)
+    block = RecordBlock(index, 2 * head.count, _PAIRS, head["count"].line_number)
+    pairs, end, remarks = fixed_width(file, lines, block)
     own, values, points = straight_lines(file, pairs, f"lines {index + 1} to {end}")
     return Channel(name, own, in_si(values, unit), unit, points=points, remarks=remarks), end
-
-
-def _find(file: str, head: Sequence[str], start: int, pattern: re.Pattern[str], what: str) -> tuple[int, str]:
-    """Return line number and value of an item in the text header of a channel that begins at line index `start`."""
-    for line_number, line in enumerate(head, start=start + 1):
-        if match := pattern.search(line.rstrip()):
-            return line_number, match[1]
-    raise InputError(Problem(f"the header does not state the {what}", file, start + 1))

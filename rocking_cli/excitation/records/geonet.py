@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
-
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import GroundMotion, Origin
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.header_fields import Field, read_head
 from rocking_cli.excitation.records.layout import (
     Channel,
     RecordBlock,
@@ -14,12 +12,9 @@ from rocking_cli.excitation.records.layout import (
     fixed_width,
     in_si,
     lines_of,
-    number,
     stated_unit,
-    whole_number,
 )
 from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.excitation.records.origins import first_match, origin
 from rocking_cli.excitation.records.stated import length_doubts, peak_doubts
 from rocking_cli.patterns import regex
 
@@ -32,15 +27,18 @@ _WIDTH = 8
 _SIZE = regex("[0-9]{1,9}")
 _FIRST = regex(r"Corrected accelerogram\b")
 _COUNT = regex(r"Number of points\s+(\d+)")
-_DURATION = regex(r"Duration\s+(\S+)\s+sec")
-_DT = regex(r"data at\s+(\S+)\s+sec intervals")
-_COMPONENT = regex(r"Component\s+(\S+)")
-_UNIT = regex(r"Acceleration:\s+peak\s+\S+\s+(\S+)")
-_STATION = regex(r"^Site +(\S+)")
-_EVENT = regex(r"^(\d{4} [A-Z][a-z]+ +\d{1,2} +\d{2}:\d{2}:\d{2}(?: UT)?)")
-_DISTANCE = regex(r"^Epicentre .*\bDist +(\S+?) *km\b")
-_MAGNITUDE = regex(r"^Epicentre .*\bM +(\S+)")
-_PEAK = regex(r"Acceleration:\s+peak\s+(\S+)")
+_FIELDS = {
+    "count": Field(_COUNT, "number of points"),
+    "dt": Field(regex(r"data at\s+(\S+)\s+sec intervals"), "sample interval"),
+    "component": Field(regex(r"Component\s+(\S+)"), "component"),
+    "peak": Field(regex(r"Acceleration:\s+peak\s+(\S+)\s+(\S+)"), "unit of the accelerations"),
+    "duration": Field(regex(r"Duration\s+(\S+)\s+sec")),
+    # The earthquake by its time, as the file has no name.
+    "event": Field(regex(r"^(\d{4} [A-Z][a-z]+ +\d{1,2} +\d{2}:\d{2}:\d{2}(?: UT)?)")),
+    "station": Field(regex(r"^Site +(\S+)")),
+    "magnitude": Field(regex(r"^Epicentre .*\bM +(\S+)")),
+    "distance": Field(regex(r"^Epicentre .*\bDist +(\S+?) *km\b")),
+}
 
 
 def sniff(text: str) -> bool:
@@ -68,13 +66,10 @@ def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[
         message = "a component must begin with the line Corrected accelerogram here"
         hint = "the file may have been cut or edited, or its number of points is wrong: download it again"
         raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=hint))
-    count_line, count = _find(file, lines, start, _COUNT, "number of points")
-    dt_line, interval = _find(file, lines, start, _DT, "sample interval")
-    _, name = _find(file, lines, start, _COMPONENT, "component")
-    unit_line, spelling = _find(file, lines, start, _UNIT, "unit of the accelerations")
+    head = read_head(file, lines, _FIELDS, _TEXT_LINES, start)
+    unit_line, _, (peak, spelling) = head["peak"]
     unit = stated_unit(file, unit_line, spelling, units)
-    own = number(file, dt_line, lines[dt_line - 1], interval, "sample interval")
-    npts = whole_number(file, count_line, lines[count_line - 1], count, "number of points", least=2)
+    own, npts, count_line = head.number("dt"), head.count, head["count"].line_number
 
     # The fourth line of numbers says how long each of the three histories is; the last two may be left out.
     sizes_line = start + _TEXT_LINES + 3
@@ -92,24 +87,9 @@ def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[
     values, end, remarks = fixed_width(file, lines, RecordBlock(end, npts, _WIDTH, count_line), last=False)
     for size in sizes[1:]:  # velocity and displacement
         _, end, _ = fixed_width(file, lines, RecordBlock(end, size, _WIDTH, sizes_line + 1), last=False)
-    if match := _PEAK.search(lines[unit_line - 1]):
-        # Not its time: that does not count the taper which was put in front of the values.
-        remarks += peak_doubts(values, own, unit, unit_line, match[1])
-    if match := _DURATION.search(lines[count_line - 1]):
-        remarks += length_doubts((npts - 1) * own, count_line, match[1], own)
-    origin = _origin(lines[start : start + _TEXT_LINES])
-    return Channel(name, own, in_si(values, unit), unit, dt_line, remarks=remarks, origin=origin), end
-
-
-def _origin(head: Sequence[str]) -> Origin:
-    """Return the origin: the earthquake by its time, as the file has no name, and the site."""
-    patterns = (_EVENT, _STATION, _MAGNITUDE, _DISTANCE)
-    return origin(*(first_match(pattern, head) for pattern in patterns))
-
-
-def _find(file: str, lines: Sequence[str], start: int, pattern: re.Pattern[str], what: str) -> tuple[int, str]:
-    """Return line number and value of an item in the text header of a component."""
-    for line_number, line in enumerate(lines[start : start + _TEXT_LINES], start=start + 1):
-        if match := pattern.search(line):
-            return line_number, match[1]
-    raise InputError(Problem(f"the header does not state the {what}", file, start + 1))
+    # Not the time of the peak: that does not count the taper which was put in front of the values.
+    remarks += peak_doubts(values, own, unit, unit_line, peak)
+    if (duration := head.items.get("duration")) and duration.line_number == count_line:
+        remarks += length_doubts((npts - 1) * own, count_line, duration.groups[0], own)
+    acceleration, name = in_si(values, unit), head["component"].groups[0]
+    return Channel(name, own, acceleration, unit, head["dt"].line_number, remarks=remarks, origin=head.origin), end

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, NOT_SAID, STANDARD_GRAVITY, Doubt, GroundMotion, Origin
 from rocking_cli.excitation.records.lines import Lines
+from rocking_cli.excitation.records.record_units import CHOICES, UNITS, canonical, resolve_unit
 from rocking_cli.excitation.records.text import check_interval, numbers_in, sensible
-from rocking_cli.excitation.records.units import CHOICES, UNITS, canonical, resolve_unit
 from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, split_numbers
 from rocking_cli.patterns import regex
 
@@ -163,20 +163,20 @@ def fixed_width(file: str, lines: Lines, block: RecordBlock, *, last: bool = Tru
             leaving.append(index)
             cells = split_numbers(row)
             try:
-                found = _floats(file, index, row, cells, block)
+                numbers = _floats(file, index, row, cells, block)
             except InputError as error:
                 unread = unread or error
-                found = [math.nan] * len(cells)
+                numbers = [math.nan] * len(cells)
         else:
-            found = _floats(file, index, row, cells, block)
-        values.extend(found)
+            numbers = _floats(file, index, row, cells, block)
+        values.extend(numbers)
     remarks: tuple[Doubt, ...] = ()
     rows = index - block.start
     if leaving:
         if 2 * len(leaving) <= rows and not lines.edited:
             raise InputError(_out_of_columns(file, lines, leaving, rows, block))
         if unread is not None:
-            raise InputError(*(replace(each, hint=_TOUCHING.format(block.width)) for each in unread.problems))
+            raise InputError(*(replace(problem, hint=_TOUCHING.format(block.width)) for problem in unread.problems))
         remarks = (_no_columns(leaving, rows, block),)
     if len(values) != block.count:
         excerpt = lines[index].strip()[:100] if index < len(lines) else None
@@ -413,12 +413,11 @@ def _plain(name: str) -> str:
 
 def _listed(channels: Sequence[Channel]) -> str:
     """Return text that lists all channels with number, name, points and peak, or why they cannot be used."""
-    return "".join(
-        f"\n    {place}: {channel.name + ', ' if channel.name else ''}{channel.acceleration.size} points, "
-        f"{channel.flaw.message if channel.flaw else _peak(channel)}"
-        for place, channel in enumerate(channels, start=1)
-    )
-
-
-def _peak(channel: Channel) -> str:
-    return f"PGA {float(np.abs(channel.acceleration).max()) / STANDARD_GRAVITY:.4g} g"
+    out = ""
+    for place, channel in enumerate(channels, start=1):
+        out += f"\n    {place}: {channel.name + ', ' if channel.name else ''}{channel.acceleration.size} points, "
+        if channel.flaw:
+            out += channel.flaw.message
+        else:
+            out += f"PGA {float(np.abs(channel.acceleration).max()) / STANDARD_GRAVITY:.4g} g"
+    return out

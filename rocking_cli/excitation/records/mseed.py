@@ -12,7 +12,7 @@ import numpy as np
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, GroundMotion
-from rocking_cli.excitation.records.layout import Channel, choose
+from rocking_cli.excitation.records.layout import choose
 from rocking_cli.excitation.records.seismo import channel_of, origin_of, traces, velocity_code
 from rocking_cli.excitation.records.sensor import Wanted
 
@@ -67,22 +67,18 @@ def read(
     codes = {name: parts[0].stats.channel for name, parts in segments.items()}
     if len(set(codes.values())) == len(codes):  # station and network are of no use then
         segments = {codes[name]: parts for name, parts in segments.items()}
-    return choose(
-        file, TITLE, [_joined(file, name, parts, unit, wanted) for name, parts in segments.items()], channel, dt
-    )
+    channels = []
+    for name, parts in segments.items():  # obspy splits a channel at gaps
+        parts = sorted(parts, key=lambda segment: segment.stats.starttime)
+        flaw = velocity_code(file, parts[0].stats.channel, wanted) or _gap(file, name, parts)
+        samples = np.concatenate([segment.data for segment in parts])
+        found = channel_of(file, name, parts[0].stats.delta, samples, unit, flaw)
+        channels.append(replace(found, origin=origin_of(parts[0])))
+    return choose(file, TITLE, channels, channel, dt)
 
 
 def _version_3(data: bytes) -> bool:
     return data.startswith(b"MS\x03")
-
-
-def _joined(file: str, name: str, segments: Sequence[Any], unit: tuple[str, float], wanted: Wanted) -> Channel:
-    """Join the segments of a channel, which obspy splits at gaps, to one channel."""
-    segments = sorted(segments, key=lambda segment: segment.stats.starttime)
-    flaw = velocity_code(file, segments[0].stats.channel, wanted) or _gap(file, name, segments)
-    samples = np.concatenate([segment.data for segment in segments])
-    found = channel_of(file, name, segments[0].stats.delta, samples, unit, flaw)
-    return replace(found, origin=origin_of(segments[0]))
 
 
 def _gap(file: str, name: str, segments: Sequence[Any]) -> Problem | None:

@@ -160,10 +160,10 @@ def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bo
         )
     try:
         archive = zipfile.ZipFile(io.BytesIO(data))
-        members = [each for each in archive.infolist() if not _is_no_record(each)]
+        members = [member for member in archive.infolist() if not _is_no_record(member)]
     except Exception as error:  # of many kinds, without a base of their own
         raise InputError(_damaged("zip archive", error, file)) from None
-    names = [_printable(each.filename) for each in members]
+    names = [_printable(member.filename) for member in members]
     if _SPREADSHEET in names:
         message = "this is a spreadsheet or a document of an office program, and no record"
         raise InputError(Problem(message, file, hint="save the table in it as CSV, and give that"))
@@ -178,12 +178,12 @@ def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bo
         raise InputError(_too_large(inside, packed))
     try:
         with archive.open(member) as stream:
-            found = read_at_most(stream, _most(packed))
+            content = read_at_most(stream, _most(packed))
     except Exception as error:  # of many kinds, without a base of their own
         raise InputError(_damaged("zip archive", error, inside)) from None
-    if found is None:
+    if content is None:
         raise InputError(_too_large(inside, packed))
-    return found, names[place], len(names) > 1, channel
+    return content, names[place], len(names) > 1, channel
 
 
 def _is_no_record(member: zipfile.ZipInfo) -> bool:

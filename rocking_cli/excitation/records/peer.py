@@ -12,12 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import NOT_SAID, GroundMotion, Origin
+from rocking_cli.excitation.base import NOT_SAID, GroundMotion
 from rocking_cli.excitation.records.layout import lines_of, whole_number
-from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import of_peer
+from rocking_cli.excitation.records.record_units import UNITS, resolve_unit
 from rocking_cli.excitation.records.text import check_interval, numbers_in, only_channel, usable
-from rocking_cli.excitation.records.units import UNITS, resolve_unit
 from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, odd_row, split_numbers
 from rocking_cli.patterns import regex
 
@@ -61,7 +60,7 @@ def read(
     header = _header(file, lines)
     unit = resolve_unit(file, list(enumerate(lines[: header.data], start=1)), units)
     check_interval(file, header.dt_line, header.dt, dt)
-    values = _values(file, lines, header.data)
+    values = np.concatenate([_page_values(file, first, page) for first, page in lines.pages(header.data)])
     rows = PrintedRows(lines, header.data, lambda line: split_numbers(line) if _plain(line) else [])
     if (odd := odd_row(rows)) is not None:
         message = "the numbers of this row do not end at the columns of the other rows"
@@ -75,13 +74,10 @@ def read(
         message = f"a record needs at least two samples, this has {header.npts}"
         raise InputError(Problem(message, file=file, line=header.npts_line))
     remarks = tuple(odd_digits(rows))
-    name, origin = Path(file).name, _origin(lines)
+    # Only files with the title of the database are known to have the origin in the second line.
+    origin = of_peer(lines[1]) if len(lines) > 1 and _SIGNATURE.match(lines[0]) else NOT_SAID
+    name = Path(file).name
     return GroundMotion(name, header.dt, values * UNITS[unit], unit, TITLE, remarks=remarks, origin=origin)
-
-
-def _origin(lines: Sequence[str]) -> Origin:
-    """Return the origin; only files with the title of the database are known to have it in the second line."""
-    return of_peer(lines[1]) if len(lines) > 1 and _SIGNATURE.match(lines[0]) else NOT_SAID
 
 
 def _header(file: str, lines: Sequence[str]) -> _PeerHeader:
@@ -113,11 +109,6 @@ def _header(file: str, lines: Sequence[str]) -> _PeerHeader:
     while data < len(lines) and not _BEGINS_WITH_NUMBER.match(lines[data]):
         data += 1
     return _PeerHeader(count, interval, npts[1], dt[1], data)
-
-
-def _values(file: str, lines: Lines, data: int) -> NDArray[np.float64]:
-    """Return all values from line index `data` on."""
-    return np.concatenate([_page_values(file, first, page) for first, page in lines.pages(data)])
 
 
 def _page_values(file: str, first: int, page: Sequence[str]) -> NDArray[np.float64]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import of_samples
-from rocking_cli.excitation.records.units import UNITS, canonical, header_units, resolve_unit
+from rocking_cli.excitation.records.record_units import UNITS, canonical, header_units, resolve_unit
 from rocking_cli.patterns import regex
 from rocking_cli.text import did_you_mean, exact
 from rocking_cli.units import KINDS
@@ -68,19 +68,16 @@ class Wanted(NamedTuple):
     def unit(self, file: str, header: Sequence[tuple[int, str]], units: str | None) -> tuple[str, float]:
         """Return name and size of the unit of the values; arguments and errors are those of `units.resolve_unit`."""
         if self.raw:
-            self._refuse_stated(file, header)
+            for number, line in header:
+                if stated := header_units(line):
+                    message = f"the header says that the values are in {', '.join(sorted(stated))} already"
+                    hint = "leave `gain` out"
+                    raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
             return "raw", 1.0
         if self.quantity == "acceleration":
             found = resolve_unit(file, header, units)
             return found, UNITS[found]
         return self._other_unit(file, header, units)
-
-    @staticmethod
-    def _refuse_stated(file: str, header: Sequence[tuple[int, str]]) -> None:
-        for number, line in header:
-            if stated := header_units(line):
-                message = f"the header says that the values are in {', '.join(sorted(stated))} already"
-                raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint="leave `gain` out"))
 
     def _refuse_another(self, file: str, header: Sequence[tuple[int, str]]) -> None:
         """Raise `InputError` if the labels have units in brackets, and all of these are of other quantities."""

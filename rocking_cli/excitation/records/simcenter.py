@@ -15,8 +15,8 @@ from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
 from rocking_cli.excitation.records.layout import in_si
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import of_info
+from rocking_cli.excitation.records.record_units import resolve_unit
 from rocking_cli.excitation.records.text import check_interval, only_channel, sensible
-from rocking_cli.excitation.records.units import resolve_unit
 from rocking_cli.excitation.records.widths import PrintedRows, odd_digits
 
 TITLE = "SimCenter JSON"
@@ -76,8 +76,10 @@ def read(
     if len(values) < 2:
         message = f"a record needs at least two samples, this has {len(values)}"
         raise InputError(Problem(message, file, line, field="accel_data"))
-    remarks = _one_missing(stated) if one_too_many else ()
-    remarks += _digits(text)
+    remarks = _digits(text)
+    if one_too_many:  # SimCenter's own files state one value too many, too
+        missing = f"it says numPoints = {stated:g} and has one value less, as files of SimCenter do: or was one lost?"
+        remarks = (Doubt("count", float(stated), missing), *remarks)
     acceleration = in_si(np.array(values, dtype=np.float64), unit)
     origin = of_info(info)
     return GroundMotion(Path(file).name, float(own), acceleration, unit, TITLE, remarks=remarks, origin=origin)
@@ -111,12 +113,6 @@ def _shown(value: object) -> str:
     if isinstance(value, (list, dict)):  # of any size and depth
         return "a list" if isinstance(value, list) else "an object"
     return json.dumps(value)[:40]
-
-
-def _one_missing(stated: float) -> tuple[Doubt, ...]:
-    """Return the doubt that a value may be lost; SimCenter's own files also state one value too many."""
-    text = f"it says numPoints = {stated:g} and has one value less, as files of SimCenter do: or was one lost?"
-    return (Doubt("count", float(stated), text),)
 
 
 def _digits(text: str) -> tuple[Doubt, ...]:

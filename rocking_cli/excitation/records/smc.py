@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
-
 import numpy as np
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion, Origin
+from rocking_cli.excitation.records.header_fields import Field, RecordHead, read_head
 from rocking_cli.excitation.records.layout import (
     Channel,
     RecordBlock,
@@ -20,7 +18,7 @@ from rocking_cli.excitation.records.layout import (
     stated_unit,
     whole_number,
 )
-from rocking_cli.excitation.records.origins import first_match, origin
+from rocking_cli.excitation.records.origins import origin
 from rocking_cli.excitation.records.stated import peak_doubts
 from rocking_cli.patterns import regex
 
@@ -35,10 +33,19 @@ _TEXT_LINES = 11
 _INTEGERS = RecordBlock(_TEXT_LINES, 48, 10, 1)
 _REALS = RecordBlock(_TEXT_LINES + 6, 50, 15, 1, unset=1.7e38)
 _DATA_WIDTH = 10
-_EVENT = regex(r" *(\d{4}) +(\d{1,2}) +(\d{1,2}) +(\d{4}) +(\S.*)")  # year, month, day, time, name
-_MOMENT, _LOCAL, _SURFACE = (regex(rf"{kind}= *([\d.]+)") for kind in ("Moment Mag", r"\bMl", r"\bMs"))
-_STATION = regex(r"^station *= *(.*?),? *\bcomponent *=")
-_DISTANCE = regex(r"^epicentral dist *= *([\d.]+)")
+_FIELDS = {
+    "component": Field(regex(r"component *= *(-?\w+)")),
+    "event": Field(regex(r"^ *(\d{4}) +(\d{1,2}) +(\d{1,2}) +(\d{4}) +(\S.*)$"), line=4),  # its date, time and name
+    "station": Field(regex(r"^station *= *(.*?),? *\bcomponent *=")),
+    "moment": Field(regex(r"Moment Mag= *([\d.]+)")),
+    "local": Field(regex(r"\bMl= *([\d.]+)")),
+    "surface": Field(regex(r"\bMs= *([\d.]+)")),
+    "distance": Field(regex(r"^epicentral dist *= *([\d.]+)")),
+}
+# Of the integers and of the reals, counted from 1.
+_COMMENTS, _COUNT = 16, 17
+_RATE = 2  # samples per second
+_EXTREMES = ((29, 30), (31, 32))  # time and value of the largest and of the smallest acceleration
 
 
 def sniff(text: str) -> bool:
@@ -59,9 +66,7 @@ def read(
     unit = stated_unit(file, 1, "cm/s2", units)  # the definition of the format says so, not the file
     integers = fixed_width(file, lines, _INTEGERS, last=False).values
     reals, start, _ = fixed_width(file, lines, _REALS, last=False)
-    # Counted from 1: integer 16 is the number of comment lines, 17 that of points; real 2 the samples per second, 29 to
-    # 32 the times and values of the largest and the smallest acceleration.
-    comments, count = int(integers[15]), int(integers[16])
+    comments, count, rate = int(integers[_COMMENTS - 1]), int(integers[_COUNT - 1]), float(reals[_RATE - 1])
     comment_line, count_line, rate_line = _TEXT_LINES + 2, _TEXT_LINES + 3, _REALS.start + 1
     if comments < 0:
         message = f"the header says {comments} comment lines"
@@ -69,10 +74,10 @@ def read(
     if start + comments >= len(lines):
         raise InputError(Problem("the file ends before its values", file, len(lines)))
     whole_number(file, count_line, lines[count_line - 1], str(count), "number of points", least=2)
-    if kind[1] == _UNCORRECTED and not 0 < reals[1] < _FASTEST:  # NaN too: what stands for no number
+    if kind[1] == _UNCORRECTED and not 0 < rate < _FASTEST:  # NaN too: what stands for no number
         message = "an uncorrected film record, points at uneven times: the header has no number of samples per second"
         raise InputError(Problem(message, file, rate_line, hint="give the corrected record of it (kind 2)"))
-    rate = number(file, rate_line, lines[rate_line - 1], f"{float(reals[1])!r}", "number of samples per second")
+    number(file, rate_line, lines[rate_line - 1], f"{rate!r}", "number of samples per second")
     if not all(line.startswith("|") for line in lines[start : start + comments]) or lines[start + comments].startswith(
         "|"
     ):
@@ -80,22 +85,21 @@ def read(
         raise InputError(Problem(message, file, comment_line, hint="the file may have been edited: download it again"))
     block = RecordBlock(start + comments, count, _DATA_WIDTH, count_line)
     values, _, remarks = fixed_width(file, lines, block)
-    extremes = [(time, peak) for time, peak in (reals[28:30], reals[30:32]) if not np.isnan(peak)]
+    extremes = [(reals[peak - 1], reals[time - 1]) for time, peak in _EXTREMES if not np.isnan(reals[peak - 1])]
     if extremes:
-        time, peak = max(extremes, key=lambda each: abs(each[1]))
+        peak, time = max(extremes, key=lambda extreme: abs(extreme[0]))
         remarks += peak_doubts(values, 1 / rate, unit, _REALS.start + 6, f"{peak:.7E}", f"{time:.7E}")
-    component = re.search(r"component *= *(-?\w+)", "\n".join(lines[:_TEXT_LINES]))
-    name, origin = component[1] if component else "", _origin(lines[:_TEXT_LINES])
+    head = read_head(file, lines, _FIELDS, _TEXT_LINES)
+    name, origin = head.text("component") or "", _origin(head)
     found = Channel(name, 1 / rate, in_si(values, unit), unit, rate_line, remarks=remarks, origin=origin)
     return choose(file, TITLE, [found], channel, dt)
 
 
-def _origin(head: Sequence[str]) -> Origin:
+def _origin(head: RecordHead) -> Origin:
     """Return the origin from the text header: earthquake by name and time, station, magnitude and distance."""
-    match = _EVENT.fullmatch(head[3][:200].rstrip()) if len(head) > 3 else None
     event = None
-    if match is not None:
-        year, month, day, time, name = match.groups()
+    if "event" in head.items:
+        year, month, day, time, name = head["event"].groups
         event = f"{name} {year}-{month:0>2}-{day:0>2} {time[:2]}:{time[2:]}"
-    magnitude = next((found for each in (_MOMENT, _LOCAL, _SURFACE) if (found := first_match(each, head))), None)
-    return origin(event, first_match(_STATION, head), magnitude, first_match(_DISTANCE, head))
+    magnitude = head.text("moment") or head.text("local") or head.text("surface")
+    return origin(event, head.text("station"), magnitude, head.text("distance"))

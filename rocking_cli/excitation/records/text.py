@@ -63,8 +63,8 @@ def read(
     if '"' in lines[start]:
         text = _unquoted(file, start + 1, lines[start], text)
         lines = Lines(text)
-    delimiter = _delimiter(lines[start])
-    commas = delimiter in (";", "\t") and _has_decimal_commas(lines, start)
+    delimiter = next((mark for mark in (";", "\t", ",") if mark in _clean(lines[start])), None)  # None for blanks
+    commas = delimiter in (";", "\t") and any("," in _clean(line) for line in next(lines.pages(start))[1])
     cells = _clean(lines[start]).split(delimiter)
     # A title such as "6 km south of" is no row of four columns.
     numbers_in(file, start + 1, lines[start], [cell.replace(",", ".") for cell in cells] if commas else cells)
@@ -81,7 +81,7 @@ def read(
         table = _table(file, lines, start, delimiter, names, commas=commas)
         _refuse_a_single_sample(file, start, table)
         choice = choose(file, table, names, channel, _increases if wanted.uneven else _increases_evenly, wanted)
-        header = [each for each in header if each[0] not in label_lines]
+        header = [entry for entry in header if entry[0] not in label_lines]
         header += [(number, str(names[choice.column])) for number in label_lines[:1]]
     elif channel is not None and channel.strip().lower() != names[-1].name.lower():
         only_channel(file, channel)
@@ -109,9 +109,9 @@ def read(
         try:
             own = _interval(file, lines, start, table[choice.time], column)
         except InputError:
-            if not wanted.uneven or (found := _on_grid(file, lines, start, table[choice.time], values)) is None:
+            if not wanted.uneven or (gridded := _on_grid(file, lines, start, table[choice.time], values)) is None:
                 raise
-            own, values, uneven = found
+            own, values, uneven = gridded
         check_interval(file, None, own, dt)
         dt = own
     assert dt is not None  # none at all was refused above
@@ -212,12 +212,6 @@ def _unquoted(file: str, line_number: int, row: str, text: str) -> str:
     return text.replace('"', " ")
 
 
-def _has_decimal_commas(lines: Lines, start: int) -> bool:
-    """Return whether the numbers of the first rows have decimal commas, as other delimiters separate them."""
-    _, page = next(lines.pages(start))
-    return any("," in _clean(line) for line in page)
-
-
 def _with_points(file: str, first: int, page: Sequence[str]) -> list[str]:
     """Return the rows of a page from line index `first` on, with points in place of decimal commas."""
     rows = [_clean(line) for line in page]
@@ -227,11 +221,6 @@ def _with_points(file: str, first: int, page: Sequence[str]) -> list[str]:
             hint = "write all decimals with a point, and no mark between thousands"
             raise InputError(Problem(message, file, number, excerpt=row[:100], hint=hint))
     return [row.replace(",", ".") for row in rows]
-
-
-def _delimiter(row: str) -> str | None:
-    """Return the delimiter of the columns, from the first row of data; None for blanks."""
-    return next((mark for mark in (";", "\t", ",") if mark in _clean(row)), None)
 
 
 def _header(file: str, lines: Sequence[str], delimiter: str | None, columns: int) -> list[tuple[int, str]]:
@@ -273,9 +262,12 @@ def _table(
     file: str, lines: Lines, start: int, delimiter: str | None, names: Sequence[Label], *, commas: bool
 ) -> NDArray[np.float64]:
     """Return all columns as rows of an array, by numpy's parser, or the slower one for a page that numpy refuses."""
-    columns = len(names)
-    _refuse_too_many(file, len(lines) - start, columns)
-    table = np.empty((columns, len(lines) - start))  # rather too wide: blank lines and comments hold nothing
+    columns, rows = len(names), len(lines) - start
+    if rows > MOST_SAMPLES or rows * columns > MOST_NUMBERS:  # before memory is reserved
+        most = MOST_SAMPLES if rows > MOST_SAMPLES else MOST_NUMBERS // columns
+        message = f"a record has at most {most} samples in each column, this file has {rows} lines"
+        raise InputError(Problem(message, file))
+    table = np.empty((columns, rows))  # rather too wide: blank lines and comments hold nothing
     filled = 0
     for first, page in lines.pages(start):
         if commas:
@@ -288,15 +280,6 @@ def _table(
         table[:, filled : filled + len(part)] = part.T
         filled += len(part)
     return table[:, :filled]
-
-
-def _refuse_too_many(file: str, rows: int, columns: int) -> None:
-    """Raise `InputError` if a table is larger than any record, before memory is reserved for it."""
-    if rows > MOST_SAMPLES or rows * columns > MOST_NUMBERS:
-        most = MOST_SAMPLES if rows > MOST_SAMPLES else MOST_NUMBERS // columns
-        raise InputError(
-            Problem(f"a record has at most {most} samples in each column, this file has {rows} lines", file)
-        )
 
 
 def _quick_table(lines: Sequence[str], delimiter: str | None, columns: int) -> NDArray[np.float64] | None:

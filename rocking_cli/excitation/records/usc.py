@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 
-from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records.header_fields import Field, read_head
 from rocking_cli.excitation.records.layout import (
     Channel,
     RecordBlock,
@@ -16,9 +15,7 @@ from rocking_cli.excitation.records.layout import (
     lines_of,
     old_unit,
     straight_lines,
-    whole_number,
 )
-from rocking_cli.excitation.records.origins import first_match, origin
 from rocking_cli.excitation.records.stated import length_doubts
 from rocking_cli.patterns import regex
 
@@ -26,12 +23,15 @@ TITLE = "USC V1"
 SIGN = "a first line with UNCORRECTED ACCELEROGRAM DATA OF VOLUME I"
 
 _FIRST = regex(r"FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I\b")
-_COUNT = regex(r"NO\. OF POINTS *= *(\d+)")
-_DURATION = regex(r"DURATION *= *(\S+) *SEC")
-_UNITS = regex(r"UNITS ARE SEC AND (.*?)(?:\s+\d+|\s{2,}.*)?$")
-_COMPONENT = regex(r"COMP\s+(\S+)")
-_EVENT = regex(r"^(.*\bEARTHQUAKE\b.*?)(?:\s+\d+)?\s*$")
-_STATION = regex(r"^STATION (USC# *\d+)")
+_FIELDS = {
+    "count": Field(regex(r"NO\. OF POINTS *= *(\d+)"), "number of points", " (NO. OF POINTS)"),
+    "unit": Field(regex(r"UNITS ARE SEC AND (.*?)(?:\s+\d+|\s{2,}.*)?$"), "unit", " (UNITS ARE SEC AND ...)"),
+    "duration": Field(regex(r"DURATION *= *(\S+) *SEC")),
+    "component": Field(regex(r"^COMP\s+(\S+)")),
+    "event": Field(regex(r"^(.*\bEARTHQUAKE\b.*?)(?:\s+\d+)?\s*$"), line=8),
+    "station": Field(regex(r"^STATION (USC# *\d+)")),
+}
+_TEXT_LINES = 30  # the items are among them
 _INTEGERS, _REALS = 100, 50
 
 
@@ -50,10 +50,9 @@ def read(
     approximation.
     """
     lines = lines_of(text)
-    count_line, count_text = _find(file, lines, _COUNT, "number of points (NO. OF POINTS)")
-    unit_line, spelling = _find(file, lines, _UNITS, "unit (UNITS ARE SEC AND ...)")
-    count = whole_number(file, count_line, lines[count_line - 1], count_text, "number of points", least=2)
-    unit = old_unit(file, unit_line, spelling, units)
+    head = read_head(file, lines, _FIELDS, _TEXT_LINES)
+    count, count_line = head.count, head["count"].line_number
+    unit = old_unit(file, head["unit"].line_number, head["unit"].groups[0], units)
 
     start = next((index for index, line in enumerate(lines) if not re.search(r"[A-Za-z]", line)), len(lines))
     for size, width in ((_INTEGERS, 5), (_REALS, 10)):
@@ -61,17 +60,8 @@ def read(
     pairs, end, remarks = fixed_width(file, lines, RecordBlock(start, 2 * count, 7, count_line, margin=1))
     step, values, points = straight_lines(file, pairs, f"lines {start + 1} to {end}")
     acceleration = in_si(values, unit)
-    if match := _DURATION.search(lines[count_line - 1]):
-        remarks += length_doubts(float(pairs[-2]), count_line, match[1], 0.0)
-    name = next((match[1] for line in lines[:15] if (match := _COMPONENT.match(line))), "")
-    where = origin(first_match(_EVENT, lines[7:8]), first_match(_STATION, lines[:15]))
-    found = Channel(name, step, acceleration, unit, points=points, remarks=remarks, origin=where)
+    if (duration := head.items.get("duration")) and duration.line_number == count_line:
+        remarks += length_doubts(float(pairs[-2]), count_line, duration.groups[0], 0.0)
+    name = head.text("component") or ""
+    found = Channel(name, step, acceleration, unit, points=points, remarks=remarks, origin=head.origin)
     return choose(file, TITLE, [found], channel, dt)
-
-
-def _find(file: str, lines: Sequence[str], pattern: re.Pattern[str], what: str) -> tuple[int, str]:
-    """Return line number and value of an item in the text header."""
-    for line_number, line in enumerate(lines[:30], start=1):
-        if match := pattern.search(line.rstrip()):
-            return line_number, match[1]
-    raise InputError(Problem(f"the header does not state the {what}", file, 1))

@@ -83,19 +83,19 @@ def parse_measure(text: str) -> Measure:
     plain = {_plain(name): name for name in known}
     if _plain(text) in plain:
         return known[plain[_plain(text)]].read(())
-    found = _FORM.fullmatch(text.strip())
-    name = plain.get(_plain(found[1])) if found is not None else None
-    if found is None or name is None:
-        asked = found[1] if found is not None else text
-        by_case = {each.lower(): each for each in known}
+    match = _FORM.fullmatch(text.strip())
+    name = plain.get(_plain(match[1])) if match is not None else None
+    if match is None or name is None:
+        asked = match[1] if match is not None else text
+        by_case = {known_name.lower(): known_name for known_name in known}
         hint = did_you_mean(asked.strip(), list(by_case)) or ""
-        for low, each in by_case.items():
-            hint = hint.replace(f"did you mean {low}?", f"did you mean {each}?")
+        for low, known_name in by_case.items():
+            hint = hint.replace(f"did you mean {low}?", f"did you mean {known_name}?")
         if not hint.startswith("did"):
             hint = f"known: {', '.join(known)}"
         raise InputError(Problem(f"unknown measure: {cut(text.strip())}", hint=hint))
     cls = known[name]
-    words = re.split("[,:]", found[2]) if (found[2] or "").strip() else []
+    words = re.split("[,:]", match[2]) if (match[2] or "").strip() else []
     with blame(f"the measure {name} failed to be made", cls.__module__):
         return cls.read(words)
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.plugins.errors import blame, guard
+from rocking_cli.plugins.errors import blame, failed, guard
 from rocking_cli.units import UnitError, read
 
 Reals = NDArray[np.float64]
@@ -48,10 +48,6 @@ class Reference:
         return self.gravity * self.lambda_
 
 
-def _failed(cls: type, method: str) -> str:
-    return f"the measure {getattr(cls, 'name', cls.__name__)} failed in {method}"
-
-
 @dataclass(frozen=True)
 class Measure(ABC):
     """A measure of the intensity of a ground motion, found by its entry point in `rocking.measures`.
@@ -77,7 +73,7 @@ class Measure(ABC):
     def __init_subclass__(cls, **named: Any) -> None:
         """Wrap the methods of a measure, so that any failure in them is reported as an error of the plugin."""
         super().__init_subclass__(**named)
-        guard(cls, ("__post_init__", "of", "relative"), _failed)
+        guard(cls, ("__post_init__", "of", "relative"), failed("measure", "name"))
 
     @property
     @abstractmethod
@@ -110,7 +106,8 @@ class Measure(ABC):
             given.pop()
         words = ""
         for field, value in given:
-            words += f"{field.metadata.get('after', ', ') if words else ''}{_written(value, field)}"
+            written = f"{100 * value:g}%" if field.metadata.get("unit") == "%" else repr(float(value))
+            words += f"{field.metadata.get('after', ', ') if words else ''}{written}"
         return f"{self.name}({words})" if words else self.name
 
     @classmethod
@@ -228,11 +225,6 @@ def _sound(measure: Measure, found: object) -> float:
     if value < 0 or value in (float("inf"),):
         raise PluginError(f"the measure {measure} gave {value:g}: a measure is a number, and not negative")
     return value
-
-
-def _written(value: Any, field: Field[Any]) -> str:
-    """Return a parameter as it is written in the text of a measure."""
-    return f"{100 * value:g}%" if field.metadata.get("unit") == "%" else repr(float(value))
 
 
 def _read(word: str, field: Field[Any], form: str) -> float:

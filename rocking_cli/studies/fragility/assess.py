@@ -17,7 +17,7 @@ from rocking_cli.studies.fragility.curves import (
     fit_surface,
 )
 from rocking_cli.studies.fragility.definition import Definition, Limit
-from rocking_cli.studies.fragility.hazard import HazardCurve, Rate, annual_rate
+from rocking_cli.studies.fragility.hazard_curve import HazardCurve, Rate, annual_rate
 from rocking_cli.studies.fragility.likelihood import Bools, Integers, Reals
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.store import Store
@@ -141,11 +141,6 @@ class Bivariate(_FittedTwice):
         return self.surface.runs
 
 
-def structures(plan: Plan) -> list[str]:
-    """Return the names of the structures, in the order of the study."""
-    return list(dict.fromkeys(trial.structure for trial in plan.trials))
-
-
 def counted(store: Store, plan: Plan, definition: Definition, progress: Counted) -> dict[str, Tally]:
     """Count the finished runs of each structure of a store, for the limit states and measures of its study.
 
@@ -163,7 +158,7 @@ def counted(store: Store, plan: Plan, definition: Definition, progress: Counted)
     measures = [*definition.fitted_measures, *(one for pair in definition.bivariate for one in pair)]
     limits, ladders = definition.limit_states, definition.method == "ida"
     return {
-        name: count(store, plan, name, limits, measures, ladders=ladders, counted=progress) for name in structures(plan)
+        name: count(store, plan, name, limits, measures, ladders=ladders, counted=progress) for name in plan.structures
     }
 
 

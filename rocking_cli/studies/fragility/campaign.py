@@ -26,7 +26,7 @@ from rocking_cli.studies.fragility.reached import rotations
 from rocking_cli.studies.fragility.sources import KeptMotions
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import Sample, Study, digest
-from rocking_cli.studies.fragility.units import carry_out, unit_size, units
+from rocking_cli.studies.fragility.work_units import carry_out, unit_size, units
 from rocking_cli.studies.fragility.workers import Workers
 
 Progress = Callable[[int, int], None]
@@ -94,7 +94,8 @@ def prepare(
     asked = {
         "name": study.name,
         "definition": given.model_dump(mode="json", exclude_unset=True, by_alias=True),
-        "hazard": _hazard(study),
+        # As plain data, so that the store does not need the file.
+        "hazard": study.hazard and [study.hazard.intensity.tolist(), study.hazard.annual_rate.tolist()],
         "weights": [source.entry.weight for source in study.sources],
     }
     if known is None:
@@ -272,13 +273,6 @@ def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, t
     return *weaker(found, asked.model), (found.positive.phi_cr, found.negative.phi_cr)
 
 
-def _hazard(study: Study) -> list[list[float]] | None:
-    """Return the hazard curve as plain data, so that the store does not need the file."""
-    if study.hazard is None:
-        return None
-    return [list(map(float, study.hazard.intensity)), list(map(float, study.hazard.annual_rate))]
-
-
 def _displacements(study: Study, plan: Plan, known: dict[str, Any]) -> dict[str, Any]:
     """Return the rotations at which the top reaches the displacements among the limit states; empty without any."""
     limits = asked_for(study.definition.limit_states)
@@ -294,18 +288,20 @@ def _refuse_useless(plan: Plan) -> None:
 
 def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, now: Plan) -> None:
     """Raise `InputError` with every difference between the study in the store and the present one."""
-    found = [*differences(store.fact("description"), facts["description"])]
-    found += [f"version of {each}" for each in differences(store.fact("versions"), facts["versions"])]
-    before = {each.name: each for each in known.records}
+    changes = [*differences(store.fact("description"), facts["description"])]
+    changes += [f"version of {package}" for package in differences(store.fact("versions"), facts["versions"])]
+    before = {record.name: record for record in known.records}
     for record in now.records:
         old = before.get(record.name)
         if old is not None and old.reason is None and old.checksum != record.checksum:
-            found.append(f"the record {record.name} has changed, or cannot be read any more")
-    if not found:  # the same fields: a mechanism may still make something else of them
-        found = [each for pair in zip(known.trials, now.trials, strict=True) for each in _other_mechanics(*pair)][:MOST]
-    if found:
+            changes.append(f"the record {record.name} has changed, or cannot be read any more")
+    if not changes:  # the same fields: a mechanism may still make something else of them
+        changes = [change for pair in zip(known.trials, now.trials, strict=True) for change in _other_mechanics(*pair)][
+            :MOST
+        ]
+    if changes:
         hint = "give `restart` to run everything again, or `store` OTHER.db to keep both"
-        *others, last = [Problem(each, field="changed since the store was created") for each in found]
+        *others, last = [Problem(change, field="changed since the store was created") for change in changes]
         raise InputError(*others, replace(last, hint=hint))
 
 
@@ -327,22 +323,22 @@ def differences(before: Any, now: Any, where: str = "") -> list[str]:
     """Return sentences on the places where two pieces of plain data differ, with both values."""
     if isinstance(before, dict) and isinstance(now, dict):
         return [
-            each
+            difference
             for key in [*before, *(key for key in now if key not in before)]
-            for each in differences(before.get(key), now.get(key), f"{where}.{key}".lstrip("."))
+            for difference in differences(before.get(key), now.get(key), f"{where}.{key}".lstrip("."))
         ]
     if isinstance(before, list) and isinstance(now, list) and len(before) == len(now):
-        found = [
-            each
+        inside = [
+            difference
             for k, (one, other) in enumerate(zip(before, now, strict=True))
-            for each in differences(one, other, f"{where}[{k + 1}]")
+            for difference in differences(one, other, f"{where}[{k + 1}]")
         ]
-        if len(found) > 1 and all(isinstance(each, int | float) for each in (*before, *now)):
+        if len(inside) > 1 and all(isinstance(entry, int | float) for entry in (*before, *now)):
             return [f"{where} was {_ends(before)}, is now {_ends(now)}"]
-        return found
+        return inside
     if isinstance(before, list) and isinstance(now, list):
-        gone = [each for each in before if each not in now]
-        new = [each for each in now if each not in before]
+        gone = [entry for entry in before if entry not in now]
+        new = [entry for entry in now if entry not in before]
         parts = [f"without {_told(gone)}"] if gone else []
         parts += [f"with {_told(new)}"] if new else []
         return [f"{where} is now {' and '.join(parts) or 'another number of the same'}"]

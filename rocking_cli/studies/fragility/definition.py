@@ -14,21 +14,20 @@ from pydantic_core import PydanticCustomError
 from rocking_cli.core.fields import Name, Restitution
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.errors import InputError
-from rocking_cli.io.field_problems import place_of, problems
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text
 from rocking_cli.processing.entry import Entry, FloorText, Steps
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import parse_steps
+from rocking_cli.studies.file_part import Part, Sound, problems_of
 from rocking_cli.studies.fragility.displacements import is_quantity, spelt
 from rocking_cli.studies.fragility.distributions import Distribution, Positive
-from rocking_cli.studies.fragility.hazard import wrong_points
+from rocking_cli.studies.fragility.hazard_curve import wrong_points
 from rocking_cli.studies.fragility.intensity import PGA, no_levels, spelled
 from rocking_cli.studies.fragility.intensity import SCALE as SCALE
 from rocking_cli.studies.fragility.observed import SAME
 from rocking_cli.studies.fragility.sets import among
-from rocking_cli.studies.fragility.together import Part, Sound, between_fields
 from rocking_cli.studies.fragility.varied import in_units_of_fields
 
 UPLIFT, OVERTURNING, SLIDING = "uplift", "overturning", "sliding"
@@ -87,14 +86,6 @@ def _right(given: dict[str, Any], name: str, sound: Sound) -> list[Any]:
     entries = enumerate(values if isinstance(values, list) else [])
     own = _limit if name == "limit_states" else _spelled
     return [own(each) for k, each in entries if sound(name, k)]
-
-
-def _twice(given: dict[str, Any], name: str, sound: Sound) -> Iterator[tuple[Place, str]]:
-    """Yield an error for each entry that a list repeats."""
-    values = _right(given, name, sound)
-    for k, value in enumerate(values):
-        if value in values[:k] and value not in values[k + 1 :]:
-            yield (name,), f"{' and '.join(value) if isinstance(value, list) else value} is given twice"
 
 
 def _pair(values: list[str]) -> list[str]:
@@ -290,7 +281,10 @@ class Definition(Sampling, Common):
         if checks_sliding(given) and sound("model") and given.get("model", "nonlinear") != "nonlinear":
             yield ("limit_states",), "sliding requires `model: nonlinear`: linear models do not give the joint forces"
         for name in ("polarities", "eta", "limit_states", "measures", "bivariate"):
-            yield from _twice(given, name, sound)
+            values = _right(given, name, sound)
+            for k, value in enumerate(values):
+                if value in values[:k] and value not in values[k + 1 :]:
+                    yield (name,), f"{' and '.join(value) if isinstance(value, list) else value} is given twice"
 
     @property
     def fitted_measures(self) -> list[str]:
@@ -336,11 +330,8 @@ def _wrong_sets(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, st
     known = Levels.model_validate(levels).levels()
     for k in of_sets:
         if sound("records", k) and not among(entries[k]["level"], known):
-            yield ("records", k, "level"), f"{entries[k]['level']:g} is not one of the levels {_said(known)}"
-
-
-def _said(levels: list[float]) -> str:
-    return ", ".join(f"{each:g}" for each in levels[:10]) + (", ..." if len(levels) > 10 else "")
+            shown = ", ".join(f"{level:g}" for level in known[:10]) + (", ..." if len(known) > 10 else "")
+            yield ("records", k, "level"), f"{entries[k]['level']:g} is not one of the levels {shown}"
 
 
 def checks_sliding(given: dict[str, Any]) -> bool:
@@ -350,7 +341,6 @@ def checks_sliding(given: dict[str, Any]) -> bool:
 
 
 HINT = "see the example in docs/fragility.md"
-WORDS = {"owner": "the study", "lister": HINT}
 PARTS = (("file", "name"), ("file", "vertical"), ("file",), ("pulse",))  # of an entry, each worth a look by itself
 Piece = TypeVar("Piece", bound=BaseModel)
 
@@ -381,14 +371,7 @@ def read_definition(path: Path) -> tuple[Document, Definition | None]:
     try:
         return document, Definition.model_validate(document.data)
     except ValidationError as error:
-        found: Any = error.errors(include_url=False)
-    known = {(each.field, each.line) for each in of_units}
-    alone = [each for each in found if each["type"] != "geometry"]  # what is wrong between fields is found below
-    wrong = problems(document, Definition, alone, **WORDS)
-    document.problems += [each for each in wrong if (each.field, each.line) not in known]
-    places = {place_of(document.data, each) for each in alone}
-    for place, message in between_fields(Definition, document.data, places):
-        document.problems.append(document.at(place, message))
+        document.problems += problems_of(document, Definition, error, owner="the study", lister=HINT, known=of_units)
     return document, None
 
 

@@ -71,9 +71,9 @@ def kept(fact: Callable[[str], Any], limits: Sequence[str | float]) -> dict[str,
         Positive and negative rotation of each sample, by limit state; infinite if the top never moves that far.
     """
     asked = asked_for(limits)
-    found = fact(FACT) if asked else {}
+    stored = fact(FACT) if asked else {}
 
     def table(pairs: Sequence[Sequence[float | None]]) -> Reals:
-        return np.array([[np.inf if each is None else each for each in pair] for pair in pairs], dtype=np.float64)
+        return np.array([[np.inf if phi is None else phi for phi in pair] for pair in pairs], dtype=np.float64)
 
-    return {limit: table(found[limit]) for limit in asked}
+    return {limit: table(stored[limit]) for limit in asked}

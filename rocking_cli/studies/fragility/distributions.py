@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from rocking_cli.io.yaml_file import Place
-from rocking_cli.studies.fragility.together import Part, Sound
+from rocking_cli.studies.file_part import Part, Sound
 
 Reals = NDArray[np.float64]
 Positive = Annotated[float, Field(gt=0)]
@@ -104,7 +104,10 @@ class Distribution(Part):
             width = self.uniform.high - self.uniform.low
             return np.asarray(self.uniform.low + width * probability)
         if self.triangular is not None:
-            return _triangular(self.triangular, probability)
+            low, mode, high = self.triangular.low, self.triangular.mode, self.triangular.high
+            rising = low + np.sqrt(probability * (high - low) * (mode - low))
+            falling = high - np.sqrt((1 - probability) * (high - low) * (high - mode))
+            return np.asarray(np.where(probability < (mode - low) / (high - low), rising, falling))
         assert self.values is not None
         place = np.minimum(probability * len(self.values), len(self.values) - 1).astype(int)
         return np.asarray(np.array(self.values)[place])
@@ -137,14 +140,6 @@ def _standard_normal(probability: Reals, low: float, high: float) -> Reals:
     below, above = log_ndtr(low), log_ndtr(high)
     between = above + np.log(-np.expm1(below - above))
     return np.asarray(np.clip(ndtri_exp(np.logaddexp(below, np.log(probability) + between)), low, high))
-
-
-def _triangular(shape: Triangular, probability: Reals) -> Reals:
-    width = shape.high - shape.low
-    turn = (shape.mode - shape.low) / width
-    rising = shape.low + np.sqrt(probability * width * (shape.mode - shape.low))
-    falling = shape.high - np.sqrt((1 - probability) * width * (shape.high - shape.mode))
-    return np.asarray(np.where(probability < turn, rising, falling))
 
 
 def draw(

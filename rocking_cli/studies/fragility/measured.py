@@ -70,16 +70,16 @@ class Measured:
             ({}, (samples, records, levels)),
         )
         patterns = ((False, True, False), (True, False, False), (True, True, True))
-        for each in values:
-            places = (each.sample, each.record, each.level)
-            found, size = kinds[patterns.index(tuple(place is not None for place in places))]
-            if each.measure not in found:
-                found[each.measure] = np.full(size, np.nan)
+        for value in values:
+            places = (value.sample, value.record, value.level)
+            arrays, size = kinds[patterns.index(tuple(place is not None for place in places))]
+            if value.measure not in arrays:
+                arrays[value.measure] = np.full(size, np.nan)
             place = tuple(place for place in places if place is not None)
             if min(place) < 0:
                 raise IndexError(place)
-            found[each.measure][place] = np.nan if each.value is None else each.value
-        return cls(*(found for found, _ in kinds))
+            arrays[value.measure][place] = np.nan if value.value is None else value.value
+        return cls(*(arrays for arrays, _ in kinds))
 
 
 def _there(values: Reals) -> Iterator[tuple[Any, float]]:

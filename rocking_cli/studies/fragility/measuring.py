@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from rocking_cli.core import Mechanism, NoEquivalentBlock, equivalent_block
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.intensity import Measure, RunMeasure, parse_measure
 from rocking_cli.processing.intensity.base import Reference
 from rocking_cli.studies.fragility.intensity import PGA, PGV, SCALE
@@ -83,7 +82,8 @@ def complete(
             continue
         for name, values in new.items():
             if np.isnan(values[k]):
-                values[k] = bases[name].value(motions[k].of_ground) if name in bases else _stated(motions[k], name)
+                value = bases[name].value(motions[k].of_ground) if name in bases else getattr(motions[k].origin, name)
+                values[k] = nan if value is None else value
     plan = replace(plan, measured=replace(plan.measured, of_record={**plan.measured.of_record, **new}))
     plan = _without_unscalable(plan)
     for k, record in enumerate(plan.records):
@@ -92,12 +92,6 @@ def complete(
                 if np.isnan(values[usable, k]).any():
                     values[:, k] = _of_runs(plan, of_run[name], motions, k, usable)
     return replace(plan, measured=replace(plan.measured, of_run={**plan.measured.of_run, **runs}))
-
-
-def _stated(motion: GroundMotion, name: str) -> float:
-    """Return a value that a record states of its earthquake, such as the magnitude; NaN if it does not."""
-    found: float | None = getattr(motion.origin, name)
-    return nan if found is None else float(found)
 
 
 def _copied(known: Mapping[str, Reals], name: str, *shape: int) -> Reals:
@@ -139,16 +133,16 @@ def _without_unscalable(plan: Plan) -> Plan:
 def _of_runs(plan: Plan, measure: RunMeasure, motions: KeptMotions, k: int, usable: Bools) -> Reals:
     """Return a measure of the runs of a record, shape (samples, levels); equal samples are computed once."""
     samples, _, _, levels, _ = plan.shape
-    found = np.full((samples, levels), np.nan)
+    values = np.full((samples, levels), np.nan)
     known: dict[tuple[float, ...], float] = {}
     for sample in np.flatnonzero(usable).tolist():
         place = np.full(levels, sample)
         factors = plan.factors(place, np.full(levels, k), np.arange(levels))
         of = plan.reference(np.array([sample]))
-        structure = [float(np.asarray(each)[0]) for each in (of.p, of.lambda_, of.gravity, of.v_imp)]
+        structure = [float(np.asarray(number)[0]) for number in (of.p, of.lambda_, of.gravity, of.v_imp)]
         for level, factor in enumerate(factors.tolist()):
             key = (factor, *structure)
             if key not in known:
                 known[key] = measure.value(motions[k].of_ground.scaled(factor), Reference(*structure))
-            found[sample, level] = known[key]
-    return found
+            values[sample, level] = known[key]
+    return values

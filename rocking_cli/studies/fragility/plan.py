@@ -108,6 +108,11 @@ class Plan:
         return self.sets if self.sets is not None else Sets.plain(len(self.records))
 
     @property
+    def structures(self) -> list[str]:
+        """Names of the structures, in the order of the study."""
+        return list(dict.fromkeys(trial.structure for trial in self.trials))
+
+    @property
     def shape(self) -> tuple[int, int, int, int, int]:
         """Numbers of samples, records, restitutions, levels and polarities."""
         return len(self.trials), len(self.records), len(self.etas), len(self.levels), len(self.polarities)

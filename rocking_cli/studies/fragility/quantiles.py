@@ -89,7 +89,7 @@ class Quantiles:
 
 def all_quantiles(store: Store, plan: Plan, definition: Definition) -> Iterator[Quantiles]:
     """Yield the quantiles of every structure of a study over every measure of its curves."""
-    for structure in dict.fromkeys(trial.structure for trial in plan.trials):
+    for structure in plan.structures:
         yield from quantiles(store, plan, structure, definition.fitted_measures)
 
 

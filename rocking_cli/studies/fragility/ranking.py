@@ -189,13 +189,13 @@ def rank(
     names = candidates(plan, definition)
     against = covariates(plan) if against is None else against
     asked = definition.model_copy(update={"measures": names, "bivariate": [], "hazard": None})
-    found = []
+    rankings = []
     for structure, tally in counted(store, plan, asked, progress).items():
         if tally.runs.any():
-            fitted = {(each.measure, each.limit): each for each in curves(tally, structure, asked, None)}
+            fitted = {(curve.measure, curve.limit): curve for curve in curves(tally, structure, asked, None)}
             ranking = _rank(store, plan, structure, names, fitted, against)
-            found.append(replace(ranking, unknown=tally.unknown_if_checked))
-    return found
+            rankings.append(replace(ranking, unknown=tally.unknown_if_checked))
+    return rankings
 
 
 def _rank(
@@ -221,7 +221,9 @@ def _rank(
             left_out[name] = "not known of it, or nowhere above zero"
             continue
         log = np.log(np.where(there, x, 1.0))
-        twin = next((other for other, its in logs.items() if there.all() and its.size and _constant(log - its)), None)
+        twin = next(
+            (other for other, its in logs.items() if there.all() and its.size and np.ptp(log - its) <= SAME), None
+        )
         if twin is not None:
             alike[name] = twin
             continue
@@ -275,10 +277,6 @@ def rocking(store: Store, plan: Plan, structure: str) -> tuple[Integers, Reals]:
         ids.append(found.id[rocks])
         peaks.append(np.log(found.peak_ratio[rocks]))
     return np.concatenate(ids), np.concatenate(peaks)
-
-
-def _constant(values: Reals) -> bool:
-    return bool(np.ptp(values) <= SAME)
 
 
 def _dispersion(found: Fragility) -> float:

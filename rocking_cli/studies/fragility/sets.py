@@ -78,13 +78,13 @@ def among(level: float, levels: Sequence[float]) -> bool:
     return any(abs(level - each) <= SAME * abs(each) for each in levels)
 
 
-def described(description: dict[str, Any], weights: Sequence[float] | None) -> Sets:
+def described(description: dict[str, Any], weights: Sequence[float]) -> Sets:
     """Build the sets of a store from the description of its study and the weights last requested."""
     records, levels = description["records"], description["levels"]
     return Sets.of(
         levels["values"],
         [each.get("level") for each in records],
-        weights if weights is not None else [1.0] * len(records),
+        weights,
         [each.get("file", each["name"]) for each in records],
         scaled=levels.get("scaled", True),
     )

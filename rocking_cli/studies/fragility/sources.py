@@ -141,7 +141,11 @@ class KeptMotions:
         """Return the record of a motion; if it is known and usable, only its checksum is computed again."""
         source = self._sources[k]
         if known is not None and known.reason is None:
-            record = replace(known, checksum=_checksum(source))
+            try:
+                checksum = source.checksum()
+            except InputError:  # it cannot be read any more
+                checksum = ""
+            record = replace(known, checksum=checksum)
         else:
             record, motion = examine(source)
             if motion is not None:
@@ -166,11 +170,3 @@ class KeptMotions:
             _, dropped = self._kept.popitem(last=False)
             self._size -= dropped.npts
         return motion
-
-
-def _checksum(source: Source) -> str:
-    """Return the checksum of a motion; empty if it cannot be read any more."""
-    try:
-        return source.checksum()
-    except InputError:
-        return ""

@@ -30,12 +30,8 @@ from rocking_cli.studies.fragility.sets import described
 from rocking_cli.studies.fragility.sources import Record
 from rocking_cli.studies.fragility.store_file import (
     AT_WORK,
-    CHECKED,
     MARK,
     VERSION,
-    WITHOUT_JOINTS,
-    WITHOUT_MEASURED,
-    WITHOUT_SLIDING,
     damaged,
     exchange,
     header,
@@ -60,7 +56,6 @@ SEAL = "seal"  # the name in the table `study` of the checksum of all but the ru
 OF_MEASURES = ("unit", "value_error")  # problems of a definition with a measure or level that is unknown here
 NAMED = 5  # damaged runs named one by one
 SLIDE = "slide_time"  # the column of runs that only studies of sliding have
-JOINTS = ("known_to", "lower_bound", "opening")  # the columns of runs that stores of earlier versions do not have
 
 TABLES = """
 CREATE TABLE study (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -77,15 +72,15 @@ CREATE TABLE level (id INTEGER PRIMARY KEY, value REAL NOT NULL);
 CREATE TABLE polarity (id INTEGER PRIMARY KEY, value INTEGER NOT NULL);
 CREATE TABLE run (
     id INTEGER PRIMARY KEY, scale REAL NOT NULL, eta REAL, outcome INTEGER NOT NULL,
-    peak_ratio REAL, peak_positive REAL, peak_negative REAL, uplift_time REAL, overturning_time REAL{columns},
-    checksum INTEGER NOT NULL
+    peak_ratio REAL, peak_positive REAL, peak_negative REAL, uplift_time REAL, overturning_time REAL,
+    known_to REAL, lower_bound REAL, opening REAL{columns}, checksum INTEGER NOT NULL
 );
-CREATE TABLE finished (runs INTEGER NOT NULL, checksum INTEGER NOT NULL)
-"""
-# What was measured, beyond the peaks of the records; the places that a value does not depend on are NULL.
-MEASURED = """CREATE TABLE measured (
+CREATE TABLE finished (runs INTEGER NOT NULL, checksum INTEGER NOT NULL);
+-- What was measured, beyond the peaks of the records; the places that a value does not depend on are NULL.
+CREATE TABLE measured (
     id INTEGER PRIMARY KEY, measure TEXT NOT NULL, sample INTEGER, record INTEGER, level INTEGER, value REAL
-)"""
+)
+"""
 PLAN = ("sample", "record", "eta", "level", "polarity")  # what a run is of
 # Numbers of runs become words and values again for whoever opens the file with another program.
 VIEW = """
@@ -95,7 +90,8 @@ CREATE VIEW runs AS SELECT
     CASE WHEN run.outcome = 2 THEN 'failed' WHEN run.outcome = 3 THEN 'unknown' WHEN run.outcome != 0 THEN 'overturns'
         WHEN run.uplift_time IS NULL THEN 'does not uplift' ELSE 'rocks' END AS outcome,
     CASE WHEN run.outcome IN (1, -1) THEN run.outcome ELSE 0 END AS fell_to,
-    run.peak_ratio, run.peak_positive, run.peak_negative, run.uplift_time, run.overturning_time{columns}
+    run.peak_ratio, run.peak_positive, run.peak_negative, run.uplift_time, run.overturning_time,
+    run.known_to, run.lower_bound, run.opening{columns}
 FROM run
 JOIN sample ON sample.id = run.id / {sample}
 JOIN record ON record.id = run.id / {record} % {records}
@@ -128,13 +124,12 @@ class RunRows:
         Peak rotation in either direction [rad]; NaN in the direction in which the run overturned.
     uplift_time, overturning_time : ndarray
         Time of the first uplift, and time of passing the critical rotation for good [s]; NaN if never.
-    known_to : ndarray, optional
-        Time until which a run of unknown outcome is known [s]; NaN for the others. None in stores of earlier versions,
-        whose runs were not checked.
-    lower_bound : ndarray, optional
+    known_to : ndarray
+        Time until which a run of unknown outcome is known [s]; NaN for the others.
+    lower_bound : ndarray
         For runs of unknown outcome: peak rotation over the critical one until the first joint would fail; NaN for
         others.
-    opening : ndarray, optional
+    opening : ndarray
         Largest opening or slip of a joint over D_cr, as far as the run was simulated; NaN if the joints are not known.
     slide_time : ndarray, optional
         Time at which a joint first required more friction than available [s]; NaN if never. None if runs were not
@@ -150,9 +145,9 @@ class RunRows:
     peak_negative: Reals
     uplift_time: Reals
     overturning_time: Reals
-    known_to: Reals | None = None
-    lower_bound: Reals | None = None
-    opening: Reals | None = None
+    known_to: Reals
+    lower_bound: Reals
+    opening: Reals
     slide_time: Reals | None = None
 
     def __len__(self) -> int:
@@ -234,10 +229,6 @@ class Store:
         Whether pages of the file are damaged, so that runs may be missing.
     missing : int
         Number of finished runs that the store counted and that cannot be found any more.
-    checked : bool
-        Whether the runs have checksums, which stores of the first versions lack.
-    with_joints : bool
-        Whether the runs have `known_to` and further results on joints, which stores of earlier versions lack.
     columns : tuple of str
         Names of the columns of the runs.
     """
@@ -247,8 +238,6 @@ class Store:
         self.damaged: list[int] = []
         self.unreadable = False
         self.missing = 0
-        self.checked = True
-        self.with_joints = True
         self.columns = COLUMNS
         self._connection = connection
         self._replaced: sqlite3.Connection | None = None  # the store whose place this one takes as it begins
@@ -333,7 +322,10 @@ class Store:
             self._connection, self._replaced = _nothing(), self._connection
         elif not self.empty:
             self._check_plan()
-            self._check_pages()
+            try:  # writing to damaged pages would make the damage worse
+                self.unreadable = self._connection.execute("PRAGMA quick_check(1)").fetchone()[0] != "ok"
+            except sqlite3.DatabaseError as error:
+                self._unless_corrupt(error)
             self._check_runs()
             if self.doubts():
                 self._rebuild()
@@ -369,12 +361,10 @@ class Store:
         for each in self.doubts():
             self._say(f"{self.path}: {each}")
         old = Store(self.path, self._connection)
-        old.checked, old.columns, old._salt = self.checked, self.columns, self._salt
-        with_joints = self.with_joints
+        old.columns, old._salt = self.columns, self._salt
 
         def fill(connection: sqlite3.Connection) -> None:
             new = Store(self.path, connection)
-            new.with_joints = with_joints
             new._fill(plan, facts)
             for rows in old._blocks(0, plan.size):
                 new._insert_runs(rows)
@@ -382,17 +372,13 @@ class Store:
 
         self._connection = _nothing()
         self._go_on_with(exchange(self.path, old._connection, fill, self._say))
-        self.damaged, self.unreadable, self.missing, self.checked = [], False, 0, True
+        self.damaged, self.unreadable, self.missing = [], False, 0
         self._check_plan()
         self._check_count()
 
     def doubts(self) -> list[str]:
         """Return sentences on what is wrong with the runs."""
         found = []
-        if not self.checked:
-            found.append(
-                "this store was written by an earlier version without checksums: damage to its runs cannot be detected"
-            )
         if self.damaged:
             count, plan = len(self.damaged), self.plan()
             named = "; ".join(plan.name(k) for k in self.damaged[:NAMED]) + ("; ..." if count > NAMED else "")
@@ -434,10 +420,9 @@ class Store:
         self._name_who_is_at_work()
 
     def _fill(self, plan: Plan, facts: Mapping[str, Any]) -> None:
-        self.columns = _columns(facts["description"], with_joints=self.with_joints)
+        self.columns = _columns(facts["description"])
         slides = SLIDE in self.columns
-        more = [name for name in self.columns if name in (*JOINTS, SLIDE)]
-        for statement in TABLES.format(columns="".join(f", {name} REAL" for name in more)).split(";"):
+        for statement in TABLES.format(columns=f", {SLIDE} REAL" if slides else "").split(";\n"):
             self._connection.execute(statement)
         levels, polarities = plan.shape[3:]
         self._connection.execute(
@@ -448,13 +433,13 @@ class Store:
                 level=polarities,
                 levels=levels,
                 polarities=polarities,
-                columns="".join(f", run.{name}" for name in more),
+                columns=f", run.{SLIDE}" if slides else "",
             )
         )
         self._connection.execute(f"PRAGMA application_id = {MARK}")
-        version = VERSION if self.with_joints else WITHOUT_MEASURED if slides else WITHOUT_SLIDING
-        self._connection.execute(f"PRAGMA user_version = {version}")
-        self._insert("sample", [_as_row(each) for each in plan.trials])
+        self._connection.execute(f"PRAGMA user_version = {VERSION}")
+        trials = ({**asdict(trial), "drawn": json_text(trial.drawn, sort_keys=True)} for trial in plan.trials)
+        self._insert("sample", [tuple(trial.values()) for trial in trials])
         self._insert("record", [tuple(asdict(each).values()) for each in plan.records])
         self._insert("eta", [(None if eta != eta else eta,) for eta in plan.etas])
         self._insert("level", [(each,) for each in plan.levels])
@@ -468,24 +453,11 @@ class Store:
         """Store measured values, replacing those in the store."""
         if not measured:
             return
-        if self._has_measured():
-            self._connection.execute("DELETE FROM measured")
-        else:
-            self._connection.execute(MEASURED)
-            _, version = header(self._connection)
-            # Earlier programs would not know the table.
-            self._connection.execute(f"PRAGMA user_version = {max(version, WITHOUT_JOINTS)}")
+        self._connection.execute("DELETE FROM measured")
         self._connection.executemany(
             "INSERT INTO measured (measure, sample, record, level, value) VALUES (?, ?, ?, ?, ?)", measured.values()
         )
         self._seal()
-
-    def _has_measured(self) -> bool:
-        return self._has_table("measured")
-
-    def _has_table(self, name: str) -> bool:
-        names = self._connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")
-        return (name,) in names.fetchall()
 
     def _of_count(self, runs: int) -> int:
         """Return the checksum of a number of finished runs."""
@@ -493,7 +465,7 @@ class Store:
 
     def _seal_count(self) -> None:
         """Store the number of finished runs, so that runs lost with a damaged page can be missed."""
-        if self._more and self._has_table("finished"):  # stores of earlier versions do not have it
+        if self._more:
             sealed = self._finished, self._of_count(self._finished)
             self._connection.execute("UPDATE finished SET runs = ?, checksum = ?", sealed)
         self._more = False
@@ -501,9 +473,7 @@ class Store:
     def _check_count(self) -> None:
         """Find out whether the store has fewer runs than it counted."""
         try:
-            sealed = (
-                self._connection.execute("SELECT * FROM finished").fetchall() if self._has_table("finished") else []
-            )
+            sealed = self._connection.execute("SELECT * FROM finished").fetchall()
             # Afterwards, as somebody may be at work.
             self._finished = self._connection.execute("SELECT count(*) FROM run").fetchone()[0]
         except sqlite3.DatabaseError as error:
@@ -512,13 +482,6 @@ class Store:
         for runs, checksum in sealed:
             self.unreadable |= checksum != self._of_count(runs) or self._finished < runs
             self.missing = max(runs - self._finished, 0) if checksum == self._of_count(runs) else 0
-
-    def _measured(self, shape: tuple[int, int, int]) -> Measured:
-        """Read the measured values, for given numbers of samples, records and levels."""
-        if not self._has_measured():
-            return Measured()
-        rows = self._connection.execute("SELECT measure, sample, record, level, value FROM measured ORDER BY id")
-        return Measured.of((Value(*row) for row in rows), shape)
 
     def note(self, facts: Mapping[str, Any]) -> None:
         """Store plain data by name, replacing those in the store."""
@@ -536,9 +499,8 @@ class Store:
         queries = [f"SELECT * FROM {table} ORDER BY id" for table in PLAN]
         for query in (*queries, f"SELECT * FROM study WHERE key NOT IN ('{SEAL}', '{AT_WORK}') ORDER BY key"):
             found.update(repr(self._connection.execute(query).fetchall()).encode())
-        if self._has_measured():
-            for row in self._connection.execute("SELECT * FROM measured ORDER BY id"):  # there may be millions
-                found.update(repr(row).encode())
+        for row in self._connection.execute("SELECT * FROM measured ORDER BY id"):  # there may be millions
+            found.update(repr(row).encode())
         return found.hexdigest()
 
     def facts(self) -> dict[str, Any]:
@@ -551,19 +513,19 @@ class Store:
         if not (alone := self._connection.in_transaction):
             self._connection.execute("BEGIN")  # at one moment: somebody may be at work
         try:
-            _, version = header(self._connection)
+            if header(self._connection)[1] < VERSION:
+                what = "this store is of an earlier version of rocking, and cannot be read"
+                hint = "run the study again with `restart`, which keeps this file under another name"
+                raise InputError(Problem(what, str(self.path), hint=hint))
             names = {row[1] for row in self._connection.execute("PRAGMA table_info(run)")}
-            self.checked, self.with_joints = version >= CHECKED, version > WITHOUT_JOINTS or names.issuperset(JOINTS)
-            usual = _columns({}, with_joints=self.with_joints)
-            if ("checksum" in names) != self.checked or not names.issuperset(usual):
+            if not names.issuperset((*COLUMNS, "checksum")):
                 raise damaged(self.path, "its tables are not those of a store")
-            if self.checked:
-                found = self._connection.execute("SELECT value FROM study WHERE key = ?", (SEAL,)).fetchone()
-                if found is None or found[0] != self._digest():
-                    raise damaged(self.path, "the description of the study does not match its checksum")
+            found = self._connection.execute("SELECT value FROM study WHERE key = ?", (SEAL,)).fetchone()
+            if found is None or found[0] != self._digest():
+                raise damaged(self.path, "the description of the study does not match its checksum")
             try:
                 self._salt = _salt(self.facts()["hash"])
-                self.columns = _columns(self.fact("description"), with_joints=self.with_joints)
+                self.columns = _columns(self.fact("description"))
                 self._check_definition()
                 plan = self.plan()
             except (ValueError, TypeError, KeyError, IndexError, AttributeError, RecursionError) as error:
@@ -581,15 +543,8 @@ class Store:
         try:
             Definition.model_validate(self.fact("definition"))
         except ValidationError as error:
-            if not self.checked or any(each["type"] not in OF_MEASURES for each in error.errors(include_url=False)):
+            if any(each["type"] not in OF_MEASURES for each in error.errors(include_url=False)):
                 raise
-
-    def _check_pages(self) -> None:
-        """Find out whether pages of the file are damaged: writing to it would make the damage worse."""
-        try:
-            self.unreadable = self._connection.execute("PRAGMA quick_check(1)").fetchone()[0] != "ok"
-        except sqlite3.DatabaseError as error:
-            self._unless_corrupt(error)
 
     def _check_runs(self) -> None:
         """Find the runs that do not agree with their checksums, and those that are counted but missing."""
@@ -636,12 +591,13 @@ class Store:
         def table(name: str, kind: Any) -> list[Any]:
             names = [each.name for each in fields(kind)]
             rows = self._connection.execute(f"SELECT {', '.join(names)} FROM {name} ORDER BY id")
-            found = [dict(zip(names, row, strict=True)) for row in rows]
-            for each in found if kind is Trial else []:
-                each["drawn"] = json.loads(each["drawn"])
-            return TypeAdapter(list[kind]).validate_python(found)
+            entries = [dict(zip(names, row, strict=True)) for row in rows]
+            for entry in entries if kind is Trial else []:
+                entry["drawn"] = json.loads(entry["drawn"])
+            return TypeAdapter(list[kind]).validate_python(entries)
 
         trials, records, levels = table("sample", Trial), table("record", Record), column("level", float)
+        measured = self._connection.execute("SELECT measure, sample, record, level, value FROM measured ORDER BY id")
         return Plan(
             trials,
             records,
@@ -649,8 +605,8 @@ class Store:
             self.fact("description")["levels"]["measure"],
             levels,
             column("polarity", int),
-            self._measured((len(trials), len(records), len(levels))),
-            described(self.fact("description"), self.facts().get("weights")),
+            Measured.of((Value(*row) for row in measured), (len(trials), len(records), len(levels))),
+            described(self.fact("description"), self.fact("weights")),
         )
 
     def replace_record(self, k: int, record: Record) -> None:
@@ -711,23 +667,22 @@ class Store:
         counted : callable, optional
             Called with the number of runs read since the last call.
         """
-        more = [name for name in ("lower_bound", "opening", SLIDE) if name in self.columns]
-        names = ("id", "outcome", "peak_ratio", "peak_positive", "peak_negative", "uplift_time", *more)
-        query = f"SELECT {', '.join(names)} FROM run WHERE id >= ? AND id < ?"
+        names = "id", "outcome", "peak_ratio", "peak_positive", "peak_negative", "uplift_time", "lower_bound", "opening"
+        slides = SLIDE in self.columns
+        columns = (*names, SLIDE) if slides else names
+        query = f"SELECT {', '.join(columns)} FROM run WHERE id >= ? AND id < ?"
         for start in range(first, stop, READ):
             end = min(start + READ, stop)
             if self.damaged or self.unreadable:
                 rows = self._read(start, end)[0]
-                table = np.stack([getattr(rows, name) for name in names])
+                table = np.stack([getattr(rows, name) for name in columns])
             else:  # all have been checked against their checksums
                 found = self._connection.execute(query, (start, end)).fetchall()
-                table = np.array(found, dtype=np.float64).reshape(-1, len(names)).T
-            absent = np.full(table.shape[1], np.nan)
-            bound, opening, slide = (
-                table[names.index(name)] if name in names else absent for name in ("lower_bound", "opening", SLIDE)
-            )
-            whole, happens = table[:2].astype(np.int64), [np.isfinite(each) for each in (table[5], slide, opening)]
-            yield Endings(whole[0], whole[1], table[2], table[3:5].T, happens[0], happens[1], bound, happens[2])
+                table = np.array(found, dtype=np.float64).reshape(-1, len(columns)).T
+            number, outcome = table[:2].astype(np.int64)
+            uplifts, checked = np.isfinite(table[5]), np.isfinite(table[7])
+            slips = np.isfinite(table[8]) if slides else np.zeros(len(uplifts), dtype=bool)
+            yield Endings(number, outcome, table[2], table[3:5].T, uplifts, slips, table[6], checked)
             counted(end - start)
 
     def _blocks(self, first: int, stop: int) -> Iterator[RunRows]:
@@ -736,15 +691,14 @@ class Store:
 
     def _read(self, first: int, stop: int) -> tuple[RunRows, list[int]]:
         """Return the undamaged runs with numbers from `first` to before `stop`, and the numbers of the damaged ones."""
-        names = (*self.columns, "checksum") if self.checked else self.columns
+        names = (*self.columns, "checksum")
         found = self._fetch(f"SELECT {', '.join(names)} FROM run WHERE id >= ? AND id < ?", first, stop)
         table, bad = _numbers(found, len(names))
         rows = _rows(table[:, : len(self.columns)], self.columns)
         sound = np.isin(table[:, COLUMNS.index("outcome")], OUTCOMES) & np.isfinite(rows.scale)
         # Where pages are damaged one may be met twice, or out of its place.
         sound &= (rows.id >= first) & (rows.id < stop) & (np.diff(rows.id, prepend=first - 1) > 0)
-        if self.checked:
-            sound &= rows.checksums(self._salt) == table[:, -1]
+        sound &= rows.checksums(self._salt) == table[:, -1]
         return rows.select(sound), bad + rows.id[~sound].tolist()
 
     def _fetch(self, query: str, first: int, stop: int) -> list[tuple[Any, ...]]:
@@ -764,10 +718,9 @@ def _nothing() -> sqlite3.Connection:
     return sqlite3.connect(":memory:", isolation_level=None)
 
 
-def _columns(description: Mapping[str, Any], *, with_joints: bool) -> tuple[str, ...]:
+def _columns(description: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the names of the columns of a study's runs."""
-    usual = COLUMNS if with_joints else tuple(name for name in COLUMNS if name not in JOINTS)
-    return (*usual, SLIDE) if SLIDING in description else usual
+    return (*COLUMNS, SLIDE) if SLIDING in description else COLUMNS
 
 
 def _rows(table: Any, names: tuple[str, ...]) -> RunRows:
@@ -793,8 +746,3 @@ def _numbers(found: Sequence[tuple[Any, ...]], columns: int) -> tuple[Reals, lis
 def _salt(hash_: Any) -> int:
     """Return the start value of the checksums of a study's runs, so that runs of another study do not match."""
     return int(str(hash_)[:8], 16)
-
-
-def _as_row(trial: Trial) -> tuple[Any, ...]:
-    columns = {**asdict(trial), "drawn": json_text(trial.drawn, sort_keys=True)}
-    return tuple(columns.values())

@@ -20,11 +20,7 @@ from rocking_cli.errors import InputError, Problem, Refused
 from rocking_cli.studies.fragility.workers import GOES_ON
 
 MARK = 0x526F636B  # "Rock", in the header of the file
-VERSION = 5  # of the tables of a store whose runs say until when they are known
-WITHOUT_JOINTS = 4  # of those without, with measured values
-WITHOUT_MEASURED = 3  # of those without measured values, with the times at which runs slide
-WITHOUT_SLIDING = 2  # of those without either
-CHECKED = 2  # the first version with checksums
+VERSION = 6  # of the tables of a store
 WAITING = 60.0  # s for somebody who reads the store meanwhile
 AT_WORK = "at work"  # the name in the table `study` under which the process is that adds runs
 

@@ -37,8 +37,8 @@ from rocking_cli.studies.fragility.definition import (
     usable_entries,
     usable_part,
 )
-from rocking_cli.studies.fragility.distributions import Distribution, draw
-from rocking_cli.studies.fragility.hazard import HazardCurve, read_hazard
+from rocking_cli.studies.fragility.distributions import draw
+from rocking_cli.studies.fragility.hazard_curve import HazardCurve, read_hazard
 from rocking_cli.studies.fragility.sets import Sets
 from rocking_cli.studies.fragility.sources import Source
 from rocking_cli.text import did_you_mean, one_line
@@ -186,12 +186,16 @@ def load_study(path: str | Path) -> Study:
         for source in _sources(document, ("records", k), path.parent, entry, common or Common())
     ]
     sources = _apart(sources)
-    _refuse_repeated(document, "records", [_unlike_others(source) for source in sources])
+    places = [source.path.resolve().as_posix() if source.path else source.file for source in sources]
+    unlike = [_in_words(place, source.entry) for place, source in zip(places, sources, strict=True)]
+    _refuse_repeated(document, "records", unlike)
     _refuse_repeated(document, "structures", [each.name or "" for each in structures if each is not None])
     if checks_sliding(document.data):
         for (_, entry), structure in zip(entries, structures, strict=True):
             if structure is not None and structure.friction is None and "friction" not in entry.vary:
-                document.problems.append(_without_friction(path.parent / entry.file))
+                what = "is missing: the limit state sliding is whether joints need more friction than there is"
+                hint = "give that of its joints, such as `friction: 0.6`"
+                document.problems.append(Problem(what, str(path.parent / entry.file), field="friction", hint=hint))
     hazard = _hazard(document, path.parent)
     sampling = usable_part(Sampling, {key: document.data[key] for key in Sampling.model_fields if key in document.data})
     samples: list[Sample] = []
@@ -236,11 +240,6 @@ def _of_file(document: Document, place: Place, name: str, file: Path, error: Inp
     ]
 
 
-def _without_friction(file: Path) -> Problem:
-    what = "is missing: the limit state sliding is whether joints need more friction than there is"
-    return Problem(what, str(file), field="friction", hint="give that of its joints, such as `friction: 0.6`")
-
-
 def _varied(document: Document, place: Place) -> list[str]:
     """Return the names of the fields of a structure that vary, whether or not their distributions are valid."""
     field, k = place
@@ -262,19 +261,19 @@ def _sources(document: Document, place: Place, folder: Path, entry: RecordEntry,
     other = _select(document, (*place, "with"), entry.other, folder) if entry.other is not None else []
     vertical = None
     if entry.vertical is not None:
-        found = _select(document, (*place, "vertical"), entry.vertical, folder)
-        if max(len(files), len(found)) > 1:
+        verticals = _select(document, (*place, "vertical"), entry.vertical, folder)
+        if max(len(files), len(verticals)) > 1:
             what = "a vertical component belongs to a single record: give each record its own entry"
             document.problems.append(document.at((*place, "vertical"), what))
             return []
-        vertical = found[0] if found else None
+        vertical = verticals[0] if verticals else None
     if other and max(len(files), len(other)) > 1:
         what = "a second component belongs to one record: give each record an entry of its own"
         document.problems.append(document.at((*place, "with"), what))
         return []
     if other:  # a pattern stands for the one file
         entry = entry.model_copy(update={"other": _shown(other[0], folder)})
-    return [one for each in files for one in _of_file_or_list(document, place, folder, entry, common, each, vertical)]
+    return [one for file in files for one in _of_file_or_list(document, place, folder, entry, common, file, vertical)]
 
 
 def _of_file_or_list(
@@ -300,13 +299,13 @@ def _of_file_or_list(
     except InputError as error:
         document.problems += _of_file(document, _within(document, place, "file"), str(entry.file), file, error)
         return []
-    found = []
-    for each in listed:
-        assert each.entry is not None
-        own = RecordEntry.model_validate(_together(entry, each.entry))
-        shown = _shown(each.path, folder)
-        found.append(Source(_at_level(shown, own), own, each.reading(reading), shown, each.path))
-    return found
+    sources = []
+    for item in listed:
+        assert item.entry is not None
+        own = RecordEntry.model_validate(_together(entry, item.entry))
+        shown = _shown(item.path, folder)
+        sources.append(Source(_at_level(shown, own), own, item.reading(reading), shown, item.path))
+    return sources
 
 
 def _together(entry: RecordEntry, listed: Entry) -> dict[str, Any]:
@@ -337,12 +336,6 @@ def _apart(sources: Sequence[Source]) -> list[Source]:
     return [
         replace(each, name=_in_words(each.file, each.entry)) if names.count(each.name) > 1 else each for each in sources
     ]
-
-
-def _unlike_others(source: Source) -> str:
-    """Return a text that identifies a record: file or pulse, channel, azimuth and level; it may occur only once."""
-    place = source.path.resolve().as_posix() if source.path else source.file
-    return _in_words(place, source.entry)
 
 
 def _select(document: Document, place: Place, pattern: str, folder: Path) -> list[Path]:
@@ -390,7 +383,12 @@ def _samples(
     """Return the samples of a structure; samples that cannot be built are reported as problems of its `vary`."""
     if not entry.vary or any(name not in type(structure).model_fields for name in entry.vary):
         return [Sample(k, 0, {}, structure)]
-    columns = {name: _drawn(sampling, structure, name, each) for name, each in entry.vary.items()}
+    columns: dict[str, list[float]] = {}
+    for name, distribution in entry.vary.items():
+        stream = f"{structure.name}.{name}"
+        columns[name] = draw(
+            distribution, sampling.samples, seed=sampling.seed, stream=stream, method=sampling.sampling
+        ).tolist()
     samples, wrong = [], []
     for number in range(sampling.samples):
         drawn = {name: values[number] for name, values in columns.items()}
@@ -405,11 +403,3 @@ def _samples(
         hint = "bound the distributions with `low` and `high`"
         document.problems.append(document.at(("structures", k, "vary"), what, hint))
     return samples
-
-
-def _drawn(sampling: Sampling, structure: Mechanism, name: str, distribution: Distribution) -> list[float]:
-    stream = f"{structure.name}.{name}"
-    values = draw(
-        distribution, sampling.samples, seed=sampling.seed, stream=stream, method=sampling.sampling
-    )  # fmt: skip
-    return [float(each) for each in values]

@@ -1,6 +1,6 @@
 """Verification of rocking structures by codes of practice: the framework, and all that the author of a code needs."""
 
-from rocking_cli.studies.fragility.together import Part as Part
+from rocking_cli.studies.file_part import Part as Part
 from rocking_cli.studies.verification.code import Code as Code
 from rocking_cli.studies.verification.code import Number as Number
 from rocking_cli.studies.verification.control import Control as Control

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.plugins.errors import guard
+from rocking_cli.plugins.errors import failed, guard
 from rocking_cli.structure import Structure
 from rocking_cli.studies.verification.control import Control
 from rocking_cli.studies.verification.motions import Histories
@@ -41,10 +41,6 @@ class Number:
     unit: str = ""
 
 
-def _failed(own: Any, method: str) -> str:
-    return f"the code {own.key} failed in {method}"
-
-
 class Code(ABC):
     """A code of practice.
 
@@ -75,7 +71,7 @@ class Code(ABC):
     def __init_subclass__(cls, **named: Any) -> None:
         """Wrap the methods of a subclass, so that errors in them are reported as errors of the plugin."""
         super().__init_subclass__(**named)
-        guard(cls, ANSWERS, _failed)
+        guard(cls, ANSWERS, failed("code", "key"))
 
     @abstractmethod
     def verify(self, mechanism: Mechanism, site: Any, control: Control | None = None) -> Verification:

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from pydantic import Field, ValidationError
 
 from rocking_cli.core.fields import Name
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.io.field_problems import place_of, problems
 from rocking_cli.io.yaml_file import Document, parse, read_text
-from rocking_cli.studies.fragility.together import Part, between_fields
+from rocking_cli.studies.file_part import Part, problems_of
 from rocking_cli.text import did_you_mean
 
 HINT = "`rocking new site` prints one to start from"
@@ -86,12 +84,7 @@ def site_of(document: Document, codes: Collection[str], fields_of: Callable[[str
     try:
         site = model.model_validate(document.data)
     except ValidationError as error:
-        found: Any = error.errors(include_url=False)
-        alone = [each for each in found if each["type"] != "geometry"]  # what is wrong between fields is found below
-        document.problems += problems(document, model, alone, owner="the site", lister=lister)
-        places = {place_of(document.data, each) for each in alone}
-        for place, message in between_fields(model, document.data, places):
-            document.problems.append(document.at(place, message))
+        document.problems += problems_of(document, model, error, owner="the site", lister=lister)
     document.check()
     assert site is not None  # else there is a problem
     return SiteFile(site, document)

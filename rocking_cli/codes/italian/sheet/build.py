@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from rocking_cli.codes.italian.ground import SiteGround
-from rocking_cli.codes.italian.results import ItalianVerification, ItalianVerified
+from rocking_cli.codes.italian.results import ItalianVerification
 from rocking_cli.codes.italian.rules import RULES
 from rocking_cli.codes.italian.sheet import dynamic, site, summary, texts_en, texts_it
 from rocking_cli.codes.italian.sheet.steps import of_direction
@@ -17,7 +17,10 @@ from rocking_cli.views.sheet.language import Language
 
 def parts(say: Language, found: ItalianVerification, given: ItalianSite) -> Iterator[SheetPart]:
     """Yield summary, drawing, site, and each direction; one direction if both have the same numbers."""
-    shown, ground = _shown(say, found), SiteGround(of_structure(given, found.mechanism))
+    shown = {say.say(one.direction.label): one for one in found.distinct}
+    if len(found.distinct) < len(found.directions):
+        shown = {say.say("both"): found.distinct[0]}
+    ground = SiteGround(of_structure(given, found.mechanism))
     yield summary.part(say, found, shown)
     yield SheetPart("drawing", say.say("drawing"), [Drawing(say.say("drawing_label", name=found.mechanism.name))])
     yield site.part(say, ground)
@@ -27,13 +30,6 @@ def parts(say: Language, found: ItalianVerification, given: ItalianSite) -> Iter
         if each.dynamic is not None:
             below.append(dynamic.part(say, each, each.dynamic, key))
         yield SheetPart(key, where, [], below)
-
-
-def _shown(say: Language, found: ItalianVerification) -> Mapping[str, ItalianVerified]:
-    """Return the directions that differ, by their names."""
-    if len(found.distinct) < len(found.directions):
-        return {say.say("both"): found.distinct[0]}
-    return {say.say(one.direction.label): one for one in found.distinct}
 
 
 SPELLED = {

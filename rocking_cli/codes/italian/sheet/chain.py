@@ -107,8 +107,7 @@ def at_work(say: Language, position: DisplacedChain, scale: Scale) -> Grid:
     for k, each in enumerate(position.blocks, 1):
         centre = ["–", "–"] if each.centre is None else [say.number(scale.near(z)) for z in _xy(each.centre)]
         at = [say.number(scale.near(z)) for z in _xy(each.at)]
-        values = [each.turns, *_virtual(each, scale)]
-        shown = [say.number(value) for value in values]
+        shown = [say.number(value) for value in (each.turns, scale.near(each.dx), scale.near(each.dy))]
         rows.append([str(k), say.number(scale.near(each.gone)), *at, say.number(_x_of_P(position, each, scale)),
                      shown[0], *centre, *shown[1:]])  # fmt: skip
     caption = say.say("at_work_rest" if position.phi == 0 else "at_work", phi=say.number(position.phi), across="@")
@@ -116,10 +115,6 @@ def at_work(say: Language, position: DisplacedChain, scale: Scale) -> Grid:
     heads = [say.say("block"), "Δx [m]", "x_[G] [m]", "y_[G] [m]", "x_[P] [m]", "θ′", "x_[O] [m]", "y_[O] [m]",
              "x′ [m]", "y′ [m]"]  # fmt: skip
     return Grid(caption, heads, rows, range(1, 10))
-
-
-def _virtual(each: Moved, scale: Scale) -> tuple[float, float]:
-    return scale.near(each.dx), scale.near(each.dy)
 
 
 def _x_of_P(position: DisplacedChain, each: Moved, scale: Scale) -> float:

@@ -8,7 +8,10 @@ from math import log
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.demand import DAMPING, FloorSpectrum, GroundSpectrum
 from rocking_cli.codes.italian.ground import SiteGround
-from rocking_cli.codes.italian.hazard import (
+from rocking_cli.codes.italian.rules import FIRST, FURTHER, RULES, STATES
+from rocking_cli.codes.italian.sheet import spectra
+from rocking_cli.codes.italian.site import SIZES, StateGround
+from rocking_cli.codes.italian.site_hazard import (
     LONGEST,
     PROBABILITY,
     SHORTEST,
@@ -19,9 +22,6 @@ from rocking_cli.codes.italian.hazard import (
     return_period,
     soil_factor,
 )
-from rocking_cli.codes.italian.rules import FIRST, FURTHER, RULES, STATES
-from rocking_cli.codes.italian.sheet import spectra
-from rocking_cli.codes.italian.site import SIZES, StateGround, VibratingElement
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import Grid, Item, Sentence, SheetPart, Steps
@@ -90,15 +90,12 @@ def _of_state(say: Language, ground: SiteGround, state: str) -> SheetPart:
     items: list[Item] = [Steps(rows)]
     T0 = ground.site.own_period
     if T0 is not None:
-        items += [Steps([_own_period(say, site.element)])] if (site := ground.site).element is not None else []
+        if (one := ground.site.element) is not None:
+            L, t = one.size
+            sizes = {"kappa": one.kappa, "L": L, "t": t, "w": one.w, "E": one.E, "g": STANDARD_GRAVITY}
+            items.append(Steps([say.step(F.OWN_PERIOD, one.period, **sizes)]))
         items += [Sentence(say.say("free")), Steps(list(spectra.at_own_period(say, spectrum, T0, DAMPING)))]
     return SheetPart(f"site-{state}", say.say("ground_at", state=state), items)
-
-
-def _own_period(say: Language, one: VibratingElement) -> Working:
-    """Return the step for the period of an element that is free to vibrate."""
-    L, t = one.size
-    return say.step(F.OWN_PERIOD, one.period, kappa=one.kappa, L=L, t=t, w=one.w, E=one.E, g=STANDARD_GRAVITY)
 
 
 def _of_life(say: Language, ground: SiteGround, state: str) -> Iterator[Working]:

@@ -16,8 +16,11 @@ def part(say: Language, found: ItalianVerification, shown: Mapping[str, ItalianV
     items: list[Item] = [verdict(say, found.first, where, each) for where, each in shown.items()]
     for where, each in shown.items():
         items += _starts_later(say, found.first, where, each)
-    if len(shown) > 1:
-        items += _which(say, found)
+    if len(shown) > 1:  # which direction governs
+        least = found.governs
+        ratio, rest = (found.compared(direction) for direction in (least, least.opposite))
+        if ratio is not None and rest is not None and not found.alike:
+            items.append(Sentence(say.say("which", least=say.say(f"short_{least.label}"), ratio=ratio, rest=rest)))
     for where, each in shown.items():
         items += [_states(say, where, each), _methods(say, where, each)]
     caution = found.mechanism.caution
@@ -58,14 +61,6 @@ def _starts_later(say: Language, first: str, where: str, each: ItalianVerified) 
             why = say.say("why_damage", a_g=counts.a_g, other=other, asked=counts.demand)
             key = "verdict_passes" if each.passes(state) else "verdict_fails"
             yield Sentence(say.say(key, where=where, state=state, zeta=counts.zeta, why="@").replace("@", why))
-
-
-def _which(say: Language, found: ItalianVerification) -> Iterator[Item]:
-    """Yield a sentence on which direction governs."""
-    least = found.governs
-    ratio, rest = (found.compared(each) for each in (least, least.opposite))
-    if ratio is not None and rest is not None and not found.alike:
-        yield Sentence(say.say("which", least=say.say(f"short_{least.label}"), ratio=ratio, rest=rest))
 
 
 def _states(say: Language, where: str, each: ItalianVerified) -> Grid:

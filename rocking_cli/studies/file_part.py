@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator
 from typing import Any, Self, get_args, get_origin
 
-from pydantic import BaseModel, ConfigDict, model_validator
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
 from rocking_cli.core.fields import geometry_error
-from rocking_cli.io.yaml_file import Place, spell
+from rocking_cli.errors import Problem
+from rocking_cli.io.field_problems import place_of, problems
+from rocking_cli.io.yaml_file import Document, Place, spell
 
 Sound = Callable[..., bool]
 """Whether what stands at a path of keys, within a part of the file, is right by itself."""
@@ -45,6 +47,28 @@ class Part(BaseModel):
         for place, message in self.between(self.model_dump(exclude_unset=True), lambda *path: True):
             raise geometry_error(spell(place) or "", message)
         return self
+
+
+def problems_of(
+    document: Document,
+    model: type[BaseModel],
+    error: ValidationError,
+    *,
+    owner: str,
+    lister: str,
+    known: Collection[Problem] = (),
+) -> list[Problem]:
+    """Return what is wrong with the fields of a file, each for itself and between them.
+
+    Arguments are those of `field_problems.problems`; wrong fields among the `known` problems are left out.
+    """
+    said = {(problem.field, problem.line) for problem in known}
+    alone: Any = [each for each in error.errors(include_url=False) if each["type"] != "geometry"]
+    found = problems(document, model, alone, owner=owner, lister=lister)
+    found = [problem for problem in found if (problem.field, problem.line) not in said]
+    places = {place_of(document.data, each) for each in alone}
+    between = between_fields(model, document.data, places)
+    return found + [document.at(place, message) for place, message in between]
 
 
 def between_fields(
