@@ -486,8 +486,8 @@ class Assembly(LinkedBodies):
             return ""
         verb = "weighs" if len(grains) == 1 else "weigh"
         return (
-            f"{in_short(grains, most=NAMED)} {verb} no more than {LIGHT:g} of the whole: the analysis does not see whether that moves "
-            "earlier. Leave it out, or analyse it alone."
+            f"{in_short(grains, most=NAMED)} {verb} no more than {LIGHT:g} of the whole: the analysis does not see "
+            "whether that moves earlier. Leave it out, or analyse it alone."
         )
 
     @per_direction
@@ -664,7 +664,8 @@ class Assembly(LinkedBodies):
         found = self._thrust(direction)
         if found.chain or not found.passages:
             return None
-        name = f"forces in the joints at uplift, {self._collapse(direction).multiplier:.3g} g, in one state of equilibrium"
+        lambda_ = self._collapse(direction).multiplier
+        name = f"forces in the joints at uplift, {lambda_:.3g} g, in one state of equilibrium"
         points, forces = zip(*((each.point, each.force) for each in found.passages), strict=True)
         return Forces(name, points, forces, direction)
 
