@@ -200,7 +200,7 @@ def test_nothing_that_can_be_used_is_wrong_input():
 def test_the_target_is_no_record():
     told = run("select", "*.AT2", "code.csv", *ASKED, "--count", 2).stderr
     assert "code.csv is the target" in told
-    assert "No records to choose from" in run("select", "code.csv", *ASKED, "--count", 2, code=2).stderr
+    assert "no records to choose from" in run("select", "code.csv", *ASKED, "--count", 2, code=2).stderr
 
 
 def test_standard_input_is_kept_as_what_it_gave(files):

@@ -39,7 +39,9 @@ def asked(name):
 
 def usual(option):
     """The default of an option; None where there is none, which versions of click spell differently."""
-    return option.default if isinstance(option.default, str | int | float | tuple) else None
+    if not isinstance(option.default, str | int | float | tuple):
+        return None
+    return option.type_cast_value(click.Context(click.Command("command")), option.default)
 
 
 VERBS = [name for name in COMMANDS if name not in WITHOUT]

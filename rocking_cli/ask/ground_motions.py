@@ -18,7 +18,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import coarse_for, doubts
 from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
-from rocking_cli.excitation.records.opening import allow_again
+from rocking_cli.excitation.records.opening import STANDARD_INPUT, allow_again
 from rocking_cli.excitation.records.sensor import Gain, Quantity, size_of
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.excitation.selection import select
@@ -89,7 +89,7 @@ class MotionOptions(ReadingOptions, total=False):
     target_pgv: float | None
 
 
-def reading_of(options: ReadingOptions) -> Reading:
+def reading_of(options: MotionOptions | ReadingOptions) -> Reading:
     """Return how to read a record, from the keyword arguments of a verb.
 
     Raises
@@ -125,25 +125,25 @@ class Motions:
         Motions, pulses, pulses as text, files of records, patterns such as "records/*.AT2", and lists of records.
     reading : Reading
         How the files are read and corrected, and the floor.
-    scale, target_pga, target_pgv : float, optional
-        Scale factor, or what to scale to: as for `MotionOptions`.
     usual : Reading, optional
         How files are read that do not state their unit, interval or channel themselves; by default as `reading`.
+    scale, target_pga, target_pgv : float, optional
+        Scale factor, or what to scale to: as for `MotionOptions`.
     """
 
     given: tuple[Motion, ...]
     reading: Reading = field(default_factory=Reading)
+    usual: Reading | None = None
     scale: float | None = None
     target_pga: float | None = None
     target_pgv: float | None = None
-    usual: Reading | None = None
 
     def __post_init__(self) -> None:
         if sum(value is not None for value in (self.scale, self.target_pga, self.target_pgv)) > 1:
             raise InputError("`scale`, `target_pga` and `target_pgv` cannot be combined: give one of them")
 
     @classmethod
-    def of(cls, given: Motions | Motion | Sequence[Motion], options: MotionOptions) -> Motions:
+    def of(cls, given: Motions | Motion | Sequence[Motion], options: MotionOptions | ReadingOptions) -> Motions:
         """Return the motions of a verb, from what it is given and its keyword arguments. Raises `InputError`."""
         if isinstance(given, Motions):
             return given
@@ -227,9 +227,12 @@ class Motions:
             except InputError as error:
                 errors.append(error)
                 continue
-            if isinstance(source, Listed) and any(one.motion.name == other.motion.name for other in chosen):
-                name = f"{one.motion.name} ({source.path.parent})"
-                one = one._replace(motion=replace(one.motion, name=name))
+            name, taken = one.motion.name, {other.motion.name for other in chosen}
+            if name in taken and isinstance(source, Listed):
+                name = f"{name} ({source.path.parent})"
+            if name in taken:
+                name = f"{name} ({place + 1})"
+            one = one._replace(motion=replace(one.motion, name=name))
             chosen.append(one)
         for refused in errors:
             if not several:
@@ -252,8 +255,13 @@ class Motions:
 
     def reading_for(self, motion: Scaled) -> Reading:
         """Return how the record of one of these motions is read, also for its other components."""
-        usual = self.usual or self.reading
-        return next((each.reading(usual) for each in self.records if each.path == motion.file), usual)
+        usual, source = self.usual or self.reading, self._found[0][motion.place]
+        return source.reading(usual) if isinstance(source, Listed) else usual
+
+    def unusable(self, chosen: Sequence[Scaled]) -> list[str]:
+        """Return the files of records that are not among the chosen motions."""
+        places = {each.place for each in chosen}
+        return [str(each.path) for k, each in enumerate(self._found[0]) if isinstance(each, Listed) and k not in places]
 
     def vertical(
         self, motion: Scaled, file: str | Path, dt: float | None, channel: str | None, watch: Watcher = SILENT
@@ -282,14 +290,31 @@ class Motions:
         warn_about([component], watch)
         return component
 
-    def settled(self, record: Listed) -> Reading:
-        """Return how `read` read a file, not standard input: as it states itself, or else as `usual`."""
+    def settled(self, motion: Scaled) -> Reading | None:
+        """Return how the file of one of these motions was read: as it states itself, or else as `usual`.
+
+        None for what is not a file, and for standard input, which cannot be read again.
+        """
+        record = self._found[0][motion.place]
+        if not isinstance(record, Listed) or str(record.path) == STANDARD_INPUT:
+            return None
         given, typed = self._readings(record)
         if typed != given:
             with suppress(InputError):
                 typed.read(record.path)
                 return typed
         return given
+
+    def without(self, path: Path) -> Motions:
+        """Return these motions without those of one file."""
+        found = [
+            each
+            for each in self._found[0]
+            if not (isinstance(each, Listed) and each.path.exists() and each.path.samefile(path))
+        ]
+        kept = replace(self, given=self.given if found else ())
+        kept.__dict__["_found"] = found, self._found[1]
+        return kept
 
     def _readings(self, record: Listed) -> tuple[Reading, Reading]:
         """Return how to read a record that does not state its unit, interval or channel, and one that does."""

@@ -3,25 +3,47 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import Motion, each_of, motion_of
-from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.ask.given import Motion
+from rocking_cli.ask.ground_motions import Motions, ReadingOptions
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError
+from rocking_cli.studies.record_set import RecordSet
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.studies.record_set import RecordSet
+    from rocking_cli.processing.reading import Reading
     from rocking_cli.studies.target_spectrum import TargetSpectrum
+    from rocking_cli.views.record_set import ShownSet
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SetAnswer(Answer[RecordSet]):
+    """Set of records, with what is needed to write it.
+
+    Parameters
+    ----------
+    shown : ShownSet
+        The set, its target and the files of all candidates.
+    readings : tuple of (Reading or None)
+        How each chosen file is read; None for what is not a file.
+    """
+
+    shown: ShownSet = field(kw_only=True)
+    readings: tuple[Reading | None, ...] = field(kw_only=True)
 
 
 def select(
-    records: Motion | Sequence[Motion],
+    records: Motions | Motion | Sequence[Motion],
     target: TargetSpectrum | str | Path | tuple[ArrayLike, ArrayLike],
     *,
     band: tuple[float, float],
@@ -32,7 +54,9 @@ def select(
     one_per: str = "event",
     same_factor: bool = False,
     seed: int = 0,
-) -> Answer[RecordSet]:
+    watch: Watcher = SILENT,
+    **options: Unpack[ReadingOptions],
+) -> SetAnswer:
     """Select records whose mean response spectrum matches a target, with a scale factor for each.
 
     Parameters
@@ -57,10 +81,14 @@ def select(
         Whether all records have the same scale factor.
     seed : int
         Seed of the random searches, if there are too many sets to try all.
+    watch : Watcher
+        Told what was read, what is doubtful about it, and how far the search is.
+    **options
+        How the records are read and corrected: see `rocking_cli.ask.ground_motions.ReadingOptions`.
 
     Returns
     -------
-    Answer of RecordSet
+    SetAnswer
         `fits` is whether the set stays within the limits, `motions` are the scaled records, and `factors` their scale
         factors; `mean`, and `periods`, `target` and `spectra` of `candidates`, are spectra.
 
@@ -77,45 +105,60 @@ def select(
     from rocking_cli.studies import record_set
     from rocking_cli.views.record_set import ShownSet, table, title, view
 
-    motions, files = _candidates(records)
     wanted = record_set.SetRequirements(count, band, within, damping, factors, one_per, same_factor, seed)
-    spectrum = _target(target)
-    found = record_set.choose(record_set.candidates(motions, spectrum, wanted), wanted)
-    results = ShownSet(found, spectrum, files)
+    spectrum = _target(target, watch)
+    spectrum.check(wanted.band)
+    motions = _without(target, Motions.of(records, options), watch)
+    chosen = motions.gather(0.0, watch)
+    candidates = [each.motion for each in chosen]
+    with watch.progress(len(candidates), "spectra") as advance:
+        spectra = record_set.candidates(candidates, spectrum, wanted, advance)
+    if coarse := record_set.coarse(spectra):
+        worst = max(motion.dt for motion in coarse)
+        watch.warn(
+            f"the band begins at {wanted.band[0]:g} s, which is less than {record_set.FEWEST} intervals of "
+            f"{len(coarse)} of {len(candidates)} records (dt up to {worst:g} s): at such periods their spectra lack "
+            "the motion between samples"
+        )
+    with ExitStack() as bars:
+        result = record_set.choose(spectra, wanted, lambda total: bars.enter_context(watch.progress(total, "sets")))
+    files = [str(each.file) if each.file else None for each in chosen]
+    results = ShownSet(result, spectrum, files, motions.unusable(chosen))
 
     def figure() -> Figure:
         from rocking_cli.plotting.record_set import draw_record_set
 
-        return draw_record_set(found, title(results))
+        return draw_record_set(result, title(results))
 
-    return Answer("record set", found, view(results), lambda: table(results), figure)
-
-
-def _candidates(given: Any) -> tuple[list[GroundMotion], list[str | None]]:
-    """Return motions with unique names, and the files of those read from one."""
-    from dataclasses import replace
-
-    from rocking_cli.excitation.selection import select as files_of
-
-    motions: list[GroundMotion] = []
-    files: list[str | None] = []
-    for each in each_of(given):
-        pattern = isinstance(each, str) and any(sign in each for sign in "*?[") and not Path(each).exists()
-        for one in files_of(each) if pattern else [each]:
-            motion = motion_of(one)
-            if any(motion.name == other.name for other in motions):
-                motion = replace(motion, name=f"{motion.name} ({len(motions) + 1})")
-            motions.append(motion)
-            files.append(str(one) if isinstance(one, Path | str) and Path(one).exists() else None)
-    return motions, files
+    sources = tuple(motions.settled(chosen[k]) for k in result.chosen.tolist())
+    return SetAnswer(
+        "record set", result, view(results), lambda: table(results), figure, shown=results, readings=sources
+    )
 
 
-def _target(given: Any) -> TargetSpectrum:
-    from rocking_cli.studies.target_spectrum import TargetSpectrum, read_target
+def _without(target: object, motions: Motions, watch: Watcher) -> Motions:
+    """Return the motions without the target, which a pattern may also match."""
+    if not isinstance(target, str | Path) or not Path(target).exists():
+        return motions
+    kept = motions.without(Path(target))
+    if kept.count < motions.count:
+        if not kept:
+            raise InputError(f"no records to choose from: {target} is the target; add the files of records")
+        watch.note(f"{target} is the target spectrum and is not used as a record")
+    return kept
+
+
+def _target(given: Any, watch: Watcher) -> TargetSpectrum:
+    from rocking_cli.studies.target_spectrum import TargetSpectrum, doubts, read_target
 
     if isinstance(given, TargetSpectrum):
         return given
     if isinstance(given, str | Path):
-        return read_target(Path(given))
+        spectrum = read_target(Path(given))
+        if spectrum.unit is None:
+            watch.note(f"{given} does not name a unit: its ordinates are assumed to be in g")
+        for doubt in doubts(spectrum):
+            watch.warn(doubt)
+        return spectrum
     periods, sa = (np.atleast_1d(np.asarray(each, dtype=np.float64)) for each in given)
     return TargetSpectrum("target", periods, sa)

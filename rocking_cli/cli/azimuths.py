@@ -28,7 +28,7 @@ def show(
     from rocking_cli.excitation.scaled import Scaled
 
     reading = asked.towards(0.0)
-    motions = Motions(tuple(asked.records), reading, *asked.scaling)
+    motions = Motions(tuple(asked.records), reading, None, *asked.scaling)
     _check(asked, question, motions.count)
     output.keep_apart(structure.file, *motions.records, question["vertical"])
     (record,) = motions.records

@@ -75,6 +75,18 @@ class ReadingOptions:
             raise click.UsageError("--azimuth all works with `rocking respond` only: give one angle here.")
         return self.towards(self.azimuth or 0.0)
 
+    @property
+    def readings(self) -> tuple[Reading, Reading | None]:
+        """How to read files, and with the user's defaults those that do not state their unit, interval or channel."""
+        usual = self.reading
+        typed = replace(
+            usual,
+            dt=None if from_default("dt") else usual.dt,
+            units=None if from_default("units") else usual.units,
+            channel=None if from_default("channel") else usual.channel,
+        )
+        return typed, usual if usual != typed else None
+
     def towards(self, azimuth: float | str) -> Reading:
         """Return the options for reading a record, in the direction of an azimuth [deg]."""
         from rocking_cli.processing.reading import Reading
@@ -133,16 +145,11 @@ class GroundMotions(Scaling, ReadingOptions):
 
     @property
     def motions(self) -> Motions:
-        """Motions, and how to read and scale them; the user's defaults are for files that do not state the value."""
+        """Motions, and how to read and scale them."""
         from rocking_cli.ask.ground_motions import Motions
 
-        usual = self.reading
-        dt, units, channel = (
-            None if from_default(name) else getattr(usual, name) for name in ("dt", "units", "channel")
-        )
-        typed = replace(usual, dt=dt, units=units, channel=channel)
-        given: tuple[Path | str, ...] = (*map(Path, self.records), *self.pulses)
-        return Motions(given, typed, *self.scaling, usual=usual if usual != typed else None)
+        reading, usual = self.readings
+        return Motions((*map(Path, self.records), *self.pulses), reading, usual, *self.scaling)
 
     def check(self, vertical: str | None = None) -> None:
         """Raise if an option has no effect; `units` and `dt` also apply to the vertical component beside a pulse."""
