@@ -23,6 +23,7 @@ __version__ = "0.1.0"
 _HOME = {
     "ask.answer": ["Answer", "MappingAnswer"],
     "ask.collapse": ["collapse"],
+    "ask.design": ["design"],
     "ask.draw": ["draw"],
     "ask.equiv": ["equiv"],
     "ask.equivalent": ["equivalent"],
@@ -39,8 +40,8 @@ _HOME = {
     "ask.write_report": ["write_report"],
     "ask.motions": ["correct", "on_floor", "respond_around"],
     "ask.selection": ["select"],
-    "ask.survey": ["design", "survey"],
-    "ask.verification": ["verify"],
+    "ask.survey": ["survey"],
+    "ask.verify": ["verify"],
     "core": ["Body", "Direction", "Equivalence", "EquivalentBlock", "Mechanism", "RigidMotion", "equivalent_block"],
     "core.registry": ["Registry"],
     "dynamics.batch": ["Runs", "respond_many"],

@@ -15,6 +15,7 @@ from mechanisms.wall import Wall as Wall
 from rocking_cli.ask.answer import Answer as Answer
 from rocking_cli.ask.answer import MappingAnswer as MappingAnswer
 from rocking_cli.ask.collapse import collapse as collapse
+from rocking_cli.ask.design import design as design
 from rocking_cli.ask.draw import draw as draw
 from rocking_cli.ask.equiv import equiv as equiv
 from rocking_cli.ask.equivalent import equivalent as equivalent
@@ -32,9 +33,8 @@ from rocking_cli.ask.respond_each import respond_each as respond_each
 from rocking_cli.ask.response_spectrum import response_spectrum as response_spectrum
 from rocking_cli.ask.selection import select as select
 from rocking_cli.ask.spectrum import spectrum as spectrum
-from rocking_cli.ask.survey import design as design
 from rocking_cli.ask.survey import survey as survey
-from rocking_cli.ask.verification import verify as verify
+from rocking_cli.ask.verify import verify as verify
 from rocking_cli.ask.write_report import write_report as write_report
 from rocking_cli.core import Body as Body
 from rocking_cli.core import Direction as Direction

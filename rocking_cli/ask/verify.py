@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import Motion, StructureLike, motion_of, structure_of
+from rocking_cli.ask.given import Motion, SiteLike, StructureLike, motion_of, site_of, structure_of
 from rocking_cli.errors import InputError
-from rocking_cli.io.json_text import json_text
-from rocking_cli.io.yaml_file import parse
 from rocking_cli.studies.verification.results import Verification
-from rocking_cli.studies.verification.site_file import HINT, SiteFile
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,7 +16,7 @@ if TYPE_CHECKING:
 
 def verify(
     structure: StructureLike,
-    site: Mapping[str, Any] | str | Path,
+    site: SiteLike,
     *,
     control: tuple[float, float] | tuple[float, float, str] | None = None,
     motions: Sequence[Motion] = (),
@@ -78,7 +74,7 @@ def verify(
     wrong = [sign for sign in polarities if sign not in (1, -1)]
     if wrong or not polarities:
         raise InputError(f"polarities must be of 1 and -1, got {', '.join(map(str, wrong)) or 'none'}")
-    ready, known = structure_of(structure), _site(site)
+    ready, known = structure_of(structure), site_of(site)
     point = None
     if control is not None:
         x, y, *body = control
@@ -93,11 +89,3 @@ def verify(
 
     view = views.view(found, known.site.name)
     return Answer("verification", found, view, lambda: views.table(found), draw)
-
-
-def _site(given: Mapping[str, Any] | str | Path) -> SiteFile:
-    from rocking_cli.studies.verification.check import read_site, site_in
-
-    if isinstance(given, Mapping):
-        return site_in(parse(json_text(given), "site", "site", HINT))
-    return read_site(Path(given))
