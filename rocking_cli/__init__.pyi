@@ -28,6 +28,7 @@ from rocking_cli.ask.motions import respond_around as respond_around
 from rocking_cli.ask.overturning_curves import overturning_curves as overturning_curves
 from rocking_cli.ask.overturning_map import overturning_map as overturning_map
 from rocking_cli.ask.record import record as record
+from rocking_cli.ask.report import report as report
 from rocking_cli.ask.respond import respond as respond
 from rocking_cli.ask.respond_each import respond_each as respond_each
 from rocking_cli.ask.response_spectrum import response_spectrum as response_spectrum
@@ -35,7 +36,6 @@ from rocking_cli.ask.selection import select as select
 from rocking_cli.ask.spectrum import spectrum as spectrum
 from rocking_cli.ask.survey import survey as survey
 from rocking_cli.ask.verify import verify as verify
-from rocking_cli.ask.write_report import write_report as write_report
 from rocking_cli.core import Body as Body
 from rocking_cli.core import Direction as Direction
 from rocking_cli.core import Equivalence as Equivalence

@@ -185,7 +185,7 @@ def test_a_map_of_a_structure_is_that_of_the_command():
 
 
 def test_a_report_is_written_with_what_gives_the_structure_again(tmp_path):
-    answer = rk.write_report(rk.Block(name="made here", width=0.7, height=2.8), (), tmp_path / "r.html")
+    answer = rk.report(rk.Block(name="made here", width=0.7, height=2.8), (), tmp_path / "r.html")
     page = (tmp_path / "r.html").read_text(encoding="utf-8")
     assert "made here" in page and "width: 0.7" in page
     assert "made here" in repr(answer)

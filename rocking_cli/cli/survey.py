@@ -48,8 +48,8 @@ class SurveyOutput:
 
     def _write_page(self, place: Path, found: Survey, file: str) -> None:
         from rocking_cli import __version__
+        from rocking_cli.documents.survey import render
         from rocking_cli.io.files import write_whole
-        from rocking_cli.report.survey import render
 
         today = datetime.now(UTC).strftime("%d %B %Y").lstrip("0")
         page = render(found, Path(file).name, [f"Written on {today} with rocking-cli {__version__}."]).encode()
