@@ -15,6 +15,7 @@ from mechanisms.wall import Wall as Wall
 from rocking_cli.ask.answer import Answer as Answer
 from rocking_cli.ask.answer import MappingAnswer as MappingAnswer
 from rocking_cli.ask.collapse import collapse as collapse
+from rocking_cli.ask.design import design as design
 from rocking_cli.ask.draw import draw as draw
 from rocking_cli.ask.equiv import equiv as equiv
 from rocking_cli.ask.equivalent import equivalent as equivalent
@@ -27,15 +28,14 @@ from rocking_cli.ask.motions import respond_around as respond_around
 from rocking_cli.ask.overturning_curves import overturning_curves as overturning_curves
 from rocking_cli.ask.overturning_map import overturning_map as overturning_map
 from rocking_cli.ask.record import record as record
+from rocking_cli.ask.report import report as report
 from rocking_cli.ask.respond import respond as respond
 from rocking_cli.ask.respond_each import respond_each as respond_each
 from rocking_cli.ask.response_spectrum import response_spectrum as response_spectrum
 from rocking_cli.ask.selection import select as select
 from rocking_cli.ask.spectrum import spectrum as spectrum
-from rocking_cli.ask.survey import design as design
 from rocking_cli.ask.survey import survey as survey
-from rocking_cli.ask.verification import verify as verify
-from rocking_cli.ask.write_report import write_report as write_report
+from rocking_cli.ask.verify import verify as verify
 from rocking_cli.core import Body as Body
 from rocking_cli.core import Direction as Direction
 from rocking_cli.core import Equivalence as Equivalence

@@ -138,7 +138,7 @@ ANSWERS = {
     "curves": lambda: rk.overturning_curves(
         [EXAMPLES / "block.yaml", EXAMPLES / "wall.yaml"], model="linear2", points=5
     ),
-    "margin": lambda: rk.margin(rk.Block(width=0.7, height=2.8), "sine:0.4g:0.8s", polarities=(1,)),
+    "margin": lambda: rk.margin(rk.Block(width=0.7, height=2.8), "sine:0.4g:0.8s", polarity="1"),
     "verification": lambda: rk.verify(
         rk.Block(width=0.6, height=8.0), {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
     ),
@@ -185,7 +185,7 @@ def test_a_map_of_a_structure_is_that_of_the_command():
 
 
 def test_a_report_is_written_with_what_gives_the_structure_again(tmp_path):
-    answer = rk.write_report(rk.Block(name="made here", width=0.7, height=2.8), (), tmp_path / "r.html")
+    answer = rk.report(rk.Block(name="made here", width=0.7, height=2.8), (), tmp_path / "r.html")
     page = (tmp_path / "r.html").read_text(encoding="utf-8")
     assert "made here" in page and "width: 0.7" in page
     assert "made here" in repr(answer)

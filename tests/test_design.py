@@ -162,16 +162,15 @@ class TestShares:
     def test_the_worse_of_motions_and_polarities_counts(self):
         frame = EXAMPLES / "frame.yaml"
 
-        def peaks(motions, signs):
-            given = {"polarities": signs, "neighbours": 5, "points": 2}
+        def peaks(motions, polarity):
+            given = {"polarity": polarity, "neighbours": 5, "points": 2}
             return rk.design(frame, "gravity=9.7:9.9", "peak_ratio < 1", motions, **given).metric
 
-        one, other = peaks(ACCEL, (1,)), peaks(ACCEL, (-1,))
+        one, other = peaks(ACCEL, "1"), peaks(ACCEL, "-1")
         assert (one != other).all()
-        for signs in ((1, -1), (-1, 1)):
-            assert (peaks(ACCEL, signs) == np.maximum(one, other)).all()
-        pulse = peaks(self.SINE, (1,))
-        assert (peaks([ACCEL, self.SINE], (1,)) == np.maximum(one, pulse)).all()
+        assert (peaks(ACCEL, "both") == np.maximum(one, other)).all()
+        pulse = peaks(self.SINE, "1")
+        assert (peaks([ACCEL, self.SINE], "1") == np.maximum(one, pulse)).all()
 
     def test_where_shares_turn_edges_are_values_that_were_tried(self):
         found = rk.design(BLOCK, "width=0.3:1.5", "overturned < 5%", ACCEL, neighbours=20, points=25)

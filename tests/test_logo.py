@@ -6,8 +6,8 @@ import io
 import pytest
 from PIL import Image
 
+from rocking_cli.documents.logo import LARGEST, embedded
 from rocking_cli.errors import InputError
-from rocking_cli.report.logo import LARGEST, embedded
 from tests.test_cli import run
 
 

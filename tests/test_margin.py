@@ -294,7 +294,7 @@ class TestCommand:
         ("words", "fragment"),
         [
             ((), "--record PLACE or --pulse PULSE"),
-            (("--record", "x", "--neighbours", 0), "at least 1"),
+            (("--pulse", "sine:0.4g:0.8s", "--neighbours", 0), "at least 1"),
             (("--record", "x", "--amplitude-deviation", 1), "from 0 up to, but not including, 1"),
             (("--record", "x", "--slenderness-deviation", "100%"), "from 0 up to, but not including, 1"),
             (("--record", "x", "--restitution-deviation", -1), "from 0"),

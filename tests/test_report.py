@@ -17,9 +17,9 @@ import numpy as np
 import pytest
 
 from rocking_cli.core import EquivalentBlock
+from rocking_cli.documents.page import symbols
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records import read_record
-from rocking_cli.report.page import symbols
 from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.column import data_of
@@ -283,7 +283,7 @@ class TestReproduction:
         (wheel,) = tmp_path.glob("*.whl")
         names = set(zipfile.ZipFile(wheel).namelist())
         assert {
-            "rocking_cli/report/templates/report.html", "rocking_cli/report/templates/report.css",
+            "rocking_cli/documents/templates/report.html", "rocking_cli/documents/templates/report.css",
             "rocking_cli/data/motion.js", "rocking_cli/data/motion.css", "rocking_cli/data/animation.html",
         } <= names  # fmt: skip
 

@@ -663,7 +663,7 @@ class TestGuide:
         run("verify", "block.yaml", *demo, "--sheet", "s.html")
         page = Path("s.html").read_text(encoding="utf-8")
         assert "The verification is satisfied: ratio 1.83" in page and "1.5 · 2.45166" in page
-        monkeypatch.setattr("rocking_cli.cli.structures.prepared", lambda files: pytest.fail("too late"))
+        monkeypatch.setattr("rocking_cli.studies.verification.check.verify", lambda *given: pytest.fail("too late"))
         said = run("verify", "block.yaml", *demo, "--sheet", "t.html", "--language", "it", code=2).stderr
         assert "--language: there is no calculation sheet in 'it'" in said and "known: en" in said
         assert not Path("t.html").exists()

@@ -232,8 +232,8 @@ class TestInPython:
     def test_a_site_may_be_a_mapping(self):
         with pytest.raises(rk.InputError, match=r"FC must be at least 1, got 0\.5"):
             rk.verify(FACADE, {**SITE, "FC": 0.5})
-        with pytest.raises(rk.InputError, match="polarities must be of 1 and -1, got 2"):
-            rk.verify(FACADE, SITE, polarities=(2,))
+        with pytest.raises(rk.InputError, match="`polarity` must be 1, -1 or 'both', got 2"):
+            rk.verify(FACADE, SITE, polarity=2)
         answer = rk.verify(FACADE, SITE, motions=["sine:0.15g:0.6s"])
         assert answer.directions[Direction.POSITIVE].dynamic is not None
 

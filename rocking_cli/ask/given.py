@@ -23,10 +23,13 @@ from rocking_cli.views.view import heading
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from rocking_cli.studies.verification.site_file import SiteFile
 
 WIDEST_OPENING = 1000.0  # over D_cr
 StructureLike = Mechanism | Structure | str | Path
 """Mechanism, or its YAML file, or a structure that was prepared."""
+SiteLike = Mapping[str, Any] | str | Path
+"""Fields of a site file, or the file."""
 Motion = GroundMotion | Pulse | Scaled | str | Path
 """Ground motion or pulse, file of a record, or pulse as text such as `sine:0.6g:0.8s`."""
 
@@ -42,11 +45,27 @@ def structure_of(given: StructureLike, opening: float | None = None) -> Structur
         If the file, or the opening, is not valid.
     """
     structure = _structure_of(given)
-    if opening is None:
+    if checked(opening) is None:
         return structure
-    if not 0 <= opening <= WIDEST_OPENING:
-        raise InputError(Problem(f"must be from 0 to {WIDEST_OPENING:g}, got {opening:g}", field="`opening`"))
     return replace(structure, mechanism=structure.mechanism.model_copy(update={"opening": opening}), _models={})
+
+
+def checked(opening: float | None) -> float | None:
+    """Return a largest opening of joints over D_cr, if any. Raises `InputError` if it is out of range."""
+    if opening is not None and not 0 <= opening <= WIDEST_OPENING:
+        raise InputError(Problem(f"must be from 0 to {WIDEST_OPENING:g}, got {opening:g}", field="`opening`"))
+    return opening
+
+
+def site_of(given: SiteLike) -> SiteFile:
+    """Read the site for a code of practice from its file, or take its fields. Raises `InputError`."""
+    from rocking_cli.io.yaml_file import parse
+    from rocking_cli.studies.verification.check import read_site, site_in
+    from rocking_cli.studies.verification.site_file import HINT
+
+    if isinstance(given, Mapping):
+        return site_in(parse(json_text(given), "site", "site", HINT))
+    return read_site(Path(given))
 
 
 def _structure_of(given: StructureLike) -> Structure:

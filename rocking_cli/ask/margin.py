@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
 from rocking_cli.ask.answer import MappingAnswer
-from rocking_cli.ask.given import Motion, StructureLike, each_of, motion_of, structure_of
+from rocking_cli.ask.given import Motion, StructureLike, signs_of, structure_of
+from rocking_cli.ask.ground_motions import MotionOptions, Motions
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
@@ -19,7 +23,17 @@ if TYPE_CHECKING:
 
 
 def margin(
-    structure: StructureLike, motions: Motion | Sequence[Motion], *, polarities: Sequence[int] = (1, -1)
+    structure: StructureLike,
+    motions: Motion | Motions | Sequence[Motion],
+    *,
+    polarity: str | int = "both",
+    neighbours: int = Neighbourhood.count,
+    amplitude_deviation: float = Neighbourhood.amplitude,
+    slenderness_deviation: float | None = None,
+    restitution_deviation: float | None = None,
+    opening: float | None = None,
+    watch: Watcher = SILENT,
+    **options: Unpack[MotionOptions],
 ) -> MappingAnswer[str, Margin]:
     """Compute the scale factors on motions that uplift a structure, and that overturn it.
 
@@ -27,10 +41,21 @@ def margin(
     ----------
     structure : Mechanism, str or Path
         The structure, or its YAML file.
-    motions
-        One or several, as for `respond`.
-    polarities : sequence of int
-        Polarities, of 1 and -1; with both, the worse governs.
+    motions : GroundMotion, Pulse, str or Path, or a sequence of these
+        Ground motions, their files, or pulses as text.
+    polarity : {"both", "1", "-1"}
+        Polarity of the motions: as given, reversed, or both, of which the worse governs.
+    neighbours : int
+        Number of neighbouring motions to simulate at each scale factor, at least 1.
+    amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
+        Standard deviations of the neighbours: of ln amplitude, of ln slenderness and of restitution; by default those
+        of the structure.
+    opening : float, optional
+        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    watch : Watcher
+        Told what was read, how far the work is, and which of several motions cannot be used.
+    **options
+        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionOptions`.
 
     Returns
     -------
@@ -50,30 +75,46 @@ def margin(
     -----
     The model is the nonlinear one, Eq. 8 of DeJong and Dimitrakopoulos (2014), under the neighbours of the motion at
     each of many scale factors.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> answer = rk.margin(rk.Block(width=0.7, height=2.8), "sine:0.4g:0.8s", polarity="1", neighbours=10)
+    >>> [round(found.uplift, 3) for found in answer.values()]
+    [0.625]
     """
     from rocking_cli.studies import margin as study
-    from rocking_cli.studies.neighbours import Neighbourhood
-    from rocking_cli.views import margin as views
+    from rocking_cli.views.margin import MarginRow, view
 
-    ready, around = structure_of(structure), Neighbourhood()
-    shaking = [motion_of(each) for each in each_of(motions)]
-    found = {each.name: study.margin(ready.model("nonlinear"), each, polarities, around=around) for each in shaking}
-    rows = [views.MarginRow(each.name, 1.0, each.of_ground.pga_g, found[each.name]) for each in shaking]
-    polarity = "both" if len(polarities) > 1 else str(polarities[0])
+    signs = signs_of(polarity)
+    around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
+    ready = structure_of(structure, opening)
+    model = ready.model("nonlinear")
+    chosen = Motions.of(motions, options).gather(ready.growth, watch)
+    rows = []
+    with watch.histories((study.FACTORS.size + 1) * neighbours * len(signs) * len(chosen)) as advance:
+        for each in chosen:
+            scaled = each.motion.scaled(each.factor)
+            found = study.margin(model, scaled, signs, around=around, progress=advance)
+            rows.append(MarginRow(each.motion.name, each.factor, scaled.of_ground.pga_g, found))
+    margins = {row.name: row.margin for row in rows}
+    figure = partial(_figure, margins, heading(ready.mechanism))
+    shown = view(ready.mechanism, rows, str(polarity), around)
+    return MappingAnswer("margin", margins, shown, partial(_columns, margins), figure)
 
-    def columns() -> Columns:
-        return {
-            "motion": [name for name, each in found.items() for _ in each.factors],
-            "factor": np.concatenate([each.factors for each in found.values()]),
-            "overturned": np.concatenate([each.overturned for each in found.values()]),
-            "unknown": np.concatenate(
-                [each.unknown if each.checked else each.unknown + np.nan for each in found.values()]
-            ),
-        }
 
-    def figure() -> Figure:
-        from rocking_cli.plotting.margin import draw_margins
+def _columns(margins: dict[str, Margin]) -> Columns:
+    return {
+        "motion": [name for name, each in margins.items() for _ in each.factors],
+        "factor": np.concatenate([each.factors for each in margins.values()]),
+        "overturned": np.concatenate([each.overturned for each in margins.values()]),
+        "unknown": np.concatenate(
+            [each.unknown if each.checked else each.unknown + np.nan for each in margins.values()]
+        ),
+    }
 
-        return draw_margins(found, heading(ready.mechanism))
 
-    return MappingAnswer("margin", found, views.view(ready.mechanism, rows, polarity, around), columns, figure)
+def _figure(margins: dict[str, Margin], title: str) -> Figure:
+    from rocking_cli.plotting.margin import draw_margins
+
+    return draw_margins(margins, title)

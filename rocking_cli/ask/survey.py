@@ -1,33 +1,45 @@
-"""Surveys of many structures, and design of one structure, in Python."""
+"""`rk.survey`."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import Motion, StructureLike, each_of, motion_of, structure_of
-from rocking_cli.ask.verification import _site
+from rocking_cli.ask.given import Motion, SiteLike, StructureLike, checked, signs_of, site_of, structure_of
+from rocking_cli.ask.ground_motions import MotionOptions, Motions
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.text import one_line
+from rocking_cli.views.survey import TOP
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.studies.design import Design
+    from rocking_cli.studies.structure_table import StructureTable
     from rocking_cli.studies.survey import Survey, SurveyEntry
 
 Table = str | Path | Mapping[str, Sequence[Any]]
 """CSV file, or columns by their headings."""
+LONG, LONG_SHAKEN = 10_000, 1_000  # rows from which on processes are worth their beginning
+FEW = 3  # doubts about sizes that are told one by one
 
 
 def survey(
-    structures: Table | Sequence[StructureLike],
-    motions: Motion | Sequence[Motion] = (),
+    structures: Table | StructureTable | Sequence[StructureLike],
+    motions: Motion | Motions | Sequence[Motion] = (),
     *,
-    scale: float = 1.0,
-    polarities: Sequence[int] = (1,),
-    site: Mapping[str, Any] | str | Path | None = None,
+    polarity: str | int = "1",
+    site: SiteLike | None = None,
+    opening: float | None = None,
+    top: int = TOP,
     threads: int | None = None,
+    processes: bool = False,
+    watch: Watcher = SILENT,
+    **options: Unpack[MotionOptions],
 ) -> Answer[Survey]:
     """Rank many structures by vulnerability.
 
@@ -38,15 +50,23 @@ def survey(
         or their YAML files.
     motions : GroundMotion, Pulse, str or Path, or a sequence of these
         Ground motions; without any, the structures are ranked by their uplift acceleration.
-    scale : float
-        Scale factor on the motions.
-    polarities : sequence of int
-        Polarities, of 1 and -1; with both, the worse governs.
+    polarity : {"1", "-1", "both"}
+        Polarity of the motions: as given, reversed, or both, of which the worse governs.
     site : mapping, str or Path, optional
         Fields of a site file, or the file: each structure is verified by its code and ranked by the ratio of capacity
         to demand.
+    opening : float, optional
+        Largest opening of a joint up to which a history is valid, over D_cr; by default that of each structure.
+    top : int
+        Number of structures in the tables of the answer.
     threads : int, optional
         Number of structures at a time; by default, one for each processor.
+    processes : bool
+        Whether processes share the work of thousands of structures; a script then needs `if __name__ == "__main__"`.
+    watch : Watcher
+        Told what was read, how far the work is, what is doubtful, and which of several motions cannot be used.
+    **options
+        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionOptions`.
 
     Returns
     -------
@@ -70,107 +90,63 @@ def survey(
     ['b', 'a']
     """
     from rocking_cli.studies.survey import survey as study
-    from rocking_cli.views.survey import columns, title, view
+    from rocking_cli.views.survey import blocks, columns, view
 
-    shaken = [motion_of(each).scaled(scale) for each in each_of(motions)]
-    where = _site(site) if site is not None else None
-    found = study(_entries(structures), shaken, polarities, site=where, threads=threads)
+    signs, most, where = signs_of(polarity), checked(opening), site_of(site) if site is not None else None
+    entries, given = _entries(structures, watch), Motions.of(motions, options)
+    shaken = [each.motion.scaled(each.factor) for each in given.gather(0.0, watch)] if given else []
+    if shaken:
+        watch.compile()
+    count = _processes(len(entries), bool(shaken) or where is not None) if processes else None
+    with watch.progress(len(entries), "structures") as advance:
+        found = study(
+            entries, shaken, signs, site=where, opening=most, threads=threads, processes=count, progress=advance
+        )
+    _warn_of_sizes(found, watch)
+    return Answer(
+        "survey", found, view(found, top), partial(columns, found), partial(_figure, found),
+        partial(blocks, found, for_spreadsheets=True),
+    )  # fmt: skip
 
-    def figure() -> Figure:
-        from rocking_cli.plotting.survey import draw_survey
 
-        return draw_survey(found, title(found))
-
-    return Answer("survey", found, view(found), lambda: columns(found), figure)
-
-
-def _entries(given: Any) -> Sequence[SurveyEntry]:
+def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
     from rocking_cli.studies.structure_table import StructureTable, of_mapping
     from rocking_cli.studies.survey import MadeStructure
 
-    if isinstance(given, str | Path):
-        return StructureTable.read(Path(given))
-    if isinstance(given, Mapping) or hasattr(given, "columns"):
-        return of_mapping(given)
-    return [MadeStructure(structure_of(each).mechanism) for each in given]
+    table = StructureTable.read(Path(given)) if isinstance(given, str | Path) else given
+    if not isinstance(table, StructureTable):
+        if isinstance(given, Mapping) or hasattr(given, "columns"):
+            return of_mapping(given)
+        return [MadeStructure(structure_of(each).mechanism) for each in given]
+    if not len(table):
+        raise InputError(Problem("the table has no rows below its headings", table.sheet.file))
+    if short := table.short:
+        lines = f"line {short[0]}" if len(short) == 1 else f"{len(short):,} lines, first in line {short[0]}"
+        watch.warn(f"{table.sheet.file}: fewer cells than headings in {lines}: missing cells are read as empty")
+    return table
 
 
-def design(
-    structure: StructureLike,
-    vary: str | tuple[str, float, float],
-    until: str,
-    motions: Motion | Sequence[Motion] = (),
-    *,
-    scale: float = 1.0,
-    polarities: Sequence[int] = (1,),
-    neighbours: int = 200,
-    site: Mapping[str, Any] | str | Path | None = None,
-    points: int = 41,
-) -> Answer[Design]:
-    """Find the values of one field for which a structure meets a requirement.
+def _processes(rows: int, shaken: bool) -> int | None:
+    """Return the number of processes that share the work; None if threads are as fast."""
+    from rocking_cli.dynamics.compiled import unwritable
+    from rocking_cli.dynamics.processes import MOST
 
-    Parameters
-    ----------
-    structure : Mechanism, str or Path
-        The structure, or its YAML file.
-    vary : str, or (str, float, float)
-        Field and its range, such as `"width=0.2m:0.8m"`, or `("ties.bar.prestress", 0.0, 5e4)` in the unit of the
-        field. An entry of a list is given by its number, from 0, or its name.
-    until : str
-        The requirement, such as `"lambda >= 0.2"`: a metric, `<`, `<=`, `>` or `>=`, and a number. The metrics are
-        `lambda`, `phi_cr`, `p`, `alpha0`, with motions `peak_ratio` and `overturned`, of their neighbours, and with a
-        site `ratio`, and `zeta_damage`, `zeta_linear` and `zeta_nonlinear` or the numbers of another code. A neighbour
-        of unknown outcome counts as overturning.
-    motions : GroundMotion, Pulse, str or Path, or a sequence of these
-        Ground motions; the worst one governs.
-    scale : float
-        Scale factor on the motions.
-    polarities : sequence of int
-        Polarities, of 1 and -1; with both, the worse governs.
-    neighbours : int
-        Number of neighbours of each motion to simulate.
-    site : mapping, str or Path, optional
-        Fields of a site file, or the file.
-    points : int
-        Number of values in the first scan.
+    count = min(os.cpu_count() or 1, MOST)
+    if count < 2 or rows < (LONG_SHAKEN if shaken else LONG) or (shaken and unwritable() is not None):
+        return None
+    return count
 
-    Returns
-    -------
-    Answer of Design
-        `value` is the least value from which the requirement holds, or the largest up to which it holds; `holds` are
-        the ranges in which it holds.
 
-    Raises
-    ------
-    InputError
-        If the field or metric does not exist, or the metric requires ground motions.
+def _warn_of_sizes(found: Survey, watch: Watcher) -> None:
+    doubtful = [each for each in found.rows if each.doubt is not None]
+    for each in doubtful[:FEW]:
+        watch.warn(f"{one_line(each.name)}: {each.doubt}")
+    if len(doubtful) > FEW:
+        watch.warn(f"{len(doubtful) - FEW:,} more structures have doubtful sizes: JSON lists them")
 
-    Examples
-    --------
-    >>> import rocking_cli as rk
-    >>> round(rk.design(rk.Block(width=0.5, height=2.0), "width=0.2m:0.8m", "lambda >= 0.2").value, 9)
-    0.4
-    """
-    from rocking_cli.studies.design import Aim, Span
-    from rocking_cli.studies.design import design as study
-    from rocking_cli.studies.metrics import Excitation
-    from rocking_cli.studies.neighbours import Neighbourhood
-    from rocking_cli.views.design import columns, view
 
-    ready = structure_of(structure)
-    span = Span.parse(vary) if isinstance(vary, str) else Span(vary[0], repr(float(vary[1])), repr(float(vary[2])))
-    shaken = [motion_of(each).scaled(scale) for each in each_of(motions)]
-    where = _site(site) if site is not None else None
-    excitation = (
-        Excitation(shaken, polarities, Neighbourhood(neighbours), where) if shaken or where is not None else None
-    )
-    found = study(
-        ready, span.field, span.in_unit(ready.unit_of(span.field)), Aim.parse(until), excitation, points=points
-    )
+def _figure(found: Survey) -> Figure:
+    from rocking_cli.plotting.survey import draw_survey
+    from rocking_cli.views.survey import title
 
-    def figure() -> Figure:
-        from rocking_cli.plotting.design import draw_design
-
-        return draw_design(found)
-
-    return Answer("design", found, view(found, excitation), lambda: columns(found), figure)
+    return draw_survey(found, title(found))

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import shlex
-from dataclasses import dataclass, replace
-from datetime import UTC, date, datetime
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -14,70 +13,19 @@ from rocking_cli.cli import complete, defaults, options
 from rocking_cli.cli.defaults import from_default
 
 if TYPE_CHECKING:
+    from rocking_cli.ask.sheets import Origin
     from rocking_cli.structure import Structure
-    from rocking_cli.studies.assessment import File, TitleBlock
-    from rocking_cli.views.sheet.language import Language
 
 LANGUAGES = ("en", "it")
 
 
-def _today() -> date:
-    return datetime.now(UTC).date()
-
-
-@dataclass(frozen=True)
-class Head:
-    """Heading of a document."""
-
-    project: str | None
-    place: str | None
-    author: str | None
-    logo: Path | None
-
-    @property
-    def inputs(self) -> list[str]:
-        """Files that the heading reads."""
-        return [str(self.logo)] if self.logo is not None else []
-
-    def block(self, command: str) -> TitleBlock:
-        """Return the title block, with the command and the date."""
-        from rocking_cli.studies.assessment import TitleBlock
-
-        today = _today().strftime("%d %B %Y").lstrip("0")
-        picture = None
-        if self.logo is not None:
-            from rocking_cli.report.logo import embedded
-
-            picture = embedded(self.logo)
-        return TitleBlock(command, today, self.project, self.place, self.author, picture)
-
-
-@dataclass(frozen=True)
-class SheetAsked(Head):
-    """Options of a calculation sheet: its file, if one is requested, its language and its heading."""
-
-    sheet: Path | None
-    language: str
-
-    def __post_init__(self) -> None:
-        if self.sheet is not None:
-            return
-        given = [name for name in ("project", "place", "author", "logo") if getattr(self, name) is not None]
-        typed = [f"--{name}" for name in given if not from_default(name)]
-        if typed:
-            word = "belongs" if len(typed) == 1 else "belong"
-            raise click.UsageError(f"{' and '.join(typed)} {word} to the heading of a sheet: give --sheet FILE.html.")
-
-    @property
-    def spoken(self) -> Language:
-        """Language of the sheet."""
-        from rocking_cli.views.sheet.language import Language
-
-        return Language(self.language)
-
-    def title(self, command: str) -> TitleBlock:
-        """Return the title block, with the date in the language of the sheet."""
-        return replace(self.block(command), date=self.spoken.day(_today()))
+def check(sheet: Path | None, given: Mapping[str, Any]) -> None:
+    """Raise if a heading was typed, and no sheet has it."""
+    typed = [f"--{name}" for name in ("project", "place", "author", "logo") if given[name] is not None]
+    typed = [name for name in typed if not from_default(name[2:])]
+    if sheet is None and typed:
+        word = "belongs" if len(typed) == 1 else "belong"
+        raise click.UsageError(f"{' and '.join(typed)} {word} to the heading of a sheet: give --sheet FILE.html.")
 
 
 head: options.Decorator = options.in_order(
@@ -108,15 +56,16 @@ sheet: options.Decorator = options.in_order(
 """The options of a calculation sheet: `sheet`, `language` and those of its head."""
 
 
-def file_of(structure: Structure, given: str | None) -> File:
-    """Return the file of a structure, with its content."""
+def origin(ctx: click.Context, structure: Structure, given: str | None) -> Origin:
+    """Return what a document says of how it was made: the command, and the file of the structure with its content."""
+    from rocking_cli.ask.sheets import Origin
     from rocking_cli.cli import structures
     from rocking_cli.excitation.records.opening import original
     from rocking_cli.studies.assessment import File
 
     if structure.file is None:
-        return File("default block", structures.DEFAULT.encode())
-    return File(structure.file, original(given or structure.file))
+        return Origin(command_line(ctx), File("default block", structures.DEFAULT.encode()))
+    return Origin(command_line(ctx), File(structure.file, original(given or structure.file)))
 
 
 def command_line(ctx: click.Context) -> str:

@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from rocking_cli.cli import motion_files, options, terminal
-from rocking_cli.cli.groups import GroundMotions, Near
+from rocking_cli.cli import options
+from rocking_cli.cli.groups import GroundMotions, Output
 from rocking_cli.cli.help import Command
-from rocking_cli.errors import INCOMPLETE, InputError
-from rocking_cli.views.view import heading
-
-if TYPE_CHECKING:
-    from rocking_cli.dynamics.model import Model
-    from rocking_cli.excitation.scaled import Scaled
-    from rocking_cli.studies.neighbours import Neighbourhood
 
 
 @click.command(cls=Command, short_help="Compute how close ground motions are to overturning.")
@@ -28,11 +21,8 @@ if TYPE_CHECKING:
 @options.opening
 @options.plot("Plot the shares against the scale factor")
 @options.as_json
-@click.pass_context
-@options.grouped(asked=GroundMotions, near=Near)
-def command(
-    ctx: click.Context, file: str | None, asked: GroundMotions, near: Near, plot: Path | None, as_json: bool
-) -> None:  # fmt: skip
+@options.grouped(asked=GroundMotions)
+def command(file: str | None, asked: GroundMotions, plot: Path | None, as_json: bool, **around: Any) -> None:
     """Compute how close ground motions are to overturning a structure.
 
     A structure may overturn at one scale factor and survive a larger one, so there is no single critical factor. At
@@ -54,41 +44,12 @@ def command(
     if not asked:
         raise click.UsageError("No ground motion given: add --record PLACE or --pulse PULSE, each repeatable.")
     asked.check()
-    if not near.neighbours:
-        raise click.UsageError("rocking margin needs neighbouring motions: --neighbours must be at least 1.")
+    from rocking_cli.ask.margin import margin
     from rocking_cli.cli import structures
-    from rocking_cli.io.files import keep_apart
-    from rocking_cli.views.margin import view
+    from rocking_cli.cli.watching import OnTerminal
 
-    paths, missing = motion_files.find(asked.records)
-    keep_apart([("--plot", plot)], [file, *(str(each.path) for each in paths)])
+    motions, output, watch = asked.motions, Output(None, plot, as_json), OnTerminal()
+    output.keep_apart(file, *motions.records)
     structure = structures.prepared([file] if file else [])
-    mechanism, model = structure.mechanism, structure.model("nonlinear")
-    chosen, refused = motion_files.gather(paths, asked.pulses, asked.reading, asked.scaling, structure.p)
-    if not chosen:
-        ctx.exit(InputError.exit_code)
-    rows = _rows(model, chosen, asked.signs, near.around)
-    if plot is not None:
-        from rocking_cli.cli.pictures import write_picture
-        from rocking_cli.plotting.margin import draw_margins
-
-        write_picture(plot, draw_margins({row.name: row.margin for row in rows}, heading(mechanism)))
-    terminal.show(view(mechanism, rows, asked.polarity, near.around), as_json=as_json)
-    if missing or refused:
-        ctx.exit(INCOMPLETE)
-
-
-def _rows(model: Model, chosen: list[Scaled], polarities: tuple[int, ...], around: Neighbourhood) -> list[Any]:
-    """Return the margin of each motion, with the share of its own neighbours that overturn."""
-    from rocking_cli.cli import waiting
-    from rocking_cli.studies.margin import FACTORS, margin
-    from rocking_cli.views.margin import MarginRow
-
-    rows = []
-    each_has = (FACTORS.size + 1) * around.count * len(polarities)
-    with waiting.histories(each_has * len(chosen)) as progress:
-        for motion, factor, *_ in chosen:
-            scaled = motion.scaled(factor)
-            found = margin(model, scaled, polarities, around=around, progress=progress)
-            rows.append(MarginRow(motion.name, factor, scaled.of_ground.pga_g, found))
-    return rows
+    output.show(margin(structure, motions, polarity=asked.polarity, watch=watch, **around))
+    watch.end()

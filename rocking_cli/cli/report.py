@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 
-from rocking_cli.cli import complete, heads, inputs, motion_files, options, terminal
-from rocking_cli.cli.groups import GroundMotions, Near
-from rocking_cli.cli.heads import Head
+from rocking_cli.cli import complete, heads, inputs, options, terminal
+from rocking_cli.cli.groups import GroundMotions
 from rocking_cli.cli.help import Command
-from rocking_cli.errors import INCOMPLETE, InputError
-
-if TYPE_CHECKING:
-    from rocking_cli.excitation.scaled import Scaled
 
 
 @click.command(cls=Command, short_help="Write a complete report on a structure as one HTML page.")
@@ -25,7 +20,7 @@ if TYPE_CHECKING:
 @options.out(".html", what="Output file.  [default: FILE with the ending .html, in this folder; none with --json]")
 @heads.head
 @click.option(
-    "--verify", "site_file", type=click.Path(), metavar="SITE.yaml", shell_complete=complete.files,
+    "--verify", type=click.Path(), metavar="SITE.yaml", shell_complete=complete.files,
     help="Site file of a verification by code that becomes part of the report.",
 )  # fmt: skip
 @options.state
@@ -34,19 +29,10 @@ if TYPE_CHECKING:
 @options.opening
 @options.as_json
 @click.pass_context
-@options.grouped(asked=GroundMotions, head=Head, near=Near)
+@options.grouped(asked=GroundMotions)
 def command(
-    ctx: click.Context,
-    files: tuple[str, ...],
-    asked: GroundMotions,
-    out: Path | None,
-    head: Head,
-    near: Near,
-    site_file: str | None,
-    state: str | None,
-    on_floor: bool,
-    as_json: bool,
-) -> None:
+    ctx: click.Context, files: tuple[str, ...], asked: GroundMotions, out: Path | None, as_json: bool, **question: Any
+) -> None:  # fmt: skip
     """Write a report on a structure: one HTML file that opens in any browser, without a network, and can be printed.
 
     The report starts with a summary in words: whether the structure uplifts or overturns, how close it is to
@@ -67,52 +53,19 @@ def command(
       rocking report arch.yaml --record one.AT2 --record two.AT2 --target-pga 0.3
     """
     asked.check()
-    if (state is not None or on_floor) and (site_file is None or not asked):
-        raise click.UsageError(
-            "--state and --on-floor describe records of a verification: give --verify SITE.yaml and --record FILE."
-        )
-    if not near.neighbours:
-        raise click.UsageError("The report shows how close the result is: --neighbours must be at least 1.")
-    from rocking_cli.cli import sheets, structures
-    from rocking_cli.cli.waiting import compile_first
-    from rocking_cli.io.files import check_writable, keep_apart, write_whole
-    from rocking_cli.studies.assessment import gather, steps
-    from rocking_cli.views.assessment import view
+    from rocking_cli.ask.report import report
+    from rocking_cli.cli import structures
+    from rocking_cli.cli.watching import OnTerminal
+    from rocking_cli.io.files import keep_apart
 
+    file = files[0] if files else None
     if out is None and not as_json:
-        out = Path(f"{structures.stem(files[0] if files else None)}.html")
-        check_writable(out)
-    site = sheets.site_of_report(Path(site_file), motions=bool(asked)) if site_file is not None else None
-    paths, bad = motion_files.find(asked.records)
-    keep_apart([("--out", out)], [*files, *(str(each.path) for each in paths), *head.inputs, site_file])
-    title = head.block(heads.command_line(ctx))
+        out = Path(f"{structures.stem(file)}.html")
+    motions, watch = asked.motions, OnTerminal()
+    read = [*files, *(str(each.path) for each in motions.records), question["logo"], question["verify"]]
+    keep_apart([("--out", out)], read)
     structure = inputs.structure(files, asked.records)
-    several = len(paths) + bad + len(asked.pulses) > 1
-    given: list[Scaled] = []
-    refused = 0
-    if paths or asked.pulses:
-        given, refused = inputs.gather(paths, asked, structure.growth, several=several)
-    bad += refused
-    if bad and not given:
-        ctx.exit(InputError.exit_code)
-    compile_first()
-    verified = None
-    if site is not None:
-        verified = sheets.of_report(
-            structure, site, files[0] if files else None, given, asked.signs, title, state=state,
-            on_floor=on_floor,
-        )  # fmt: skip
-    with terminal.progress(steps(given), "parts of the report") as advance:
-        content = gather(
-            structure, heads.file_of(structure, files[0] if files else None), given, asked.signs, around=near.around,
-            title=title, progress=advance,
-        )  # fmt: skip
-    if out is not None:
-        from rocking_cli.report.page import render
-
-        page = render(content, verified).encode()
-        write_whole(out, lambda stream: stream.write(page))
-        terminal.note(f"wrote {out} ({len(page) / 1e6:.2g} MB)")
-    terminal.show(view(content, verified.found if verified is not None else None), as_json=as_json)
-    if bad:
-        ctx.exit(INCOMPLETE)
+    origin = heads.origin(ctx, structure, file)
+    answer = report(structure, motions, out, polarity=asked.polarity, origin=origin, watch=watch, **question)
+    terminal.show(answer.view, as_json=as_json)
+    watch.end()

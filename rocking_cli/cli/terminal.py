@@ -103,6 +103,8 @@ def as_typed(text: str, command: click.Command | None = None) -> str:
     options = [each for each in command.params if isinstance(each, click.Option)] if command is not None else []
     spelled = [(each.name, max(each.opts, key=len)) for each in options]
     typed = {name: option for _, option in spelled if (name := option[2:].replace("-", "_"))} | dict(spelled)
+    if {"records", "pulses"} <= typed.keys():
+        typed["motions"] = typed["motion"] = "--record or --pulse"
     return re.sub(r"`(\w+)`", lambda match: typed.get(match[1], match[0]), text)
 
 

@@ -3,23 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 
-from rocking_cli.cli import complete, heads, motion_files, options, terminal
-from rocking_cli.cli.groups import GroundMotions
-from rocking_cli.cli.heads import SheetAsked
+from rocking_cli.cli import complete, heads, options, terminal
+from rocking_cli.cli.groups import GroundMotions, Output
 from rocking_cli.cli.help import Command
-from rocking_cli.errors import INCOMPLETE, InputError
-
-if TYPE_CHECKING:
-    from rocking_cli.excitation.scaled import Scaled
-    from rocking_cli.processing.listed import Listed
-    from rocking_cli.structure import Structure
-    from rocking_cli.studies.assessment import TitleBlock
-    from rocking_cli.studies.verification.results import Verification
-    from rocking_cli.studies.verification.site_file import SiteFile
 
 Point = tuple[float, float, str | None]
 
@@ -44,7 +34,7 @@ def _point(ctx: click.Context, param: click.Parameter, value: str | None) -> Poi
 @click.command(cls=Command, short_help="Verify a masonry mechanism by a code, such as NTC 2018.")
 @click.argument("file", metavar="[FILE]", required=False, type=click.Path())
 @click.option(
-    "--site", "site_file", required=True, type=click.Path(), metavar="SITE.yaml", shell_complete=complete.files,
+    "--site", required=True, type=click.Path(), metavar="SITE.yaml", shell_complete=complete.files,
     help=options.HELP["site"],
 )  # fmt: skip
 @click.option(
@@ -61,18 +51,16 @@ def _point(ctx: click.Context, param: click.Parameter, value: str | None) -> Poi
 @heads.sheet
 @options.as_json
 @click.pass_context
-@options.grouped(asked=GroundMotions, sheet=SheetAsked)
+@options.grouped(asked=GroundMotions)
 def command(
     ctx: click.Context,
     file: str | None,
-    site_file: str,
-    control: Point | None,
+    site: str,
     asked: GroundMotions,
-    sheet: SheetAsked,
-    state: str | None,
-    on_floor: bool,
+    sheet: Path | None,
     plot: Path | None,
     as_json: bool,
+    **question: Any,
 ) -> None:
     """Verify a rocking mechanism by the code that the site file names: the Italian, NTC 2018 and Circolare 7/2019.
 
@@ -102,75 +90,19 @@ def command(
     asked.check()
     if not asked and asked.polarity != "1":
         raise click.UsageError("--polarity reverses a ground motion: give --record FILE or --pulse PULSE.")
-    if not asked and (state is not None or on_floor):
-        raise click.UsageError("--state and --on-floor describe records: give --record FILE or --pulse PULSE.")
+    heads.check(sheet, question)
+    from rocking_cli.ask.verify import verify
     from rocking_cli.cli import structures
+    from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import keep_apart
-    from rocking_cli.studies.verification.check import read_site, refuse, verify
-    from rocking_cli.studies.verification.control import control_at
-    from rocking_cli.views.verification import showing, view
 
-    paths, missing = motion_files.find(asked.records)
-    given = [file, site_file, *sheet.inputs, *(str(each.path) for each in paths)]
-    keep_apart([("--plot", plot), ("--sheet", sheet.sheet)], given)
-    site = read_site(Path(site_file))
-    refuse(site, control=control is not None, motions=bool(asked))
-    title = _title(ctx, sheet, site)
+    motions, output, watch = asked.motions, Output(None, plot, as_json), OnTerminal()
+    read = [file, site, question["logo"], *(str(each.path) for each in motions.records)]
+    keep_apart([("--plot", plot), ("--sheet", sheet)], read)
     structure = structures.prepared([file] if file else [])
-    found = verify(structure, site, control_at(structure.mechanism, *control) if control is not None else None)
-    refused = 0
-    chosen: list[Scaled] = []
-    if asked:
-        found, chosen, refused = _histories(found, structure, site, asked, paths, state, on_floor=on_floor)
-    if plot is not None:
-        from rocking_cli.cli.pictures import write_picture
-
-        write_picture(plot, showing(found).draw(found))
-    if title is not None:
-        from rocking_cli.cli import sheets
-
-        sheets.write(sheet, found, site, title, sheets.made(structure, file, Path(site_file), chosen))
-    every = terminal.asked("verbose")
-    terminal.show(view(found, site.site.name, every_step=every), as_json=as_json)
-    if missing or refused:
-        ctx.exit(INCOMPLETE)
-
-
-def _title(ctx: click.Context, asked: SheetAsked, site: SiteFile) -> TitleBlock | None:
-    """Return the heading of the sheet, if one is requested. Raises, before any work, if it cannot be written."""
-    if asked.sheet is None:
-        return None
-    from rocking_cli.cli import sheets
-
-    sheets.check(asked, site)
-    return asked.title(heads.command_line(ctx))
-
-
-def _histories(
-    found: Verification,
-    structure: Structure,
-    site: SiteFile,
-    asked: GroundMotions,
-    paths: list[Listed],
-    state: str | None,
-    *,
-    on_floor: bool,
-) -> tuple[Verification, list[Scaled], int]:
-    """Add time histories to a verification, and return the motions used and the number of unusable ones too.
-
-    Raises if no motion can be used.
-    """
-    from rocking_cli.cli.waiting import compile_first
-    from rocking_cli.studies.verification.check import with_histories
-    from rocking_cli.studies.verification.motions import Histories
-
-    chosen, refused = motion_files.gather(
-        paths, asked.pulses, asked.reading, asked.scaling, structure.growth, "this structure"
-    )
-    if not chosen:
-        raise InputError("no ground motion can be used")
-    compile_first()
-    motions = [each.motion.scaled(each.factor) for each in chosen]
-    with terminal.progress(len(motions), "records") as advance:
-        under = with_histories(found, structure, site, Histories(motions, asked.signs, state, on_floor, advance))
-    return under, chosen, refused
+    answer = verify(
+        structure, site, motions=motions, polarity=asked.polarity, sheet=sheet, every_step=terminal.asked("verbose"),
+        origin=heads.origin(ctx, structure, file), watch=watch, **question,
+    )  # fmt: skip
+    output.show(answer)
+    watch.end()

@@ -256,7 +256,7 @@ def design(
         _check_site(aim.metric, excitation)
     if aim.metric.shaken and (excitation is None or not excitation.motions or not excitation.around.count):
         message = f"{aim.metric.name} needs a ground motion with neighbouring motions"
-        raise InputError(Problem(message, hint="give `records` or `pulses`"))
+        raise InputError(Problem(message, hint="give `motions`"))
     if points < 2:
         raise InputError(Problem(f"must be at least 2, got {points}", field="points"))
 

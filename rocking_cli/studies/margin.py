@@ -135,7 +135,7 @@ def margin(
     """
     around = (around or Neighbourhood()).of(model)
     if not around.count:
-        raise InputError(Problem("neighbouring motions are needed: at least 1", field="neighbours"))
+        raise InputError(Problem("neighbouring motions are needed: at least 1", field="`neighbours`"))
     if not (factors.ndim == 1 and factors.size and np.isfinite(factors).all() and (np.diff([0.0, *factors]) > 0).all()):
         raise InputError("scale factors must be positive and in ascending order")
     factors = np.union1d(factors[np.abs(factors - 1) > SAME], 1.0)

@@ -9,10 +9,10 @@ from markupsafe import Markup, escape
 from matplotlib.figure import Figure
 
 from rocking_cli.core import Mechanism
+from rocking_cli.documents.figures import inline_svg
+from rocking_cli.documents.translated import translate
 from rocking_cli.plotting.moving import asset
 from rocking_cli.plotting.structure import draw_structure
-from rocking_cli.report.figures import inline_svg
-from rocking_cli.report.translated import translate
 from rocking_cli.studies.picture import picture
 from rocking_cli.text import printable
 from rocking_cli.views.sheet.document import Drawing, Sheet
@@ -74,7 +74,7 @@ def formula(text: str) -> Markup:
 
 def _environment() -> Environment:
     environment = Environment(
-        loader=PackageLoader("rocking_cli", "report/templates"), autoescape=True, undefined=StrictUndefined,
+        loader=PackageLoader("rocking_cli", "documents/templates"), autoescape=True, undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
     environment.filters["formula"] = formula

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from rocking_cli.documents.figures import inline_svg
+from rocking_cli.documents.page import symbols
 from rocking_cli.plotting.moving import asset
 from rocking_cli.plotting.survey import draw_survey
-from rocking_cli.report.figures import inline_svg
-from rocking_cli.report.page import symbols
 from rocking_cli.studies.survey import Survey
 from rocking_cli.text import printable
 from rocking_cli.views.survey import sentences, table, title
@@ -32,7 +32,7 @@ def render(found: Survey, source: str, about: Sequence[str]) -> str:
         Further lines of the heading: date and command.
     """
     environment = Environment(
-        loader=PackageLoader("rocking_cli", "report/templates"), autoescape=True, undefined=StrictUndefined,
+        loader=PackageLoader("rocking_cli", "documents/templates"), autoescape=True, undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
     environment.filters["symbols"] = symbols

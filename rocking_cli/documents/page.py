@@ -15,6 +15,10 @@ from matplotlib.figure import Figure
 
 from rocking_cli.core import Angle, Length
 from rocking_cli.core.advice import preferred_kappa
+from rocking_cli.documents.figures import inline_svg
+from rocking_cli.documents.hung import hung_on
+from rocking_cli.documents.sheet_page import parts
+from rocking_cli.documents.verified import VerifiedReport
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.verdict import SENSE
 from rocking_cli.excitation.pulse_fit import PulseFit
@@ -24,10 +28,6 @@ from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.plotting.moving import as_script, asset, ground_chart, moving, ratio_chart
 from rocking_cli.plotting.overturning import draw_map
 from rocking_cli.plotting.structure import draw_structure
-from rocking_cli.report.figures import inline_svg
-from rocking_cli.report.hung import hung_on
-from rocking_cli.report.sheet_page import parts
-from rocking_cli.report.verified import VerifiedReport
 from rocking_cli.studies.assessment import Assessment, MotionResult, PulseMap, amplitude_in_g, share
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.linearisation import Linearisation
@@ -60,7 +60,7 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         A verification to include in the report.
     """
     environment = Environment(
-        loader=PackageLoader("rocking_cli", "report/templates"), autoescape=True, undefined=StrictUndefined,
+        loader=PackageLoader("rocking_cli", "documents/templates"), autoescape=True, undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
     environment.filters["symbols"] = symbols

@@ -9,9 +9,9 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.core import Mechanism
+from rocking_cli.documents.sheet_page import MARKS, figure_of
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plotting import style
-from rocking_cli.report.sheet_page import MARKS, figure_of
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.text import printable
 from rocking_cli.views.sheet.document import Drawing, Grid, Item, Listing, Sentence, Sheet, SheetPart, Steps

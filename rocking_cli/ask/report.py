@@ -1,0 +1,187 @@
+"""`rk.report`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Unpack
+
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.given import Motion, SiteLike, StructureLike, signs_of, site_of, structure_of
+from rocking_cli.ask.ground_motions import MotionOptions, Motions
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError
+from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.views.view import heading
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.ask.sheets import Origin
+    from rocking_cli.documents.verified import VerifiedReport
+    from rocking_cli.excitation.scaled import Scaled
+    from rocking_cli.io.tables import Columns
+    from rocking_cli.structure import Structure
+    from rocking_cli.studies.assessment import Assessment, TitleBlock
+    from rocking_cli.studies.verification.motions import Histories
+    from rocking_cli.studies.verification.site_file import SiteFile
+
+
+def report(
+    structure: StructureLike,
+    motions: Motion | Motions | Sequence[Motion] = (),
+    file: str | Path | None = "report.html",
+    *,
+    polarity: str | int = "both",
+    neighbours: int = Neighbourhood.count,
+    amplitude_deviation: float = Neighbourhood.amplitude,
+    slenderness_deviation: float | None = None,
+    restitution_deviation: float | None = None,
+    verify: SiteLike | None = None,
+    state: str | None = None,
+    on_floor: bool = False,
+    opening: float | None = None,
+    project: str | None = None,
+    place: str | None = None,
+    author: str | None = None,
+    logo: str | Path | None = None,
+    origin: Origin | None = None,
+    watch: Watcher = SILENT,
+    **options: Unpack[MotionOptions],
+) -> Answer[Assessment]:
+    """Write a report: one HTML file that opens in any browser and can be printed.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        The structure, or its YAML file.
+    motions : GroundMotion, Pulse, str or Path, or a sequence of these
+        Ground motions, their files, or pulses as text; may be empty.
+    file : str or Path, optional
+        File to write; None to write none.
+    polarity : {"both", "1", "-1"}
+        Polarity of the motions: as given, reversed, or both, of which the worse is shown.
+    neighbours : int
+        Number of neighbours of each motion to simulate, at least 1.
+    amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
+        Standard deviations of the neighbours: of ln amplitude, of ln slenderness and of restitution; by default those
+        of the structure.
+    verify : mapping, str or Path, optional
+        Fields of a site file, or the file, of a verification by code that becomes part of the report.
+    state : str, optional
+        Limit state of the verification to which the motions belong, such as `"SLC"`.
+    on_floor : bool
+        Whether the motions are those of the floor of the site; if not, ground motions are carried to it.
+    opening : float, optional
+        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    project, place, author, logo : str, str, str, path, optional
+        Entries for the heading of the report, and a picture in .png, .jpg or .svg.
+    origin : Origin, optional
+        What the report says of how it was made; by default this function and the structure.
+    watch : Watcher
+        Told what was read and written, how far the work is, and which of several motions cannot be used.
+    **options
+        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionOptions`.
+
+    Returns
+    -------
+    Answer of Assessment
+        Contents of the report.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be read or written.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+    SolverError
+        If a motion cannot be simulated to its end.
+
+    Notes
+    -----
+    The report contains the results of `equiv`, `respond`, `margin`, `overturning_map` and `linearisation`, and those
+    of `verify` if a site is given.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> answer = rk.report(rk.Block(width=0.7, height=2.8), file=None)
+    >>> answer.has_block
+    True
+    """
+    from rocking_cli.ask.sheets import Head, Origin
+    from rocking_cli.documents.page import render
+    from rocking_cli.io.files import check_writable, write_whole
+    from rocking_cli.studies.assessment import gather, steps
+    from rocking_cli.studies.verification.motions import Histories
+    from rocking_cli.views.assessment import view
+
+    if file is not None:
+        check_writable(Path(file))
+    signs, given = signs_of(polarity), Motions.of(motions, options)
+    if (state is not None or on_floor) and (verify is None or not given):
+        raise InputError("`state` and `on_floor` describe records of a verification: give `verify` and `motions`")
+    if not neighbours:
+        raise InputError("a report shows how close the result is: `neighbours` must be at least 1")
+    around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
+    site = _site(verify, motions=bool(given)) if verify is not None else None
+    ready = structure_of(structure, opening)
+    origin = origin or Origin.of("rocking_cli.report(...)", ready)
+    title = Head(project, place, author, logo).block(origin)
+    chosen = given.gather(ready.growth, watch) if given else []
+    watch.compile()
+    verified = None
+    if verify is not None and site is not None:
+        histories = Histories([each.motion.scaled(each.factor) for each in chosen], signs, state, on_floor)
+        verified = _verified(ready, site, verify, chosen, histories, title, origin)
+    with watch.progress(steps(chosen), "parts of the report") as advance:
+        found = gather(ready, origin.structure, chosen, signs, around=around, title=title, progress=advance)
+    if file is not None:
+        page = render(found, verified).encode()
+        write_whole(Path(file), lambda stream: stream.write(page))
+        watch.note(f"wrote {file} ({len(page) / 1e6:.2g} MB)")
+    shown = view(found, verified.found if verified is not None else None)
+    return Answer("report", found, shown, partial(_columns, found), partial(_figure, found))
+
+
+def _site(given: SiteLike, *, motions: bool) -> SiteFile:
+    """Read the site of a report. Raises `InputError`, before any work, if its code has no part in a report."""
+    from rocking_cli.studies.verification.check import refuse
+    from rocking_cli.views.sheet.build import sheet_of
+
+    site = site_of(given)
+    sheet_of(site)
+    refuse(site, motions=motions)
+    return site
+
+
+def _verified(
+    structure: Structure, site: SiteFile, given: SiteLike, motions: Sequence[Scaled], histories: Histories,
+    title: TitleBlock, origin: Origin,
+) -> VerifiedReport:  # fmt: skip
+    """Return the verification in a report, with time histories under its ground motions."""
+    from rocking_cli.ask.sheets import sheet_for
+    from rocking_cli.documents.verified import VerifiedReport
+    from rocking_cli.studies.verification.check import verify, with_histories
+
+    found = verify(structure, site)
+    if motions:
+        found = with_histories(found, structure, site, histories)
+    return VerifiedReport(found, sheet_for(found, site, given, motions, "en", title, origin))
+
+
+def _columns(found: Assessment) -> Columns:
+    runs = [(each.given.motion.name, each.histories["nonlinear"]) for each in found.results]
+    return {
+        "motion": [name for name, _ in runs],
+        "peak_ratio": [run.peak_ratio for _, run in runs],
+        "overturned": [None if run.unknown else run.overturned for _, run in runs],
+        "unknown": [run.unknown for _, run in runs],
+    }
+
+
+def _figure(found: Assessment) -> Figure:
+    from rocking_cli.plotting.structure import draw_structure
+
+    return draw_structure(found.picture, heading(found.mechanism))

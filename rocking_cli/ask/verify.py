@@ -1,0 +1,144 @@
+"""`rk.verify`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Unpack
+
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.given import Motion, SiteLike, StructureLike, signs_of, site_of, structure_of
+from rocking_cli.ask.ground_motions import MotionOptions, Motions
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError
+from rocking_cli.studies.verification.results import Verification
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.ask.sheets import Origin
+    from rocking_cli.core import Mechanism
+    from rocking_cli.excitation.scaled import Scaled
+    from rocking_cli.studies.verification.control import Control
+
+
+def verify(
+    structure: StructureLike,
+    site: SiteLike,
+    *,
+    control: tuple[float, float] | tuple[float, float, str | None] | None = None,
+    motions: Motion | Motions | Sequence[Motion] = (),
+    polarity: str | int = "1",
+    state: str | None = None,
+    on_floor: bool = False,
+    opening: float | None = None,
+    sheet: str | Path | None = None,
+    language: str = "en",
+    project: str | None = None,
+    place: str | None = None,
+    author: str | None = None,
+    logo: str | Path | None = None,
+    every_step: bool = False,
+    origin: Origin | None = None,
+    watch: Watcher = SILENT,
+    **options: Unpack[MotionOptions],
+) -> Answer[Verification]:
+    """Verify a rocking mechanism of masonry by a code, such as the Italian: NTC 2018 and Circolare 7/2019.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        The structure, or its YAML file.
+    site : mapping, str or Path
+        Fields of a site file, or the file.
+    control : tuple, optional
+        Control point x, y [m], and the body it is on; by default the centroid of the moving weights.
+    motions : GroundMotion, Pulse, str or Path, or a sequence of these
+        Motions of the dynamic method: records that match the spectrum of the site. An unknown outcome does not pass.
+    polarity : {"1", "-1", "both"}
+        Polarity of the motions: as given, reversed, or both, of which the worse governs.
+    state : str, optional
+        Limit state to which the motions belong, such as `"SLC"`; by default SLV. They are checked against it alone.
+    on_floor : bool
+        Whether the motions are those of the floor of the site; if not, ground motions are carried to it.
+    opening : float, optional
+        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    sheet : str or Path, optional
+        File for the calculation sheet: .html, .docx with an extra package, or .pdf with a browser.
+    language : {"en", "it"}
+        Language of the sheet.
+    project, place, author, logo : str, str, str, path, optional
+        Entries for the heading of the sheet, and a picture in .png, .jpg or .svg.
+    every_step : bool
+        Whether the answer lists every line of the calculation.
+    origin : Origin, optional
+        What the sheet says of how it was made; by default this function and the structure.
+    watch : Watcher
+        Told what was read and written, how far the work is, and which of several motions cannot be used.
+    **options
+        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionOptions`.
+
+    Returns
+    -------
+    Answer of Verification
+        `directions` holds the results of each direction, with `methods`, `states` and `workings`.
+
+    Raises
+    ------
+    InputError
+        If the site, the control point or a file cannot be used, or the structure has no capacity curve.
+    MechanismError
+        If the structure is not stable at rest.
+    SolverError
+        If a motion cannot be simulated to its end.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> site = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
+    >>> answer = rk.verify(rk.Block(width=0.6, height=8.0), site)
+    >>> round(answer.directions[rk.Direction.POSITIVE].counts.a_g, 6)
+    0.193382
+    """
+    from rocking_cli.studies.verification.check import refuse, with_histories
+    from rocking_cli.studies.verification.check import verify as study
+    from rocking_cli.studies.verification.motions import Histories
+    from rocking_cli.views.verification import table, view
+
+    signs, given, known = signs_of(polarity), Motions.of(motions, options), site_of(site)
+    if not given and (state is not None or on_floor):
+        raise InputError("`state` and `on_floor` describe records: give `motions`")
+    refuse(known, control=control is not None, motions=bool(given))
+    if sheet is not None:
+        from rocking_cli.ask import sheets
+
+        sheets.check(Path(sheet), known, language)
+    ready = structure_of(structure, opening)
+    found = study(ready, known, _point(ready.mechanism, *control) if control is not None else None)
+    chosen: list[Scaled] = []
+    if given:
+        chosen = given.gather(ready.growth, watch)
+        watch.compile()
+        with watch.progress(len(chosen), "records") as advance:
+            scaled = [each.motion.scaled(each.factor) for each in chosen]
+            found = with_histories(found, ready, known, Histories(scaled, signs, state, on_floor, advance))
+    if sheet is not None:
+        origin = origin or sheets.Origin.of("rocking_cli.verify(...)", ready)
+        title = sheets.Head(project, place, author, logo).block(origin, language)
+        content = sheets.sheet_for(found, known, site, chosen, language, title, origin)
+        sheets.write(Path(sheet), content, found, watch)
+    shown = view(found, known.site.name, every_step=every_step)
+    return Answer("verification", found, shown, partial(table, found), partial(_figure, found))
+
+
+def _point(mechanism: Mechanism, x: float, y: float, body: str | None = None) -> Control:
+    from rocking_cli.studies.verification.control import control_at
+
+    return control_at(mechanism, x, y, body)
+
+
+def _figure(found: Verification) -> Figure:
+    from rocking_cli.views.verification import showing
+
+    return showing(found).draw(found)
