@@ -28,7 +28,7 @@ WITHOUT = {
 """Commands that ask nothing about a structure or a motion."""
 OF_THE_TERMINAL = {"as_json", "as_csv", "plot", "out", "page", "curves", "nrml", "sheet", "help", "version"}
 """Options that say where an answer goes, and in which form."""
-NAMED = {"records": "motions", "pulses": "motions", "file": "structure", "files": "structures"}
+NAMED = {"records": "motions", "pulses": "motions", "file": "structures", "files": "structures"}
 MOST = 40
 
 
