@@ -18,8 +18,9 @@ from rocking_cli.ask.collapse import collapse as collapse
 from rocking_cli.ask.draw import draw as draw
 from rocking_cli.ask.equiv import equiv as equiv
 from rocking_cli.ask.equivalent import equivalent as equivalent
+from rocking_cli.ask.error import error as error
+from rocking_cli.ask.error import linearisation as linearisation
 from rocking_cli.ask.fragility import fragility as fragility
-from rocking_cli.ask.linearisation import linearisation as linearisation
 from rocking_cli.ask.margin import margin as margin
 from rocking_cli.ask.motions import correct as correct
 from rocking_cli.ask.motions import on_floor as on_floor
