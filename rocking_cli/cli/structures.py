@@ -19,6 +19,7 @@ from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.text import one_line
 
 if TYPE_CHECKING:
+    from rocking_cli.ask.watcher import Watcher
     from rocking_cli.structure import Structure
 
 HERE = "rocking.yaml"
@@ -103,6 +104,13 @@ def prepared(files: Sequence[str]) -> Structure:
     from rocking_cli.structure import Structure
 
     return Structure(load(files)[0], place(files[0] if files else None))
+
+
+def several(files: Sequence[str], watch: Watcher) -> list[Structure]:
+    """Return the structures of several files or of none, prepared; those that cannot be used are left out."""
+    from rocking_cli.ask.given import structures_of
+
+    return structures_of(files, watch, lambda file: prepared([file])) if files else [prepared([])]
 
 
 def stem(file: str | None) -> str:
