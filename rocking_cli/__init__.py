@@ -31,6 +31,7 @@ _HOME = {
     "ask.margin": ["margin"],
     "ask.overturning_curves": ["overturning_curves"],
     "ask.overturning_map": ["overturning_map"],
+    "ask.pulse": ["pulse"],
     "ask.record": ["record"],
     "ask.respond": ["respond"],
     "ask.respond_each": ["respond_each"],

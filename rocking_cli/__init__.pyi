@@ -27,6 +27,7 @@ from rocking_cli.ask.motions import on_floor as on_floor
 from rocking_cli.ask.motions import respond_around as respond_around
 from rocking_cli.ask.overturning_curves import overturning_curves as overturning_curves
 from rocking_cli.ask.overturning_map import overturning_map as overturning_map
+from rocking_cli.ask.pulse import pulse as pulse
 from rocking_cli.ask.record import record as record
 from rocking_cli.ask.respond import respond as respond
 from rocking_cli.ask.respond_each import respond_each as respond_each
