@@ -201,8 +201,8 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("arguments", "complaint"),
         [
-            ([BLOCK, "--ag", "1g", "--period", "1"], "at least two FILEs"),
-            (["--ag", "1g", "--period", "1"], "at least two FILEs"),
+            ([BLOCK, "--ag", "1g", "--period", "1"], "at least two structures"),
+            (["--ag", "1g", "--period", "1"], "at least two structures"),
             ([BLOCK, WALL, "--period", "1"], "Missing option '--ag'"),
             ([BLOCK, WALL, "--ag", "1g"], "Missing option '--period'"),
             ([BLOCK, WALL, "--ag", "0.6", "--period", "1"], "has no unit: give one of g, m/s2"),

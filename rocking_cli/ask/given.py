@@ -109,6 +109,13 @@ def told_apart(structures: Sequence[Structure]) -> list[Structure]:
     return [named(structure) for structure in structures]
 
 
+def warn_misleading(structures: Sequence[Structure], watch: Watcher) -> None:
+    """Warn of structures for which the linear models mislead."""
+    for structure in structures:
+        if structure.misleading is not None:
+            watch.warn(f"{structure.name}: {structure.misleading}")
+
+
 def sized_pulse(shape: str, ag: float | None, period: float | None) -> Pulse:
     """Return a pulse of an amplitude [standard gravity] and a period [s]. Raises `InputError`."""
     from rocking_cli.studies.under_pulses import parse_shape

@@ -38,7 +38,7 @@ def command(files: tuple[str, ...], as_json: bool, as_csv: bool) -> None:
     from rocking_cli.io.tables import write_csv
 
     watch, answers = OnTerminal(), []
-    ready = structures.several(files, watch)
+    ready = structures.several(files, watch) if files else [structures.prepared(files)]
     for structure in ready:
         try:
             answers.append(equiv(structure, watch=watch))

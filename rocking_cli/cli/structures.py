@@ -107,10 +107,10 @@ def prepared(files: Sequence[str]) -> Structure:
 
 
 def several(files: Sequence[str], watch: Watcher) -> list[Structure]:
-    """Return the structures of several files or of none, prepared; those that cannot be used are left out."""
+    """Return the structures of several files, prepared; those that cannot be used are left out."""
     from rocking_cli.ask.given import structures_of
 
-    return structures_of(files, watch, lambda file: prepared([file])) if files else [prepared([])]
+    return structures_of(files, watch, lambda file: prepared([file]))
 
 
 def stem(file: str | None) -> str:
