@@ -29,6 +29,7 @@ _HOME = {
     "ask.error": ["error", "linearisation"],
     "ask.fragility": ["fragility"],
     "ask.margin": ["margin"],
+    "ask.overturning": ["overturning"],
     "ask.overturning_curves": ["overturning_curves"],
     "ask.overturning_map": ["overturning_map"],
     "ask.pulse": ["pulse"],

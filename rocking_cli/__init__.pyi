@@ -25,6 +25,7 @@ from rocking_cli.ask.margin import margin as margin
 from rocking_cli.ask.motions import correct as correct
 from rocking_cli.ask.motions import on_floor as on_floor
 from rocking_cli.ask.motions import respond_around as respond_around
+from rocking_cli.ask.overturning import overturning as overturning
 from rocking_cli.ask.overturning_curves import overturning_curves as overturning_curves
 from rocking_cli.ask.overturning_map import overturning_map as overturning_map
 from rocking_cli.ask.pulse import pulse as pulse

@@ -59,12 +59,6 @@ def warn(mechanism: Mechanism) -> None:
         terminal.warning(doubt)
 
 
-def warn_misleading(structure: Structure, model: str) -> None:
-    """Warn if a requested linear model misleads for this structure."""
-    if model != "nonlinear" and structure.misleading is not None:
-        terminal.warning(f"{structure.name}: {structure.misleading}")
-
-
 def doubts(mechanism: Mechanism) -> list[str]:
     """Return the doubts about the sizes and places that were read."""
     return [f"{mechanism.name}: {doubt}" for doubt in odd(mechanism)]
