@@ -113,7 +113,7 @@ class TestRestitution:
         with pytest.raises(InputError, match="`eta`"):
             equivalent([stocky, SMALL], parse_pulse("sine:3g:0.5s"))
         equivalent([stocky, SMALL], parse_pulse("sine:3g:0.5s"), eta=0.7)
-        with pytest.raises(InputError, match="eta. must be in"):
+        with pytest.raises(InputError, match=r"eta. must be in"):
             equivalent([SMALL, LARGE], PULSE, eta=1.5)
 
 

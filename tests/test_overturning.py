@@ -159,9 +159,9 @@ class TestMap:
 
     @pytest.mark.parametrize("eta", [0.0, -0.5, 1.1, float("nan")])
     def test_an_impossible_restitution_is_refused(self, eta):
-        with pytest.raises(InputError, match="eta. must be in"):
+        with pytest.raises(InputError, match=r"eta. must be in"):
             linear_block(eta)
-        with pytest.raises(InputError, match="eta. must be in"):
+        with pytest.raises(InputError, match=r"eta. must be in"):
             pulsed_model(Structure(BLOCK), "linear2", SINE, eta=eta)
 
 
