@@ -69,13 +69,13 @@ class Structure:
     @cached_property
     def equivalence(self) -> Equivalence:
         """Equivalent blocks of both directions. Raises `MechanismError`, with the structure's name, if none exist."""
-        with self._named():
+        with self.named():
             return equivalent_block(self.mechanism, self.statics)
 
     @cached_property
     def statics(self) -> tuple[Statics, Statics]:
         """Statics of both directions; needs no equivalent block. Raises `MechanismError` with the structure's name."""
-        with self._named():
+        with self.named():
             return both_statics(self.mechanism)
 
     @cached_property
@@ -117,7 +117,7 @@ class Structure:
 
     def ask(self, question: Question) -> None:
         """Raise `InputError`, with the structure's file, if its elements prevent an answer to a question."""
-        with self._named():
+        with self.named():
             self.mechanism.hung.ask(question)
 
     @property
@@ -128,7 +128,7 @@ class Structure:
     @cached_property
     def etas(self) -> tuple[float, float]:
         """Restitution of the impacts that end positive and negative motion; for one-sided rocking, the rebound."""
-        with self._named():
+        with self.named():
             return self.mechanism.eta(self.mechanism.sides[0]), self.mechanism.eta(self.mechanism.sides[1])
 
     @property
@@ -153,7 +153,7 @@ class Structure:
         """Return a model of the structure. Raises `InputError` or `MechanismError` if it cannot be built."""
         if name not in self._models:
             statics, equivalence = self.statics, self.equivalence if name != "nonlinear" else None
-            with self._named():
+            with self.named():
                 self._models[name] = build(self.mechanism, statics, equivalence, name)
         return self._models[name]
 
@@ -225,7 +225,7 @@ class Structure:
         return list(here or {})
 
     @contextmanager
-    def _named(self) -> Iterator[None]:
+    def named(self) -> Iterator[None]:
         """Prefix mechanics errors with the structure's name, and add its file to errors of its fields."""
         try:
             yield

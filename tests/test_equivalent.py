@@ -113,7 +113,7 @@ class TestRestitution:
         with pytest.raises(InputError, match="`eta`"):
             equivalent([stocky, SMALL], parse_pulse("sine:3g:0.5s"))
         equivalent([stocky, SMALL], parse_pulse("sine:3g:0.5s"), eta=0.7)
-        with pytest.raises(InputError, match="eta must be in"):
+        with pytest.raises(InputError, match=r"eta. must be in"):
             equivalent([SMALL, LARGE], PULSE, eta=1.5)
 
 
@@ -201,8 +201,8 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("arguments", "complaint"),
         [
-            ([BLOCK, "--ag", "1g", "--period", "1"], "at least two FILEs"),
-            (["--ag", "1g", "--period", "1"], "at least two FILEs"),
+            ([BLOCK, "--ag", "1g", "--period", "1"], "at least two structures"),
+            (["--ag", "1g", "--period", "1"], "at least two structures"),
             ([BLOCK, WALL, "--period", "1"], "Missing option '--ag'"),
             ([BLOCK, WALL, "--ag", "1g"], "Missing option '--period'"),
             ([BLOCK, WALL, "--ag", "0.6", "--period", "1"], "has no unit: give one of g, m/s2"),

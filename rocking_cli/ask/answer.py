@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.json_text import json_text
-from rocking_cli.io.tables import Columns
 from rocking_cli.views.view import Table, View
 
 if TYPE_CHECKING:
     import pandas
     from matplotlib.figure import Figure
+
+    from rocking_cli.io.tables import Columns
 
 R = TypeVar("R")
 K = TypeVar("K")

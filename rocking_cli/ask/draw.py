@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, structure_of
+from rocking_cli.errors import InputError, Problem
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
@@ -41,20 +43,35 @@ def draw(structure: StructureLike, *, at: float | None = None) -> Answer[Picture
     Notes
     -----
     Rotations and phi_cr as in DeJong and Dimitrakopoulos (2014), Section 3.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> answer = rk.draw(rk.Block(width=0.7, height=2.8), at=0.5)
+    >>> [length.text for length in answer.sketch.lengths]
+    ['2b = 0.7 m', '2h = 2.8 m', 'R = 1.44 m']
     """
     from rocking_cli.studies.picture import picture
     from rocking_cli.views.draw import view
 
-    mechanism = structure_of(structure).mechanism
-    found = picture(mechanism)
+    if at is not None and not at > 0:
+        raise InputError(Problem(f"must be a multiple of phi_cr above 0, got {at:g}", field="`at`"))
+    ready = structure_of(structure)
+    with ready.named():
+        found = picture(ready.mechanism)
+    if at is not None and at > found.furthest:
+        of = "the limit" if None in found.phi_cr.values() else "phi_cr"
+        what = f"{at:g} times {of} is beyond the kinematic limit of the mechanism"
+        raise InputError(Problem(what, field="`at`", hint=f"at most {found.furthest:.4g} times {of}"))
+    figure = partial(_figure, found, heading(ready.mechanism), at)
+    return Answer("drawing", found, view(found), partial(_columns, found), figure)
 
-    def figure() -> Figure:
-        from rocking_cli.plotting.structure import draw_structure
 
-        return draw_structure(found, heading(mechanism), None if at is None else min(at, found.furthest))
+def _columns(found: Picture) -> Columns:
+    return {"length": [each.text for each in found.sketch.lengths]}
 
-    def columns() -> Columns:
-        said = [each.text for each in found.sketch.lengths]
-        return {"length": said}
 
-    return Answer("drawing", found, view(found), columns, figure)
+def _figure(found: Picture, title: str, at: float | None) -> Figure:
+    from rocking_cli.plotting.structure import draw_structure
+
+    return draw_structure(found, title, at)

@@ -6,16 +6,19 @@ from functools import partial
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, structure_figure, structure_of
+from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core import Equivalence
 
 
-def equiv(structure: StructureLike) -> Answer[Equivalence | None]:
+def equiv(structure: StructureLike, *, watch: Watcher = SILENT) -> Answer[Equivalence | None]:
     """Compute the equivalent single rocking block of a structure, in both directions.
 
     Parameters
     ----------
     structure : Mechanism, str or Path
         The structure, or its YAML file.
+    watch : Watcher
+        Told how to read the parameters, and of a restitution that is missing.
 
     Returns
     -------
@@ -47,5 +50,10 @@ def equiv(structure: StructureLike) -> Answer[Equivalence | None]:
 
     ready = structure_of(structure)
     found = ready.equivalence if ready.why_no_block is None else None
+    shown = views.view(ready)
+    for text in views.warnings(ready):
+        watch.warn(text)
+    for text in views.notes(ready.mechanism):
+        watch.note(text)
     columns, figure = partial(views.table, [ready]), partial(structure_figure, ready.mechanism)
-    return Answer("equivalent block", found, views.view(ready), columns, figure)
+    return Answer("equivalent block", found, shown, columns, figure)

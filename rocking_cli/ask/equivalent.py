@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Literal
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, structure_of
+from rocking_cli.ask.given import StructureLike, sized_pulse, structure_of, structures_of, told_apart, warn_misleading
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.pulses import Pulse, parse_pulse
 
 if TYPE_CHECKING:
@@ -16,7 +19,17 @@ if TYPE_CHECKING:
 
 
 def equivalent(
-    structures: Sequence[StructureLike], pulse: Pulse | str, *, polarity: int = 1
+    structures: Sequence[StructureLike],
+    pulse: Pulse | str | None = None,
+    *,
+    ag: float | None = None,
+    period: float | None = None,
+    shape: str = "sine",
+    polarity: str | int = "1",
+    kappa: str | int = "2",
+    eta: float | Literal["first", "own"] = "first",
+    opening: float | None = None,
+    watch: Watcher = SILENT,
 ) -> Answer[EquivalentResponses]:
     """Find the pulses to which structures are equally vulnerable; the given pulse is for the first.
 
@@ -24,10 +37,22 @@ def equivalent(
     ----------
     structures : sequence of Mechanism, str or Path
         At least two structures.
-    pulse : Pulse or str
-        Pulse such as `sine:0.6g:0.8s`.
-    polarity : {1, -1}
-        Polarity of the pulse; -1 reverses it.
+    pulse : Pulse or str, optional
+        Pulse such as `sine:0.6g:0.8s`, or else `ag`, `period` and `shape`.
+    ag, period : float, optional
+        Amplitude [standard gravity] and period [s] of the pulse.
+    shape : str
+        Shape of the pulse.
+    polarity : {"1", "-1"}
+        Polarity of the pulse; "-1" reverses it.
+    kappa : {"1", "2"}
+        Equivalent block by which the pulses are scaled: "1" for kappa1, "2" for kappa2.
+    eta : float, "first" or "own"
+        Coefficient of restitution of all structures: a number, that of the first structure, or that of each.
+    opening : float, optional
+        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structures.
+    watch : Watcher
+        Told which structures cannot be used, and for which the linear models mislead.
 
     Returns
     -------
@@ -46,17 +71,41 @@ def equivalent(
     Notes
     -----
     DeJong and Dimitrakopoulos (2014): equal a and omega of Eq. 40, as in Fig. 15.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> blocks = [rk.Block(width=0.7, height=2.8), rk.Block(width=1.0, height=4.0, restitution=0.9)]
+    >>> round(rk.equivalent(blocks, ag=0.6, period=0.5).a, 3)
+    2.4
     """
     from rocking_cli.studies import equivalent_pulses as study
     from rocking_cli.views import equivalent_pulses as views
 
-    given = parse_pulse(pulse) if isinstance(pulse, str) else pulse
-    found = study.equivalent([structure_of(each).mechanism for each in structures], given, polarity=polarity)
+    if len(structures) < 2:
+        raise InputError("give at least two structures: the pulse is for the first, the others get equivalent pulses")
+    if str(polarity) not in ("1", "-1") or str(kappa) not in ("1", "2"):
+        raise InputError(f"`polarity` must be 1 or -1, and `kappa` 1 or 2, got {polarity!r} and {kappa!r}")
+    if eta not in ("first", "own") and not (isinstance(eta, float | int) and 0 < eta <= 1):
+        what = f"{eta!r} is not valid: give a number above 0 and at most 1, 'first' or 'own'"
+        raise InputError(Problem(what, field="`eta`"))
+    if pulse is None:
+        pulse = sized_pulse(shape, ag, period)
+    elif isinstance(pulse, str):
+        pulse = parse_pulse(pulse)
+    read = partial(structure_of, opening=opening)
+    ready = told_apart([read(structures[0]), *structures_of(structures[1:], watch, read)])
+    watch.compile()
+    mechanisms = [each.mechanism for each in ready]
+    scaling: Literal[1, 2] = 1 if str(kappa) == "1" else 2
+    found = study.equivalent(mechanisms, pulse, polarity=int(polarity), kappa=scaling, eta=eta)
+    warn_misleading(ready, watch)
+    shown = views.view(found, " ".join(study.judge(found)))
+    return Answer("equivalent pulses", found, shown, partial(views.table, found), partial(_figure, found))
 
-    def figure() -> Figure:
-        from rocking_cli.plotting.equivalent_pulses import draw_equivalent
 
-        return draw_equivalent(found, views.title(found))
+def _figure(found: EquivalentResponses) -> Figure:
+    from rocking_cli.plotting.equivalent_pulses import draw_equivalent
+    from rocking_cli.views.equivalent_pulses import title
 
-    view = views.view(found, " ".join(study.judge(found)))
-    return Answer("equivalent pulses", found, view, lambda: views.table(found), figure)
+    return draw_equivalent(found, title(found))

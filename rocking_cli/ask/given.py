@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
 from rocking_cli.core.size import doubts
 from rocking_cli.dynamics.model import MODELS, ModelName
-from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.errors import InputError, MechanismError, Problem, RockingError
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.io.json_text import json_text
 from rocking_cli.structure import Structure
 from rocking_cli.structure_file import load_structure
+from rocking_cli.text import one_line
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
@@ -79,6 +82,70 @@ def _structure_of(given: StructureLike) -> Structure:
             Problem(f"must be a mechanism or a YAML file, got {kind_of(given)}", field="structure", hint=hint)
         )
     return Structure(load_structure(given), str(given))
+
+
+def structures_of(
+    given: Sequence[StructureLike],
+    watch: Watcher = SILENT,
+    read: Callable[[Any], Structure] = structure_of,
+) -> list[Structure]:
+    """Read several structures by `read`; those that cannot be used are left out.
+
+    Raises
+    ------
+    InputError, MechanismError
+        If none can be used; an `InputError` has the problems of all files.
+    """
+    ready: list[Structure] = []
+    errors: list[InputError | MechanismError] = []
+    for one in given:
+        try:
+            ready.append(read(one))
+        except (InputError, MechanismError) as error:
+            errors.append(error)
+    if errors and not ready:
+        raise next((error for error in errors if isinstance(error, MechanismError)), joined(errors))
+    for refused in errors:
+        watch.leave_out(refused)
+    return ready
+
+
+def joined(errors: Sequence[RockingError]) -> InputError:
+    """Return one error with the problems of several inputs."""
+    return InputError(*(problem for error in errors if isinstance(error, InputError) for problem in error.problems))
+
+
+def told_apart(structures: Sequence[Structure]) -> list[Structure]:
+    """Return structures of which those with the same name are named after their files too."""
+    names = [structure.name for structure in structures]
+
+    def named(structure: Structure) -> Structure:
+        if names.count(structure.name) == 1 or structure.file is None:
+            return structure
+        name = f"{structure.name} ({one_line(Path(structure.file).name)})"
+        return replace(structure, mechanism=structure.mechanism.model_copy(update={"name": name}), _models={})
+
+    return [named(structure) for structure in structures]
+
+
+def warn_misleading(structures: Sequence[Structure], watch: Watcher) -> None:
+    """Warn of structures for which the linear models mislead."""
+    for structure in structures:
+        if structure.misleading is not None:
+            watch.warn(f"{structure.name}: {structure.misleading}")
+
+
+def sized_pulse(shape: str, ag: float | None, period: float | None) -> Pulse:
+    """Return a pulse of an amplitude [standard gravity] and a period [s]. Raises `InputError`."""
+    from rocking_cli.studies.under_pulses import parse_shape
+
+    for field, value, example in (("`ag`", ag, "0.6 g"), ("`period`", period, "0.8 s")):
+        if value is None:
+            raise InputError(Problem("is missing for a pulse on a structure", field=field, hint=f"such as {example}"))
+        if not 0 < value < inf:
+            raise InputError(Problem(f"must be above 0, got {value:g}", field=field))
+    assert ag is not None and period is not None
+    return replace(parse_shape(shape), amplitude=ag * STANDARD_GRAVITY, period=period)
 
 
 def motion_of(given: Motion) -> GroundMotion:

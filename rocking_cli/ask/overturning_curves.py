@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, structure_of
+from rocking_cli.ask.given import StructureLike, signs_of, structure_of, structures_of, told_apart
+from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.model import ModelName
 
 if TYPE_CHECKING:
@@ -22,10 +24,13 @@ def overturning_curves(
     *,
     shape: str = "sine",
     model: ModelName = "nonlinear",
+    eta: float | None = None,
     period: tuple[float, float] | None = None,
     top: float | None = None,
-    polarities: Sequence[int] = (1,),
+    polarity: str | int = "1",
     points: int = 60,
+    opening: float | None = None,
+    watch: Watcher = SILENT,
 ) -> Answer[Comparison]:
     """Compute the smallest amplitude that overturns each structure, against the period of a pulse.
 
@@ -33,7 +38,7 @@ def overturning_curves(
     ----------
     structures : sequence of Mechanism, str or Path
         Structures to compare.
-    shape, model, polarities
+    shape, model, eta, polarity, opening
         As for `overturning_map`.
     period : (float, float), optional
         Smallest and largest period [s].
@@ -41,6 +46,8 @@ def overturning_curves(
         Largest amplitude to try [standard gravity].
     points : int
         Number of periods between them, at equal ratios.
+    watch : Watcher
+        Shown the progress, and told which structures cannot be used.
 
     Returns
     -------
@@ -60,20 +67,32 @@ def overturning_curves(
     Notes
     -----
     The models are those of `respond`: DeJong and Dimitrakopoulos (2014).
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> blocks = [rk.Block(width=0.7, height=2.8), rk.Block(width=1.4, height=5.6)]
+    >>> rk.overturning_curves(blocks, model="linear2", points=3).least.shape
+    (2, 3)
     """
     from rocking_cli.studies import overturning as study
     from rocking_cli.studies.under_pulses import parse_shape, pulsed_model
     from rocking_cli.views import overturning as views
 
-    form, ready = parse_shape(shape), [structure_of(each) for each in structures]
-    subjects = [pulsed_model(each, model, form, polarities) for each in ready]
+    form, signs = parse_shape(shape), signs_of(polarity)
+    ready = told_apart(structures_of(structures, watch, partial(structure_of, opening=opening)))
+    subjects = [pulsed_model(each, model, form, signs, eta) for each in ready]
     periods = np.geomspace(*(period or study.usual_periods(subjects)), points)
-    found = study.compare(subjects, form, periods, top or study.usual_amplitudes(subjects)[1], polarities=polarities)
+    highest = study.usual_amplitudes(subjects)[1] if top is None else top
+    count = study.count_scans(subjects, periods.size, signs)
+    with watch.histories(count, exact=model != "nonlinear" and bool(form.segments())) as progress:
+        found = study.compare(subjects, form, periods, highest, polarities=signs, progress=progress)
+    shown = views.comparison_view(found, [each.mechanism for each in ready])
+    return Answer("overturning curves", found, shown, partial(views.comparison_table, found), partial(_figure, found))
 
-    def figure() -> Figure:
-        from rocking_cli.plotting.overturning import draw_comparison
 
-        return draw_comparison(found, views.comparison_title(found))
+def _figure(found: Comparison) -> Figure:
+    from rocking_cli.plotting.overturning import draw_comparison
+    from rocking_cli.views.overturning import comparison_title
 
-    view = views.comparison_view(found, [each.mechanism for each in ready])
-    return Answer("overturning curves", found, view, lambda: views.comparison_table(found), figure)
+    return draw_comparison(found, comparison_title(found))

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, structure_of
+from rocking_cli.ask.given import StructureLike, signs_of, structure_of
+from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.studies.overturning import OverturningMap
+
+ETA = 0.9  # of the linear block
 
 
 def overturning_map(
@@ -28,8 +31,11 @@ def overturning_map(
     ag: tuple[float, float] | None = None,
     omega: tuple[float, float] | None = None,
     a: tuple[float, float] | None = None,
-    polarities: Sequence[int] = (1,),
+    dimensionless: bool = False,
+    polarity: str | int = "1",
     points: int = 128,
+    opening: float | None = None,
+    watch: Watcher = SILENT,
 ) -> Answer[OverturningMap]:
     """Map the effect of pulses of all periods and amplitudes on a structure, or on the dimensionless linear block.
 
@@ -47,10 +53,16 @@ def overturning_map(
         Smallest and largest period [s] and amplitude [standard gravity], for a structure.
     omega, a : (float, float), optional
         Smallest and largest dimensionless frequency and amplitude, for the linear block.
-    polarities : sequence of int
-        Polarities, of 1 and -1; with both, the worse governs.
+    dimensionless : bool
+        Whether a structure has the axes omega and a as well.
+    polarity : {"1", "-1", "both"}
+        Polarity of the pulses; with both, the worse governs.
     points : int
         Number of points along each side.
+    opening : float, optional
+        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    watch : Watcher
+        Shown the progress.
 
     Returns
     -------
@@ -81,23 +93,28 @@ def overturning_map(
     from rocking_cli.studies.under_pulses import linear_block, parse_shape, pulsed_model
     from rocking_cli.views import overturning as views
 
-    form = parse_shape(shape)
-    mechanism = None
+    form, signs = parse_shape(shape), signs_of(polarity)
     if structure is None:
-        subject = linear_block(0.9 if eta is None else eta)
+        mechanism, subject = None, linear_block(ETA if eta is None else eta)
+    else:
+        ready = structure_of(structure, opening)
+        mechanism, subject = ready.mechanism, pulsed_model(ready, model, form, signs, eta)
+    bare = dimensionless or mechanism is None
+    if bare:
         columns, rows = np.linspace(*(omega or study.OMEGAS), points), np.linspace(*(a or study.AMPLITUDES), points)
     else:
-        ready = structure_of(structure)
-        mechanism, subject = ready.mechanism, pulsed_model(ready, model, form, polarities, eta)
         columns = subject.period(np.linspace(*(period or study.usual_periods([subject])), points))
         rows = np.linspace(*(ag or study.usual_amplitudes([subject])), points) * STANDARD_GRAVITY / subject.unit
-    found = study.overturning_map(subject, form, columns, rows, polarities=polarities)
-    bare = mechanism is None
+    count = study.count_histories([subject], columns.size * rows.size, signs)
+    with watch.histories(count, exact=model != "nonlinear" and bool(form.segments())) as progress:
+        found = study.overturning_map(subject, form, columns, rows, polarities=signs, progress=progress)
+    shown = views.map_view(found, mechanism, dimensionless=bare)
+    table, figure = partial(views.map_table, found, mechanism), partial(_figure, found, dimensionless=bare)
+    return Answer("overturning map", found, shown, table, figure)
 
-    def figure() -> Figure:
-        from rocking_cli.plotting.overturning import draw_map
 
-        return draw_map(found, views.map_title(found), dimensionless=bare)
+def _figure(found: OverturningMap, *, dimensionless: bool) -> Figure:
+    from rocking_cli.plotting.overturning import draw_map
+    from rocking_cli.views.overturning import map_title
 
-    view = views.map_view(found, mechanism, dimensionless=bare)
-    return Answer("overturning map", found, view, lambda: views.map_table(found, mechanism), figure)
+    return draw_map(found, map_title(found), dimensionless=dimensionless)

@@ -3,33 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from functools import partial
+from math import pi
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import Motion, StructureLike, each_of, motion_of, structure_of
+from rocking_cli.ask.given import Motion, StructureLike, each_of, signs_of, structure_of, structures_of, told_apart
+from rocking_cli.ask.ground_motions import MotionOptions, Motions
+from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.scaled import Scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.studies.spectrum import Spectrum
+    from rocking_cli.views.spectrum import ShownSpectra
 
 
 def spectrum(
     structures: StructureLike | Sequence[StructureLike] = (),
-    motions: Motion | Sequence[Motion] = (),
+    motions: Motion | Sequence[Motion] | Motions = (),
     *,
     slenderness: Sequence[float] = (),
-    sizes: tuple[float, float] | None = None,
+    sizes: tuple[float, float] | tuple[float, float, int] | None = None,
     count: int = 60,
     model: ModelName = "nonlinear",
     eta: float | None = None,
-    polarities: Sequence[int] = (1,),
+    polarity: str | int = "1",
     fractiles: Sequence[float] = (0.16, 0.84),
+    jobs: int | None = None,
+    opening: float | None = None,
+    watch: Watcher = SILENT,
+    **options: Unpack[MotionOptions],
 ) -> Answer[list[Spectrum]]:
     """Compute peak rotation and overturning against size, for structures and for blocks of given slenderness.
 
@@ -39,18 +47,26 @@ def spectrum(
         One or several, as for `respond`.
     slenderness : sequence of float
         alpha of rectangular blocks [rad].
-    sizes : (float, float), optional
-        Smallest and largest size, as 2 pi/p [s].
+    sizes : (float, float) or (float, float, int), optional
+        Smallest and largest size, as 2 pi/p [s], and the number of sizes if it is not `count`.
     count : int
         Number of sizes between them, at equal ratios.
     model : {"nonlinear", "linear1", "linear2"}
         The equation of motion.
     eta : float, optional
         Coefficient of restitution; by default that of the structures.
-    polarities : sequence of int
-        Polarities, of 1 and -1; with both, the worse governs.
+    polarity : {"1", "-1", "both"}
+        Polarity of the motions; with both, the worse governs.
     fractiles : sequence of float
         Fractiles in addition to the median, with several motions.
+    jobs : int, optional
+        Number of processor cores to use; all by default.
+    opening : float, optional
+        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structures.
+    watch : Watcher
+        Shown the progress, and told what was read, what is doubtful about it, and what cannot be used.
+    **options
+        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionOptions`.
 
     Returns
     -------
@@ -68,29 +84,47 @@ def spectrum(
     Notes
     -----
     Rocking spectra of Makris and Konstantinidis (2003), with the models of DeJong and Dimitrakopoulos (2014).
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> answer = rk.spectrum(motions="sine:0.5g:0.8s", slenderness=[0.2], sizes=(1, 10, 5))
+    >>> answer.result[0].overturned.tolist()
+    [1, 1, 1, 0, 0]
     """
     from rocking_cli.studies import spectrum as study
     from rocking_cli.views import spectrum as views
 
     _check_count("count", count)
-    shapes = [study.shape_of(structure_of(each).mechanism, model, eta) for each in each_of(structures)]
-    shapes += [study.blocks_of(alpha, model, eta) for alpha in slenderness]
-    shaking = [motion_of(each) for each in each_of(motions)]
+    for fractile in fractiles:
+        if not 0 < fractile < 1:
+            raise InputError(Problem(f"{fractile:g} is not a fractile between 0 and 1", field="`fractiles`"))
+    signs, asked = signs_of(polarity), Motions.of(motions, options)
+    if not asked:
+        raise InputError("no ground motion is given: give `motions`")
+    ready = told_apart(structures_of(each_of(structures), watch, partial(structure_of, opening=opening)))
+    shapes = [study.shape_of(each.mechanism, model, eta, each.file) for each in ready]
+    shapes += [study.blocks_of(alpha, model, eta) for alpha in dict.fromkeys(slenderness)]
     if not shapes:
         raise InputError("no structure given: give structures, or slenderness for blocks")
-    periods = np.geomspace(*(sizes or study.usual_sizes(shapes)), count)
-    found = study.spectra(shapes, periods, shaking, polarities=polarities)
-    polarity = "both" if len(polarities) > 1 else str(polarities[0])
-    results = views.ShownSpectra(
-        found, [Scaled(each, 1.0) for each in shaking], tuple(sorted({*fractiles, 0.5})), polarity
-    )
+    low, high, number = (*(sizes or study.usual_sizes(shapes)), count)[:3]
+    periods = np.geomspace(low, high, number)
+    smallest = min([float(periods[0]), *(each.period for each in shapes if each.slenderness is None)])
+    chosen = asked.gather(2 * pi / smallest, watch, "the smallest size")
+    scaled = [each.motion.scaled(each.factor) for each in chosen]
+    with watch.histories(study.count_histories(shapes, periods, len(chosen), signs)) as progress:
+        found = study.spectra(shapes, periods, scaled, polarities=signs, threads=jobs, progress=progress)
+    results = views.ShownSpectra(found, chosen, tuple(sorted({*fractiles, 0.5})), str(polarity))
+    if unfollowed := views.lost(results):
+        watch.incomplete(unfollowed)
+    return Answer("spectrum", found, views.view(results), partial(views.table, results), partial(_figure, results))
 
-    def figure() -> Figure:
-        from rocking_cli.plotting.spectrum import draw_spectra
 
-        return draw_spectra(found, results.fractiles, views.title(results))
+def _figure(results: ShownSpectra) -> Figure:
+    from rocking_cli.plotting.spectrum import draw_spectra
+    from rocking_cli.views.spectrum import title
 
-    return Answer("spectrum", found, views.view(results), lambda: views.table(results), figure)
+    return draw_spectra(results.spectra, results.fractiles, title(results))
 
 
 def _check_count(name: str, count: int, least: int = 1) -> None:

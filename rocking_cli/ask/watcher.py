@@ -31,6 +31,9 @@ class Watcher:
         """Take the error of one of several motions or structures: return to go on without it, or raise."""
         raise error
 
+    def incomplete(self, text: str) -> None:
+        """Take a sentence on what the answer lacks, such as motions that could not be simulated."""
+
     def compile(self, *, exact: bool = False) -> None:
         """Prepare for time histories, or for exact responses to pulses: their kernel may have to be compiled."""
 

@@ -13,8 +13,7 @@ from rocking_cli.cli import options, terminal
 @click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
 @options.as_json
 @click.option("--csv", "as_csv", is_flag=True, help="Print comma-separated values, one line per direction.")
-@click.pass_context
-def command(ctx: click.Context, files: tuple[str, ...], as_json: bool, as_csv: bool) -> None:
+def command(files: tuple[str, ...], as_json: bool, as_csv: bool) -> None:
     """Compute the parameters of the equivalent single rocking block of each structure.
 
     The table has one column if both directions agree and two if they differ; positive is clockwise. With --json, each
@@ -32,37 +31,28 @@ def command(ctx: click.Context, files: tuple[str, ...], as_json: bool, as_csv: b
     """
     if as_json and as_csv:
         raise click.UsageError("--json and --csv cannot be combined: choose one.")
+    from rocking_cli.ask.equiv import equiv
     from rocking_cli.cli import structures
-    from rocking_cli.errors import INCOMPLETE, MechanismError
+    from rocking_cli.cli.watching import OnTerminal
+    from rocking_cli.errors import MechanismError
     from rocking_cli.io.tables import write_csv
-    from rocking_cli.structure import Structure
-    from rocking_cli.views import equivalent_block
 
-    mechanisms, _, bad = structures.load_each(files)
-    found = []
-    for mechanism in mechanisms:
+    watch, answers = OnTerminal(), []
+    ready = structures.several(files, watch) if files else [structures.prepared(files)]
+    for structure in ready:
         try:
-            structure = Structure(mechanism)
-            structure.statics, structure.why_no_block  # noqa: B018 - derived here, and kept
-            found.append(structure)
+            answers.append(equiv(structure, watch=watch))
         except MechanismError as error:
-            if len(mechanisms) == 1:
+            if len(ready) == 1:
                 raise
-            terminal.error(str(error))
+            watch.leave_out(error)
             refused = error
-            bad += 1
-    if not found:
-        ctx.exit(refused.exit_code)
+    if not answers:
+        click.get_current_context().exit(refused.exit_code)
     if as_csv:
         lines = io.BytesIO()
-        write_csv(lines, [equivalent_block.table(found)], digits=None)
+        write_csv(lines, [answer.columns() for answer in answers], digits=None)
         terminal.result(lines.getvalue().decode().rstrip("\n"))
-    for structure in found:
-        if not as_csv:
-            terminal.show(equivalent_block.view(structure), as_json=as_json)
-        for each in equivalent_block.warnings(structure):
-            terminal.warning(each)
-        for each in equivalent_block.notes(structure.mechanism):
-            terminal.note(each)
-    if bad:
-        ctx.exit(INCOMPLETE)
+    for answer in answers if not as_csv else []:
+        terminal.show(answer.view, as_json=as_json)
+    watch.end()

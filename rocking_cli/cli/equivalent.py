@@ -2,29 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, cast
+from typing import Any
 
 import click
 
-from rocking_cli.cli import options, terminal
-from rocking_cli.cli.groups import Output, SizedPulse
+from rocking_cli.cli import options
+from rocking_cli.cli.groups import Output
 from rocking_cli.cli.help import Command
-from rocking_cli.errors import INCOMPLETE, InputError
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def _eta(ctx: click.Context, param: click.Parameter, value: str) -> float | str:
-    if value in ("first", "own"):
-        return value
     try:
-        eta = float(value)
+        return float(value)
     except ValueError:
-        eta = 0.0
-    if not 0 < eta <= 1:
-        raise click.BadParameter(f"{value!r} is not valid: give a number above 0 and at most 1, 'first' or 'own'.")
-    return eta
+        return value
 
 
 @click.command(cls=Command, short_help="Find the equivalent pulses of several structures.")
@@ -49,16 +40,8 @@ def _eta(ctx: click.Context, param: click.Parameter, value: str) -> float | str:
 @options.out(".csv", what="Write the responses against p t.")
 @options.plot("Plot the responses")
 @options.as_json
-@click.pass_context
-@options.grouped(pulse=SizedPulse, output=Output)
-def command(
-    ctx: click.Context,
-    files: tuple[str, ...],
-    pulse: SizedPulse,
-    kappa: str,
-    eta: float | Literal["first", "own"],
-    output: Output,
-) -> None:
+@options.grouped(output=Output)
+def command(files: tuple[str, ...], output: Output, **question: Any) -> None:
     """Find the pulses to which several structures are equally vulnerable.
 
     The given pulse is for the first FILE. Every other structure gets the pulse with the same a = a_g/(g lambda) and
@@ -76,35 +59,12 @@ def command(
 
     Source: DeJong and Dimitrakopoulos (2014), Section 6.2 and Fig. 15.
     """
-    if len(files) < 2:
-        raise click.UsageError(
-            "Give at least two FILEs: the pulse applies to the first, and equivalent pulses are computed for the "
-            "others."
-        )
-    from rocking_cli.cli import structures, waiting
-    from rocking_cli.io.files import keep_apart
-    from rocking_cli.structure import Structure
-    from rocking_cli.studies.equivalent_pulses import equivalent, judge
-    from rocking_cli.views.equivalent_pulses import table, title, view
+    from rocking_cli.ask.equivalent import equivalent
+    from rocking_cli.cli import structures
+    from rocking_cli.cli.watching import OnTerminal
 
-    keep_apart([("--out", output.out), ("--plot", output.plot)], files)
-    given = pulse.pulse
-    loaded, good, bad = structures.load_each(files)
-    if files[0] not in good or len(good) < 2:
-        raise InputError("the first FILE and one more are needed: the pulse is for the first")
-    mechanisms = structures.told_apart(loaded, good)
-    waiting.compile_first()
-    found = equivalent(mechanisms, given, polarity=pulse.signs[0], kappa=cast(Literal[1, 2], int(kappa)), eta=eta)
-
-    def draw() -> Figure:
-        from rocking_cli.plotting.equivalent_pulses import draw_equivalent
-
-        return draw_equivalent(found, title(found))
-
-    for each, file in zip(mechanisms, good, strict=True):
-        structures.warn_misleading(Structure(each, file), "linear")
-    output.write_made(lambda: [table(found)], draw)
-    verdict = terminal.as_typed(" ".join(judge(found)))
-    terminal.show(view(found, verdict), as_json=output.as_json)
-    if bad:
-        ctx.exit(INCOMPLETE)
+    output.keep_apart(*files)
+    watch = OnTerminal()
+    ready = [structures.prepared(files[:1]), *structures.several(files[1:], watch)] if len(files) > 1 else []
+    output.show(equivalent(ready, watch=watch, **question))
+    watch.end()

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
     from rocking_cli.ask.answer import Answer
     from rocking_cli.ask.ground_motions import Motions
-    from rocking_cli.excitation.pulses import Pulse
     from rocking_cli.excitation.records.sensor import Gain, Quantity
     from rocking_cli.io.tables import Columns
     from rocking_cli.processing.floor import Floor
@@ -171,30 +170,6 @@ class GroundMotions(Scaling, ReadingOptions):
 def polarities(polarity: str) -> tuple[int, ...]:
     """Return the polarities of an option, of 1 and -1."""
     return (1, -1) if polarity == "both" else (int(polarity),)
-
-
-@dataclass(frozen=True)
-class SizedPulse:
-    """One pulse by its shape, amplitude [g], period [s] and polarity."""
-
-    shape: str
-    ag: float | None
-    period: float | None
-    polarity: str
-
-    @property
-    def pulse(self) -> Pulse:
-        """Pulse of this amplitude and period; both must be given."""
-        from rocking_cli.excitation.base import STANDARD_GRAVITY
-        from rocking_cli.studies.under_pulses import parse_shape
-
-        assert self.ag is not None and self.period is not None
-        return replace(parse_shape(self.shape), amplitude=self.ag * STANDARD_GRAVITY, period=self.period)
-
-    @property
-    def signs(self) -> tuple[int, ...]:
-        """The polarities, of 1 and -1."""
-        return polarities(self.polarity)
 
 
 @dataclass(frozen=True)

@@ -48,15 +48,6 @@ as_json: Decorator = click.option(
 )
 
 
-def restitution(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
-    """Check a coefficient of restitution, as a callback of click."""
-    if value is not None and not 0 < value <= 1:
-        raise click.BadParameter(
-            f"{value:g} is not a valid coefficient of restitution: give a number above 0 and at most 1."
-        )
-    return value
-
-
 def share(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
     """Check a number from 0 to below 1, as a callback of click."""
     if value is not None and not 0 <= value < 1:

@@ -12,13 +12,13 @@ from rocking_cli.cli import terminal, waiting
 from rocking_cli.cli.options import OPENING
 from rocking_cli.core import Mechanism
 from rocking_cli.core.size import doubts as odd
-from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, of_structure
+from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
 from rocking_cli.io.yaml_file import decoded
 from rocking_cli.structure_file import load_structure, parse_structure
-from rocking_cli.text import one_line
 
 if TYPE_CHECKING:
+    from rocking_cli.ask.watcher import Watcher
     from rocking_cli.structure import Structure
 
 HERE = "rocking.yaml"
@@ -58,39 +58,9 @@ def warn(mechanism: Mechanism) -> None:
         terminal.warning(doubt)
 
 
-def warn_misleading(structure: Structure, model: str) -> None:
-    """Warn if a requested linear model misleads for this structure."""
-    if model != "nonlinear" and structure.misleading is not None:
-        terminal.warning(f"{structure.name}: {structure.misleading}")
-
-
 def doubts(mechanism: Mechanism) -> list[str]:
     """Return the doubts about the sizes and places that were read."""
     return [f"{mechanism.name}: {doubt}" for doubt in odd(mechanism)]
-
-
-def load_each(files: Sequence[str]) -> tuple[list[Mechanism], list[str], int]:
-    """Return the structures of several files, these files, and the number of other files, which are reported.
-
-    Raises
-    ------
-    InputError, MechanismError
-        As `load`, if none of them can be used.
-    """
-    found: list[Mechanism] = []
-    good: list[str] = []
-    errors: list[RockingError] = []
-    for file in files:
-        try:
-            found += load([file])
-            good.append(file)
-        except (InputError, MechanismError) as error:
-            errors.append(error)
-    if not found:
-        return load(files), list(files), 0
-    for each in errors:
-        terminal.error(str(each))
-    return found, good, len(errors)
 
 
 def place(file: str | None) -> str | None:
@@ -103,6 +73,13 @@ def prepared(files: Sequence[str]) -> Structure:
     from rocking_cli.structure import Structure
 
     return Structure(load(files)[0], place(files[0] if files else None))
+
+
+def several(files: Sequence[str], watch: Watcher) -> list[Structure]:
+    """Return the structures of several files, prepared; those that cannot be used are left out."""
+    from rocking_cli.ask.given import structures_of
+
+    return structures_of(files, watch, lambda file: prepared([file]))
 
 
 def stem(file: str | None) -> str:
@@ -127,13 +104,3 @@ def _unnamed() -> Mechanism:
         return load_structure(HERE)
     terminal.note(f"structure: the default block, 0.7 m wide and 2.8 m high (no FILE given, no {HERE} here)")
     return parse_structure(DEFAULT, "default block", "default block")
-
-
-def told_apart(mechanisms: Sequence[Mechanism], files: Sequence[str]) -> list[Mechanism]:
-    """Return the structures; those with the same name are named after their files too."""
-    names = [each.name for each in mechanisms]
-    longer = [f"{name} ({one_line(Path(file).name)})" for name, file in zip(names, files, strict=True)]
-    return [
-        each.model_copy(update={"name": name}) if names.count(each.name) > 1 else each
-        for each, name in zip(mechanisms, longer, strict=True)
-    ]

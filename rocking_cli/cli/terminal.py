@@ -292,12 +292,14 @@ def table(
 
 
 def show(view: View, *, as_json: bool) -> None:
-    """Print a result: as one line of JSON, or as its tables and sentences."""
+    """Print a result: as one line of JSON, or as its tables and sentences, with options as they are typed."""
     if as_json:
-        print_json(view.data() if callable(view.data) else view.data)
+        data = view.data() if callable(view.data) else view.data
+        verdict = data.get("verdict")
+        print_json({**data, "verdict": as_typed(verdict)} if isinstance(verdict, str) else data)
         return
     for part in view.parts:
         if isinstance(part, str):
-            sentence(part)
+            sentence(as_typed(part))
         else:
             table(part.title, part.columns, part.rows, numbers=part.numbers)

@@ -32,6 +32,11 @@ class OnTerminal(Watcher):
         terminal.debug_traceback(error)
         self.left_out += 1
 
+    def incomplete(self, text: str) -> None:
+        """Print an error, and count it."""
+        terminal.error(text)
+        self.left_out += 1
+
     def compile(self, *, exact: bool = False) -> None:
         """Compile the kernel if this machine has not yet."""
         waiting.compile_first(exact=exact)

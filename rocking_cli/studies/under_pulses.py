@@ -124,7 +124,7 @@ def linear_block(eta: float) -> PulsedModel:
 def check_eta(eta: float) -> None:
     """Raise `InputError` if a number is not a coefficient of restitution."""
     if not 0 < eta <= 1:
-        raise InputError(f"eta must be in (0, 1], got {eta:g}")
+        raise InputError(f"`eta` must be in (0, 1], got {eta:g}")
 
 
 def pulsed_model(
