@@ -39,6 +39,7 @@ _HOME = {
     "ask.respond": ["respond"],
     "ask.respond_each": ["respond_each"],
     "ask.response_spectrum": ["response_spectrum"],
+    "ask.results": ["results"],
     "ask.spectrum": ["spectrum"],
     "ask.motions": ["correct", "on_floor", "respond_around"],
     "ask.selection": ["select"],

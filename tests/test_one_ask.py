@@ -16,7 +16,6 @@ from rocking_cli.cli.main import COMMANDS
 from tests.elsewhere import PROJECT
 
 WITHOUT = {
-    "results": "reads the store that `fragility` writes",
     "figure": "recomputes the figures of the paper into a folder",
     "mechanisms": "lists plugins: `rk.mechanisms`",
     "measures": "lists plugins",

@@ -3,30 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import yaml_of
+from rocking_cli.ask.given import warn_of, yaml_of
+from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core import Mechanism
+from rocking_cli.errors import InputError
 from rocking_cli.io.json_text import json_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.io.tables import Columns
-    from rocking_cli.studies.fragility.assess import Fragility
+    from rocking_cli.studies.fragility.plan import Plan
+    from rocking_cli.studies.fragility.study import Study
+    from rocking_cli.studies.fragility.workers import Workers
+
+NAMED = 10  # bad records or samples named one by one
 
 
 def fragility(
     study: str | Path | Mapping[str, Any],
     *,
     store: str | Path | None = None,
-    threads: int | None = None,
+    check: bool = False,
+    jobs: int | None = None,
+    scheduler: str | None = None,
+    restart: bool = False,
     rank_measures: bool = False,
-) -> Answer[list[Fragility]]:
+    quantiles: bool = False,
+    watch: Watcher = SILENT,
+) -> Answer[Any]:
     """Run a fragility study, or continue it, and fit its curves.
 
     Parameters
@@ -36,16 +46,27 @@ def fragility(
         the fields. A study given in Python is written to files next to the store, so that it can be run again.
     store : str or Path, optional
         File in which the runs are stored; by default next to the study file, or study.db in this folder.
-    threads : int, optional
+    check : bool
+        Whether only to show what would be run.
+    jobs : int, optional
         Number of time histories at a time; by default, one for each processor.
+    scheduler : str, optional
+        Address of a dask.distributed scheduler, such as "tcp://10.0.0.1:8786", to run there instead.
+    restart : bool
+        Whether to start from scratch; the existing store is kept under another name.
     rank_measures : bool
         Whether to rank the intensity measures as well, by how well they predict the outcome.
+    quantiles : bool
+        Whether the quantiles of the peak rotation are shown in words too.
+    watch : Watcher
+        Told what is doubtful, which records and samples cannot be run, and how far the runs are.
 
     Returns
     -------
     Answer of list of Fragility
-        One per curve: structure, limit state, measure and fit. If the outcome of some runs is unknown, as a joint opens
-        that the model keeps closed, these exceed the limit in the fit and do not in its `lower`.
+        One per curve: structure, limit state, measure and fit, as from `results`. If the outcome of some runs is
+        unknown, as a joint opens that the model keeps closed, these exceed the limit in the fit and do not in its
+        `lower`. With `check`, the plan of the study.
 
     Raises
     ------
@@ -59,15 +80,9 @@ def fragility(
     The runs are those of `respond`, Eq. 8 or 16 of DeJong and Dimitrakopoulos (2014); docs/fragility.md explains how
     the curves are fitted.
     """
-    from rocking_cli.studies.fragility import assess, campaign, table, workers
-    from rocking_cli.studies.fragility.definition import Definition
-    from rocking_cli.studies.fragility.hazard_curve import HazardCurve
-    from rocking_cli.studies.fragility.intensity import label
-    from rocking_cli.studies.fragility.quantiles import all_quantiles
-    from rocking_cli.studies.fragility.store import Store
+    from rocking_cli.ask.results import results
+    from rocking_cli.studies.fragility.reached import held
     from rocking_cli.studies.fragility.study import load_study
-    from rocking_cli.views.fragility import limit_name, view
-    from rocking_cli.views.quantiles import with_quantiles
 
     if isinstance(study, Mapping):
         place = Path(store or "study.db")
@@ -75,40 +90,93 @@ def fragility(
     else:
         place = Path(store) if store is not None else Path(study).with_suffix(".db")
     asked = load_study(study)
-    with Store.writing(place, anew=False, say=lambda text: None) as kept:
-        prepared = campaign.prepare(asked, kept, rank_measures=rank_measures)
-        with workers.threads(threads) as hands:
-            campaign.run(prepared, kept, hands)
-    with Store.reading(place) as kept:
-        plan, definition = kept.plan(), Definition.model_validate(kept.fact("definition"))
-        points = kept.fact("hazard")
-        hazard = HazardCurve(*np.array(points)) if points is not None else None
-        counted = assess.counted(kept, plan, definition, lambda count: None)
-        curves, surfaces = assess.fitted(counted, definition, hazard, lambda count: None)
-        shown = view(kept, plan, definition, *kept.count(), curves, surfaces, assess.outcomes(counted))
-        shown = with_quantiles(shown, list(all_quantiles(kept, plan, definition)), in_words=False)
-        if rank_measures:
-            from rocking_cli.studies.fragility.ranking import rank
-            from rocking_cli.views.ranking import added
+    # What varies may be far from the file: the first sample stands for all.
+    for mechanism in {sample.structure: sample.mechanism for sample in asked.samples if sample.number == 0}.values():
+        warn_of(mechanism, watch)
+    for sentence in held(asked):
+        watch.warn(sentence)
+    if check:
+        return _planned(asked, watch)
+    _bring_up_to_date(asked, place, _workers(jobs, scheduler), watch, restart=restart, rank_measures=rank_measures)
+    return results(place, quantiles=quantiles, rank_measures=rank_measures, watch=watch)
 
-            shown = added(shown, rank(kept, plan, definition))
-        blocks = list(table.blocks(kept, plan, definition.asked_measures))
+
+def _workers(jobs: int | None, scheduler: str | None) -> AbstractContextManager[Workers]:
+    """Return the workers that simulate the runs: a cluster, or threads of this machine."""
+    from rocking_cli.studies.fragility import workers
+
+    if scheduler is None:
+        return workers.threads(jobs)
+    if jobs is not None:
+        raise InputError("`jobs` applies to this machine only: on a cluster, the number of workers is set there")
+    return workers.cluster(scheduler)
+
+
+def _planned(study: Study, watch: Watcher) -> Answer[Plan]:
+    """Return what a study would run."""
+    from rocking_cli.studies.fragility.campaign import survey
+    from rocking_cli.views.fragility import planned
+
+    with watch.progress(len(study.sources) + len(study.samples), "records and structures") as advance:
+        plan, _ = survey(study, advance)
+    _leave_out(plan, watch)
 
     def columns() -> Columns:
-        return {name: [value for block in blocks for value in block[name]] for name in blocks[0]}
+        return {"record": [record.name for record in plan.records]}
 
     def figure() -> Figure:
-        from rocking_cli.plotting.fragility import LabelledCurve, draw_curves
+        raise InputError("the plan of a study has no plot: run the study, and plot its curves")
 
-        measure = definition.fitted_measures[0]
-        lines = [
-            LabelledCurve.of(f"{each.structure}, {limit_name(each.limit)}", each)
-            for each in curves
-            if each.measure == measure
-        ]
-        return draw_curves(lines, label(measure), "")
+    return Answer("plan", plan, planned(study, plan), columns, figure)
 
-    return Answer("fragility", curves, shown, columns, figure)
+
+def _bring_up_to_date(
+    study: Study,
+    place: Path,
+    workers: AbstractContextManager[Workers],
+    watch: Watcher,
+    *,
+    restart: bool,
+    rank_measures: bool,
+) -> None:
+    """Simulate the runs that the store lacks; on a restart simulate all, and keep the old store."""
+    from rocking_cli.studies.fragility.campaign import prepare, run, steps
+    from rocking_cli.studies.fragility.store import Store
+
+    with ExitStack() as stack:
+        # The old store gives way only when there is somebody to run the study anew.
+        hands = stack.enter_context(workers) if restart else None
+        store = stack.enter_context(Store.writing(place, anew=restart, say=watch.note if restart else watch.warn))
+        with watch.progress(steps(study, rank_measures=rank_measures), "records and structures") as advance:
+            prepared = prepare(study, store, advance, rank_measures=rank_measures)
+        plan = prepared.plan
+        _leave_out(plan, watch)
+        doubtful = [record.name for record in plan.records if record.doubts]
+        if doubtful:
+            named = ", ".join(doubtful[:3]) + (" ..." if len(doubtful) > 3 else "")
+            count = "1 record is" if len(doubtful) == 1 else f"{len(doubtful)} records are"
+            watch.warn(f"{count} doubtful; run `rocking record FILE` to see why: {named}")
+        for name in prepared.mended:
+            watch.note(f"{name}: could not be used when the study was started; it is run now")
+        if prepared.finished:
+            watch.note(f"{prepared.finished} of {plan.total} runs are in the store already")
+        if prepared.finished == plan.total:
+            return
+        watch.compile()
+        hands = hands or stack.enter_context(workers)
+        with watch.progress(plan.total, "runs", done=prepared.finished, failed=prepared.failed) as advance:
+            run(prepared, store, hands, advance)
+
+
+def _leave_out(plan: Plan, watch: Watcher) -> None:
+    """Tell which records and samples cannot be run: the first by name."""
+    from rocking_cli.views.fragility import left_out
+
+    bad = left_out(plan)
+    for sentence in bad[:NAMED]:
+        watch.leave_out(InputError(sentence))
+    if len(bad) > NAMED:
+        watch.leave_out(InputError(f"and {len(bad) - NAMED} more: `rocking results STORE --json` names all"))
 
 
 def _written(study: Mapping[str, Any], store: Path) -> Path:

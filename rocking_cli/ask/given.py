@@ -128,6 +128,14 @@ def told_apart(structures: Sequence[Structure]) -> list[Structure]:
     return [named(structure) for structure in structures]
 
 
+def warn_of(mechanism: Mechanism, watch: Watcher) -> None:
+    """Warn of doubts about a structure."""
+    if not mechanism.verified:
+        watch.warn(f"the mechanism {mechanism.mechanism} has not been verified: check its results yourself")
+    for doubt in doubts_of(mechanism):
+        watch.warn(doubt)
+
+
 def warn_misleading(structures: Sequence[Structure], watch: Watcher) -> None:
     """Warn of structures for which the linear models mislead."""
     for structure in structures:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
+from typing import Protocol
 
 from rocking_cli.errors import RockingError
 
-Advance = Callable[[int], None]
-"""Function to call with the number of pieces of work that are done since the last call."""
+
+class Advance(Protocol):
+    """Function that counts work."""
+
+    def __call__(self, count: int, failed: int = 0) -> None:
+        """Add pieces done since the last call, and those of them that failed."""
 
 
 class Watcher:
@@ -37,8 +41,13 @@ class Watcher:
     def compile(self, *, exact: bool = False) -> None:
         """Prepare for time histories, or for exact responses to pulses: their kernel may have to be compiled."""
 
-    def progress(self, total: int, what: str) -> AbstractContextManager[Advance]:
-        """Begin work of this many pieces, which `what` names; yields the function that counts them."""
+    def progress(
+        self, total: int, what: str, *, done: int = 0, failed: int = 0
+    ) -> AbstractContextManager[Advance]:  # fmt: skip
+        """Begin work of this many pieces, which `what` names; yields the function that counts them.
+
+        Of these, `done` were done before, and `failed` of them could not be.
+        """
         return nullcontext(_count_nothing)
 
     def histories(self, total: int, *, exact: bool = False) -> AbstractContextManager[Advance]:

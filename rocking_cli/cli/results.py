@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import click
 
-from rocking_cli.cli import complete, options, terminal
+from rocking_cli.cli import complete, options
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.study_output import CurveOutput, Tables, show_study
 from rocking_cli.errors import INCOMPLETE
@@ -29,7 +27,15 @@ from rocking_cli.errors import INCOMPLETE
 @options.as_json
 @click.pass_context
 @options.grouped(shown=CurveOutput, tables=Tables)
-def command(ctx: click.Context, file: str, shown: CurveOutput, tables: Tables, as_json: bool) -> None:
+def command(
+    ctx: click.Context,
+    file: str,
+    shown: CurveOutput,
+    tables: Tables,
+    quantiles: bool,
+    rank_measures: bool,
+    as_json: bool,
+) -> None:
     """Summarise and export the fragility curves and runs of a study, from its store.
 
     The command needs no other file of the study, and can read the store while the study runs.
@@ -41,21 +47,16 @@ def command(ctx: click.Context, file: str, shown: CurveOutput, tables: Tables, a
       rocking results study.db --curves curves.csv --nrml fragility.xml
       rocking results study.db --rank-measures
     """
+    from rocking_cli.ask.results import results
+    from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import folder, keep_apart
     from rocking_cli.io.tables import check_table
-    from rocking_cli.studies.fragility.store import Store
 
     keep_apart([("--out", tables.out), ("--curves", tables.curves), ("--nrml", shown.nrml)], [file])
     check_table(tables.out)
     check_table(tables.curves)
     if shown.plot is not None:
         folder(shown.plot)
-    with Store.reading(Path(file)) as store:
-        for each in store.doubts():
-            terminal.warning(f"{file}: {each}")
-        harmed = bool(store.damaged) or store.unreadable
-        if harmed:
-            terminal.note("run `rocking fragility STUDY.yaml` to keep the undamaged runs and repeat the others")
-        complete = show_study(store, shown, tables, as_json=as_json) and not harmed
-    if not complete:
+    answer = results(file, quantiles=quantiles, rank_measures=rank_measures, watch=OnTerminal())
+    if not show_study(answer, shown, tables, as_json=as_json):
         ctx.exit(INCOMPLETE)

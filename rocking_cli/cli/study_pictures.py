@@ -13,27 +13,18 @@ from rocking_cli.cli import terminal
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.studies.fragility.assess import Bivariate, Fragility
-    from rocking_cli.studies.fragility.definition import Definition
-    from rocking_cli.studies.fragility.quantiles import Quantiles
+    from rocking_cli.ask.results import StudyAnswer
     from rocking_cli.studies.fragility.ranking import Ranking
-    from rocking_cli.studies.fragility.store import Store
 
 
-def draw_all(
-    folder: Path,
-    store: Store,
-    definition: Definition,
-    curves: Sequence[Fragility],
-    surfaces: Sequence[Bivariate],
-    spread: Sequence[Quantiles],
-) -> None:
+def draw_all(folder: Path, answer: StudyAnswer) -> None:
     """Draw the curves of each structure, the comparison of structures, the data behind them, and surfaces."""
     from rocking_cli.plotting import fragility as plotting
     from rocking_cli.plotting.quantiles import draw_quantiles
     from rocking_cli.studies.fragility.intensity import label
     from rocking_cli.views.fragility import limit_name
 
+    definition, curves = answer.definition, answer.result
     drawn: dict[str, Figure] = {}
 
     def add(name: str, figure: Figure) -> None:
@@ -55,10 +46,10 @@ def draw_all(
             add(f"{limit_name(limit)} {measure}", plotting.draw_curves(lines, label(measure), limit_name(limit)))
     if definition.method == "ida":
         for structure in structures:
-            add(f"{structure} ida", _increments(store, structure, definition))
-    for found in spread:
+            add(f"{structure} ida", _increments(answer, structure))
+    for found in answer.quantiles:
         add(f"{found.structure} {found.measure} quantiles", draw_quantiles(found, label(found.measure)))
-    for each in surfaces:
+    for each in answer.surfaces:
         name = f"{each.structure}, {limit_name(each.limit)}"
         one, other = each.measures
         figure = plotting.draw_surface(each, (label(one), label(other)), name)
@@ -94,15 +85,16 @@ def draw_rankings(folder: Path, rankings: Sequence[Ranking]) -> None:
     terminal.note(f"wrote {len(drawn)} picture{'s' * (len(drawn) != 1)} of measures to {folder}")
 
 
-def _increments(store: Store, structure: str, definition: Definition) -> Figure:
+def _increments(answer: StudyAnswer, structure: str) -> Figure:
     import numpy as np
 
     from rocking_cli.plotting.fragility import draw_ida
     from rocking_cli.studies.fragility.definition import SCALE
     from rocking_cli.studies.fragility.intensity import label
+    from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.tally import peaks
 
-    plan = store.plan()
-    measure = definition.levels.measure
+    measure = answer.definition.levels.measure
     across = "factor on the records" if measure == SCALE else label(measure)
-    return draw_ida(np.array(plan.levels), peaks(store, plan, structure), across, structure)
+    with Store.reading(answer.store) as store:
+        return draw_ida(np.array(answer.plan.levels), peaks(store, answer.plan, structure), across, structure)

@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, redirect_stdout
 from time import monotonic
-from typing import TYPE_CHECKING, Any, BinaryIO, Protocol, TextIO
+from typing import TYPE_CHECKING, Any, BinaryIO, TextIO
 
 import click
 
@@ -22,6 +22,7 @@ from rocking_cli.io.json_text import json_text
 from rocking_cli.text import printable
 
 if TYPE_CHECKING:
+    from rocking_cli.ask.watcher import Advance
     from rocking_cli.views.view import View
 
 PATIENCE = 1.0  # s of work before it is shown
@@ -170,13 +171,6 @@ def _columns(stream: TextIO) -> int | None:
         return os.get_terminal_size(stream.fileno()).columns or USUAL
     except (OSError, ValueError):  # no terminal, or nothing that the system knows
         return None
-
-
-class Advance(Protocol):
-    """Function that advances a progress bar."""
-
-    def __call__(self, count: int, failed: int = 0) -> None:
-        """Add pieces done since the last call, and those of them that failed."""
 
 
 @contextmanager

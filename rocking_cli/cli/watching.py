@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import AbstractContextManager
 
 import click
 
-from rocking_cli.ask.watcher import Watcher
+from rocking_cli.ask.watcher import Advance, Watcher
 from rocking_cli.cli import terminal, waiting
 from rocking_cli.errors import INCOMPLETE, RockingError
 
@@ -41,9 +40,11 @@ class OnTerminal(Watcher):
         """Compile the kernel if this machine has not yet."""
         waiting.compile_first(exact=exact)
 
-    def progress(self, total: int, what: str) -> AbstractContextManager[Callable[[int], None]]:
+    def progress(
+        self, total: int, what: str, *, done: int = 0, failed: int = 0
+    ) -> AbstractContextManager[Advance]:  # fmt: skip
         """Show a progress bar."""
-        return terminal.progress(total, what)
+        return terminal.progress(total, what, done=done, failed=failed)
 
     def end(self) -> None:
         """End the command; with the exit code of an incomplete answer if anything was left out."""

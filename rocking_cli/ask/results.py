@@ -1,0 +1,185 @@
+"""`rk.results`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.studies.fragility.assess import Bivariate, Fragility, UnknownRuns
+from rocking_cli.studies.fragility.definition import Definition
+from rocking_cli.studies.fragility.plan import Plan
+from rocking_cli.studies.fragility.quantiles import Quantiles
+from rocking_cli.studies.fragility.ranking import Ranking
+from rocking_cli.studies.fragility.store import Store
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.io.tables import Columns
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StudyAnswer(Answer[list[Fragility]]):
+    """Fragility curves of a study, and what else its store holds.
+
+    Parameters
+    ----------
+    store : Path
+        The store.
+    plan : Plan
+        Structures, samples, records and levels.
+    definition : Definition
+        The study.
+    surfaces : sequence of Bivariate
+        Fits to two measures.
+    quantiles : sequence of Quantiles
+        Quantiles of the peak rotation at each intensity.
+    rankings : sequence of Ranking
+        Rankings of the intensity measures, if requested.
+    failed : int
+        Number of runs that could not be simulated.
+    complete : bool
+        Whether all runs are finished, and all records, samples and runs could be used.
+    """
+
+    store: Path = field(kw_only=True)
+    plan: Plan = field(kw_only=True)
+    definition: Definition = field(kw_only=True)
+    surfaces: list[Bivariate] = field(kw_only=True)
+    quantiles: list[Quantiles] = field(kw_only=True)
+    rankings: list[Ranking] = field(kw_only=True)
+    failed: int = field(kw_only=True)
+    complete: bool = field(kw_only=True)
+
+
+def results(
+    store: str | Path, *, quantiles: bool = False, rank_measures: bool = False, watch: Watcher = SILENT
+) -> StudyAnswer:  # fmt: skip
+    """Summarise the fragility curves and runs of a study, from its store.
+
+    Parameters
+    ----------
+    store : str or Path
+        The store, which may be that of a study that is still running.
+    quantiles : bool
+        Whether the quantiles of the peak rotation are shown in words too.
+    rank_measures : bool
+        Whether to rank the intensity measures, by how well they predict the outcome.
+    watch : Watcher
+        Told what is doubtful about the store, and how far the counting, the fits and the ranking are.
+
+    Returns
+    -------
+    StudyAnswer
+        One curve per structure, limit state and measure. If the outcome of some runs is unknown, as a joint opens that
+        the model keeps closed, these exceed the limit in the fit and do not in its `lower`.
+
+    Raises
+    ------
+    InputError
+        If the file is not a store of this version.
+    """
+    from rocking_cli.studies.fragility.quantiles import all_quantiles
+    from rocking_cli.studies.fragility.ranking import rank
+    from rocking_cli.views.fragility import left_out, view
+    from rocking_cli.views.quantiles import with_quantiles
+    from rocking_cli.views.ranking import added
+
+    place = Path(store)
+    with Store.reading(place) as kept:
+        for doubt in kept.doubts():
+            watch.warn(f"{place}: {doubt}")
+        harmed = bool(kept.damaged) or kept.unreadable
+        if harmed:
+            watch.note("run `rocking fragility STUDY.yaml` to keep the undamaged runs and repeat the others")
+        plan, definition = kept.plan(), _definition(kept)
+        finished, failed = kept.count()
+        curves, surfaces, outcomes = _fitted(kept, plan, definition, watch)
+        spread = list(all_quantiles(kept, plan, definition))
+        shown = view(kept, plan, definition, finished, failed, curves, surfaces, outcomes)
+        shown = with_quantiles(shown, spread, in_words=quantiles)
+        rankings: list[Ranking] = []
+        if rank_measures:
+            with watch.progress(plan.size, "runs ranked") as counted:
+                rankings = rank(kept, plan, definition, counted)
+            shown = added(shown, rankings)
+    return StudyAnswer(
+        "fragility",
+        curves,
+        shown,
+        partial(_columns, place),
+        partial(_figure, definition, curves),
+        partial(_blocks, place),
+        store=place,
+        plan=plan,
+        definition=definition,
+        surfaces=surfaces,
+        quantiles=spread,
+        rankings=rankings,
+        failed=failed,
+        complete=finished == plan.total and not failed and not left_out(plan) and not harmed,
+    )
+
+
+def _definition(store: Store) -> Definition:
+    """Return the definition of the study of a store."""
+    from pydantic import ValidationError
+
+    try:
+        return Definition.model_validate(store.fact("definition"))
+    except ValidationError:
+        hint = "run `rocking fragility STUDY.yaml`: it names the problem and keeps the runs"
+        raise InputError(
+            Problem("the definition of its study is not valid in this version", str(store.path), hint=hint)
+        ) from None
+
+
+def _fitted(
+    store: Store, plan: Plan, definition: Definition, watch: Watcher
+) -> tuple[list[Fragility], list[Bivariate], list[UnknownRuns]]:
+    """Count the runs of a store, and fit the curves of its study."""
+    from rocking_cli.studies.fragility import assess
+    from rocking_cli.studies.fragility.hazard_curve import HazardCurve
+
+    points = store.fact("hazard")
+    hazard = HazardCurve(*np.array(points)) if points is not None else None
+    with watch.progress(plan.size, "runs counted") as advance:
+        counted = assess.counted(store, plan, definition, advance)
+    fits = len(definition.limit_states) * (len(definition.fitted_measures) + len(definition.bivariate))
+    with watch.progress(fits * len(counted), "fits") as advance:
+        return *assess.fitted(counted, definition, hazard, advance), assess.outcomes(counted)
+
+
+def _blocks(place: Path) -> Iterator[Columns]:
+    """Yield the runs of a store as columns, in blocks of rows."""
+    from rocking_cli.studies.fragility import table
+
+    with Store.reading(place) as store:
+        yield from table.blocks(store, store.plan(), _definition(store).asked_measures)
+
+
+def _columns(place: Path) -> Columns:
+    blocks = list(_blocks(place))
+    return {name: [value for block in blocks for value in block[name]] for name in blocks[0]}
+
+
+def _figure(definition: Definition, curves: list[Fragility]) -> Figure:
+    from rocking_cli.plotting.fragility import LabelledCurve, draw_curves
+    from rocking_cli.studies.fragility.intensity import label
+    from rocking_cli.views.fragility import limit_name
+
+    measure = definition.fitted_measures[0]
+    lines = [
+        LabelledCurve.of(f"{curve.structure}, {limit_name(curve.limit)}", curve)
+        for curve in curves
+        if curve.measure == measure
+    ]
+    return draw_curves(lines, label(measure), "")
