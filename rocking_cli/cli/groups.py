@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from rocking_cli.processing.floor import Floor
     from rocking_cli.processing.listed import Listed
     from rocking_cli.processing.reading import Reading
-    from rocking_cli.studies.neighbours import Neighbourhood
 
 SPELLED = {"quantity": "from", "other": "with"}  # options by the names of their parameters
 
@@ -188,25 +187,6 @@ class SizedPulse:
     def signs(self) -> tuple[int, ...]:
         """The polarities, of 1 and -1."""
         return polarities(self.polarity)
-
-
-@dataclass(frozen=True)
-class Near:
-    """Options of the neighbouring motions."""
-
-    neighbours: int
-    amplitude_deviation: float
-    slenderness_deviation: float | None
-    restitution_deviation: float | None
-
-    @property
-    def around(self) -> Neighbourhood:
-        """Number of the neighbours, and how they are drawn."""
-        from rocking_cli.studies.neighbours import Neighbourhood
-
-        return Neighbourhood(
-            self.neighbours, self.amplitude_deviation, self.restitution_deviation, self.slenderness_deviation
-        )
 
 
 @dataclass(frozen=True)
