@@ -12,6 +12,7 @@ from mechanisms.rigid_body import RigidBody as RigidBody
 from mechanisms.spanning_wall import SpanningWall as SpanningWall
 from mechanisms.symmetric_frame import SymmetricFrame as SymmetricFrame
 from mechanisms.wall import Wall as Wall
+from rocking_cli.ask.animate import animate as animate
 from rocking_cli.ask.answer import Answer as Answer
 from rocking_cli.ask.answer import MappingAnswer as MappingAnswer
 from rocking_cli.ask.collapse import collapse as collapse

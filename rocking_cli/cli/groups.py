@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from rocking_cli.processing.floor import Floor
     from rocking_cli.processing.listed import Listed
     from rocking_cli.processing.reading import Reading
-    from rocking_cli.studies.neighbours import Neighbourhood
 
 SPELLED = {"quantity": "from", "other": "with"}  # options by the names of their parameters
 
@@ -170,25 +169,6 @@ class GroundMotions(Scaling, ReadingOptions):
 def polarities(polarity: str) -> tuple[int, ...]:
     """Return the polarities of an option, of 1 and -1."""
     return (1, -1) if polarity == "both" else (int(polarity),)
-
-
-@dataclass(frozen=True)
-class Near:
-    """Options of the neighbouring motions."""
-
-    neighbours: int
-    amplitude_deviation: float
-    slenderness_deviation: float | None
-    restitution_deviation: float | None
-
-    @property
-    def around(self) -> Neighbourhood:
-        """Number of the neighbours, and how they are drawn."""
-        from rocking_cli.studies.neighbours import Neighbourhood
-
-        return Neighbourhood(
-            self.neighbours, self.amplitude_deviation, self.restitution_deviation, self.slenderness_deviation
-        )
 
 
 @dataclass(frozen=True)

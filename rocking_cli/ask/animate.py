@@ -1,0 +1,199 @@
+"""`rk.animate`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Unpack
+
+import numpy as np
+
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.given import Motion, StructureLike, models_of, signs_of, structure_of
+from rocking_cli.ask.ground_motions import MotionOptions, Motions
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.studies.film import Film
+from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
+from rocking_cli.views.view import heading
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.io.tables import Columns
+    from rocking_cli.structure import Structure
+
+LONGEST = 20.0  # s of a GIF whose speed is not given
+MOST_FRAMES = 3000
+FPS = 20.0
+
+
+@dataclass(frozen=True, eq=False)
+class Animation:
+    """A motion of a structure that was animated.
+
+    Parameters
+    ----------
+    film : Film
+        The motion as it is shown.
+    neighbours : Neighbours or None
+        Outcomes of the neighbours of the motion; None without any.
+    """
+
+    film: Film
+    neighbours: Neighbours | None
+
+
+def animate(
+    structure: StructureLike,
+    motion: Motion | Motions,
+    file: str | Path,
+    *,
+    model: str = "nonlinear",
+    polarity: str | int = "1",
+    speed: float | None = None,
+    fps: float = FPS,
+    neighbours: int = Neighbourhood.count,
+    amplitude_deviation: float = Neighbourhood.amplitude,
+    slenderness_deviation: float | None = None,
+    restitution_deviation: float | None = None,
+    opening: float | None = None,
+    watch: Watcher = SILENT,
+    **options: Unpack[MotionOptions],
+) -> Answer[Animation]:
+    """Animate a structure under a ground motion, as a GIF or as a page with a slider.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        The structure, or its YAML file.
+    motion : GroundMotion, Pulse, str or Path
+        The motion, its file, or a pulse as text.
+    file : str or Path
+        File to write: .gif, or .html for a page.
+    model : str
+        Model "nonlinear", "linear1" or "linear2".
+    polarity : {"1", "-1"}
+        Polarity of the motion: as given, or reversed.
+    speed : float, optional
+        Seconds of motion per second; by default 1, and for a GIF so many that it lasts at most 20 s.
+    fps : float
+        Frames per second of a GIF.
+    neighbours : int
+        Number of neighbouring motions to simulate as well; 0 for none.
+    amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
+        Standard deviations of the neighbours: of ln amplitude, of ln slenderness and of restitution; by default those
+        of the structure.
+    opening : float, optional
+        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    watch : Watcher
+        Told what was read and written, and how far the work is.
+    **options
+        How the motion is read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionOptions`.
+
+    Returns
+    -------
+    Answer of Animation
+        `film` has the time history, and when it starts and ends; `neighbours` are the outcomes of the neighbours.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, a file cannot be read or written, or a GIF would be too long.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+    SolverError
+        If the motion cannot be simulated to its end.
+
+    Notes
+    -----
+    The models are those of `respond`.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     answer = rk.animate(rk.Block(width=0.7, height=2.8), "sine:0.3g:0.9s", f"{folder}/block.html")
+    >>> answer.film.verdict
+    'The structure rocks to 0.1315 of its critical rotation phi_cr.'
+    """
+    from rocking_cli.engines import engine_of
+    from rocking_cli.studies.neighbours import neighbours as outcomes
+    from rocking_cli.studies.picture import picture
+    from rocking_cli.views.animation import view
+
+    path, (name,), signs = Path(file), models_of(model), signs_of(polarity)
+    _check(path, signs, speed, fps)
+    around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
+    ready = structure_of(structure, opening)
+    own = ready.model(name)
+    given = Motions.of(motion, options).one(ready.growth, watch)
+    watch.compile()
+    scaled = given.motion.scaled(signs[0] * given.factor)
+    film = Film(picture(ready.mechanism), engine_of(ready).follow(ready, scaled, model=name), scaled)
+    if path.suffix.lower() == ".html":
+        speed, frames = speed or 1.0, None
+        _write_page(path, film, heading(ready.mechanism), speed)
+    else:
+        speed = speed or max(1.0, (film.end - film.start) / LONGEST)
+        frames = _write_gif(path, film, f"{heading(ready.mechanism)}, under {scaled.name}", speed, fps, watch)
+    watch.note(f"wrote {path}")
+    near = outcomes(own, scaled, around) if neighbours else None
+    shown = view(ready, film, near, {"speed": speed, "frames": frames, "file": str(path)})
+    figure = partial(_figure, film, ready)
+    return Answer("animation", Animation(film, near), shown, partial(_columns, film), figure)
+
+
+def _check(file: Path, signs: tuple[int, ...], speed: float | None, fps: float) -> None:
+    """Raise `InputError` if an animation cannot be written, or be shown like this."""
+    from rocking_cli.io.files import check_writable
+
+    if file.suffix.lower() not in (".gif", ".html"):
+        raise InputError(Problem("give a file name that ends in .gif or .html", str(file)))
+    check_writable(file)
+    if len(signs) > 1:
+        raise InputError(Problem("must be 1 or -1: one motion is shown", field="`polarity`"))
+    if speed is not None and not 1e-3 <= speed <= 1e3:
+        what = f"{speed:g} is not between 0.001 and 1000 s of motion per second"
+        raise InputError(Problem(what, field="`speed`"))
+    if not 1 <= fps <= 50:
+        raise InputError(Problem(f"{fps:g} is not between 1 and 50, the range of a GIF", field="`fps`"))
+
+
+def _write_page(file: Path, film: Film, title: str, speed: float) -> None:
+    from rocking_cli.io.files import write_whole
+    from rocking_cli.plotting.animation import animation_page
+
+    page = animation_page(film, title, speed).encode()
+    write_whole(file, lambda stream: stream.write(page))
+
+
+def _write_gif(file: Path, film: Film, title: str, speed: float, fps: float, watch: Watcher) -> int:
+    """Write the GIF, and return its number of frames."""
+    from rocking_cli.io.files import write_whole
+    from rocking_cli.plotting.animation import frame_time, write_gif
+
+    step = speed * frame_time(fps)
+    count = int((film.end - film.start) / step) + 1
+    if count > MOST_FRAMES:
+        problem = f"a GIF of {count:,} frames is too long (at most {MOST_FRAMES:,})"
+        raise InputError(Problem(problem, field="`speed`", hint="raise `speed`, lower `fps`, or write .html"))
+    times = np.append(film.start + step * np.arange(count), film.end)
+    if speed != 1:
+        watch.note(f"shown at {speed:.3g} times its speed, from {film.start:.4g} to {film.end:.4g} s")
+    with watch.progress(times.size, "frames") as advance:
+        write_whole(file, lambda stream: write_gif(stream, film, title, times, fps, advance))
+    return int(times.size)
+
+
+def _columns(film: Film) -> Columns:
+    return {"time": film.history.time, "phi": film.history.phi}
+
+
+def _figure(film: Film, structure: Structure) -> Figure:
+    from rocking_cli.plotting.history import draw_history
+
+    histories = {film.history.model: film.history}
+    return draw_history(histories, film.motion, heading(structure.mechanism), uplift=structure.uplift)
