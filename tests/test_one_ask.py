@@ -11,7 +11,7 @@ import click
 import pytest
 
 import rocking_cli as rk
-from rocking_cli.ask.ground_motions import MotionOptions, ReadingOptions
+from rocking_cli.ask.ground_motions import MotionArguments, ReadingArguments
 from rocking_cli.cli.main import COMMANDS
 from tests.elsewhere import PROJECT
 
@@ -27,7 +27,7 @@ WITHOUT = {
 """Commands that ask nothing about a structure or a motion."""
 OF_THE_TERMINAL = {"as_json", "as_csv", "plot", "out", "page", "curves", "nrml", "sheet", "help", "version"}
 """Options that say where an answer goes, and in which form."""
-NAMED = {"records": "motions", "pulses": "motions", "file": "structures", "files": "structures"}
+NAMED = {"records": "motions", "pulses": "motions"}
 MOST = 40
 
 
@@ -50,12 +50,14 @@ VERBS = [name for name in COMMANDS if name not in WITHOUT]
 def test_what_a_command_can_do_python_can_do_by_the_same_names(name):
     verb = getattr(rk, name)
     arguments = inspect.signature(verb).parameters
-    more = MotionOptions if name != "select" else ReadingOptions
+    more = MotionArguments if name != "select" else ReadingArguments
     loose = set(get_type_hints(more)) if "options" in arguments else set()
     missing, other = [], []
     for param in asked(name):
         word = NAMED.get(param.name, param.name)
         spelled = next((each for each in (word, word.removesuffix("s"), param.name) if each in arguments), None)
+        if isinstance(param, click.Argument):  # a file, of what the verb is given first
+            spelled = next(iter(arguments))
         if spelled is None and param.name not in loose:
             missing.append(param.name)
         elif spelled is not None and isinstance(param, click.Option) and param.name not in NAMED and not param.required:

@@ -11,7 +11,7 @@ import numpy as np
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import Motion, StructureLike, models_of, signs_of, structure_of
-from rocking_cli.ask.ground_motions import MotionOptions, Motions
+from rocking_cli.ask.ground_motions import MotionArguments, Motions
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.studies.film import Film
@@ -60,7 +60,7 @@ def animate(
     restitution_deviation: float | None = None,
     opening: float | None = None,
     watch: Watcher = SILENT,
-    **options: Unpack[MotionOptions],
+    **options: Unpack[MotionArguments],
 ) -> Answer[Animation]:
     """Animate a structure under a ground motion, as a GIF or as a page with a slider.
 
@@ -90,7 +90,7 @@ def animate(
     watch : Watcher
         Told what was read and written, and how far the work is.
     **options
-        How the motion is read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionOptions`.
+        How the motion is read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
 
     Returns
     -------

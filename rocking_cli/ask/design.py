@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import Motion, SiteLike, StructureLike, signs_of, site_of, structure_of
-from rocking_cli.ask.ground_motions import MotionOptions, Motions
+from rocking_cli.ask.ground_motions import MotionArguments, Motions
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core.size import doubtful_size
 from rocking_cli.errors import InputError, Problem, RockingError
@@ -36,7 +36,7 @@ def design(
     points: int = POINTS,
     opening: float | None = None,
     watch: Watcher = SILENT,
-    **options: Unpack[MotionOptions],
+    **options: Unpack[MotionArguments],
 ) -> Answer[Design]:
     """Find the values of one field for which a structure meets a requirement.
 
@@ -70,7 +70,7 @@ def design(
     watch : Watcher
         Told what was read, how far the work is, what is doubtful, and which of several motions cannot be used.
     **options
-        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionOptions`.
+        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
 
     Returns
     -------

@@ -176,7 +176,7 @@ def _leave_out(plan: Plan, watch: Watcher) -> None:
     for sentence in bad[:NAMED]:
         watch.leave_out(InputError(sentence))
     if len(bad) > NAMED:
-        watch.leave_out(InputError(f"and {len(bad) - NAMED} more: `rocking results STORE --json` names all"))
+        watch.leave_out(InputError(f"and {len(bad) - NAMED} more: the JSON of `rocking results` names all"))
 
 
 def _written(study: Mapping[str, Any], store: Path) -> Path:

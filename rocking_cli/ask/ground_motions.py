@@ -14,7 +14,7 @@ from typing import Any, TypedDict
 from rocking_cli.ask.given import Motion, each_of, kind_of
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem, renamed
-from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.doubts import coarse_for, doubts
 from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
@@ -36,7 +36,7 @@ OF_FILES = ("dt", "units", "channel", "quantity", "gain", "other")
 """Arguments that describe the file of a record."""
 
 
-class ReadingOptions(TypedDict, total=False):
+class ReadingArguments(TypedDict, total=False):
     """Keyword arguments of verbs that read records.
 
     Parameters
@@ -73,8 +73,8 @@ class ReadingOptions(TypedDict, total=False):
     floor: Floor | str | Mapping[str, Any] | None
 
 
-class MotionOptions(ReadingOptions, total=False):
-    """Keyword arguments of verbs that read and scale ground motions: those of `ReadingOptions`, and one scale.
+class MotionArguments(ReadingArguments, total=False):
+    """Keyword arguments of verbs that read and scale ground motions: those of `ReadingArguments`, and one scale.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ class MotionOptions(ReadingOptions, total=False):
     target_pgv: float | None
 
 
-def reading_of(options: MotionOptions | ReadingOptions) -> Reading:
+def reading_of(options: MotionArguments | ReadingArguments) -> Reading:
     """Return how to read a record, from the keyword arguments of a verb.
 
     Raises
@@ -128,7 +128,7 @@ class Motions:
     usual : Reading, optional
         How files are read that do not state their unit, interval or channel themselves; by default as `reading`.
     scale, target_pga, target_pgv : float, optional
-        Scale factor, or what to scale to: as for `MotionOptions`.
+        Scale factor, or what to scale to: as for `MotionArguments`.
     """
 
     given: tuple[Motion, ...]
@@ -143,7 +143,7 @@ class Motions:
             raise InputError("`scale`, `target_pga` and `target_pgv` cannot be combined: give one of them")
 
     @classmethod
-    def of(cls, given: Motions | Motion | Sequence[Motion], options: MotionOptions | ReadingOptions) -> Motions:
+    def of(cls, given: Motions | Motion | Sequence[Motion], options: MotionArguments | ReadingArguments) -> Motions:
         """Return the motions of a verb, from what it is given and its keyword arguments. Raises `InputError`."""
         if isinstance(given, Motions):
             return given
@@ -187,13 +187,15 @@ class Motions:
         """Whether all motions were read and scaled before."""
         return bool(self.given) and all(isinstance(each, Scaled) for each in self.given)
 
-    def one(self, p: float, watch: Watcher = SILENT) -> Scaled:
+    def one(self, p: float, watch: Watcher = SILENT, *, with_vertical: bool = False) -> Scaled:
         """Return the single motion, as `gather`. Raises `InputError` if there are several."""
         if self.count > 1:
             raise InputError(f"{self.count} motions are given where one is expected: ask for one after the other")
-        return self.gather(p, watch)[0]
+        return self.gather(p, watch, with_vertical=with_vertical)[0]
 
-    def gather(self, p: float, watch: Watcher = SILENT, whom: str = "this structure") -> list[Scaled]:
+    def gather(
+        self, p: float, watch: Watcher = SILENT, whom: str = "this structure", *, with_vertical: bool = False
+    ) -> list[Scaled]:
         """Read all motions and find their scale factors.
 
         Parameters
@@ -204,6 +206,8 @@ class Motions:
             Told which motions were read, what is doubtful about them, and which of several cannot be used.
         whom : str
             Name of that structure in warnings.
+        with_vertical : bool
+            Whether a vertical component is read by the same arguments.
 
         Returns
         -------
@@ -215,7 +219,7 @@ class Motions:
         InputError
             If none can be used, a pulse is malformed, or an argument describes records and none is given.
         """
-        self._check()
+        self._check(with_vertical=with_vertical)
         if self.are_read:
             return [each for each in self.given if isinstance(each, Scaled)]
         sources, errors = self._found
@@ -286,7 +290,7 @@ class Motions:
                     problem = replace(problem, hint="give the interval of the vertical component with `vertical_dt`")
                 problems.append(problem)
             raise InputError(*problems) from None
-        introduce("vertical", component, 1.0, watch)
+        introduce("vertical", Scaled(component, 1.0), watch)
         warn_about([component], watch)
         return component
 
@@ -363,11 +367,11 @@ class Motions:
             raise InputError(Problem(problem, motion.name, hint=hint))
         return by
 
-    def _check(self) -> None:
+    def _check(self, *, with_vertical: bool) -> None:
         """Raise `InputError` if an argument describes records and none is given."""
         if any(not isinstance(each, Pulse) for each in self._found[0]) or self._found[1]:
             return
-        of_records = [f"`{name}`" for name in OF_FILES if getattr(self.reading, name) is not None]
+        of_records = [f"`{name}`" for name in OF_FILES[2 * with_vertical :] if getattr(self.reading, name) is not None]
         of_records += [f"`{step.name}`" for step in self.reading.steps]
         if of_records:
             verb = "describes" if len(of_records) == 1 else "describe"
@@ -397,10 +401,18 @@ def done(motion: GroundMotion) -> str:
     return f"; {said}" if (said := in_words(motion)) else ""
 
 
-def introduce(what: str, motion: GroundMotion, by: float, watch: Watcher) -> None:
+def introduce(what: str, one: Scaled, watch: Watcher) -> None:
     """Tell which motion was read, under the name `what`, and how it is scaled."""
+    motion, by, pulse = one.motion, one.factor, one.pulse
     ground = motion.of_ground
-    scaled = f", scaled by {by:.6g}: PGA = {abs(by) * ground.pga_g:.4g} g" if by != 1 else ""
+    scaled = ""
+    if by != 1:
+        measured = measure(ground)
+        scaled = f", scaled by {by:.6g}: PGA = {abs(by) * measured.pga:.4g} g, PGV = {abs(by) * measured.pgv:.4g} m/s"
+    if pulse is not None:
+        read = f"{pulse.title}, {pulse.amplitude / STANDARD_GRAVITY:.4g} g, period {pulse.period:.4g} s, lasts"
+        watch.note(f"pulse: {read} {pulse.duration:.4g} s{scaled}{done(motion)}")
+        return
     watch.note(
         f"{what}: {motion.name} ({motion.format}), {ground.npts} points, dt = {ground.dt:.6g} s, in {motion.unit}, "
         f"PGA = {ground.pga_g:.4g} g{scaled}{done(motion)}"
@@ -410,7 +422,7 @@ def introduce(what: str, motion: GroundMotion, by: float, watch: Watcher) -> Non
 def _introduce(chosen: Sequence[Scaled], watch: Watcher) -> None:
     if len(chosen) <= FEW:
         for one in chosen:
-            introduce("motion", one.motion, one.factor, watch)
+            introduce("motion", one, watch)
         return
     peaks = [abs(one.factor) * one.motion.of_ground.pga_g for one in chosen]
     scaled = " as scaled" if any(one.factor != 1 for one in chosen) else ""

@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking_cli.ask.answer import MappingAnswer
 from rocking_cli.ask.given import Motion, StructureLike, signs_of, structure_of
-from rocking_cli.ask.ground_motions import MotionOptions, Motions
+from rocking_cli.ask.ground_motions import MotionArguments, Motions
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.view import heading
@@ -33,7 +33,7 @@ def margin(
     restitution_deviation: float | None = None,
     opening: float | None = None,
     watch: Watcher = SILENT,
-    **options: Unpack[MotionOptions],
+    **options: Unpack[MotionArguments],
 ) -> MappingAnswer[str, Margin]:
     """Compute the scale factors on motions that uplift a structure, and that overturn it.
 
@@ -55,7 +55,7 @@ def margin(
     watch : Watcher
         Told what was read, how far the work is, and which of several motions cannot be used.
     **options
-        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionOptions`.
+        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
 
     Returns
     -------

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import Motion, SiteLike, StructureLike, signs_of, site_of, structure_of
-from rocking_cli.ask.ground_motions import MotionOptions, Motions
+from rocking_cli.ask.ground_motions import MotionArguments, Motions
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.studies.neighbours import Neighbourhood
@@ -18,7 +18,7 @@ from rocking_cli.views.view import heading
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.ask.sheets import Origin
+    from rocking_cli.ask.sheets import SheetOrigin
     from rocking_cli.documents.verified import VerifiedReport
     from rocking_cli.excitation.scaled import Scaled
     from rocking_cli.io.tables import Columns
@@ -46,9 +46,9 @@ def report(
     place: str | None = None,
     author: str | None = None,
     logo: str | Path | None = None,
-    origin: Origin | None = None,
+    origin: SheetOrigin | None = None,
     watch: Watcher = SILENT,
-    **options: Unpack[MotionOptions],
+    **options: Unpack[MotionArguments],
 ) -> Answer[Assessment]:
     """Write a report: one HTML file that opens in any browser and can be printed.
 
@@ -77,12 +77,12 @@ def report(
         Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
     project, place, author, logo : str, str, str, path, optional
         Entries for the heading of the report, and a picture in .png, .jpg or .svg.
-    origin : Origin, optional
+    origin : SheetOrigin, optional
         What the report says of how it was made; by default this function and the structure.
     watch : Watcher
         Told what was read and written, how far the work is, and which of several motions cannot be used.
     **options
-        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionOptions`.
+        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
 
     Returns
     -------
@@ -110,7 +110,7 @@ def report(
     >>> answer.has_block
     True
     """
-    from rocking_cli.ask.sheets import Head, Origin
+    from rocking_cli.ask.sheets import Head, SheetOrigin
     from rocking_cli.documents.page import render
     from rocking_cli.io.files import check_writable, write_whole
     from rocking_cli.studies.assessment import gather, steps
@@ -127,7 +127,7 @@ def report(
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     site = _site(verify, motions=bool(given)) if verify is not None else None
     ready = structure_of(structure, opening)
-    origin = origin or Origin.of("rocking_cli.report(...)", ready)
+    origin = origin or SheetOrigin.of("rocking_cli.report(...)", ready)
     title = Head(project, place, author, logo).block(origin)
     chosen = given.gather(ready.growth, watch) if given else []
     watch.compile()
@@ -158,7 +158,7 @@ def _site(given: SiteLike, *, motions: bool) -> SiteFile:
 
 def _verified(
     structure: Structure, site: SiteFile, given: SiteLike, motions: Sequence[Scaled], histories: Histories,
-    title: TitleBlock, origin: Origin,
+    title: TitleBlock, origin: SheetOrigin,
 ) -> VerifiedReport:  # fmt: skip
     """Return the verification in a report, with time histories under its ground motions."""
     from rocking_cli.ask.sheets import sheet_for

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.ask.answer import MappingAnswer
 from rocking_cli.ask.given import Motion, StructureLike, doubts_of, models_of, signs_of, structure_of
-from rocking_cli.ask.ground_motions import MotionOptions, Motions
+from rocking_cli.ask.ground_motions import MotionArguments, Motions
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.history import FINEST_RTOL, RTOL, TAIL, History
 from rocking_cli.dynamics.model import MODELS, ModelName
@@ -60,7 +60,7 @@ def respond(
     contact: bool = False,
     title: str | None = None,
     watch: Watcher = SILENT,
-    **options: Unpack[MotionOptions],
+    **options: Unpack[MotionArguments],
 ) -> ResponseAnswer:
     """Compute the response of a structure to a ground motion, a release or both; `respond_each` is for many.
 
@@ -101,7 +101,7 @@ def respond(
     watch : Watcher
         Told what was read, and what is doubtful about it.
     **options
-        How the motion is read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionOptions`.
+        How the motion is read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
 
     Returns
     -------
@@ -138,7 +138,7 @@ def respond(
         raise InputError(Problem(what, field="`rtol`"))
     ready = structure_of(structure, opening)
     motions = Motions.of(() if motion is None else motion, options)
-    given = motions.one(ready.growth, watch) if motions else None
+    given = motions.one(ready.growth, watch, with_vertical=vertical is not None) if motions else None
     if given is None and release is None:
         raise InputError("no excitation is given: give a motion or a `release`")
     if vertical is not None and given is not None:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import Motion
-from rocking_cli.ask.ground_motions import Motions, ReadingOptions
+from rocking_cli.ask.ground_motions import Motions, ReadingArguments
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.studies.record_set import RecordSet
@@ -55,7 +55,7 @@ def select(
     same_factor: bool = False,
     seed: int = 0,
     watch: Watcher = SILENT,
-    **options: Unpack[ReadingOptions],
+    **options: Unpack[ReadingArguments],
 ) -> SetAnswer:
     """Select records whose mean response spectrum matches a target, with a scale factor for each.
 
@@ -76,7 +76,7 @@ def select(
     factors : (float, float)
         Lower and upper limit on the scale factor of each record.
     one_per : {"event", "station", "none"}
-        Origin from which at most one record is taken, if the files name it.
+        SheetOrigin from which at most one record is taken, if the files name it.
     same_factor : bool
         Whether all records have the same scale factor.
     seed : int
@@ -84,7 +84,7 @@ def select(
     watch : Watcher
         Told what was read, what is doubtful about it, and how far the search is.
     **options
-        How the records are read and corrected: see `rocking_cli.ask.ground_motions.ReadingOptions`.
+        How the records are read and corrected: see `rocking_cli.ask.ground_motions.ReadingArguments`.
 
     Returns
     -------

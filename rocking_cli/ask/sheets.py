@@ -24,14 +24,14 @@ from rocking_cli.views.sheet.document import Sheet
 from rocking_cli.views.sheet.language import Language
 
 
-class Origin(NamedTuple):
-    """Origin of a document: the command that wrote it, and the file of the structure as it was given."""
+class SheetOrigin(NamedTuple):
+    """SheetOrigin of a document: the command that wrote it, and the file of the structure as it was given."""
 
     command: str
     structure: File
 
     @classmethod
-    def of(cls, call: str, structure: Structure) -> Origin:
+    def of(cls, call: str, structure: Structure) -> SheetOrigin:
         """Return the origin of a document that a call of Python writes."""
         file = structure.file
         content = original(file) if file is not None else yaml_of(structure.mechanism).encode()
@@ -46,7 +46,7 @@ class Head(NamedTuple):
     author: str | None = None
     logo: str | Path | None = None
 
-    def block(self, origin: Origin, language: str = "en") -> TitleBlock:
+    def block(self, origin: SheetOrigin, language: str = "en") -> TitleBlock:
         """Return the title block, with the date of today. Raises `InputError` if the logo cannot be used."""
         picture = None
         if self.logo is not None:
@@ -73,7 +73,7 @@ def check(file: Path, site: SiteFile, language: str) -> None:
 
 def sheet_for(
     found: Verification, site: SiteFile, given: SiteLike, motions: Sequence[Scaled], language: str,
-    title: TitleBlock, origin: Origin,
+    title: TitleBlock, origin: SheetOrigin,
 ) -> Sheet:  # fmt: skip
     """Return the sheet of a verification, with the checksums of the files that were given."""
     if isinstance(given, str | Path):

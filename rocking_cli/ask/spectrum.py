@@ -11,7 +11,7 @@ import numpy as np
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import Motion, StructureLike, each_of, signs_of, structure_of, structures_of, told_apart
-from rocking_cli.ask.ground_motions import MotionOptions, Motions
+from rocking_cli.ask.ground_motions import MotionArguments, Motions
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.errors import InputError, Problem
@@ -37,7 +37,7 @@ def spectrum(
     jobs: int | None = None,
     opening: float | None = None,
     watch: Watcher = SILENT,
-    **options: Unpack[MotionOptions],
+    **options: Unpack[MotionArguments],
 ) -> Answer[list[Spectrum]]:
     """Compute peak rotation and overturning against size, for structures and for blocks of given slenderness.
 
@@ -66,7 +66,7 @@ def spectrum(
     watch : Watcher
         Shown the progress, and told what was read, what is doubtful about it, and what cannot be used.
     **options
-        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionOptions`.
+        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
 
     Returns
     -------

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import Motion, SiteLike, StructureLike, checked, signs_of, site_of, structure_of
-from rocking_cli.ask.ground_motions import MotionOptions, Motions
+from rocking_cli.ask.ground_motions import MotionArguments, Motions
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.text import one_line
@@ -39,7 +39,7 @@ def survey(
     threads: int | None = None,
     processes: bool = False,
     watch: Watcher = SILENT,
-    **options: Unpack[MotionOptions],
+    **options: Unpack[MotionArguments],
 ) -> Answer[Survey]:
     """Rank many structures by vulnerability.
 
@@ -66,7 +66,7 @@ def survey(
     watch : Watcher
         Told what was read, how far the work is, what is doubtful, and which of several motions cannot be used.
     **options
-        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionOptions`.
+        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
 
     Returns
     -------

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import Motion, SiteLike, StructureLike, signs_of, site_of, structure_of
-from rocking_cli.ask.ground_motions import MotionOptions, Motions
+from rocking_cli.ask.ground_motions import MotionArguments, Motions
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.studies.verification.results import Verification
@@ -17,7 +17,7 @@ from rocking_cli.studies.verification.results import Verification
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.ask.sheets import Origin
+    from rocking_cli.ask.sheets import SheetOrigin
     from rocking_cli.core import Mechanism
     from rocking_cli.excitation.scaled import Scaled
     from rocking_cli.studies.verification.control import Control
@@ -40,9 +40,9 @@ def verify(
     author: str | None = None,
     logo: str | Path | None = None,
     every_step: bool = False,
-    origin: Origin | None = None,
+    origin: SheetOrigin | None = None,
     watch: Watcher = SILENT,
-    **options: Unpack[MotionOptions],
+    **options: Unpack[MotionArguments],
 ) -> Answer[Verification]:
     """Verify a rocking mechanism of masonry by a code, such as the Italian: NTC 2018 and Circolare 7/2019.
 
@@ -72,12 +72,12 @@ def verify(
         Entries for the heading of the sheet, and a picture in .png, .jpg or .svg.
     every_step : bool
         Whether the answer lists every line of the calculation.
-    origin : Origin, optional
+    origin : SheetOrigin, optional
         What the sheet says of how it was made; by default this function and the structure.
     watch : Watcher
         Told what was read and written, how far the work is, and which of several motions cannot be used.
     **options
-        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionOptions`.
+        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
 
     Returns
     -------
@@ -124,7 +124,7 @@ def verify(
             scaled = [each.motion.scaled(each.factor) for each in chosen]
             found = with_histories(found, ready, known, Histories(scaled, signs, state, on_floor, advance))
     if sheet is not None:
-        origin = origin or sheets.Origin.of("rocking_cli.verify(...)", ready)
+        origin = origin or sheets.SheetOrigin.of("rocking_cli.verify(...)", ready)
         title = sheets.Head(project, place, author, logo).block(origin, language)
         content = sheets.sheet_for(found, known, site, chosen, language, title, origin)
         sheets.write(Path(sheet), content, found, watch)

@@ -34,7 +34,7 @@ def show(
     (record,) = motions.records
     one, other = record.reading(reading).pair(record.path)
     for component in (one, other):
-        introduce("component", component, 1.0, watch)
+        introduce("component", Scaled(component, 1.0), watch)
         warn_about([component], watch, structure.growth)
     if question["vertical"] is not None:
         scaled = Scaled(one, 1.0, file=record.path)

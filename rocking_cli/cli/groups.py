@@ -145,9 +145,10 @@ class GroundMotions(Scaling, ReadingOptions):
     def motions(self) -> Motions:
         """Motions, and how to read and scale them."""
         from rocking_cli.ask.ground_motions import Motions
+        from rocking_cli.excitation.pulses import parse_pulse
 
         reading, usual = self.readings
-        return Motions((*map(Path, self.records), *self.pulses), reading, usual, *self.scaling)
+        return Motions((*map(Path, self.records), *map(parse_pulse, self.pulses)), reading, usual, *self.scaling)
 
     def check(self, vertical: str | None = None) -> None:
         """Raise if an option has no effect; `units` and `dt` also apply to the vertical component beside a pulse."""

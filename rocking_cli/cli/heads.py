@@ -13,7 +13,7 @@ from rocking_cli.cli import complete, defaults, options
 from rocking_cli.cli.defaults import from_default
 
 if TYPE_CHECKING:
-    from rocking_cli.ask.sheets import Origin
+    from rocking_cli.ask.sheets import SheetOrigin
     from rocking_cli.structure import Structure
 
 LANGUAGES = ("en", "it")
@@ -56,16 +56,16 @@ sheet: options.Decorator = options.in_order(
 """The options of a calculation sheet: `sheet`, `language` and those of its head."""
 
 
-def origin(ctx: click.Context, structure: Structure, given: str | None) -> Origin:
+def origin(ctx: click.Context, structure: Structure, given: str | None) -> SheetOrigin:
     """Return what a document says of how it was made: the command, and the file of the structure with its content."""
-    from rocking_cli.ask.sheets import Origin
+    from rocking_cli.ask.sheets import SheetOrigin
     from rocking_cli.cli import structures
     from rocking_cli.excitation.records.opening import original
     from rocking_cli.studies.assessment import File
 
     if structure.file is None:
-        return Origin(command_line(ctx), File("default block", structures.DEFAULT.encode()))
-    return Origin(command_line(ctx), File(structure.file, original(given or structure.file)))
+        return SheetOrigin(command_line(ctx), File("default block", structures.DEFAULT.encode()))
+    return SheetOrigin(command_line(ctx), File(structure.file, original(given or structure.file)))
 
 
 def command_line(ctx: click.Context) -> str:

@@ -10,7 +10,7 @@ from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.core import Direction
 from rocking_cli.studies.verification import results as frame
-from rocking_cli.studies.verification.motions import Motions
+from rocking_cli.studies.verification.motions import MotionPlace
 from rocking_cli.studies.verification.results import CLOSE
 
 AGREE = 1e-9  # relative: directions that differ by less are shown once
@@ -124,7 +124,7 @@ class Dynamic:
         Number of records that the code requires.
     checked : bool
         Whether the joints of the structure are known; if not, no outcome is unknown.
-    motions : Motions
+    motions : MotionPlace
         Kind of the motions: of the ground or of a floor.
     """
 
@@ -133,7 +133,7 @@ class Dynamic:
     allowed: Mapping[str, float]
     enough: int
     checked: bool = True
-    motions: Motions = field(default_factory=Motions)
+    motions: MotionPlace = field(default_factory=MotionPlace)
 
     def mean(self, *, confident: bool) -> float | None:
         """Return the mean of the peak displacements [m]; None if one overturned, exceeded d0* or is unknown."""

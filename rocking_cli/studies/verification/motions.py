@@ -16,7 +16,7 @@ the site, or to that given with the records; or motions of the floor, as the use
 
 
 @dataclass(frozen=True)
-class Motions:
+class MotionPlace:
     """The kind of motions in the time histories of a verification.
 
     Parameters
@@ -57,7 +57,7 @@ class Histories:
     progress: Callable[[int], object] = int
 
 
-def where_it_stands(asked: Histories, floor: Floor | None) -> tuple[Motions, Sequence[GroundMotion]]:
+def where_it_stands(asked: Histories, floor: Floor | None) -> tuple[MotionPlace, Sequence[GroundMotion]]:
     """Return the kind of the motions of histories, and the motions, converted to the floor of a site if there is one.
 
     Parameters
@@ -82,9 +82,9 @@ def where_it_stands(asked: Histories, floor: Floor | None) -> tuple[Motions, Seq
     if any(carried) and not all(carried):
         raise InputError(Problem("some of the motions are of a floor, others of the ground: give motions of one kind"))
     if asked.on_floor:
-        return Motions("of_floor"), motions
+        return MotionPlace("of_floor"), motions
     if carried and all(carried):
-        return Motions("carried_by_option", motions[0].processing[-1].removeprefix("floor ")), motions
+        return MotionPlace("carried_by_option", motions[0].processing[-1].removeprefix("floor ")), motions
     if floor is None:
-        return Motions(), motions
-    return Motions("carried_to_floor", str(floor)), [floor.of(motion) for motion in motions]
+        return MotionPlace(), motions
+    return MotionPlace("carried_to_floor", str(floor)), [floor.of(motion) for motion in motions]
