@@ -306,7 +306,12 @@ class Pieces:
         return Path(*(self._motions[self._piece(spot)] if self._moves(spot) else self._still).carry(spot.at))
 
     def rates(self, contacts: Sequence[Contact]) -> tuple[Rates, list[tuple[tuple[int, ...], int | None]]]:
-        """Return the velocities at contacts as functions of those of the pieces, and the rows of each contact."""
+        """Return the velocities at contacts as linear functions of the velocities of the pieces, and their row numbers.
+
+        A contact has one row for the opening velocity at each of its points, and then one row for the sliding velocity
+        at the middle of these points. For each contact, the second result has the numbers of its opening rows and the
+        number of its sliding row. Rows of guides are not listed: a guide has an empty tuple and None.
+        """
         found: list[list[VelocityTerm]] = []
         rows: list[tuple[tuple[int, ...], int | None]] = []
         for contact in contacts:

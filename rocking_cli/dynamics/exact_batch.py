@@ -51,7 +51,7 @@ def exact_many(
 
     Returns
     -------
-    Outcome
+    Outcomes
         Outcomes in the order of the pulses, for any number of threads. `failed` is that of pulses with too many
         impacts. Times of overturning and of coming to rest are not computed.
 

@@ -1,10 +1,11 @@
 """Modes in which redundant joints open, where statics alone does not determine the forces.
 
-At each rotation, the ground accelerations and rotation rates at which some admissible forces balance the motion are a
-convex set. Each edge of this set belongs to a motion of the pieces, a mode, that opens joints and closes none: beyond
-the edge the forces do work on this motion. A mode is treated as a single joint is if statics determines the forces:
-with all other joints closed, its acceleration is 1/(xi.M xi) times the missing work, with xi its velocities for an
-opening of 1.
+At each rotation, consider the pairs of ground acceleration u_g'' and squared rotation rate phi.^2 at which the joints
+can balance the loads, inertia included. These pairs form a convex set, the admissible set. Each edge of this set
+belongs to a mode: a motion of the pieces that opens joints and closes none. Beyond the edge, the loads do positive work
+on the mode, and the joints open. A mode is then treated like a single joint whose forces statics determines: with all
+other joints closed, its opening accelerates by 1/(xi.M xi) times the work that the joints cannot balance. Here xi are
+the velocities of the pieces in the mode, for an opening velocity of 1, and M is the mass matrix.
 """
 
 from __future__ import annotations
@@ -113,9 +114,18 @@ def modes(mechanism: Mechanism, direction: Direction, phi: Reals, critical: floa
 
 
 class _Followed(NamedTuple):
-    """A mode over rotations: velocities (n, coordinates), force (n, 4) and compliance (n,) for an opening of 1.
+    """One mode at all n rotations of the tables, for an opening velocity of 1.
 
-    `exists` (n,) is True at rotations where the mode closes no joint; elsewhere its velocities have no meaning.
+    Parameters
+    ----------
+    velocity : ndarray, shape (n, coordinates)
+        Velocities of all pieces; meaningless at rotations where the mode does not exist.
+    force : ndarray, shape (n, 4)
+        Work of the required joint forces on the mode, by its factors of 1, u_g'', phi.^2 and v_g''.
+    compliance : ndarray, shape (n,)
+        Acceleration of the opening, divided by the missing work.
+    exists : ndarray of bool, shape (n,)
+        Whether the mode is a motion that closes no joint.
     """
 
     velocity: Reals
@@ -160,9 +170,10 @@ class _Placed:
         return found, sum(each.shape[0] for each in presses)
 
     def sparse(self, k: int) -> Sparse:
-        """Return the rates at rotation `k` as a sparse matrix (rows, coordinates), in axes that turn with the pieces.
+        """Return the velocities at the contacts at rotation `k` as a sparse matrix, shape (rows, coordinates).
 
-        In these axes most faces are as at rest, with a single factor, which is faster in a linear programme.
+        The velocities of each piece are expressed in axes that turn with the piece. In these axes, most contact faces
+        keep their direction at rest and have a single non-zero factor, which makes linear programmes faster.
         """
         from scipy.sparse import csr_array
 
@@ -302,9 +313,23 @@ def _values(singular: Reals, matrix: Reals) -> Reals:
 
 
 def _edges(there: _Placed, k: int, unit: Reals, known: Mapping[Pattern, _Followed | None]) -> Iterator[Reals]:
-    """Yield the modes of the edges of the set of admissible (u_g'', phi.^2) at rotation `k`.
+    """Yield a mode for each edge of the admissible set of (u_g'', phi.^2) at rotation `k`.
 
-    Edges that the `known` modes already bound are not searched again; the caller may add each yielded mode to them.
+    The set is a convex polygon, see the module. The search finds its farthest point, a corner, in a number of
+    directions; after each new corner, it also searches perpendicular to the lines from that corner to its neighbours.
+    Directions in which the `known` modes already bound the set are skipped; the caller may add each yielded mode to
+    `known` at once.
+
+    Parameters
+    ----------
+    there : _Placed
+        Contacts and required forces of the direction.
+    k : int
+        Index of the rotation.
+    unit : ndarray, shape (2,)
+        Values of u_g'' and phi.^2 by which both are divided in the search.
+    known : mapping of Pattern to _Followed or None
+        The modes found so far; None for patterns that are no mode.
     """
     corners: list[tuple[float, Reals]] = []  # the direction that found each, and its place
     ways = [2 * np.pi * i / WAYS for i in range(WAYS)]
@@ -350,9 +375,10 @@ def _farthest(along: Reals, lines: Reals) -> float:
 
 
 def _corner(there: _Placed, k: int, way: Reals, unit: Reals) -> tuple[Reals, Reals | None] | None:
-    """Return the corner of the set in a direction, (u_g'', phi.^2) over `unit`, and the mode that opens there.
+    """Return the farthest point of the admissible set in one direction, and the mode that opens there.
 
-    None if the linear programme has no solution; the mode is None if only the search limits bound the set.
+    A linear programme finds the point (u_g'', phi.^2), divided by `unit`; the mode is its dual solution. The result is
+    None if the programme has no solution, and the mode is None if only the limits of the search bound the set there.
     """
     from scipy.optimize import linprog  # slow to import, and only redundant joints need it
     from scipy.sparse import coo_array, hstack

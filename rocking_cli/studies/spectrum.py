@@ -174,7 +174,7 @@ class Spectrum:
 
     @property
     def uplifts(self) -> Reals:
-        """Uplift acceleration over g at each size, in the direction that measures sizes, shape (n,)."""
+        """Uplift acceleration over g at each size, shape (n,), in the direction with the smaller one at scale 1."""
         own, model = self.shape.own, self.shape.structure.model.name
         if own is None:
             return np.full(self.scales.size, self.shape.structure.lambda_)

@@ -242,5 +242,5 @@ class ItalianVerification(frame.Verification):
         return next(iter(self.directions.values())).first
 
     def compared(self, direction: Direction) -> float | None:
-        """Return the ratio of displacements at the first limit state."""
+        """Return the ratio of displacement capacity to demand at the first limit state; None if unknown."""
         return self.directions[direction].states[self.first].ratio
