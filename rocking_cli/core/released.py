@@ -254,7 +254,10 @@ class Pieces:
         return np.asarray(matrix + least * np.eye(3) * light[..., None, :])
 
     def momenta(self, rates: Reals, at: slice | Integers = slice(None)) -> Reals:
-        """Return the momenta of all pieces for k velocities, both of shape (n, 3 pieces, k), or at some rotations."""
+        """Return the momenta of all pieces for k velocity fields, both of shape (n, 3 pieces, k).
+
+        With `at`, the velocities belong to a selection of the rotations.
+        """
         each = rates.reshape(len(rates), len(self._parts), 3, -1)
         return np.asarray((self.mass[at] @ each).reshape(rates.shape))
 
@@ -263,7 +266,10 @@ class Pieces:
         return np.asarray(self.momenta(rates[..., None])[..., 0])
 
     def demands(self) -> Reals:
-        """Return the forces that contacts must exert on each coordinate: factors of 1, u_g'', phi.^2 and v_g''."""
+        """Return the forces that contacts must exert on the pieces, shape (n, 3 pieces, 4).
+
+        There is a force for each coordinate of each piece, by its factors of 1, u_g'', phi.^2 and v_g''.
+        """
         mechanism, direction, n = self._mechanism, self._direction, self.phi.size
         at, g = mechanism.coefficients(self.phi, direction), mechanism.gravity
         # phi.. = -(J phi.^2 + (g + v_g'') G + Q + s B u_g'')/I   [Eq. 8]

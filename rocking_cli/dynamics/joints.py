@@ -106,7 +106,7 @@ class JointCheck:
         Time at which the opening passes the limit, a contact crushes or no weight holds the structure down [s]; NaN if
         never.
     reason : {"opens", "slides", "crushes", "weightless"} or None
-        Which of these happens at `passed`; "weightless" is that no weight holds the structure down.
+        Which of these happens at `passed`; "weightless" means that no weight holds the structure down.
     joint : str
         The joint at which this happens; empty if none.
     warned : float
@@ -365,7 +365,10 @@ def _calm(within: Reals, tables: Sequence[DirectionTable], statics: Sequence[Sta
 
 
 def _range(plane: Reals, fast: Reals) -> tuple[Reals, Reals]:
-    """Return the least and the greatest u_g'' at which all rows are at least zero, at some q.^2."""
+    """Return the smallest and the largest u_g'' at which no joint fails, for given values of q.^2, shape (n,) each.
+
+    Each row (a, b, c) of `plane` is a condition a + b u_g'' + c q.^2 >= 0.
+    """
     base, push = plane[..., ONE] + plane[..., RATE] * fast[:, None], plane[..., PUSH]
     with np.errstate(divide="ignore", invalid="ignore"):
         bound = -base / push
@@ -376,7 +379,10 @@ def _range(plane: Reals, fast: Reals) -> tuple[Reals, Reals]:
 
 
 def _fastest(plane: Reals) -> Reals:
-    """Return a large q.^2 at which all rows are at least zero for some u_g''; 0 if there is none."""
+    """Return a large q.^2 at which some u_g'' meets the conditions of all rows, shape (n,); 0 if there is none.
+
+    The rows of `plane` are as in `_range`.
+    """
     low, high = np.zeros(len(plane)), np.full(len(plane), 1.0)
     scale = np.abs(plane[..., ONE]).max(axis=1) / np.maximum(np.abs(plane[..., RATE]).max(axis=1), 1e-300)
     high *= np.minimum(scale, 1e12)

@@ -42,7 +42,15 @@ SAME = 1e-6  # of the set: corners that are one
 
 
 class Pattern(NamedTuple):
-    """The rows in which a mode has no motion: for each contact, the sign of its slip, and which ends stay closed."""
+    """The components of joint velocities that are zero in a mode, by which modes at different rotations are recognised.
+
+    Parameters
+    ----------
+    slips : tuple of int
+        For each contact, the sign of its sliding velocity; 0 if it does not slide.
+    shut : tuple of tuple of bool
+        For each contact, whether each of its ends stays closed.
+    """
 
     slips: tuple[int, ...]
     shut: tuple[tuple[bool, ...], ...]
@@ -357,7 +365,10 @@ def _edges(there: _Placed, k: int, unit: Reals, known: Mapping[Pattern, _Followe
 
 
 def _lines(known: Mapping[Pattern, _Followed | None], k: int, unit: Reals) -> Reals:
-    """Return the bounds of the set at rotation `k`, rows a + b x + c y >= 0 over `unit`: modes, and search limits."""
+    """Return straight lines that bound the admissible set at rotation `k`: those of known modes, and the search limits.
+
+    Each row (a, b, c) stands for a + b x + c y >= 0, where x and y are u_g'' and phi.^2, each divided by its `unit`.
+    """
     rows = [each.force[k, [ONE, PUSH, RATE]] * [1.0, *unit] for each in known.values() if each is not None]
     lines = np.array([[FAR, 1.0, 0.0], [FAR, -1.0, 0.0], [0.0, 0.0, 1.0], [FAR, 0.0, -1.0], *rows])
     steep = np.abs(lines[:, 1:]).max(axis=1)

@@ -121,7 +121,7 @@ def as_written(entry: Entry) -> Mapping[str, Any]:
 
 
 def of_reading(reading: Reading, folder: Path) -> dict[str, Any]:
-    """Return the items of an entry that makes its record be read in this way, by the names in files.
+    """Return the items of a study or list entry that describe a way of reading a record, by their names in files.
 
     Parameters
     ----------

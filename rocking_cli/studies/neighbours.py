@@ -76,9 +76,10 @@ class Neighbourhood:
 
     Notes
     -----
-    Amplitude and slenderness are lognormal, and the restitution normal, truncated at the value with which an impact
-    keeps all energy: clipped there, a third of all neighbours would never lose any. With these deviations, computed
-    shares agree with those observed in shake-table tests of two boulders, see docs/validation.md.
+    Amplitude and slenderness are lognormal. The restitution is normal, truncated at the value with which an impact
+    keeps all energy; if it were clipped to that value instead, a third of all neighbours would never lose energy. With
+    these deviations, computed shares agree with those observed in shake-table tests of two boulders, see
+    docs/validation.md.
     """
 
     count: int = 200

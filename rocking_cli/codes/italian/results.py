@@ -35,7 +35,7 @@ class LimitState:
 
     @property
     def ratio(self) -> float | None:
-        """Displacement capacity over demand, which passes from 1; None without a demand."""
+        """Displacement capacity over demand, at least 1 if the state passes; None without a demand."""
         return None if self.demand is None else self.d / self.demand
 
     @property
