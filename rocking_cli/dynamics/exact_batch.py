@@ -52,8 +52,8 @@ def exact_many(
     Returns
     -------
     Outcomes
-        Outcomes in the order of the pulses, for any number of threads. `failed` is that of pulses with too many
-        impacts. Times of overturning and of coming to rest are not computed.
+        Outcomes in the order of the pulses, for any number of threads. `failed` is True for pulses with too
+        many impacts. Times of overturning and of coming to rest are not computed.
 
     Raises
     ------

@@ -163,10 +163,10 @@ class _Placed:
                 self.friction[[*normal, shear]] = contact.friction
 
     def rays(self, k: int) -> tuple[Sparse, int]:
-        """Return the extreme forces at the joints at rotation `k`, compressive ones first, and the number of these.
+        """Return the extreme forces that joints can exert at rotation `k`, and the number of those that press.
 
-        With friction, the extreme forces of a contact are inclined to either side of its normal. The matrix is as that
-        of `sparse`.
+        Those that press come first. With friction, the two extreme forces of a contact are inclined to either side of
+        its normal. Each row has the velocities on which a force does work, in the axes of `sparse`.
         """
         from scipy.sparse import vstack
 

@@ -34,7 +34,10 @@ def _parsed(parse: Callable[[Any], object]) -> AfterValidator:
 
 
 def _unit(value: object) -> object:
-    """Return the canonical spelling of a unit of acceleration."""
+    """Return a unit in its canonical spelling; raise `ValueError` for a text that is not a known unit.
+
+    Units of velocity and displacement, and values that are not texts, are returned unchanged.
+    """
     known = {name for quantity in ("acceleration", "velocity", "displacement") for name in units_of(quantity)}
     if value not in known and isinstance(value, str):
         found = canonical(value)
