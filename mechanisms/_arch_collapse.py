@@ -39,9 +39,9 @@ class Ring:
     beta: float
 
     def joint(self, angle: Reals, face: int) -> tuple[NDArray[np.complex128], Reals, NDArray[np.complex128]]:
-        """Return a point of the joint at `angle` on a face (-1 intrados, +1 extrados), and the ring left of the joint.
+        """Return a point of the joint at `angle`, and the area and first moment of area of the ring left of the joint.
 
-        The latter by its area and its first moment of area.
+        The point is on the intrados (face -1) or the extrados (face 1), or on the centre line (face 0).
         """
         inner, outer = 1 - self.thickness / 2, 1 + self.thickness / 2
         left = np.exp(1j * (np.pi + self.beta) / 2)
@@ -50,10 +50,17 @@ class Ring:
         return point, (outer**2 - inner**2) / 2 * angle, moment
 
     def balance(self, angle: Reals, face: int) -> tuple[Reals, Reals]:
-        """Return the moment about a joint's face of all loads left of it, as rows . (M0, Fx, Fy, lambda) - weight.
+        """Return the moment of all loads left of a joint, about its point on a face, in terms of the unknowns.
 
-        (Fx, Fy, M0) is the reaction at the left springing, its moment about the centre; lambda times the weight
-        acts to the right.
+        The unknowns are (M0, Fx, Fy, lambda): the moment about the centre and the components of the reaction at the
+        left springing, and the multiplier lambda of the horizontal inertia, which acts to the right.
+
+        Returns
+        -------
+        rows : ndarray, shape (..., 4)
+            Factors of the unknowns.
+        weight : ndarray
+            Moment of the weight. The moment of all loads is rows . (M0, Fx, Fy, lambda) - weight.
         """
         point, area, moment = self.joint(angle, face)
         lever = moment - point * area

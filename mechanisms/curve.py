@@ -159,7 +159,7 @@ class Curve(Mechanism):
         return max(self.inertia - self.mass * self._arm(direction) ** 2, 0.0)
 
     def _turning(self, direction: Direction) -> float:
-        """Return the ratio of the body's rotation to phi."""
+        """Return the ratio of the body's rotation to phi: 1, or less in the direction with the larger R."""
         most = max(self._central(each) for each in Direction)
         return sqrt(self._central(direction) / most) if most > 0 else 1.0
 
@@ -204,5 +204,5 @@ class Curve(Mechanism):
 
 
 def _along(r: Reals, direction: Direction) -> Points:
-    """Return the unit vector whose direction has the ratio r."""
+    """Return the unit vector of the centroid's motion: sideways in the direction of rocking, upwards r times as far."""
     return np.asarray((direction + 1j * r) * (1 / np.sqrt(1 + r**2)), np.complex128)

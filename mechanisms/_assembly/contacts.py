@@ -156,7 +156,10 @@ def _pieces(one: Points, other: Points, tolerance: float) -> list[Piece]:
 
 
 def _merged(pieces: list[Piece], tolerance: float) -> list[Piece]:
-    """Return pieces with collinear ones merged to one, from the first end to the last, as rigid bodies bear at both."""
+    """Return the common parts of two outlines, with collinear ones merged into one.
+
+    The merged part reaches from the first end to the last, because rigid bodies bear at both ends.
+    """
     joined: dict[int, Piece] = {}
     # The longest first, because it says best where the line lies; the order they come out in is that of the edges.
     for n, piece in sorted(enumerate(pieces), key=lambda p: -abs(p[1][1] - p[1][0])):

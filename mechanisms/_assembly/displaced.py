@@ -152,11 +152,12 @@ class DisplacedAssembly:
         return answers
 
     def near(self, forces: Reals, state: Reals) -> Reals | None:
-        """Return forces in the joints that balance forces on the blocks, from those of a similar state.
+        """Return joint forces that balance forces on the blocks, by correcting the joint forces of a similar state.
 
-        Forces in the joints are given as multipliers of rays, see `Rays`. None if this gives tension, although other
-        multipliers might not. The method solves systems of equations, and no linear programme as the margin does. Each
-        multiplier changes in proportion to its square, so that small ones hardly change.
+        Joint forces are multipliers of rays, see `Rays`. This is faster than `admissible`, because it solves systems of
+        equations and no linear programme. The correction is the smallest one if each multiplier is weighted by the
+        inverse square of its value, so that small multipliers hardly change and stay positive. None if a multiplier
+        becomes negative, which means tension; another method may still find joint forces without tension.
 
         Parameters
         ----------

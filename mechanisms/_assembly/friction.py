@@ -75,9 +75,12 @@ def friction(found: Collapse) -> Friction:
 
 
 def _roots(known: Sequence[tuple[float, float, float]]) -> Iterator[float]:
-    """Yield estimates, slightly too large, of the friction at which the missing multiplier is zero.
+    """Yield estimates of the coefficient of friction at which a multiplier is just carried, the better one first.
 
-    The first is from the last two points with their slopes, the second from the last point alone.
+    Each entry of `known` is a coefficient of friction that is too low, the shortfall with it (of the multiplier, or of
+    shear force), and how fast this shortfall decreases with friction. The first estimate extrapolates the last two
+    entries by a cubic to a shortfall of zero, the second is a Newton step from the last entry. Both are rounded up
+    slightly, so that the estimate is likely to suffice.
     """
     mu, lacks, growth = known[-1]
     if len(known) > 1 and growth > 0 and known[-2][2] > 0 and known[-2][1] > lacks:
@@ -198,10 +201,27 @@ def _most(found: Collapse, rays: Rays) -> Reals:
 def _beyond(
     problem: AssemblyProblem, multiplier: float, mu: float, most: Reals | None = None
 ) -> tuple[Reals, Reals, Reals]:
-    """Return a state with the least shear beyond a friction, this shear for each joint, and the velocities.
+    """Find the state of forces that needs the least shear in excess of a given coefficient of friction.
 
-    The shear may exceed `mu` in joints whose own friction is larger, up to that friction, or not given. `most` has
-    upper bounds of the rays, inside which the solver requires some points.
+    Parameters
+    ----------
+    problem : AssemblyProblem
+        The assembly.
+    multiplier : float
+        Multiplier that the forces must carry.
+    mu : float
+        The coefficient of friction. Only joints with a larger coefficient, or none given, may carry more shear.
+    most : ndarray, optional
+        Upper bounds of the ray multipliers.
+
+    Returns
+    -------
+    ndarray
+        Forces of the state.
+    ndarray, shape (contacts,)
+        Shear of each joint in excess of `mu` times its normal force.
+    ndarray
+        Velocities of the blocks: the dual solution of the linear programme.
     """
     rays = problem.bearings.rays(mu)
     free: Rays = problem.bearings.rays()

@@ -1,7 +1,8 @@
 """The least horizontal acceleration that sets an assembly in motion, and the mechanism of this motion.
 
-The multiplier lambda is the greatest for which forces in the joints balance every block (static theorem); the prices of
-that linear programme are the velocities of a mechanism of the same multiplier (kinematic theorem). Joints carry no
+The multiplier lambda is the greatest for which forces in the joints balance every block (static theorem); the dual
+variables (prices) of that linear programme are the velocities of a mechanism of the same multiplier (kinematic
+theorem). Joints carry no
 tension. Friction is associated: a joint that slides also opens, which overestimates lambda. Even a small friction can
 thus lock a joint between parts that cannot move apart; `friction` then requires more than any joint has.
 """

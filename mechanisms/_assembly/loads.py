@@ -15,14 +15,14 @@ from rocking_cli.core.kinematics import Points
 
 @dataclass(frozen=True, eq=False)
 class Going:
-    """State of motion of a mechanism, in n states, shape (n,) each.
+    """State of motion of a mechanism at n instants, each array of shape (n,).
 
     Parameters
     ----------
     turning : ndarray
-        phi.. [rad/s2].
+        Rotation acceleration phi.. [rad/s2].
     rate : ndarray
-        phi. [rad/s].
+        Rotation rate phi. [rad/s].
     ground : ndarray of complex
         Ground acceleration u_g'' + i v_g'' [m/s2].
     """
@@ -53,7 +53,12 @@ def under_way(
     bodies: Sequence[Body], motions: Sequence[RigidMotion], attached: Sequence[Attached], direction: Direction,
     gravity: float, going: Going,
 ) -> Reals:  # fmt: skip
-    """Return forces and moments about the displaced centroids, with inertia, shape (n, bodies, 3)."""
+    """Return forces and moments on the bodies of a mechanism in motion, including inertia, shape (n, bodies, 3).
+
+    They are weights, inertia forces, and the forces of ties, each about the displaced centroid of its body. `motions`
+    are the motions of the bodies by phi, and `going` has the rotation rates, rotation accelerations and ground
+    accelerations.
+    """
     by_name: Mapping[str, RigidMotion | _Resting] = {b.name: m for b, m in zip(bodies, motions, strict=True)}
     follow = followed(bodies, motions, going.rate.shape)
     return _forces(bodies, by_name, attached, direction, gravity, going, follow)

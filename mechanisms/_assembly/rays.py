@@ -233,6 +233,6 @@ def scaled(forces: Reals, frame: Frame, weight: float) -> Reals:
 
 
 def moving(names: Sequence[str], velocity: Reals, tolerance: float) -> tuple[str, ...]:
-    """Return the names of the blocks whose velocities exceed a tolerance, from a vector of all velocities."""
+    """Return the names of the blocks whose speed exceeds a tolerance, given as a fraction of the largest speed."""
     fast = np.abs(velocity.reshape(-1, 3)).max(axis=1)
     return tuple(name for name, speed in zip(names, fast, strict=True) if speed > tolerance * fast.max())

@@ -85,7 +85,7 @@ def _wrenches(rates: Sparse, ground: int) -> tuple[Indices, Indices, Reals]:
 
 
 def _holds(number: Indices, count: int, wrench: Reals, place: Points) -> Bools:
-    """Return which pairs of parts their rows hold in both directions and against rotation."""
+    """Return for each pair of parts whether the rows between them prevent every relative motion, including rotation."""
     first = np.zeros(count, np.intp)
     first[number[::-1]] = np.arange(len(number))[::-1]
     arm = place - place[first[number]]  # moments about one point for each pair, near its joints

@@ -1,11 +1,14 @@
-"""The smallest of several mechanisms that are the same motion, but for idle blocks that may also move.
+"""The smallest of several mechanisms with the same multiplier that differ only in idle blocks.
 
-Mechanisms of one multiplier are the same motion if all of them move the same blocks in the same way up to a common
-factor, if those alone are one of the mechanisms, and if every other block that moves in any of them is idle: either no
-force does work on it at all, or the block can only turn with one of the moving groups, about the same point, at the
-same multiplier. Then the hinges of the smallest mechanism are the same in the larger ones. Two equal towers side by
-side, or a stack that may turn about its own foot or that of its plinth, have mechanisms of the same multiplier that are
-not the same motion.
+A linear programme may find many mechanisms with the same multiplier that are one and the same collapse: a few blocks
+move, and others may or may not move with them. The blocks that need not move are idle. Mechanisms count as the same
+motion under three conditions: a set of blocks moves in proportion in all of them; these blocks can also move alone; and
+every other block is idle. A block is idle if the forces do no work on it, or if it can only turn with one of the moving
+blocks, about the same point. The smallest mechanism moves only the blocks that are not idle, and its hinges are also
+hinges of the larger ones.
+
+Two equal towers side by side are a counter-example: either can overturn alone, at the same multiplier. So is a stack
+that can turn about its own foot or about that of its plinth, at the same multiplier.
 """
 
 from __future__ import annotations
@@ -23,7 +26,7 @@ MOST = 30  # dimensions of the velocities: more are several mechanisms
 
 
 def smallest(problem: AssemblyProblem, rays: Rays, kept: Bools, space: Reals) -> tuple[Reals, tuple[str, ...]] | None:
-    """Return the mechanism that moves the fewest blocks, and the idle blocks; None if they are not the same motion.
+    """Return the mechanism that moves the fewest blocks, and the idle blocks.
 
     Parameters
     ----------
@@ -34,12 +37,13 @@ def smallest(problem: AssemblyProblem, rays: Rays, kept: Bools, space: Reals) ->
     kept : ndarray of bool
         The rays that no mechanism opens.
     space : ndarray, shape (3 blocks, dimensions)
-        Velocities that open none of the kept rays.
+        Columns that span the velocities of all mechanisms of the multiplier: those that open none of the kept rays.
 
     Returns
     -------
     (ndarray, tuple of str) or None
-        The velocities of all blocks, and the names of the idle blocks, which rest in them.
+        The velocities of all blocks, zero for idle blocks, and the names of the idle blocks. None if the mechanisms are
+        not the same motion, or `space` has fewer than 2 or more than 30 dimensions.
     """
     if not 2 <= space.shape[1] <= MOST:
         return None

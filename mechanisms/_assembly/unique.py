@@ -27,12 +27,31 @@ MOST = 8  # mechanisms that are named
 
 
 def kept_rays(rays: Rays, dead: Reals, live: Reals, raw: Reals) -> Bools:
-    """Return the rays, among them the free ones, that keep their contact in every mechanism of the greatest multiplier.
+    """Return the rays whose contact stays closed in every mechanism of the greatest multiplier.
 
-    `raw` is one such mechanism. Forces that do no work on it are the states of the greatest multiplier, so that the
-    multiplier need not be exact. As states are searched for without a limit of their size, one linear programme finds
-    all rays with force at once (Freund, Roundy and Todd, 1985); only if the size is at its bound, rays with very small
-    forces may need another one.
+    A ray is an extreme direction of the force at one point of a joint, see `Rays`. The contact of a ray stays closed in
+    every such mechanism if the ray carries force in any state of the greatest multiplier. Two-sided rays always stay
+    closed.
+
+    Parameters
+    ----------
+    rays : Rays
+        Forces that the joints can exert.
+    dead, live : ndarray
+        Permanent loads, and loads that the multiplier scales.
+    raw : ndarray
+        Velocities of one mechanism of the greatest multiplier. A state has the greatest multiplier if its forces do no
+        work on this mechanism, so that the multiplier itself need not be exact.
+
+    Returns
+    -------
+    ndarray of bool
+        Whether each ray stays closed.
+
+    Notes
+    -----
+    States may be scaled up freely, so that one linear programme finds all rays with force at once (Freund, Roundy and
+    Todd, 1985). Another one is solved only if the scale reaches its bound, as rays with very small forces may be left.
     """
     rate = rays.rates @ raw
     shut = np.abs(rate) <= OPENS * np.abs(rate).max()

@@ -35,10 +35,10 @@ def check_crushed(moved: Mapping[Direction, Mapping[str, float]], rest: AtRest, 
 
 
 def check_one_sided(given: Given, from_impacts: Callable[[], float | None]) -> None:
-    """Check `one_sided`, `rebound` and `restitution` against one another.
+    """Check that `one_sided`, `rebound` and `restitution` fit together. Raises `RefusedFields`.
 
-    Refused are a rebound of a structure that rocks to both sides, a restitution of one that rocks to one side only, and
-    `kinematic` if no rebound follows from the shape.
+    A structure that rocks to both sides has no rebound, and one that rocks to one side only has a rebound and no
+    restitution. The rebound may be `kinematic` only if it follows from the shape.
     """
     if given.one_sided is None and given.rebound is not None:
         raise RefusedFields((), "rebound", NEEDS_A_SIDE)

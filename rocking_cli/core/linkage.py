@@ -145,7 +145,12 @@ class LinkageMotion:
     # Whether it moves
 
     def _independent(self) -> NDArray[np.intp]:
-        """Return the rows of as many independent equations as unknowns; the last is that of the leading body."""
+        """Return the indices of as many linearly independent equations as there are unknowns, in increasing order.
+
+        Redundant joints give more equations than unknowns. The equation that prescribes the rotation of the leading
+        body, the last, is always among those chosen. The others are chosen at rest by Gram-Schmidt orthogonalisation:
+        each time the row with the largest part perpendicular to the rows already chosen.
+        """
         held = self._loops.matrix(np.zeros((1, self._loops.unknowns)))[0]
         matrix = np.vstack([held, self._turn_of_lead])
         self._check_rank(held, matrix)

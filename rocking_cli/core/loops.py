@@ -162,7 +162,13 @@ class Loops:
     # What is left
 
     def _gather(self, joints: Sequence[LinkageJoint], places: Sequence[_Sum]) -> None:
-        """Set up the loop equations of joints: Im(w e^(-i psi_b) gap) = 0, gap = k + C e^(i psi) + S u."""
+        """Set up the equations that close the loops, from the joints that are not in the tree of hinges.
+
+        The gap of a joint is the vector between the positions of its point on its two bodies, gap = k + C e^(i psi) + S
+        u. A hinge demands that both components of its gap are zero; a guide, that the component across its line is
+        zero. Each equation is Im(w e^(-i psi_b) gap) = 0. The unit number w selects the component; psi_b is the
+        rotation of the body with which the line of a guide turns, and 0 for a hinge or a line fixed to the ground.
+        """
         gaps: tuple[list[complex], list[Points], list[Reals]] = [], [], []
         weights, turns, names = [], [], []
         for joint in joints:
@@ -211,7 +217,10 @@ class Loops:
         return x[:, : self.count], np.asarray(free[:, : self.trees] + 1j * free[:, self.trees :])
 
     def _turned(self, e: Points) -> Points:
-        """Return the factor w e^(-i psi_b) of each loop equation (see `_gather`), shape (n, m)."""
+        """Return the factor w e^(-i psi_b) of each equation at rotations e = e^(i psi) of the links, shape (n, m).
+
+        The factor turns the component of the gap that must be zero into the imaginary part; see `_gather`.
+        """
         body = self._turn >= 0
         found = np.broadcast_to(self._w, (len(e), len(self._w))).copy()
         found[:, body] *= np.conj(e[:, self._turn[body]])

@@ -92,8 +92,10 @@ def reactions(
     ground : ndarray of complex, shape (n,)
         Ground acceleration u_g'' + i v_g'' [m/s2].
 
-    Notes ----- The acceleration is that of Eq. 8, I phi.. + J phi.^2 + (g + v_g'') G + Q = -s B u_g''. The sum of the
-    forces on a body is m (z'' + u_g'' + i (g + v_g'')), and their moment about its centroid is I psi''.
+    Notes
+    -----
+    The acceleration is that of Eq. 8, I phi.. + J phi.^2 + (g + v_g'') G + Q = -s B u_g''. The sum of the forces on a
+    body is m (z'' + u_g'' + i (g + v_g'')), and their moment about its centroid is I psi''.
     """
     ground = np.broadcast_to(np.asarray(ground, np.complex128), phi.shape)
     weight = ground + 1j * mechanism.gravity
@@ -155,9 +157,10 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reactions | None:
         of the kinematics, only their sum is known. None if friction does not follow from this sum: on faces that are
         not level, with a guide, or at a side wall.
 
-    Notes ----- The momentum of a body jumps from m t_s to -m eta t_-s, with t the velocity over the rotation rate. The
-    impulse at a single joint is the sum of m (eta t_-s + t_s); for a block, |dP_x|/dP_y = (1 - eta)/((1 + eta) tan
-    alpha).
+    Notes
+    -----
+    The momentum of a body jumps from m t_s to -m eta t_-s, with t the velocity over the rotation rate. The impulse at a
+    single joint is the sum of m (eta t_-s + t_s); for a block, |dP_x|/dP_y = (1 - eta)/((1 + eta) tan alpha).
     """
     if not mechanism.rocks_both_ways:
         return None

@@ -252,7 +252,10 @@ class Pieces:
         return np.asarray(matrix + least * np.eye(3) * light[..., None, :])
 
     def momenta(self, rates: Reals, at: slice | Integers = slice(None)) -> Reals:
-        """Return the momenta of all pieces for k velocities, both of shape (n, 3 pieces, k), or at some rotations."""
+        """Return the momenta of all pieces for k velocity fields, both of shape (n, 3 pieces, k).
+
+        With `at`, the velocities belong to a selection of the rotations.
+        """
         each = rates.reshape(len(rates), len(self._parts), 3, -1)
         return np.asarray((self.mass[at] @ each).reshape(rates.shape))
 
@@ -261,7 +264,10 @@ class Pieces:
         return np.asarray(self.momenta(rates[..., None])[..., 0])
 
     def demands(self) -> Reals:
-        """Return the forces that contacts must exert on each coordinate: factors of 1, u_g'', phi.^2 and v_g''."""
+        """Return the forces that contacts must exert on the pieces, shape (n, 3 pieces, 4).
+
+        There is a force for each coordinate of each piece, by its factors of 1, u_g'', phi.^2 and v_g''.
+        """
         mechanism, direction, n = self._mechanism, self._direction, self.phi.size
         at, g = mechanism.coefficients(self.phi, direction), mechanism.gravity
         # phi.. = -(J phi.^2 + (g + v_g'') G + Q + s B u_g'')/I   [Eq. 8]
@@ -304,7 +310,12 @@ class Pieces:
         return Path(*(self._motions[self._piece(spot)] if self._moves(spot) else self._still).carry(spot.at))
 
     def rates(self, contacts: Sequence[Contact]) -> tuple[Rates, list[tuple[tuple[int, ...], int | None]]]:
-        """Return the velocities at contacts as functions of those of the pieces, and the rows of each contact."""
+        """Return the velocities at contacts as linear functions of the velocities of the pieces, and their row numbers.
+
+        A contact has one row for the opening velocity at each of its points, and then one row for the sliding velocity
+        at the middle of these points. For each contact, the second result has the numbers of its opening rows and the
+        number of its sliding row. Rows of guides are not listed: a guide has an empty tuple and None.
+        """
         found: list[list[VelocityTerm]] = []
         rows: list[tuple[tuple[int, ...], int | None]] = []
         for contact in contacts:

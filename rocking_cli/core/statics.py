@@ -66,8 +66,8 @@ def statics(mechanism: Mechanism, direction: Direction) -> Statics:
 
     Notes
     -----
-    DeJong and Dimitrakopoulos (2014), Eqs. 9-10, with V' = g G + Q in place of g G. A block is equivalent only where
-    there is a critical rotation and V'' < 0 all the way to it.
+    DeJong and Dimitrakopoulos (2014), Eqs. 9-10, with V' = g G + Q in place of g G. A block is equivalent only if
+    there is a critical rotation and V'' < 0 at all smaller rotations.
     """
     lam = mechanism.uplift(direction)  # Eq. 10
     limit = mechanism.limit(direction)

@@ -101,7 +101,10 @@ def compile_kernel(function: Callable[..., Any]) -> Any:
 
 
 def _mend(stored: Any) -> None:
-    """Make a damaged cache be emptied and its kernels be compiled again; after a full disk, numba would fail on it."""
+    """Make numba empty a damaged cache and compile its kernels again.
+
+    Without this, numba would fail on a cache that it could not write completely because the disk was full.
+    """
     load = stored.load_overload
 
     def load_or_empty(*asked: Any) -> Any:

@@ -51,9 +51,9 @@ def exact_many(
 
     Returns
     -------
-    Outcome
-        Outcomes in the order of the pulses, for any number of threads. `failed` is that of pulses with too many
-        impacts. Times of overturning and of coming to rest are not computed.
+    Outcomes
+        Outcomes in the order of the pulses, for any number of threads. `failed` is True for pulses with too
+        many impacts. Times of overturning and of coming to rest are not computed.
 
     Raises
     ------

@@ -53,8 +53,8 @@ class JointTables:
         Impulses in the direction that begins, over the rotation rate before the impact [N s per rad/s]: a constant, and
         the factor of eta.
     within : ndarray, shape (cells, 2, 5)
-        Bounds within which all joints hold for certain: u_g'' above the line over q.^2 of the first two coefficients
-        and below that of the next two, up to the q.^2 in the last column.
+        Quick test that no joint fails, for each cell of q and each direction: five numbers (a, b, c, d, e). All joints
+        hold if a + b q.^2 <= u_g'' <= c + d q.^2 and q.^2 <= e. Outside these bounds the forces must be computed.
     reach : float
         D_cr: the largest displacement of a block's centroid from rest to phi_cr, of both directions the smaller [m].
     limit : float
@@ -69,8 +69,9 @@ class JointTables:
         Whether statics alone does not determine the forces at the joints; then rows are modes in which several joints
         open.
     calm : tuple of float
-        Largest u_g'' at q.^2 = 0, and largest q.^2 at u_g'' = 0, at which all joints hold up to phi_cr; -1 if they do
-        not hold at rest.
+        Quick test that no joint fails anywhere up to phi_cr: two numbers (u, r). All joints hold as long as
+        abs(u_g'')/u + q.^2/r <= 1. It is (infinity, -1) if the joints do not hold at rest, so that the test never
+        passes.
     alone : bool
         Whether the only joint is that of a single body with the ground.
     """
@@ -105,7 +106,7 @@ class JointCheck:
         Time at which the opening passes the limit, a contact crushes or no weight holds the structure down [s]; NaN if
         never.
     reason : {"opens", "slides", "crushes", "weightless"} or None
-        Which of these happens at `passed`; "weightless" is that no weight holds the structure down.
+        Which of these happens at `passed`; "weightless" means that no weight holds the structure down.
     joint : str
         The joint at which this happens; empty if none.
     warned : float
@@ -302,7 +303,11 @@ def _lines(values: Reals) -> Reals:
 
 
 def _within(cubics: Reals, contacts: Integers, bearing: Reals) -> Reals:
-    """Return bounds within which all joints of a direction hold for certain (`Joints.within`), on a finer grid."""
+    """Return the bounds of u_g'' and q.^2 inside which all joints of a direction hold, see `JointTables.within`.
+
+    Each cell of the cubics is divided into `FINER` cells. The bounds of a cell hold at both of its ends, with a margin
+    for the cubics in between.
+    """
     fine = np.arange(FINER) / FINER
     powers = np.stack([np.append(fine, 1.0) ** k for k in range(4)], axis=-1)
     at = np.einsum("crvp,xp->cxrv", cubics, powers)
@@ -341,9 +346,10 @@ def _within(cubics: Reals, contacts: Integers, bearing: Reals) -> Reals:
 
 
 def _calm(within: Reals, tables: Sequence[DirectionTable], statics: Sequence[Statics]) -> tuple[float, float]:
-    """Return the largest u_g'' at q.^2 = 0, and the largest q.^2 at u_g'' = 0, that all joints bear up to phi_cr.
+    """Return the largest u_g'' at q.^2 = 0 and the largest q.^2 at u_g'' = 0 at which all joints hold up to phi_cr.
 
-    As the region in which they hold is convex in each cell, they also hold below the straight line between the two.
+    The pairs (u_g'', q.^2) at which the joints hold form a convex region in each cell. Therefore the joints also hold
+    at every point below the straight line between these two points, see `JointTables.calm`.
     """
     push = fast = np.inf
     for d, (table, side) in enumerate(zip(tables, statics, strict=True)):
@@ -357,7 +363,10 @@ def _calm(within: Reals, tables: Sequence[DirectionTable], statics: Sequence[Sta
 
 
 def _range(plane: Reals, fast: Reals) -> tuple[Reals, Reals]:
-    """Return the least and the greatest u_g'' at which all rows are at least zero, at some q.^2."""
+    """Return the smallest and the largest u_g'' at which no joint fails, for given values of q.^2, shape (n,) each.
+
+    Each row (a, b, c) of `plane` is a condition a + b u_g'' + c q.^2 >= 0.
+    """
     base, push = plane[..., ONE] + plane[..., RATE] * fast[:, None], plane[..., PUSH]
     with np.errstate(divide="ignore", invalid="ignore"):
         bound = -base / push
@@ -368,7 +377,10 @@ def _range(plane: Reals, fast: Reals) -> tuple[Reals, Reals]:
 
 
 def _fastest(plane: Reals) -> Reals:
-    """Return a large q.^2 at which all rows are at least zero for some u_g''; 0 if there is none."""
+    """Return a large q.^2 at which some u_g'' meets the conditions of all rows, shape (n,); 0 if there is none.
+
+    The rows of `plane` are as in `_range`.
+    """
     low, high = np.zeros(len(plane)), np.full(len(plane), 1.0)
     scale = np.abs(plane[..., ONE]).max(axis=1) / np.maximum(np.abs(plane[..., RATE]).max(axis=1), 1e-300)
     high *= np.minimum(scale, 1e12)

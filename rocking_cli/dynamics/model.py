@@ -221,9 +221,10 @@ def _rate(mechanism: Mechanism, direction: Direction, statics: Statics) -> float
 
 
 def with_held(model: Model, mechanism: Mechanism, blocks: tuple[EquivalentBlock, EquivalentBlock]) -> Model:
-    """Return a linear model with the part of its moment near phi_cr that vertical motion leaves unchanged.
+    """Return a linear model to which the moments of ties and forces near phi_cr are added as a separate part.
 
-    For structures with ties or forces: I_eq x.. = -(g G' + Q') x - v_g'' (G + G' x) - s B u_g'', x = phi - phi_cr.
+    Vertical motion changes the moments of weights but not those of ties and forces, so the kernel needs both parts:
+    I_eq x.. = -(g G' + Q') x - v_g'' (G + G' x) - s B u_g'', x = phi - phi_cr.
     """
     held, numbers = np.zeros((1, 2, 5)), model.numbers.copy()
     for d, (direction, block) in enumerate(zip(mechanism.sides, blocks, strict=True)):

@@ -1,10 +1,11 @@
 """Modes in which redundant joints open, where statics alone does not determine the forces.
 
-At each rotation, the ground accelerations and rotation rates at which some admissible forces balance the motion are a
-convex set. Each edge of this set belongs to a motion of the pieces, a mode, that opens joints and closes none: beyond
-the edge the forces do work on this motion. A mode is treated as a single joint is if statics determines the forces:
-with all other joints closed, its acceleration is 1/(xi.M xi) times the missing work, with xi its velocities for an
-opening of 1.
+At each rotation, consider the pairs of ground acceleration u_g'' and squared rotation rate phi.^2 at which the joints
+can balance the loads, inertia included. These pairs form a convex set, the admissible set. Each edge of this set
+belongs to a mode: a motion of the pieces that opens joints and closes none. Beyond the edge, the loads do positive work
+on the mode, and the joints open. A mode is then treated like a single joint whose forces statics determines: with all
+other joints closed, its opening accelerates by 1/(xi.M xi) times the work that the joints cannot balance. Here xi are
+the velocities of the pieces in the mode, for an opening velocity of 1, and M is the mass matrix.
 """
 
 from __future__ import annotations
@@ -41,7 +42,15 @@ SAME = 1e-6  # of the set: corners that are one
 
 
 class Pattern(NamedTuple):
-    """The rows in which a mode has no motion: for each contact, the sign of its slip, and which ends stay closed."""
+    """The components of joint velocities that are zero in a mode, by which modes at different rotations are recognised.
+
+    Parameters
+    ----------
+    slips : tuple of int
+        For each contact, the sign of its sliding velocity; 0 if it does not slide.
+    shut : tuple of tuple of bool
+        For each contact, whether each of its ends stays closed.
+    """
 
     slips: tuple[int, ...]
     shut: tuple[tuple[bool, ...], ...]
@@ -113,9 +122,18 @@ def modes(mechanism: Mechanism, direction: Direction, phi: Reals, critical: floa
 
 
 class _Followed(NamedTuple):
-    """A mode over rotations: velocities (n, coordinates), force (n, 4) and compliance (n,) for an opening of 1.
+    """One mode at all n rotations of the tables, for an opening velocity of 1.
 
-    `exists` (n,) is True at rotations where the mode closes no joint; elsewhere its velocities have no meaning.
+    Parameters
+    ----------
+    velocity : ndarray, shape (n, coordinates)
+        Velocities of all pieces; meaningless at rotations where the mode does not exist.
+    force : ndarray, shape (n, 4)
+        Work of the required joint forces on the mode, by its factors of 1, u_g'', phi.^2 and v_g''.
+    compliance : ndarray, shape (n,)
+        Acceleration of the opening, divided by the missing work.
+    exists : ndarray of bool, shape (n,)
+        Whether the mode is a motion that closes no joint.
     """
 
     velocity: Reals
@@ -145,10 +163,10 @@ class _Placed:
                 self.friction[[*normal, shear]] = contact.friction
 
     def rays(self, k: int) -> tuple[Sparse, int]:
-        """Return the extreme forces at the joints at rotation `k`, compressive ones first, and the number of these.
+        """Return the extreme forces that joints can exert at rotation `k`, and the number of those that press.
 
-        With friction, the extreme forces of a contact are inclined to either side of its normal. The matrix is as that
-        of `sparse`.
+        Those that press come first. With friction, the two extreme forces of a contact are inclined to either side of
+        its normal. Each row has the velocities on which a force does work, in the axes of `sparse`.
         """
         from scipy.sparse import vstack
 
@@ -160,9 +178,10 @@ class _Placed:
         return found, sum(each.shape[0] for each in presses)
 
     def sparse(self, k: int) -> Sparse:
-        """Return the rates at rotation `k` as a sparse matrix (rows, coordinates), in axes that turn with the pieces.
+        """Return the velocities at the contacts at rotation `k` as a sparse matrix, shape (rows, coordinates).
 
-        In these axes most faces are as at rest, with a single factor, which is faster in a linear programme.
+        The velocities of each piece are expressed in axes that turn with the piece. In these axes, most contact faces
+        keep their direction at rest and have a single non-zero factor, which makes linear programmes faster.
         """
         from scipy.sparse import csr_array
 
@@ -302,9 +321,23 @@ def _values(singular: Reals, matrix: Reals) -> Reals:
 
 
 def _edges(there: _Placed, k: int, unit: Reals, known: Mapping[Pattern, _Followed | None]) -> Iterator[Reals]:
-    """Yield the modes of the edges of the set of admissible (u_g'', phi.^2) at rotation `k`.
+    """Yield a mode for each edge of the admissible set of (u_g'', phi.^2) at rotation `k`.
 
-    Edges that the `known` modes already bound are not searched again; the caller may add each yielded mode to them.
+    The set is a convex polygon, see the module. The search finds its farthest point, a corner, in a number of
+    directions; after each new corner, it also searches perpendicular to the lines from that corner to its neighbours.
+    Directions in which the `known` modes already bound the set are skipped; the caller may add each yielded mode to
+    `known` at once.
+
+    Parameters
+    ----------
+    there : _Placed
+        Contacts and required forces of the direction.
+    k : int
+        Index of the rotation.
+    unit : ndarray, shape (2,)
+        Values of u_g'' and phi.^2 by which both are divided in the search.
+    known : mapping of Pattern to _Followed or None
+        The modes found so far; None for patterns that are no mode.
     """
     corners: list[tuple[float, Reals]] = []  # the direction that found each, and its place
     ways = [2 * np.pi * i / WAYS for i in range(WAYS)]
@@ -332,7 +365,10 @@ def _edges(there: _Placed, k: int, unit: Reals, known: Mapping[Pattern, _Followe
 
 
 def _lines(known: Mapping[Pattern, _Followed | None], k: int, unit: Reals) -> Reals:
-    """Return the bounds of the set at rotation `k`, rows a + b x + c y >= 0 over `unit`: modes, and search limits."""
+    """Return straight lines that bound the admissible set at rotation `k`: those of known modes, and the search limits.
+
+    Each row (a, b, c) stands for a + b x + c y >= 0, where x and y are u_g'' and phi.^2, each divided by its `unit`.
+    """
     rows = [each.force[k, [ONE, PUSH, RATE]] * [1.0, *unit] for each in known.values() if each is not None]
     lines = np.array([[FAR, 1.0, 0.0], [FAR, -1.0, 0.0], [0.0, 0.0, 1.0], [FAR, 0.0, -1.0], *rows])
     steep = np.abs(lines[:, 1:]).max(axis=1)
@@ -350,9 +386,10 @@ def _farthest(along: Reals, lines: Reals) -> float:
 
 
 def _corner(there: _Placed, k: int, way: Reals, unit: Reals) -> tuple[Reals, Reals | None] | None:
-    """Return the corner of the set in a direction, (u_g'', phi.^2) over `unit`, and the mode that opens there.
+    """Return the farthest point of the admissible set in one direction, and the mode that opens there.
 
-    None if the linear programme has no solution; the mode is None if only the search limits bound the set.
+    A linear programme finds the point (u_g'', phi.^2), divided by `unit`; the mode is its dual solution. The result is
+    None if the programme has no solution, and the mode is None if only the limits of the search bound the set there.
     """
     from scipy.optimize import linprog  # slow to import, and only redundant joints need it
     from scipy.sparse import coo_array, hstack

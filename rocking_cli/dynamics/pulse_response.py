@@ -153,8 +153,9 @@ def exact_pulse(a: float, omega: float, eta: float, shape: str = "sine") -> Exac
     SolverError
         If the block has too many impacts during a slow pulse, with a restitution near 1.
 
-    Notes ----- The motion of `rocking_cli.dynamics.pulse_motion`, with p, phi_cr and the uplift acceleration equal to
-    1.
+    Notes
+    -----
+    The motion of `rocking_cli.dynamics.pulse_motion`, with p, phi_cr and the uplift acceleration equal to 1.
     """
     check_pulse(a, omega, eta)
     if shape not in SHAPES:

@@ -1,7 +1,8 @@
-"""Pieces that a mode moves as one: joining them leaves few unknowns of many pieces.
+"""Join pieces that cannot move relative to one another in a mode, so that fewer unknowns are left.
 
-Two parts are joined if the closed rows between them allow no relative motion at any rotation; this is repeated until no
-more parts can be joined. Joining fewer parts than possible costs time, but is never wrong.
+Each row is a relative velocity at a contact that stays closed, and therefore is zero. Two parts are joined if the rows
+between them allow no relative motion at any rotation. This is repeated until no more parts can be joined. Joining
+fewer parts than possible costs time, but is never wrong.
 """
 
 from __future__ import annotations
@@ -39,14 +40,14 @@ class Stuck:
     arm: Points
 
     def spread(self, parts: Reals) -> Reals:
-        """Return the velocities of the pieces from those of the parts, both of shape (n, 3 each)."""
+        """Return the velocities of the pieces, shape (n, 3 pieces), from those of the parts, shape (n, 3 parts)."""
         n = len(parts)
         moved = np.concatenate([parts.reshape(n, self.count, 3), np.zeros((n, 1, 3))], axis=1)[:, self.part]
         x, y, turn = np.moveaxis(moved, 2, 0)
         return np.stack([x - turn * self.arm.imag, y + turn * self.arm.real, turn], axis=2).reshape(n, -1)
 
     def gathered(self, pieces: Reals) -> Reals:
-        """Return the momenta of the parts from those of the pieces, both of shape (n, 3 each)."""
+        """Return the momenta of the parts, shape (n, 3 parts), from those of the pieces, shape (n, 3 pieces)."""
         n = len(pieces)
         found = np.zeros((n, self.count + 1, 3))
         each = _about(pieces.reshape(n, -1, 3), self.arm)
@@ -55,7 +56,10 @@ class Stuck:
         return found[:, :-1].reshape(n, -1)
 
     def contracted(self, rates: Rates) -> Rates:
-        """Return rows of velocities by those of the parts, without rows between pieces of one part, which are zero."""
+        """Return the rates as functions of the velocities of the parts.
+
+        Rows between two pieces of the same part are left out, because they are always zero.
+        """
         part = np.append(self.part, GROUND)[rates.pieces]
         apart = np.flatnonzero(part[:, 0] != part[:, 1])
         arm = np.where(part == GROUND, 0j, np.append(self.arm, np.zeros_like(self.arm[:, :1]), axis=1)[:, rates.pieces])

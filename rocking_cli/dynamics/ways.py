@@ -104,7 +104,11 @@ def _say_slow(why: str) -> None:
 
 
 def in_python(of: KernelSet) -> Kernel:
-    """Return the Python source of a kernel with the arithmetic of machine code, in which nothing raises."""
+    """Return a kernel as a Python function that computes like machine code.
+
+    Integers are truncated like those of machine code, and floating-point errors such as a division by zero raise
+    nothing.
+    """
     import numpy as np
 
     module = importlib.import_module(of.module)

@@ -21,14 +21,20 @@ class Doubt(NamedTuple):
     Parameters
     ----------
     kind : str
-        Keyword for programs: dt, mean_period, pga, offset, start, final_velocity, final_displacement, clipped, spike,
-        dropout or p_dt; for doubts that a reader has about a file: columns, digits, count, header_peak, header_time,
-        header_length, uneven or resolution.
+        Keyword for programs, see the notes.
     value : float
-        The number that gives rise to the doubt: in s, s, g, g, g, m/s, m, samples, s, s and 1; rows (of free text the
-        line), the line, points, in the unit of the header, s, s, s and g.
+        The number that gives rise to the doubt; the notes list its meaning or unit for each keyword.
     text : str
         A sentence for users.
+
+    Notes
+    -----
+    Keywords for a motion: dt, mean_period, spike and dropout [s]; pga, offset and start [g]; final_velocity [m/s];
+    final_displacement [m]; clipped [number of samples]; p_dt [1].
+
+    Keywords that a reader sets for a file: columns [number of rows; the line number in free text], digits [line
+    number], count [number of points], header_peak [unit of the header], header_time, header_length and uneven [s],
+    resolution [g].
     """
 
     kind: str

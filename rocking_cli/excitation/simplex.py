@@ -28,8 +28,9 @@ def maximise(
     most : int
         Largest number of steps.
 
-    Notes ----- Nelder and Mead (1965): reflect the worst corner, and expand or contract the simplex according to the
-    result.
+    Notes
+    -----
+    Nelder and Mead (1965): reflect the worst corner, and expand or contract the simplex according to the result.
     """
     scale = np.asarray(steps, dtype=np.float64)
     corners = start + np.vstack([np.zeros(scale.size), np.diag(scale)])

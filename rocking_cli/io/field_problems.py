@@ -36,7 +36,7 @@ def problems(
     owner : str
         Name of what the top-level fields belong to, for messages: "block".
     lister : str
-        What lists the valid fields, for messages.
+        Words that say which command lists the valid fields, for messages.
     """
     found: dict[Place, Problem] = {}
     errors = _of_words(errors)
@@ -114,7 +114,10 @@ def _concerns(data: Any, error: ErrorDetails, errors: Iterable[ErrorDetails]) ->
 
 
 def _of_words(errors: Iterable[ErrorDetails]) -> list[ErrorDetails]:
-    """Return the errors without those that a wrong word is not a number, where a number or a word is allowed."""
+    """Return the errors, without superfluous ones on a mistyped word where a word or a number is allowed.
+
+    pydantic reports both that the word is unknown and that it is not a number; only the first is kept.
+    """
     errors = list(errors)
     wrong = [error["loc"] for error in errors if error["type"] == "literal_error"]
     # The last part is pydantic's name of a union's branch that accepts words only.
@@ -237,9 +240,10 @@ def fields_at(model: type[BaseModel], place: Place) -> dict[str, Any]:
 
 
 def _held(model: type[BaseModel], place: Place) -> list[tuple[Any, Any]]:
-    """Return what is allowed at a place, as pairs (field, annotation); the field is None unless the place has its name.
+    """Return the types that are allowed at a place of a model, as pairs (field, annotation).
 
-    Indices of lists are ignored. A key that the user chooses is not the name of a field, even if they are equal.
+    The field is None if the place is not named after a field, but is a key that the user chooses. Indices of lists are
+    ignored.
     """
     held: list[tuple[Any, Any]] = [(None, model)]
     for part in place:

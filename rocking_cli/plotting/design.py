@@ -21,7 +21,7 @@ def draw_design(found: Design) -> Figure:
     Parameters
     ----------
     found : Design
-        What to draw.
+        The result of the search to plot.
     """
     figure = style.new_figure(3.8)
     axes = figure.subplots()

@@ -21,7 +21,7 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
     Parameters
     ----------
     found : EquivalentResponses
-        What to draw.
+        The responses to plot.
     title : str
         Heading.
     """

@@ -31,7 +31,7 @@ def draw_map(
     Parameters
     ----------
     found : OverturningMap
-        What to draw.
+        The map to plot.
     title : str
         Heading.
     dimensionless : bool
@@ -147,7 +147,7 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
     Parameters
     ----------
     found : Comparison
-        What to draw.
+        The comparison to plot.
     title : str
         Heading.
     """

@@ -29,7 +29,7 @@ def draw_paper_figure(paper: PaperFigure) -> Figure:
     Parameters
     ----------
     paper : PaperFigure
-        What to draw.
+        The figure to plot.
 
     Returns
     -------

@@ -21,7 +21,7 @@ def draw_record_set(found: RecordSet, title: str) -> Figure:
     Parameters
     ----------
     found : RecordSet
-        What to draw.
+        The set of records to plot.
     title : str
         Heading.
     """

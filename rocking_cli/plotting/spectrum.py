@@ -35,7 +35,7 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
     Parameters
     ----------
     spectra : sequence of Spectrum
-        What to draw, all under the same motions.
+        The spectra to plot, all under the same motions.
     fractiles : sequence of float
         Fractiles over several motions, 0.5 among them; the outermost bound the shade around the median of one or two
         curves.

@@ -48,7 +48,7 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
     Parameters
     ----------
     picture : Picture
-        What to draw.
+        The drawing of the structure.
     title : str
         Heading.
     ratio : float, optional

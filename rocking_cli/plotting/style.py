@@ -138,7 +138,10 @@ def heading(axes: Axes, text: str) -> None:
 
 
 def over(ends_at_limit: tuple[bool, bool], *, math: bool = False) -> str:
-    """Return the label of a normalised rotation, by whether each direction has no critical rotation."""
+    """Return the axis label of rotations divided by the critical rotation.
+
+    In directions without a critical rotation, rotations are divided by the kinematic limit, and the label says so.
+    """
     found = "φ/limit" if all(ends_at_limit) else "φ/φcr or limit" if any(ends_at_limit) else "φ/φcr"
     return found.replace("φcr", r"$\phi_{cr}$").replace("φ", r"$\phi$") if math else found
 

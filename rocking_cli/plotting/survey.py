@@ -30,7 +30,7 @@ def draw_survey(found: Survey, title: str) -> Figure:
     Parameters
     ----------
     found : Survey
-        What to draw.
+        The survey to plot.
     title : str
         Heading.
     """

@@ -47,14 +47,14 @@ def plugin_error(what: str, module: str, error: BaseException) -> PluginError:
 def guard(
     cls: type, methods: Iterable[str], what: Callable[[type, str], str], *, but: type[Exception] = RockingError
 ) -> None:
-    """Wrap those of some methods that a class itself defines in `blame`.
+    """Wrap methods that a class itself defines, so that their errors are reported as errors of its plugin, see `blame`.
 
     Parameters
     ----------
     cls : type
         Class, changed in place.
     methods : iterable of str
-        Names of methods.
+        Names of the methods to wrap; those that the class inherits are left unchanged.
     what : callable
         Returns the beginning of the message from the class of an object and the name of a method.
     but : type, optional

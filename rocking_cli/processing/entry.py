@@ -34,7 +34,10 @@ def _parsed(parse: Callable[[Any], object]) -> AfterValidator:
 
 
 def _unit(value: object) -> object:
-    """Return the canonical spelling of a unit of acceleration."""
+    """Return a unit in its canonical spelling; raise `ValueError` for a text that is not a known unit.
+
+    Units of velocity and displacement, and values that are not texts, are returned unchanged.
+    """
     known = {name for quantity in ("acceleration", "velocity", "displacement") for name in units_of(quantity)}
     if value not in known and isinstance(value, str):
         found = canonical(value)
@@ -121,7 +124,7 @@ def as_written(entry: Entry) -> Mapping[str, Any]:
 
 
 def of_reading(reading: Reading, folder: Path) -> dict[str, Any]:
-    """Return the items of an entry that makes its record be read in this way, by the names in files.
+    """Return the items of a study or list entry that describe a way of reading a record, by their names in files.
 
     Parameters
     ----------

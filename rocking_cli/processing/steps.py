@@ -29,7 +29,7 @@ _NUMBER = regex(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 
 @dataclass(frozen=True)
 class Step:
-    """One correction; `str` returns it as it is requested."""
+    """One correction of a ground motion; `str` returns it as written in a request, such as `highpass 0.1`."""
 
     name: ClassVar[str]
     example: ClassVar[str]

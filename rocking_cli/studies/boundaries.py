@@ -1,13 +1,18 @@
-"""Boundaries in the plane of a pulse where the linear block's motion up to its first impact is known in closed form.
+"""Boundaries between outcomes of the linear block under a pulse, in closed form.
 
-Dimensionless as in Eq. 40: x = phi/phi_cr, tau = p t from uplift, and x'' = x - 1 + a sin(omega tau + theta_0) until
-the pulse ends. Split into y = x' + x - 1, which grows, and z = x' - x + 1, which decays,
+A pulse has a dimensionless frequency omega and amplitude a. In the plane of omega and a, boundaries separate pulses
+that do not uplift the block, pulses that it survives, and pulses that overturn it without an impact or after one. They
+are known exactly for pulses that are a single sine or a single constant.
 
-    y' = y + a sin(.),  z' = -z + a sin(.),  y = -1 and z = 1 at uplift,
+The equation of motion is dimensionless as in Eq. 40, with x = phi/phi_cr and tau = p t from uplift: x'' = x - 1 +
+a sin(omega tau + theta_0) until the pulse ends. The change of variables y = x' + x - 1 and z = x' - x + 1 gives
 
-the motion at the end of the pulse follows by two integrals. After it, y and z vary as exp(tau) and exp(-tau): the block
-overturns without impact if y > 0; else its rate v at the first impact is given by v^2 - 1 = y z, if x >= 0 at the end
-of the pulse. For the full sine these are the conditions (ii) and (iii) of Eqs. 41-42, and y z is -D0* of Eq. 42.
+    y' = y + a sin(.),  z' = -z + a sin(.),  y = -1 and z = 1 at uplift.
+
+Two integrals therefore give y and z at the end of the pulse. After it, y grows as exp(tau) and z decays as exp(-tau).
+The block overturns without impact if y > 0 at the end of the pulse. Otherwise, if x >= 0 there, the block returns and
+its rate v at the first impact follows from v^2 - 1 = y z. For the full sine these are the conditions (ii) and (iii) of
+Eqs. 41-42, and y z is -D0* of Eq. 42.
 """
 
 from __future__ import annotations
@@ -45,7 +50,7 @@ class Boundary:
 
 
 def uplift_level(omega: Reals, a: Reals) -> Reals:
-    """Return a - 1, which is positive where a pulse uplifts the block."""
+    """Return a - 1, which is positive if the pulse uplifts the block."""
     level: Reals = a - 1 + 0 * omega
     return level
 
@@ -54,7 +59,9 @@ UPLIFT = Boundary("uplift", "uplift, a = 1", uplift_level)
 
 
 def boundaries(shape: Pulse, eta: float) -> list[Boundary]:
-    """Return the boundaries of the linear block that are known for a pulse shape; uplift is known for every shape.
+    """Return the boundaries of the linear block that are known in closed form for a pulse shape.
+
+    Uplift is known for every shape, the others only for a shape that is a single sine or a single constant.
 
     Parameters
     ----------
@@ -92,7 +99,8 @@ def boundaries(shape: Pulse, eta: float) -> list[Boundary]:
 class _End:
     """Motion of the linear block at the end of a pulse, ignoring impacts before it.
 
-    Called with omega and a, it returns y in units of exp(tau_e), y z, and x; NaN where the block does not uplift.
+    An instance is a function of omega and a. It returns y exp(-tau_e), y z and x at the end of the pulse, tau_e, with y
+    and z as in the module; NaN if the block does not uplift.
     """
 
     def __init__(self, shape: Pulse) -> None:

@@ -70,10 +70,11 @@ class ContactDemand:
         if the structure has no masses. Forces of guides that hold the structure sideways are left out; bodies that do
         not move count as ground.
     least_normal : float
-        The smallest N of any joint, or of all where `whole` or `shared`, while it rocks [N], per unit mass of a
-        structure without masses.
+        The smallest normal force N of any joint while the structure rocks [N], per unit mass if it has no masses; of
+        all joints together if `whole` or `shared`.
     impact_friction : float
-        The largest |dP_x|/dP_y of any impact; NaN where it does not follow, see `rocking_cli.core.reactions.impulses`.
+        The largest ratio |dP_x|/dP_y of horizontal to vertical impulse of any impact; NaN if the impulses are not
+        known, see `rocking_cli.core.reactions.impulses`.
     lost : float
         The first time at which a joint would have to pull, an impact would throw a joint apart, or no weight is left on
         the joints [s]; NaN: never.
@@ -210,7 +211,7 @@ class Contacts:
         return reactions(self.mechanism, direction, states.phi[part], states.rate[part], states.ground[part])
 
     def _worst(self, direction: Direction, found: Reactions) -> tuple[Reals, Places]:
-        """Return the three quantities of some states, each at the joint where it is largest, and these joints."""
+        """Return the largest friction required, pull and use of strength in each state, and the joints of these."""
         rest = self._at_uplift[direction]
         bears = np.maximum(BEARS * rest.normal, 0.0)
         normal = np.where(np.abs(found.force) > IDLE * np.abs(rest.force).max(), found.normal, np.nan)

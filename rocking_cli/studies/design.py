@@ -218,24 +218,24 @@ def design(
     points: int = POINTS,
     progress: Callable[[int], None] | None = None,
 ) -> Design:
-    """Find where a requirement is met.
+    """Find the values of a field at which a structure meets a requirement.
 
     Parameters
     ----------
     structure : Structure
         The structure.
     field : str
-        Which of its numbers varies, see `Structure.unit_of`.
+        Path of the numeric field that varies, see `Structure.unit_of`.
     span : (float, float)
-        From where to where, in the unit of the field.
+        Smallest and largest value to try, in the unit of the field.
     aim : Aim
         The requirement.
     excitation : Excitation, optional
-        For a metric that needs ground motions.
+        Ground motions and site, for metrics that need them.
     points : int
-        How many values are tried first, at equal steps.
+        Number of values of the scan, at equal steps over the span.
     progress : callable, optional
-        Called with the number of these that are done since the last call.
+        Called with the number of values of the scan computed since the last call.
 
     Raises
     ------
@@ -244,13 +244,13 @@ def design(
 
     Notes
     -----
-    Each edge is found by the method of Brent, or by halving where the metric moves by steps, between two values of the
-    scan, of which one meets the requirement and the other does not. Between two that agree nothing is looked at: a
-    metric that turns there may hide a range. Where a metric of histories turns over the scan, edges are its values and
-    no closer: a root would be one of many.
+    If one of two consecutive values of the scan meets the requirement and the other does not, the edge between them is
+    found by Brent's method, or by bisection if the metric is a step function. If both or neither meet it, the interval
+    is not searched: a metric that is not monotonic there may hide a range. If a metric of time histories is not
+    monotonic over the scan, edges are values of the scan, because a root would be one of many.
 
-    An unknown outcome meets no requirement: it counts as overturning where less is required, and the metric does not
-    exist where more is.
+    An unknown outcome meets no requirement: it counts as overturning if the metric must be small, and the metric does
+    not exist if it must be large.
     """
     if aim.metric.sited:
         _check_site(aim.metric, excitation)

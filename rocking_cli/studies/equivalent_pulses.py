@@ -144,11 +144,11 @@ def equivalent(
     mechanisms : sequence of Mechanism
         The structures.
     pulse : Pulse
-        The pulse on the first one.
+        The pulse on the first structure.
     polarity : int
         1, or -1 for reversed pulses.
     kappa : {1, 2}
-        Whether a is over lambda_lin or over lambda.
+        Definition of the dimensionless amplitude: a = a_g/(g lambda_lin) for 1, a = a_g/(g lambda) for 2.
     eta : float, "first" or "own"
         Restitution of all impacts: a number, the value of the first structure, or each structure's own value.
 

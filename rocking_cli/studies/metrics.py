@@ -61,8 +61,8 @@ class Metric:
     meaning : str
         Meaning of the metric, in a few words.
     of_structure : callable, optional
-        Returns the metric of a structure under a `Shaking`; NaN if it does not exist, and infinity if it is unlimited.
-        Raises `InputError` or `MechanismError` if the structure has none.
+        Function of a structure and an `Excitation` that returns the metric: NaN if it does not exist, infinity if it
+        is unlimited. Raises `InputError` or `MechanismError` if the structure has none.
     of_neighbours : callable, optional
         Returns the metric of the neighbours of a motion instead: a share of histories, or a fractile, which are step
         functions. An unknown outcome counts as overturning.

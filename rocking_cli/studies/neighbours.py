@@ -36,7 +36,18 @@ TINY = 1e-300  # instead of 0, which has no normal number
 
 
 class Draws(NamedTuple):
-    """Amplitude factor, slenderness factor and restitution of neighbours, with an entry for each neighbour."""
+    """Random factors that turn a time history into its neighbours, one entry for each neighbour.
+
+    Parameters
+    ----------
+    amplitude : ndarray, shape (n,)
+        Factor on the ground motion.
+    slender : ndarray, shape (n,)
+        Factor on the slenderness, of which only the part that is due to weight scatters. A neighbour with a factor of
+        zero or less overturns at rest.
+    eta : ndarray, shape (n, 2)
+        Coefficients of restitution in both directions.
+    """
 
     amplitude: Reals  # factor on the motion
     slender: Reals  # factor on the slenderness as far as it is due to the weight; at zero and below it has overturned
@@ -65,9 +76,10 @@ class Neighbourhood:
 
     Notes
     -----
-    Amplitude and slenderness are lognormal, and the restitution normal, truncated at the value with which an impact
-    keeps all energy: clipped there, a third of all neighbours would never lose any. With these deviations, computed
-    shares agree with those observed in shake-table tests of two boulders, see docs/validation.md.
+    Amplitude and slenderness are lognormal. The restitution is normal, truncated at the value with which an impact
+    keeps all energy; if it were clipped to that value instead, a third of all neighbours would never lose energy. With
+    these deviations, computed shares agree with those observed in shake-table tests of two boulders, see
+    docs/validation.md.
     """
 
     count: int = 200

@@ -281,8 +281,8 @@ def compare(
     -----
     The search tries amplitudes from uplift to the largest at equal ratios of a - 1, then as many just below the least
     that overturns, until it finds no lower one; it then bisects the remaining interval. An island of overturning
-    narrower than a step, 0.7 % of a - 1, may be missed. If joints may open, the same is done below the amplitude found
-    for the least that overturns or is of unknown outcome.
+    narrower than a step, 0.7 % of a - 1, may be missed. If joints may open, a second search below the amplitude found
+    looks for the least amplitude that overturns or has an unknown outcome.
     """
     for structure in structures:
         _check_range(structure, periods, top * STANDARD_GRAVITY / structure.unit)

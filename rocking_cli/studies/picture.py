@@ -181,7 +181,10 @@ class Picture:
 
     @property
     def usual(self) -> Mapping[Direction, float]:
-        """Default displacement over the reference: 1, or less for a body that lies flat before phi_cr."""
+        """Default displacement in each direction, as a fraction of the reference rotation.
+
+        It is 1 if the direction has a critical rotation, less if the body lies flat before, and `SEEN` without one.
+        """
         if self.start is not None:
             return dict.fromkeys(self.directions, 1.0)
         there = min((self.limit[side] / phi for side, phi in self.phi_cr.items() if phi is not None), default=1.0)

@@ -36,7 +36,7 @@ class Sizes:
     model : {"nonlinear", "linear1", "linear2"}
         The equation of motion.
     direction : Direction
-        The direction whose p measures sizes.
+        The direction whose frequency parameter p expresses the size: users give sizes as 2 pi/p.
     """
 
     def __init__(self, mechanism: Mechanism, model: ModelName, direction: Direction) -> None:
@@ -62,7 +62,7 @@ class Sizes:
         return self._known[scale]
 
     def block(self, scale: float) -> EquivalentBlock:
-        """Return the equivalent block, at a scale, of the direction that measures sizes. Raises as `equivalence`."""
+        """Return the equivalent block at a scale, in the direction that expresses sizes. Raises as `equivalence`."""
         return self.equivalence(scale)[self.direction]
 
     def build(self, scale: float) -> Model:

@@ -33,7 +33,8 @@ class SpectrumShape:
     Parameters
     ----------
     structure : PulsedModel
-        The model at scale 1; its direction is the one with the smaller uplift acceleration, whose p measures sizes.
+        The model at scale 1. Its direction is the one with the smaller uplift acceleration; sizes are expressed as 2
+        pi/p of this direction.
     slenderness : float, optional
         Slenderness alpha [rad] of a block whose R is 1 m at scale 1, so that its scale is R in m; None for a given
         structure.
@@ -66,7 +67,10 @@ class SpectrumShape:
         return 2 * pi / self.structure.p
 
     def scales(self, periods: Reals) -> Reals:
-        """Return the scales at which 2 pi/p has given values [s]; if shape alone decides, p^2 is 1 over scale."""
+        """Return the scales at which 2 pi/p has given values [s].
+
+        If the shape alone decides how the structure rocks, the scale is proportional to 1/p^2.
+        """
         if self.own is not None:
             return np.array([self.own.scale(period) for period in periods.tolist()])
         return np.square(periods / self.period)
@@ -174,7 +178,7 @@ class Spectrum:
 
     @property
     def uplifts(self) -> Reals:
-        """Uplift acceleration over g at each size, in the direction that measures sizes, shape (n,)."""
+        """Uplift acceleration over g at each size, shape (n,), in the direction with the smaller one at scale 1."""
         own, model = self.shape.own, self.shape.structure.model.name
         if own is None:
             return np.full(self.scales.size, self.shape.structure.lambda_)
@@ -317,7 +321,10 @@ def _of_one_shape(
     threads: int | None,
     progress: Progress | None,
 ) -> Outcomes:
-    """Simulate every motion, polarity and scale with one model, whose motion at another size has another pace."""
+    """Simulate every motion, polarity and scale with one model.
+
+    This is possible if sizes differ only in their time scale, because the kernel scales the model to each size.
+    """
     runs = Runs.every(1, len(motions), polarities=signs, sizes=scales.tolist())
     found = _outcomes([shape.structure.model], motions, runs, threads, progress)
     return found.by_field(lambda values: values.reshape(-1, len(signs), scales.size))

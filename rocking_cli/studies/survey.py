@@ -102,7 +102,7 @@ class Surveyed:
     under : Under, optional
         Response to ground motions, if there are any.
     ratio : float, optional
-        Capacity over demand by the code of the site, in the direction where it is smaller; passes from 1. NaN if the
+        Capacity over demand by the code of the site, in the direction where it is smaller; 1 or more passes. NaN if the
         site file lacks values that the code needs; None without a site.
     """
 

@@ -102,9 +102,9 @@ def read_target(path: Path) -> TargetSpectrum:
     Parameters
     ----------
     path : Path
-        Lines of a period [s] and an ordinate, with a comma, a semicolon or blanks between. What stands above the
-        numbers is a heading: it may name the unit of the ordinates, which are in g otherwise. Blank lines, and those
-        that begin with #, are passed over.
+        A file whose lines each have a period [s] and an ordinate, separated by a comma, a semicolon or blanks. A
+        heading above the numbers may name the unit of the ordinates; without it they are in g. Blank lines, and lines
+        that begin with #, are skipped.
 
     Returns
     -------

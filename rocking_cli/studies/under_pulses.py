@@ -204,7 +204,7 @@ def outcomes(
 
     Returns
     -------
-    Outcome
+    Outcomes
         Outcomes of shape (n,).
 
     Notes

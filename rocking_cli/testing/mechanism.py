@@ -403,7 +403,10 @@ def contacts_bear_its_weight(structure: Mechanism) -> None:
 
 
 def _pieces(structure: Mechanism, direction: Direction) -> Sequence[Piece]:
-    """Return the pieces of a direction, which must be all of each of its bodies; one that rests needs none."""
+    """Return the pieces of a direction, after checking that the pieces of each moving body add up to the body.
+
+    A body at rest needs no pieces.
+    """
     bodies, pieces = structure.weighed(), structure.pieces(direction)
     names = {body.name for body in bodies}
     _demand(len({each.body.name for each in pieces}) == len(pieces), "two pieces have the same name")

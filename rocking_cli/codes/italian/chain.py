@@ -171,7 +171,10 @@ class Chain:
 
     @cached_property
     def _letter(self) -> tuple[float, float]:
-        """alpha0 and e* if P + Q includes every weight carried, even without horizontal inertia."""
+        """alpha0 and e* by the literal wording of the code, in which P + Q includes every weight carried.
+
+        Otherwise, weights without horizontal inertia are left out of P + Q.
+        """
         sums = np.zeros(3)
         for block, weights in zip(self.blocks, self._weights_of_blocks, strict=True):
             more = [max(each.carried - each.inertial, 0.0) for each in weights]

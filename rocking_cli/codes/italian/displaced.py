@@ -153,7 +153,10 @@ class DisplacedChain:
 
     @property
     def rest(self) -> float:
-        """Part of V' that weights, forces and ties do not give: what the mechanism itself adds [N m]."""
+        """Remainder of V' that the listed weights, forces and ties do not explain [N m].
+
+        It comes from the mechanism itself, and is set to 0 if it is only rounding.
+        """
         known = self.lifted + sum(each.work for each in self.held)
         rest = self._own.V - known
         scale = sum(abs(each.block.P * each.dy) for each in self.blocks) + sum(abs(each.work) for each in self.held)
@@ -161,7 +164,10 @@ class DisplacedChain:
 
     @property
     def more(self) -> float:
-        """Part of g B that the weights do not give: inertia that the mechanism itself adds [N m]."""
+        """Remainder of g B that the listed weights do not explain: additional inertia of the mechanism itself [N m].
+
+        It is set to 0 if it is only rounding.
+        """
         more = self._own.B * self.chain.mechanism.gravity - self.driven
         return more if abs(more) > ROUNDING * abs(self.driven) else 0.0
 

@@ -74,7 +74,10 @@ class SiteGround:
 
     @property
     def of_activation(self) -> DemandSpectrum:
-        """The spectrum that the linear method uses; on a floor with the mode of SLD."""
+        """Spectrum of the linear method, at the support of the structure.
+
+        On a floor, the mode of the building is that of SLD.
+        """
         ground = self.on_ground(self.state_of_activation)
         assert ground is not None  # SLV is always given
         return self._where_it_stands(ground, "SLD")
@@ -108,7 +111,11 @@ class SiteGround:
     def lasts(
         self, state: str, demand: Callable[[DemandSpectrum], float], capacity: float
     ) -> tuple[float | None, bool]:
-        """Return the return period at which a demand reaches a capacity [years]; whether it is off the table."""
+        """Return the return period at which a demand reaches a capacity [years], and whether it is beyond the table.
+
+        Beyond the table of the hazard, the return period is the nearest one of the table; None if the hazard is not
+        known.
+        """
         hazard = self.hazard
         if hazard is None:
             return None, False

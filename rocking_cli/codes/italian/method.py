@@ -163,6 +163,9 @@ def _verified(
 
 
 def _governs(methods: Mapping[str, ItalianMethod], damage: str, nonlinear: str) -> str:
-    """Return the method that governs at a limit state; the capacity of the nonlinear one is at least that of onset."""
+    """Return the key of the method that governs at a limit state, the damage method or the nonlinear one.
+
+    The damage method governs if its a_g, at which rocking starts, exceeds that of the nonlinear method.
+    """
     start, moved = methods[damage].a_g, methods[nonlinear].a_g
     return damage if start is not None and moved is not None and start > moved else nonlinear

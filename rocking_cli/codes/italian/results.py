@@ -35,7 +35,7 @@ class LimitState:
 
     @property
     def ratio(self) -> float | None:
-        """Displacement capacity over demand, which passes from 1; None without a demand."""
+        """Displacement capacity over demand, at least 1 if the state passes; None without a demand."""
         return None if self.demand is None else self.d / self.demand
 
     @property
@@ -242,5 +242,5 @@ class ItalianVerification(frame.Verification):
         return next(iter(self.directions.values())).first
 
     def compared(self, direction: Direction) -> float | None:
-        """Return the ratio of displacements at the first limit state."""
+        """Return the ratio of displacement capacity to demand at the first limit state; None if unknown."""
         return self.directions[direction].states[self.first].ratio

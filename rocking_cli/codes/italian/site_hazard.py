@@ -83,7 +83,10 @@ class Hazard:
         return GroundSpectrum(ag, F0, corner_factor(self.soil, TC_star) * TC_star, S, self.soil)
 
     def counted(self, life: float, state: str) -> float:
-        """Return the return period of a limit state, within the limits of the code [years]. Raises off the table."""
+        """Return the return period of a limit state, limited to the range that the code allows [years].
+
+        Raises `InputError` if it is beyond the table of the hazard.
+        """
         TR = min(max(return_period(life, state), SHORTEST), LONGEST)
         if not self.table[0][0] <= TR * (1 + 1e-9) or not self.table[-1][0] * (1 + 1e-9) >= TR:
             raise InputError(

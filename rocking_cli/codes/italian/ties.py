@@ -64,9 +64,9 @@ def pulls(curve: ExactCurve, d: float) -> Sequence[Pull]:
 
 
 def furthest(curve: ExactCurve, d: float) -> tuple[float, float]:
-    """Return how far the centroid of a block goes sideways at a displacement, and the thickness of that block [m].
+    """Return the sideways displacement of a block's centroid at a displacement, and the thickness of the block [m].
 
-    Of several blocks, those of the largest ratio; (0, 1) if no outline is known.
+    The block is the one with the largest ratio of both; (0, 1) if no outline is known.
     """
     drawn = curve.chain.mechanism.sketch().outlines
     own = {body.name: [body.outline] for body in curve.chain.mechanism.bodies() if body.outline}
@@ -93,10 +93,10 @@ def carried(curve: ExactCurve, d: float) -> dict[str, float]:
 
 
 def lasting(mechanism: Mechanism) -> Mechanism:
-    """Return the structure; if elastic ties would hold it for ever, with ties of constant force.
+    """Return the structure, with constant forces in place of elastic ties that would hold it at any displacement.
 
-    The code needs a curve up to collapse; a tie that holds for ever is a model beyond the strength of the tie. The
-    constant force is that at rest.
+    The capacity curve of the code ends at collapse. A tie whose force increases without limit has no such end, because
+    the model does not know the strength of the tie. The constant force is the force of the tie at rest.
     """
     if not elastic(mechanism):
         return mechanism

@@ -62,7 +62,7 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
         return _data(each)
 
     def data_of_all(self, found: ItalianVerification) -> dict[str, Any]:
-        """Return nothing more: the ground is in the workings."""
+        """Return an empty mapping, because the values of the ground are already among the workings."""
         return {}
 
     def table(self, found: ItalianVerification) -> dict[str, Sequence[Any]]:

@@ -207,5 +207,8 @@ def _apart(one: Spot, other: Spot) -> float:
 
 
 def _met(d: Points, dd: Points, rest: float) -> NDArray[np.bool_]:
-    """Return where points that coincide at rest are still so near that their distance is its derivative times phi."""
+    """Return a mask of the rotations at which two points that coincide at rest are still very close together.
+
+    At these rotations, their distance is taken as its derivative times phi.
+    """
     return np.abs(d) <= NEAR * np.abs(dd) if rest == 0.0 else np.zeros(d.shape, bool)

@@ -121,7 +121,11 @@ class Spring(Stretched):
         return np.minimum(n, 0.0) if self.only == "compression" else n
 
     def slope(self, e: Reals, going: Reals) -> Reals:
-        """Return k where the tie acts, else 0; a tie at zero force acts if `going` has the sense in which it acts."""
+        """Return the stiffness dN/de at elongations `e` [N/m]: k if the tie acts, 0 if it is slack.
+
+        At the elongation at which the tie goes slack or taut, it acts if `going` (e') has the sign that stretches it
+        further.
+        """
         if self.only is None:
             return np.full(e.shape, self.stiffness)
         sense = -1.0 if self.only == "compression" else 1.0

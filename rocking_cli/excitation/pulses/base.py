@@ -139,9 +139,11 @@ class Pulse(ABC):
             Samples per period; a few more are used if the pulse would otherwise not end at a sample that time histories
             keep.
 
-        Notes ----- Linear interpolation of a curve lies on its inner side, so that impulse is lost. Samples shifted by
-        a twelfth of the second difference keep the impulse of the curve in every interval, so that the error of motions
-        is of fourth order in the interval, not of second order.
+        Notes
+        -----
+        Linear interpolation of a curve lies on its inner side, so that impulse is lost. Samples shifted by a twelfth of
+        the second difference keep the impulse of the curve in every interval, so that the error of motions is of fourth
+        order in the interval, not of second order.
         """
         every = max(per_period // COARSE, 1)
         steps = every * int(np.ceil(self.span * per_period / every - 1e-9))

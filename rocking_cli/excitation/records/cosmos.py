@@ -180,7 +180,7 @@ def _peak(headers: _Headers, values: NDArray[np.float64], dt: float, unit: str) 
 
 
 def _announced(line: str) -> re.Match[str] | None:
-    """Match a line that announces values; a long line is none, and is not searched, which would take long."""
+    """Match a line that announces values; None for other lines, and for long ones, which would take long to search."""
     return _DATA.match(" ".join(line.split())) if len(line) < _LONG else None
 
 

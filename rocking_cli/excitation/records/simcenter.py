@@ -94,7 +94,10 @@ class _TwiceError(Exception):
 
 
 def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Return an object of its pairs; raise `_TwiceError` for a repeated key, of which JSON would take the last."""
+    """Return a JSON object as a mapping. Raises `_TwiceError` if it has a key twice.
+
+    Python's `json` would silently keep the last value of the key.
+    """
     found: dict[str, Any] = {}
     for key, value in pairs:
         if key in found:

@@ -87,7 +87,7 @@ class Measure(ABC):
 
     @property
     def base(self) -> MotionMeasure | None:
-        """The measure of the motion alone on which this one is based, or which it is; None for a `RunMeasure`."""
+        """The measure of the motion alone from which this measure is computed; None for a `RunMeasure`."""
         return None
 
     def relative(self, value: Any, structure: Reference) -> Any:

@@ -147,10 +147,11 @@ def fit_curve(observations: Observations, *, confidence: float = 0.95) -> Fragil
     Returns
     -------
     FragilityCurve
-        Lognormal, unless that is wrong: logistic if the lognormal does not increase, or is rejected at 5 % while
-        logistic is likelier. Logistic is taken in the intensity, not in its logarithm: that would be within 0.01 of the
-        lognormal and wrong where it is wrong. A step if all that exceed lie above all that do not: the likelihood then
-        grows for ever with the slope. None if there is nothing to fit.
+        Of kind `none` if there is nothing to fit. Of kind `step` if all runs that exceed lie above all that do not, as
+        the likelihood then increases without bound with the slope. Of kind `logistic` if the lognormal curve does not
+        increase, or if it is rejected at 5 % and the logistic curve is likelier. Otherwise of kind `lognormal`. The
+        logistic curve is a function of the intensity itself: as a function of its logarithm, it would differ by less
+        than 0.01 from the lognormal curve and be rejected with it.
     """
     seen = observations
     bare = FragilityCurve("none", "", confidence, seen.runs, seen.exceedances, records=seen.records)

@@ -356,9 +356,9 @@ def read_definition(path: Path) -> tuple[Document, Definition | None]:
     Returns
     -------
     document : Document
-        The content with the lines on which everything stands, and the problems.
+        The content of the file, with the line of every item, and the problems found.
     definition : Definition or None
-        None if there are problems.
+        The definition of the study; None if there are problems.
 
     Raises
     ------

@@ -61,9 +61,9 @@ def kept(fact: Callable[[str], Any], limits: Sequence[str | float]) -> dict[str,
     Parameters
     ----------
     fact : callable
-        `Store.fact`.
+        The method `Store.fact` of the open store.
     limits : sequence of limit states
-        The requested ones; a store whose study requests none keeps none.
+        The requested limit states; a store keeps rotations only for displacements that its study requests.
 
     Returns
     -------

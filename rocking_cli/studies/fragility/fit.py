@@ -48,14 +48,16 @@ class Estimate:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Maximum-likelihood coefficients of a linear predictor eta = X The coefficients c.
+    """Maximum-likelihood estimate of a curve: the probability of exceedance is a function of eta = X c.
+
+    X is the design: a row for each observation, such as (1, ln intensity). c are the coefficients.
 
     Parameters
     ----------
     link : str
-        `probit`, P = Phi(eta), or `logit`, P = 1/(1 + exp(-eta)).
+        Function of eta: `probit`, P = Phi(eta), or `logit`, P = 1/(1 + exp(-eta)).
     coefficients : ndarray, shape (k,)
-        c.
+        The coefficients c.
     covariance : ndarray, shape (k, k)
         Covariance of the coefficients.
     log_likelihood : float
@@ -65,7 +67,8 @@ class Fit:
     degrees : float
         Degrees of freedom of Student's distribution, on which the intervals are based; infinite: normal distribution.
     ladders : bool
-        Whether the fit is to capacities of ladders, whose curve increases by definition, and not to runs.
+        Whether the fit is to capacities from ladders of increasing intensity, and not to single runs. A curve of
+        capacities increases by definition.
     """
 
     link: Link
@@ -280,11 +283,12 @@ def _tells(information: Reals) -> bool:
 def _covariance(terms: Terms, seen: Counts, coefficients: Reals, information: Reals) -> Reals | None:
     """Return the covariance of the coefficients; None if the data do not determine it.
 
-    If every record has one run, this is the inverse of the information. Otherwise the record is the cluster: each is
-    left out in turn, and (G - 1)/G times the sum of the squared changes of the coefficients is the covariance, of G
-    records. The change is that of one step of Newton's method, with the information that is left [MacKinnon, Nielsen &
-    Webb 2023, J. Appl. Econometrics 38, 671-694]. Complete refits leave the slope of one in two studies of seven
-    records unbounded, and the usual sandwich estimator gives narrower intervals; docs/fragility.md has trials.
+    If every record has one run, the covariance is the inverse of the information matrix. Otherwise runs of one record
+    depend on each other, and a jackknife over the G records estimates it: each record is left out in turn, and the
+    covariance is (G - 1)/G times the sum of the squared changes of the coefficients. Each change is approximated by one
+    Newton step with the information matrix of the other records [MacKinnon, Nielsen & Webb 2023, J. Appl. Econometrics
+    38, 671-694]. Complete refits instead leave the slope unbounded in one of two studies of seven records, and the
+    usual sandwich estimator gives intervals that are too narrow; docs/fragility.md has trials.
     """
     if not seen.repeated:
         return np.asarray(np.linalg.inv(information)) if _tells(information) else None

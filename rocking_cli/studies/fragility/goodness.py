@@ -1,4 +1,4 @@
-"""Goodness-of-fit tests of curves: observed counts in groups against the counts that the curve expects."""
+"""Goodness-of-fit tests of fragility curves: observed numbers of exceedances against the numbers a curve predicts."""
 
 from __future__ import annotations
 
@@ -46,24 +46,26 @@ class Goodness:
 
 
 def goodness_of_runs(fit: Fit, design: Reals, seen: Observations) -> Goodness:
-    """Test a curve against the number of runs that exceed, in each group of the runs.
+    """Test a curve that was fitted to runs: compare observed with predicted numbers of exceedances in groups of runs.
 
     Parameters
     ----------
     fit : Fit
         The curve.
     design : ndarray, shape (m, 2)
-        X at the different intensities.
+        Rows of the linear predictor at the m different intensities, see `Fit`.
     seen : Observations
-        The runs, as fitted.
+        The runs to which the curve was fitted, in groups of similar intensity.
 
     Notes
     -----
-    Pearson's statistic T = sum (observed - expected)^2/variance over the groups is a sum of chi-squares of one degree
-    of freedom, weighted by the eigenvalues of the covariance V of the standardised differences. V counts that the
-    coefficients were fitted to the same runs, and that runs of one record are alike. T tr(V)/tr(V^2) is then a
-    chi-square of tr(V)^2/tr(V^2) degrees of freedom [Rao & Scott 1984, Annals of Statistics 12, 46-60]. For stripes of
-    independent runs V has m - 2 eigenvalues, all one: this is the usual test with m - 2 degrees of freedom.
+    The statistic is Pearson's: T, the sum over the groups of (observed - predicted)^2/variance. Its distribution
+    depends on the covariance V of the standardised differences, which accounts for two facts: the coefficients were
+    fitted to the same runs, and runs of one record depend on each other. T is a sum of chi-squares of one degree of
+    freedom, weighted by the eigenvalues of V. The test replaces this sum by one chi-square of equal mean and variance:
+    T tr(V)/tr(V^2) has tr(V)^2/tr(V^2) degrees of freedom [Rao & Scott 1984, Annals of Statistics 12, 46-60]. For
+    stripes of independent runs at m intensities, V has m - 2 eigenvalues of one, and the test is the usual one with m -
+    2 degrees of freedom.
     """
     place, record, number = seen.counts.term, seen.counts.record, seen.counts.number
     eta = np.clip(design @ fit.coefficients, -FARTHEST, FARTHEST)[place]
@@ -98,23 +100,28 @@ def goodness_of_runs(fit: Fit, design: Reals, seen: Observations) -> Goodness:
 
 
 def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, seen: Counts, levels: Reals | None) -> Goodness:
-    """Test a distribution of capacities against their number in cells whose bounds lie inside no bracket.
+    """Test a distribution fitted to capacities: compare observed with predicted numbers in ranges of intensity.
+
+    Each capacity is known only to lie in a bracket, between two levels that were simulated. The ranges are therefore
+    bounded by those levels that lie strictly inside no bracket, so that every capacity belongs to one range.
 
     Parameters
     ----------
     fit : Fit
-        The distribution, over u.
+        The distribution of u, the logarithm of the capacity.
     lower, upper : ndarray, shape (n,)
-        The different brackets of u; minus and plus infinity where open.
+        The different brackets of u; minus and plus infinity if open.
     seen : Counts
         Number of capacities of each record in each bracket.
     levels : ndarray, shape (m,), optional
-        All levels that were simulated, finite: the bounds of cells must not depend on the capacities.
+        All finite levels of u that were simulated. None if they differ between capacities: there is no test then, as
+        the ranges would depend on the capacities.
 
     Notes
     -----
-    As in `goodness_of_runs`. If every record has one capacity, V is the covariance of the counts minus the part that
-    the fit absorbs; if the cells are the brackets, V has m - 3 eigenvalues, all one.
+    The statistic is that of `goodness_of_runs`. If every record has one capacity, V is the covariance of the
+    multinomial counts minus the part that the fit absorbs; if no two brackets overlap, V has as many eigenvalues of one
+    as there are ranges less three.
     """
     name = "chi-square of the capacities"
     if levels is None:
@@ -161,7 +168,7 @@ def _sums(group: Integers, weights: Reals, rows: Reals, count: int) -> Reals:
 
 
 def _weighted(name: str, rest: Reals, variance: Reals, covariance: Reals) -> Goodness:
-    """Test a sum of squared differences with a given covariance, by a chi-square of equal mean and variance."""
+    """Test differences of known covariance: Pearson's statistic against a chi-square of equal mean and variance."""
     from scipy.special import chdtrc
 
     standard, deviation = rest / np.sqrt(variance), np.sqrt(variance)

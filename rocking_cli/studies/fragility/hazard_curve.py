@@ -28,9 +28,9 @@ class HazardCurve:
     Parameters
     ----------
     intensity : ndarray, shape (n,)
-        Positive, increasing; of the measure and in the unit of the fragility curve.
+        Intensities, positive and increasing, in the measure and the unit of the fragility curve.
     annual_rate : ndarray, shape (n,)
-        Positive, never increasing [1/year].
+        Rates of exceedance at these intensities, positive and never increasing [1/year].
 
     Raises
     ------
@@ -75,8 +75,8 @@ def read_hazard(path: Path) -> HazardCurve:
     Parameters
     ----------
     path : Path
-        Lines of an intensity and an annual rate with a comma between; one heading, blank lines, and lines that begin
-        with # are passed over.
+        A file whose lines each have an intensity and an annual rate, separated by a comma. One heading, blank lines,
+        and lines that begin with # are skipped.
 
     Returns
     -------

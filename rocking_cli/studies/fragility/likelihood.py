@@ -176,10 +176,11 @@ def standardised(design: Reals) -> tuple[Reals, Reals]:
 
 
 def separable(design: Reals, exceeded: Bools) -> bool:
-    """Return whether a plane separates the runs that exceed from the others; points on it may be of either kind.
+    """Return whether some linear function of the design separates the runs that exceed from the runs that do not.
 
-    The likelihood then has no maximum: it increases without bound as the predictor becomes steeper [Albert & Anderson
-    1984, Biometrika 71, 1-10]. Found by linear programming; the columns of the design should be of the order of one.
+    Runs on the boundary may be of either kind. If such a function exists, the likelihood has no maximum: it increases
+    without bound as the curve becomes steeper [Albert & Anderson 1984, Biometrika 71, 1-10]. A linear programme
+    decides; the columns of the design should be of the order of one.
     """
     from scipy.optimize import linprog
 

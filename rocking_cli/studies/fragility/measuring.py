@@ -52,7 +52,7 @@ def complete(
     asked : iterable of str
         Names of the measures; the factor on the records is ignored.
     told : callable, optional
-        See `Told`; it is called for every record.
+        Called with the number of records measured since the last call; see `Told`.
     origins : bool
         Whether to keep what the records state of their earthquake, too.
 

@@ -26,7 +26,7 @@ class Observations:
     Parameters
     ----------
     x : ndarray, shape (m,)
-        The different intensities, positive and growing.
+        The different intensities, positive and increasing.
     counts : Counts
         Number of runs of each record at each intensity: n cells.
     exceeding : ndarray, shape (n,)

@@ -116,7 +116,10 @@ def _crossing(moved: Callable[[Reals], Reals], low: float, high: float, wanted: 
 
 
 def _peak(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float) -> float | None:
-    """Return a rotation between two at which a displacement is reached, unlike at both ends; None without one."""
+    """Return a rotation between two others at which a displacement is reached, although at neither of these.
+
+    None if there is no such rotation.
+    """
     for _ in range(LOOKS):
         fine = np.linspace(low, high, CLOSER + 1)
         at = moved(fine)

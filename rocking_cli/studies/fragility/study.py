@@ -309,7 +309,11 @@ def _of_file_or_list(
 
 
 def _together(entry: RecordEntry, listed: Entry) -> dict[str, Any]:
-    """Combine the entry of a study and the entry of a list of records; their corrections follow each other."""
+    """Merge the entry of a study that names a list of records with the entry of one record in that list.
+
+    Values of the list entry take precedence. Processing steps of both apply: first those of the list, then those of the
+    study. Factors of both apply too; the factor of the list comes before any step of the study.
+    """
     said = {**as_written(entry), **as_written(listed), "file": str(entry.file)}
     steps = [*(listed.processing or []), *(entry.processing or [])]
     if listed.factor is not None and (entry.processing or entry.factor is not None):
@@ -331,7 +335,7 @@ def _in_words(name: str, entry: RecordEntry) -> str:
 
 
 def _apart(sources: Sequence[Source]) -> list[Source]:
-    """Return the records; those that share a name are named by channel and azimuth as well."""
+    """Return the records with different names: channel and azimuth are added to names that several records share."""
     names = [source.name for source in sources]
     return [
         replace(each, name=_in_words(each.file, each.entry)) if names.count(each.name) > 1 else each for each in sources

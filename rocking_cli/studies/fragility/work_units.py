@@ -115,20 +115,20 @@ def units(
     *,
     checked: bool = False,
 ) -> Iterator[WorkUnit]:
-    """Yield the runs that are still to be simulated, in units made one at a time.
+    """Yield the runs that are still to be simulated, grouped into units, each made when it is needed.
 
     Parameters
     ----------
     plan : Plan
         All runs.
     samples : sequence of Sample
-        The structures of its trials.
+        The structures of the plan's trials.
     motions : KeptMotions
-        The ground motions of its records.
+        The ground motions of the plan's records.
     model : {"nonlinear", "linear1", "linear2"}
         The equation of motion.
     finished : callable
-        Returns the numbers of the finished runs from one number to before another.
+        Function (first, stop) that returns the numbers of the finished runs from `first` to before `stop`.
     size : int
         Largest number of runs of a unit.
     checked : bool

@@ -159,7 +159,10 @@ class Verification:
         return nan if found is None else found
 
     def compared(self, direction: Direction) -> float | None:
-        """Return the ratio by which a direction is compared with the other."""
+        """Return the ratio of capacity to demand of a direction, by which the directions are compared; None if unknown.
+
+        The direction with the smaller ratio governs. A code may override this method to compare by another ratio.
+        """
         return self.directions[direction].ratio
 
     @property
