@@ -44,10 +44,9 @@ def usual(option):
 
 
 VERBS = [name for name in COMMANDS if name not in WITHOUT]
-LEFT = pytest.mark.xfail(strict=True, reason="`record` reads, examines and writes by itself still")
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=LEFT) if name == "record" else name for name in VERBS])
+@pytest.mark.parametrize("name", VERBS)
 def test_what_a_command_can_do_python_can_do_by_the_same_names(name):
     verb = getattr(rk, name)
     arguments = inspect.signature(verb).parameters

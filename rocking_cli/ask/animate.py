@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import Motion, StructureLike, models_of, signs_of, structure_of
-from rocking_cli.ask.ground_motions import MotionArguments, Motions
+from rocking_cli.ask.given import StructureLike, models_of, structure_of
+from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.studies.film import Film

@@ -8,15 +8,14 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rocking_cli.ask.ground_motions import kind_of
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
 from rocking_cli.core.size import doubts
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.errors import InputError, MechanismError, Problem, RockingError
-from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
-from rocking_cli.excitation.records import read_record
-from rocking_cli.excitation.scaled import Scaled
+from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.io.json_text import json_text
 from rocking_cli.structure import Structure
 from rocking_cli.structure_file import load_structure
@@ -33,8 +32,6 @@ StructureLike = Mechanism | Structure | str | Path
 """Mechanism, or its YAML file, or a structure that was prepared."""
 SiteLike = Mapping[str, Any] | str | Path
 """Fields of a site file, or the file."""
-Motion = GroundMotion | Pulse | Scaled | str | Path
-"""Ground motion or pulse, file of a record, or pulse as text such as `sine:0.6g:0.8s`."""
 
 
 def structure_of(given: StructureLike, opening: float | None = None) -> Structure:
@@ -154,43 +151,6 @@ def sized_pulse(shape: str, ag: float | None, period: float | None) -> Pulse:
             raise InputError(Problem(f"must be above 0, got {value:g}", field=field))
     assert ag is not None and period is not None
     return replace(parse_shape(shape), amplitude=ag * STANDARD_GRAVITY, period=period)
-
-
-def motion_of(given: Motion) -> GroundMotion:
-    """Read a ground motion from its file, or sample a pulse. Raises `InputError`."""
-    given = _read(given)
-    return given.sampled() if isinstance(given, Pulse) else given
-
-
-def _read(given: Motion) -> GroundMotion | Pulse:
-    """Read a motion from its file, or a pulse from its text; a file of the same name has priority."""
-    if isinstance(given, GroundMotion | Pulse):
-        return given
-    if isinstance(given, str) and given.partition(":")[0] in PulseShapes() and not Path(given).exists():
-        return parse_pulse(given)
-    if not isinstance(given, str | Path):
-        hint = "make one with rk.GroundMotion(name, dt, acceleration), the acceleration in m/s2"
-        what = f"must be a ground motion, a pulse or a file, got {kind_of(given)}"
-        raise InputError(Problem(what, field="motion", hint=hint))
-    return read_record(given)
-
-
-def kind_of(given: object) -> str:
-    """Return the type of a value, for messages: `a dict`."""
-    name = type(given).__name__
-    return f"{'an' if name[0].lower() in 'aeiou' else 'a'} {name}"
-
-
-def each_of(given: Any) -> list[Any]:
-    """Return a list or tuple as a list, and one thing as a list of one."""
-    return list(given) if isinstance(given, list | tuple) and not isinstance(given, Scaled) else [given]
-
-
-def signs_of(polarity: str | int) -> tuple[int, ...]:
-    """Return the polarities of an argument: 1 as given, -1 reversed, or "both". Raises `InputError`."""
-    if str(polarity) not in ("1", "-1", "both"):
-        raise InputError(Problem(f"must be 1, -1 or 'both', got {polarity!r}", field="`polarity`"))
-    return (1, -1) if polarity == "both" else (int(polarity),)
 
 
 def doubts_of(mechanism: Mechanism) -> list[str]:

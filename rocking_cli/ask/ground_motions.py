@@ -11,13 +11,13 @@ from pathlib import Path
 from textwrap import shorten
 from typing import Any, TypedDict
 
-from rocking_cli.ask.given import Motion, each_of, kind_of
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem, renamed
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.doubts import coarse_for, doubts
 from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
+from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records.opening import STANDARD_INPUT, allow_again
 from rocking_cli.excitation.records.sensor import Gain, Quantity, size_of
 from rocking_cli.excitation.scaled import Scaled
@@ -25,11 +25,12 @@ from rocking_cli.excitation.selection import select
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.listed import Listed, is_list
 from rocking_cli.processing.reading import Reading
-from rocking_cli.processing.record_list import read_list
-from rocking_cli.processing.steps import STEPS, Step, parse_step, process
+from rocking_cli.processing.steps import STEPS, Resample, Step, parse_step, process
 from rocking_cli.views.processing import in_words
 from rocking_cli.views.view import FEW
 
+Motion = GroundMotion | Pulse | Scaled | str | Path
+"""Ground motion or pulse, file of a record, or pulse as text such as `sine:0.6g:0.8s`."""
 MOST_PGA, MOST_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and too long to simulate
 SCALING = ("scale", "target_pga", "target_pgv")
 OF_FILES = ("dt", "units", "channel", "quantity", "gain", "other")
@@ -309,6 +310,28 @@ class Motions:
                 return typed
         return given
 
+    def unprocessed(self, motion: Scaled) -> GroundMotion | None:
+        """Return the record of one of these motions before its corrections; None if it has none."""
+        record = self._found[0][motion.place]
+        if not isinstance(record, Listed) or not (reading := record.reading(self.usual or self.reading)).steps:
+            return None
+        allow_again(record.path)
+        grid = tuple(step for step in reading.steps if isinstance(step, Resample))  # uneven times cannot do without
+        bare = replace(reading, steps=grid, floor=None)
+        typed = replace(self.reading, steps=grid, floor=None) if self.usual is not None else bare
+        return Motions((), typed, bare if self.usual is not None else None).read(Listed(record.path))
+
+    def apart(self) -> list[Motions]:
+        """Return these motions one by one, those that cannot be found among them."""
+        alone = [([source], list[InputError]()) for source in self._found[0]]
+        alone += [(list[GroundMotion | Scaled | Pulse | Listed](), [error]) for error in self._found[1]]
+        single = []
+        for found in alone:
+            one = replace(self)
+            one.__dict__["_found"] = found
+            single.append(one)
+        return single
+
     def without(self, path: Path) -> Motions:
         """Return these motions without those of one file."""
         found = [
@@ -391,9 +414,43 @@ def pulse_in(given: Motion) -> Pulse | None:
     return None
 
 
+def motion_of(given: Motion) -> GroundMotion:
+    """Read a ground motion from its file, or sample a pulse. Raises `InputError`."""
+    if isinstance(given, GroundMotion):
+        return given
+    if isinstance(given, Scaled):
+        return given.motion.scaled(given.factor)
+    pulse = pulse_in(given)
+    return pulse.sampled() if pulse is not None else read_record(str(given))
+
+
 def files_of(place: str) -> list[Listed]:
     """Return the records of a file, a pattern or a list of records. Raises `InputError` if there are none."""
-    return [listed for path in select(place) for listed in (read_list(path) if is_list(path) else [Listed(path)])]
+    return [listed for path in select(place) for listed in (_listed(path) if is_list(path) else [Listed(path)])]
+
+
+def _listed(path: Path) -> list[Listed]:
+    from rocking_cli.processing.record_list import read_list
+
+    return read_list(path)
+
+
+def kind_of(given: object) -> str:
+    """Return the type of a value, for messages: `a dict`."""
+    name = type(given).__name__
+    return f"{'an' if name[0].lower() in 'aeiou' else 'a'} {name}"
+
+
+def each_of(given: Any) -> list[Any]:
+    """Return a list or tuple as a list, and one thing as a list of one."""
+    return list(given) if isinstance(given, list | tuple) and not isinstance(given, Scaled) else [given]
+
+
+def signs_of(polarity: str | int) -> tuple[int, ...]:
+    """Return the polarities of an argument: 1 as given, -1 reversed, or "both". Raises `InputError`."""
+    if str(polarity) not in ("1", "-1", "both"):
+        raise InputError(Problem(f"must be 1, -1 or 'both', got {polarity!r}", field="`polarity`"))
+    return (1, -1) if polarity == "both" else (int(polarity),)
 
 
 def done(motion: GroundMotion) -> str:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 
 from rocking_cli.ask.answer import MappingAnswer
-from rocking_cli.ask.given import Motion, StructureLike, signs_of, structure_of
-from rocking_cli.ask.ground_motions import MotionArguments, Motions
+from rocking_cli.ask.given import StructureLike, structure_of
+from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.view import heading

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import Motion, StructureLike, doubts_of, models_of, motion_of, structure_of
+from rocking_cli.ask.given import StructureLike, doubts_of, models_of, structure_of
+from rocking_cli.ask.ground_motions import Motion, motion_of
 from rocking_cli.dynamics.history import RTOL
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.floor import Floor

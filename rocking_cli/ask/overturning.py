@@ -7,7 +7,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, each_of, structure_of, structures_of, told_apart, warn_misleading
+from rocking_cli.ask.given import StructureLike, structure_of, structures_of, told_apart, warn_misleading
+from rocking_cli.ask.ground_motions import each_of
 from rocking_cli.ask.overturning_curves import overturning_curves
 from rocking_cli.ask.overturning_map import overturning_map
 from rocking_cli.ask.watcher import SILENT, Watcher

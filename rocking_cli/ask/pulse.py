@@ -97,7 +97,8 @@ def pulse(
         return _on_block(a, omega, ETA if eta is None else eta, shape)
     if structure is None:
         raise InputError(Problem("is missing", field="structure", hint="give one, or `a` and `omega` without `ag`"))
-    from rocking_cli.ask.given import signs_of, sized_pulse, structure_figure, structure_of
+    from rocking_cli.ask.given import sized_pulse, structure_figure, structure_of
+    from rocking_cli.ask.ground_motions import signs_of
     from rocking_cli.studies.pulse_on_structure import closed_forms
     from rocking_cli.views.pulse_on_structure import view
 

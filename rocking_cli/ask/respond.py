@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.ask.answer import MappingAnswer
-from rocking_cli.ask.given import Motion, StructureLike, doubts_of, models_of, signs_of, structure_of
-from rocking_cli.ask.ground_motions import MotionArguments, Motions
+from rocking_cli.ask.given import StructureLike, doubts_of, models_of, structure_of
+from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.history import FINEST_RTOL, RTOL, TAIL, History
 from rocking_cli.dynamics.model import MODELS, ModelName

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.ask.answer import MappingAnswer
-from rocking_cli.ask.given import Motion, StructureLike, each_of, models_of, motion_of, structure_of
+from rocking_cli.ask.given import StructureLike, models_of, structure_of
+from rocking_cli.ask.ground_motions import Motion, each_of, motion_of
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME, Outcomes

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from numpy.typing import ArrayLike
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import Motion, motion_of
+from rocking_cli.ask.ground_motions import Motion, motion_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import Motion
-from rocking_cli.ask.ground_motions import Motions, ReadingArguments
+from rocking_cli.ask.ground_motions import Motion, Motions, ReadingArguments
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.studies.record_set import RecordSet

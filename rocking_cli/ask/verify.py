@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import Motion, SiteLike, StructureLike, signs_of, site_of, structure_of
-from rocking_cli.ask.ground_motions import MotionArguments, Motions
+from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
+from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.studies.verification.results import Verification

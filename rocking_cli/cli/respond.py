@@ -70,7 +70,6 @@ def _models(ctx: click.Context, param: click.Parameter, value: str | None) -> tu
 @click.option(
     "--model",
     "models",
-    show_default=",".join(NAMES),
     metavar="MODEL,...",
     callback=_models,
     shell_complete=complete.listed(NAMES),
