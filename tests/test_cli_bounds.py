@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from rocking_cli.ask import ground_motions
-from rocking_cli.cli import motion_files
 from rocking_cli.cli.main import main
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.record_csv import write_record_csv
@@ -84,10 +82,6 @@ def test_ranges_have_bounds(arguments):
 
 def test_a_pulse_too_short_to_be_shown_is_no_question_of_dt():
     assert "is the period in seconds?" in run("respond", BLOCK, "--pulse", "sine:0.5g:1e-300s", code=2).stderr
-
-
-def test_the_bounds_that_stand_twice_agree():
-    assert (motion_files.MOST_PGA, motion_files.MOST_PGV) == (ground_motions.MOST_PGA, ground_motions.MOST_PGV)
 
 
 def test_the_finest_tolerance_is_reached():

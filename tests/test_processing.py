@@ -9,7 +9,7 @@ import pytest
 from scipy import signal
 
 import rocking_cli as rk
-from rocking_cli.cli.motion_files import find
+from rocking_cli.ask.ground_motions import Motions
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.doubts import doubts
@@ -346,8 +346,8 @@ class TestCommands:
         one = f"  - {{file: '{ACCEL.as_posix()}', factor: 2}}\n"
         other = f"  - {{file: '{ACCEL.as_posix()}', factor: 1}}\n"
         (tmp_path / "set.yaml").write_text(f"records:\n{one}{other}{one}")
-        found, bad = find([str(tmp_path / "set.yaml"), str(ACCEL), str(ACCEL)])
-        assert bad == 0 and [each.entry.factor if each.entry else None for each in found] == [2, 1, None]
+        found = Motions((tmp_path / "set.yaml", ACCEL, ACCEL)).records
+        assert [each.entry.factor if each.entry else None for each in found] == [2, 1, None]
 
     def test_a_clean_file_is_read_whatever_was_done(self, tmp_path):
         east = tmp_path / "acc in g.csv"

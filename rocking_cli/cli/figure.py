@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rocking_cli.cli import motion_files, options, terminal
+from rocking_cli.cli import options, terminal
 from rocking_cli.cli.groups import ReadingOptions
 from rocking_cli.cli.help import Command
 
@@ -98,11 +98,11 @@ def command(
 
 def _motion(record: str | None, reading: ReadingOptions) -> GroundMotion:
     """Return the record of Figure 14: the user's, or the shipped example, which is elsewhere in a checkout."""
+    from rocking_cli.ask.ground_motions import Motions
     from rocking_cli.excitation.records import read_record
-    from rocking_cli.processing.listed import Listed
 
     if record is not None:
-        return motion_files.read(Listed(Path(record)), reading.reading)
+        return Motions((Path(record),), *reading.readings).one(0.0).motion
     package = Path(__file__).parents[1]
     shipped = package / "data" / "accel.csv"
     return read_record(shipped if shipped.exists() else package.parent / "examples" / "accel.csv")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,12 +15,9 @@ from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import Azimuth
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from rocking_cli.ask.answer import Answer
     from rocking_cli.ask.ground_motions import Motions
     from rocking_cli.excitation.records.sensor import Gain, Quantity
-    from rocking_cli.io.tables import Columns
     from rocking_cli.processing.floor import Floor
     from rocking_cli.processing.listed import Listed
     from rocking_cli.processing.reading import Reading
@@ -197,15 +193,6 @@ class Output:
             table_files.write(self.out, answer.blocks() if answer.blocks is not None else [answer.columns()])
         if self.plot is not None:
             write_picture(self.plot, answer.figure())
-
-    def write_made(self, table: Callable[[], Iterable[Columns]], draw: Callable[[], Figure]) -> None:
-        """Write the requested table and plot, make each only if needed, and report them."""
-        if self.out is not None:
-            from rocking_cli.cli import table_files
-
-            table_files.write(self.out, table())
-        if self.plot is not None:
-            write_picture(self.plot, draw())
 
     def show(self, answer: Answer[Any]) -> None:
         """Write the requested files of an answer, and show it."""

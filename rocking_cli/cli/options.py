@@ -296,7 +296,7 @@ def polarity(*choices: str, default: str = "1") -> Decorator:
 def scaling(*polarities: str, default: str = "1") -> Decorator:
     """Declare how to scale a motion: `scale`, `target_pga`, `target_pgv` and `polarity`, which is one of these.
 
-    `motion_files.factor` turns the first three, of which a user may give one, into a number.
+    The user may give one of the first three.
     """
     return in_order(
         record_option("--scale", type=Finite(), metavar="FACTOR", help="Scale factor on the motion.  [default: 1]"),
