@@ -123,7 +123,7 @@ def test_one_bad_structure_of_several_is_reported_and_the_others_are_used(comman
 
 def test_the_first_structure_of_equivalent_must_be_there():
     asked = ("--ag", "0.6g", "--period", "0.5")
-    assert "the pulse is for the first" in run("equivalent", "no.yaml", BLOCK, BLOCK, *asked, code=2).stderr
+    assert "no.yaml: no such file" in run("equivalent", "no.yaml", BLOCK, BLOCK, *asked, code=2).stderr
 
 
 class TestWritten:

@@ -13,13 +13,14 @@ from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 
-import click
 import pytest
 from click.testing import CliRunner
 
+from rocking_cli.ask.fragility import workers_of
 from rocking_cli.cli import defaults
 from rocking_cli.cli.main import COMMANDS, main
 from rocking_cli.dynamics import compiled, ways
+from rocking_cli.errors import InputError
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
@@ -145,16 +146,15 @@ class TestDefaults:
         assert "describe a record" in run(*PULSE, "--units", "g", code=2).stderr
 
     def test_jobs_are_for_this_machine_and_silent_on_a_cluster(self, monkeypatch):
-        from rocking_cli.cli.fragility import Running
-
-        @click.command()
-        @click.option("--jobs", type=int)
-        @click.pass_context
-        def command(ctx, jobs):
-            Running(jobs, "tcp://there", None, False)
-
-        assert "on a cluster, the number of workers is set there" in CliRunner().invoke(command, ["--jobs", "2"]).output
-        assert CliRunner().invoke(command, [], default_map={"jobs": "2"}).exit_code == 0
+        Path("study.yaml").write_text("name: unread\n", encoding="utf-8")
+        asked = []
+        monkeypatch.setattr("rocking_cli.ask.fragility.fragility", lambda study, **given: asked.append(given["jobs"]))
+        for typed in ([], ["--jobs", "2"]):
+            monkeypatch.setenv("ROCKING_JOBS", "3")
+            CliRunner().invoke(main, ["fragility", "study.yaml", "--scheduler", "tcp://there", *typed])
+        assert asked == [None, 2]  # the verb refuses a number of workers that was typed
+        with pytest.raises(InputError, match="on a cluster, the number of workers is set there"):
+            workers_of(2, "tcp://there")
 
     def test_the_options_that_can_have_one_are_options(self):
         options: dict[str, set[str]] = {}

@@ -85,11 +85,10 @@ def fragility(
     from rocking_cli.studies.fragility.study import load_study
 
     if isinstance(study, Mapping):
-        place = Path(store or "study.db")
-        study = _written(study, place)
-    else:
-        place = Path(store) if store is not None else Path(study).with_suffix(".db")
+        store = Path(store or "study.db")
+        study = _written(study, store)
     asked = load_study(study)
+    place = Path(store) if store is not None else Path(study).with_suffix(".db")
     # What varies may be far from the file: the first sample stands for all.
     for mechanism in {sample.structure: sample.mechanism for sample in asked.samples if sample.number == 0}.values():
         warn_of(mechanism, watch)
@@ -97,11 +96,11 @@ def fragility(
         watch.warn(sentence)
     if check:
         return _planned(asked, watch)
-    _bring_up_to_date(asked, place, _workers(jobs, scheduler), watch, restart=restart, rank_measures=rank_measures)
+    _bring_up_to_date(asked, place, workers_of(jobs, scheduler), watch, restart=restart, rank_measures=rank_measures)
     return results(place, quantiles=quantiles, rank_measures=rank_measures, watch=watch)
 
 
-def _workers(jobs: int | None, scheduler: str | None) -> AbstractContextManager[Workers]:
+def workers_of(jobs: int | None, scheduler: str | None) -> AbstractContextManager[Workers]:
     """Return the workers that simulate the runs: a cluster, or threads of this machine."""
     from rocking_cli.studies.fragility import workers
 

@@ -53,7 +53,7 @@ def command(ctx: click.Context, file: str, shown: CurveOutput, as_json: bool, **
     from rocking_cli.io.files import check_writable, folder, keep_apart
 
     watch = OnTerminal()
-    place = Path(file).with_suffix(".db") if study["store"] is None else Path(study["store"])
+    place = Path(file).resolve().with_suffix(".db") if study["store"] is None else Path(study["store"])
     named = "the store beside the study" if study["store"] is None else "--store"
     keep_apart([(named, place), ("--nrml", shown.nrml)], [file])
     if from_default("jobs") and study["scheduler"] is not None:
