@@ -11,6 +11,7 @@ import click
 import pytest
 
 import rocking_cli as rk
+from rocking_cli.ask import watcher as rk_watcher
 from rocking_cli.ask.ground_motions import MotionArguments, ReadingArguments
 from rocking_cli.cli.main import COMMANDS
 from tests.elsewhere import PROJECT
@@ -75,3 +76,29 @@ def test_the_function_of_a_command_is_short(name):
     (function,) = (each for each in tree.body if isinstance(each, ast.FunctionDef) and each.name == "command")
     body = function.body[1:]
     assert body[-1].end_lineno - body[0].lineno + 1 <= MOST
+
+
+def test_an_argument_that_is_none_or_has_no_effect_is_refused():
+    block = rk.Block(width=0.7, height=2.8)
+    with pytest.raises(rk.InputError, match="`high` is not an argument"):
+        rk.respond(block, "sine:0.3g:0.8s", high=0.1)
+    with pytest.raises(rk.InputError, match="`highpass` has no effect, as no ground motion is given"):
+        rk.respond(block, release=0.5, highpass=0.1)
+    with pytest.raises(rk.InputError, match="`highpass` describes a record, and no record is given"):
+        rk.respond(block, "sine:0.3g:0.8s", highpass=0.1)
+
+
+def test_a_watcher_decides_whether_one_bad_record_ends_an_answer():
+    class Patient(rk_watcher.Watcher):
+        def __init__(self):
+            self.heard = []
+
+        def leave_out(self, error):
+            self.heard.append(str(error))
+
+    block, motions = rk.Block(width=0.7, height=2.8), ["nowhere.csv", "sine:0.3g:0.8s"]
+    with pytest.raises(rk.InputError, match=r"nowhere\.csv: no such file"):
+        rk.margin(block, motions, neighbours=2)
+    patient = Patient()
+    answer = rk.margin(block, motions, neighbours=2, watch=patient)
+    assert list(answer) == ["sine:0.3g:0.8s"] and patient.heard == ["nowhere.csv: no such file\n  check the path"]

@@ -1,4 +1,4 @@
-"""`rk.animate`."""
+"""`rk.animate`: write an animation of a structure under a ground motion."""
 
 from __future__ import annotations
 

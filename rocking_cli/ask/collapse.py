@@ -1,4 +1,4 @@
-"""`rk.collapse`."""
+"""`rk.collapse`: find the weakest mechanisms of an assembly of blocks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`rk.design`."""
+"""`rk.design`: find the values of a field for which a structure meets a requirement."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`rk.draw`."""
+"""`rk.draw`: draw a structure at rest and displaced."""
 
 from __future__ import annotations
 

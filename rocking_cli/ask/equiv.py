@@ -1,4 +1,4 @@
-"""`rk.equiv`."""
+"""`rk.equiv`: compute the equivalent rocking block of a structure."""
 
 from __future__ import annotations
 

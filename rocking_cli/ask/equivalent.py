@@ -1,4 +1,4 @@
-"""`rk.equivalent`."""
+"""`rk.equivalent`: find the pulses to which several structures are equally vulnerable."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`rk.fragility`."""
+"""`rk.fragility`: run a fragility study, or continue it, and fit its curves."""
 
 from __future__ import annotations
 

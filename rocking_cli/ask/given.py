@@ -37,7 +37,8 @@ SiteLike = Mapping[str, Any] | str | Path
 def structure_of(given: StructureLike, opening: float | None = None) -> Structure:
     """Read a structure from its file, or take a mechanism, named by its kind if it has no name.
 
-    With `opening`, that is the largest opening of its joints up to which a history is valid, over D_cr.
+    A given `opening` replaces that of its file: the largest opening of a joint, over D_cr, up to which a history is
+    valid.
 
     Raises
     ------

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from textwrap import shorten
-from typing import Any, TypedDict
+from typing import Any, TypedDict, get_type_hints
 
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem, renamed
@@ -26,6 +26,7 @@ from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.listed import Listed, is_list
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import STEPS, Resample, Step, parse_step, process
+from rocking_cli.text import did_you_mean
 from rocking_cli.views.processing import in_words
 from rocking_cli.views.view import FEW
 
@@ -148,8 +149,15 @@ class Motions:
         """Return the motions of a verb, from what it is given and its keyword arguments. Raises `InputError`."""
         if isinstance(given, Motions):
             return given
+        known = list(get_type_hints(MotionArguments))
+        given = each_of(given)
+        for name, value in options.items():
+            if name not in known:
+                raise InputError(Problem("is not an argument", field=f"`{name}`", hint=did_you_mean(name, known)))
+            if value is not None and not given:
+                raise InputError(Problem("has no effect, as no ground motion is given", field=f"`{name}`"))
         scaling: dict[str, Any] = {name: options.get(name) for name in SCALING}
-        return cls(tuple(each_of(given)), reading_of(options), **scaling)
+        return cls(tuple(given), reading_of(options), **scaling)
 
     def __bool__(self) -> bool:
         """Return whether any motion is given."""

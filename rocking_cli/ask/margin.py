@@ -1,4 +1,4 @@
-"""`rk.margin`."""
+"""`rk.margin`: compute how close ground motions are to overturning a structure."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`rk.overturning`."""
+"""`rk.overturning`: map the pulses that overturn a structure, or compare several structures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`rk.overturning_curves`."""
+"""`rk.overturning_curves`: compute the smallest pulses that overturn each of several structures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`rk.overturning_map`."""
+"""`rk.overturning_map`: map the outcomes of pulses of all periods and amplitudes."""
 
 from __future__ import annotations
 

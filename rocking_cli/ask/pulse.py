@@ -1,4 +1,4 @@
-"""`rk.pulse`. The dimensionless block needs no numpy."""
+"""`rk.pulse`: compute the response to a pulse. The dimensionless block needs no numpy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`rk.report`."""
+"""`rk.report`: write a report on a structure as one HTML page."""
 
 from __future__ import annotations
 

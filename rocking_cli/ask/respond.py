@@ -1,4 +1,4 @@
-"""`rk.respond`."""
+"""`rk.respond`: compute the response of a structure to a ground motion or a release."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`rk.respond_each`."""
+"""`rk.respond_each`: compute the outcomes of many structures under many motions."""
 
 from __future__ import annotations
 

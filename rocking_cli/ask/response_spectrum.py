@@ -1,4 +1,4 @@
-"""`rk.response_spectrum`."""
+"""`rk.response_spectrum`: compute the response spectrum of a ground motion."""
 
 from __future__ import annotations
 

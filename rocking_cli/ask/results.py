@@ -1,4 +1,4 @@
-"""`rk.results`."""
+"""`rk.results`: read the curves and runs of a fragility study from its store."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`rk.spectrum`."""
+"""`rk.spectrum`: compute peak rotation and overturning against size."""
 
 from __future__ import annotations
 

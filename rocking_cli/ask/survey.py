@@ -1,4 +1,4 @@
-"""`rk.survey`."""
+"""`rk.survey`: rank many structures by vulnerability."""
 
 from __future__ import annotations
 

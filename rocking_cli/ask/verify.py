@@ -1,4 +1,4 @@
-"""`rk.verify`."""
+"""`rk.verify`: verify a rocking mechanism of masonry by a code."""
 
 from __future__ import annotations
 
