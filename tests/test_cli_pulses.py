@@ -141,9 +141,9 @@ class TestInARecord:
         assert json.loads(result.stdout)["pulses"]["velocity"]["sine"]["sign"] == -1
 
     def test_a_long_search_says_how_far_it_is(self, made, monkeypatch):
-        monkeypatch.setattr("rocking_cli.cli.record.PATIENCE", float("inf"))
+        monkeypatch.setattr("rocking_cli.ask.record.PATIENCE", float("inf"))
         assert "fitted" not in run("record", made, "--fit-pulse").stderr
-        monkeypatch.setattr("rocking_cli.cli.record.PATIENCE", 0.0)
+        monkeypatch.setattr("rocking_cli.ask.record.PATIENCE", 0.0)
         assert "made.csv: 3 of 6 pulses fitted" in run("record", made, "--fit-pulse").stderr
 
     def test_the_picture_shows_the_best_of_each_criterion(self, made, tmp_path):
