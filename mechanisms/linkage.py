@@ -166,7 +166,7 @@ class Linkage(LinkedBodies):
 
     @cached_property
     def _whole(self) -> Mapping[str, Member]:
-        """The bodies without cracks."""
+        """All bodies as given, before cracks divide them, by name."""
         return {name: shape.member(name, self.density, self.depth) for name, shape in self.members.items()}
 
     @cached_property
@@ -358,7 +358,7 @@ class Linkage(LinkedBodies):
         )
 
     def _under_what_rests(self) -> Sequence[Sequence[complex]]:
-        """Return the ground lines under bodies fixed to the ground; under others it is drawn at their pivots."""
+        """Return a level ground line below bodies fixed to the ground; without it, ground is drawn at the pivots."""
         names = {name for held in self._held.values() for name in held.ground}
         points = [z for name in names for shape in self._members[name].outlines for z in shape]
         if not points:

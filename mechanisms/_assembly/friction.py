@@ -193,7 +193,7 @@ def _may_carry(found: Collapse, search: _FrictionSearch) -> bool:
 
 
 def _most(found: Collapse, rays: Rays) -> Reals:
-    """Return upper bounds of the rays at the greatest multiplier: zero for rays that do work on the mechanism."""
+    """Return upper bounds of the forces along the rays in the collapse state: 0 if the joint opens along the ray."""
     field = (found.velocity * np.array([1.0, 1.0, found.problem.frame.size])).ravel()
     return np.where(rays.one_sided & (rays.rates @ field > STILL * np.abs(field).max()), 0.0, np.inf)
 

@@ -18,7 +18,7 @@ def files(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[C
 
 
 def mechanisms(*more: str) -> Completer:
-    """Complete names of installed mechanisms, and the given others."""
+    """Return a completer for the names of installed mechanisms, and the names in `more`."""
     return _plugins("rocking.mechanisms", more=more)
 
 

@@ -79,7 +79,8 @@ def in_force(commands: tuple[str, ...]) -> list[Default]:
     Raises
     ------
     InputError
-        With every key of a file that is not an option, and every invalid value.
+        With every key that cannot have a default, table that is not a command, removed option, and value that is
+        neither a text nor a number nor a list of them.
     """
     found = [
         Default(option, None, value, variable, variable)

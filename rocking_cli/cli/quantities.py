@@ -218,7 +218,7 @@ class Tilt(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic 
     name = "tilt"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the `Release` of a text, or fail naming the option and a valid example."""
+        """Return the `Release` of a text, or fail naming the option and the reason."""
         if not isinstance(value, str):
             return value
         from rocking_cli.errors import InputError

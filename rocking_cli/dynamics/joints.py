@@ -377,7 +377,7 @@ def _range(plane: Reals, fast: Reals) -> tuple[Reals, Reals]:
 
 
 def _fastest(plane: Reals) -> Reals:
-    """Return a large q.^2 at which some u_g'' meets the conditions of all rows, shape (n,); 0 if there is none.
+    """Return a q.^2, halved from an estimate, at which some u_g'' meets all conditions, shape (n,); 0 if none does.
 
     The rows of `plane` are as in `_range`.
     """

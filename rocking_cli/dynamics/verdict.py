@@ -236,7 +236,7 @@ def _later(delay: float) -> str:
 
 
 def _without_the_structure(histories: Mapping[ModelName, History], called: Mapping[ModelName, str]) -> list[str]:
-    """Return sentences on equivalent blocks without a nonlinear history: unfit ones, and outcomes of the others."""
+    """Return sentences on blocks without a nonlinear history: the outcomes after the first, and which are unfit."""
     _, *others = histories
     said = [f"By {called[name]} it {_ends(histories[name])}." for name in others]
     said += [

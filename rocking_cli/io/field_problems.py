@@ -208,7 +208,7 @@ def unit_at(model: type[BaseModel], place: Place) -> str:
 
 
 def types_at(model: type[BaseModel], place: Place) -> set[Any]:
-    """Return the types allowed at a place, also as entries of lists; for a literal, its words."""
+    """Return the elementary types allowed at a place, those in lists and unions one by one, a literal by its values."""
     return {leaf for _, annotation in _held(model, place)[:1] for leaf in _leaves(annotation)} if place else set()
 
 

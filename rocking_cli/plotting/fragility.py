@@ -79,7 +79,7 @@ class LabelledCurve:
 
 
 def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figure:
-    """Plot curves with their bands, and the observed shares that exceed, with confidence intervals.
+    """Plot fragility curves with their bands, and the observed shares of runs that exceed, with their intervals.
 
     Parameters
     ----------

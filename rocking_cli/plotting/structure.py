@@ -165,7 +165,7 @@ def _displaced_panel(picture: Picture, rotation: float) -> Panel:
 
 
 def _head(picture: Picture, direction: Direction, ratio: float) -> str:
-    """Return the title of a displaced panel: direction and rotation."""
+    """Return the title of a panel that shows the displaced structure: direction and rotation, or how it starts."""
     if picture.start is not None:
         return f"{direction.label}\nas it starts"
     phi = ratio * picture.reference[direction]

@@ -824,7 +824,7 @@ def _is_uniform(body: Body, outlines: Sequence[Outline]) -> None:
 
 
 def _can_be_within(body: Body) -> None:
-    """Check that the centroid is inside the outline, and the inertia possible for a mass within it."""
+    """Check that the centroid is in the convex hull of the outline, and the inertia possible for a mass within it."""
     corners = np.asarray(body.outline, np.complex128)
     reach = float(np.abs(corners - body.centroid).max())
     turned = np.exp(1j * np.linspace(0.0, 2 * np.pi, 360, endpoint=False))

@@ -141,7 +141,7 @@ class Stretched(Element):
 
     @property
     def stretched(self) -> Sequence[Stretched]:
-        """The element itself."""
+        """The ties that together act as this element does: only the element itself."""
         return (self,)
 
     def as_dict(self) -> dict[str, Any]:

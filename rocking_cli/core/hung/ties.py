@@ -214,7 +214,7 @@ class Laws(Plugins[type[Tie]]):
 
     @staticmethod
     def accept(loaded: object, point: Point) -> type[Tie]:
-        """Return the loaded object if it is a tie class with a field `law`."""
+        """Return the loaded class of ties. Raises `MechanismError` if it is none, or its `law` is not its name."""
         if not (isinstance(loaded, type) and issubclass(loaded, Tie)):
             raise MechanismError(f"{origin(point)} is not a law: it must be a class derived from Tie")
         if "law" not in loaded.model_fields or loaded.model_fields["law"].default != point.name:

@@ -25,7 +25,7 @@ def of_direction(say: Language, ground: SiteGround, found: ItalianVerified) -> I
 
 
 def workings_of_direction(ground: SiteGround, found: ItalianVerified) -> list[Working]:
-    """Return the steps of a direction in plain characters."""
+    """Return the calculation steps of the verification in one direction, as text in plain characters."""
     return list(workings(of_direction(ENGLISH, ground, found)))
 
 
