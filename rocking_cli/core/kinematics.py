@@ -31,7 +31,7 @@ class Direction(IntEnum):
 
     @property
     def prime(self) -> str:
-        """Mark after the letter of a hinge: empty in the positive direction, ' in the negative one (A and A')."""
+        """Mark after the letter of a hinge, empty in the positive direction and ' in the negative one (A and A')."""
         return "" if self > 0 else "'"
 
     @property

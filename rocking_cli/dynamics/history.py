@@ -69,7 +69,7 @@ class History(Outcome[bool, int, float]):
 
     @property
     def reference(self) -> str:
-        """Name of the rotation by which the peak rotation is divided: critical rotation or kinematic limit."""
+        """Name of the rotation by which the peak rotation is divided, the critical rotation or the kinematic limit."""
         return "kinematic limit" if self.ends_at_limit[self._side] else "critical rotation"
 
     @property

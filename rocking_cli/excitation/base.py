@@ -166,7 +166,7 @@ class GroundMotion:
 
     @property
     def of_ground(self) -> GroundMotion:
-        """The motion of the ground: of a floor motion, the ground below; otherwise this motion."""
+        """The motion of the ground below, if this is the motion of a floor; otherwise this motion."""
         return self if self.ground is None else self.ground
 
     @property
