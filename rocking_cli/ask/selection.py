@@ -75,7 +75,7 @@ def select(
     factors : (float, float)
         Lower and upper limit on the scale factor of each record.
     one_per : {"event", "station", "none"}
-        SheetOrigin from which at most one record is taken, if the files name it.
+        Source from which at most one record is taken, if the files name it.
     same_factor : bool
         Whether all records have the same scale factor.
     seed : int

@@ -66,7 +66,7 @@ MOST = 1000  # records of a set
     type=click.Choice(["event", "station", "none"]),
     default="event",
     show_default=True,
-    help="SheetOrigin from which at most one record is taken, if the files name it.",
+    help="Source from which at most one record is taken, if the files name it.",
 )
 @click.option("--same-factor", is_flag=True, help="Scale all records by the same factor.")
 @click.option(
