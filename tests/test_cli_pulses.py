@@ -81,7 +81,7 @@ class TestInPlaceOfARecord:
             (["--pulse", "sine:1g"], "expected sine:AMPLITUDE:PERIOD, such as sine:0.6g:0.8s"),
             (["--pulse", SINE, "--units", "g"], "--units, --dt and --channel describe a record"),
             (["--pulse", SINE, "--channel", "1"], "--units, --dt and --channel describe a record"),
-            (["--pulse", SINE, "--vertical-dt", "1"], "give --vertical FILE"),
+            (["--pulse", SINE, "--vertical-dt", "1"], "give --vertical"),
             (["--release", "0.5", "--scale", "2"], "or --pulse"),
             ([], "--pulse"),
         ],
@@ -229,8 +229,8 @@ class TestWithPulse:
     @pytest.mark.parametrize(
         ("options", "words"),
         [
-            (["--pulse", SINE, "--with-pulse"], "give --record FILE"),
-            (["--release", "0.5", "--with-pulse"], "give --record FILE"),
+            (["--pulse", SINE, "--with-pulse"], "--with-pulse requires a record"),
+            (["--release", "0.5", "--with-pulse"], "--with-pulse requires a record"),
             (
                 ["--record", ACCEL, "--polarity", "both", "--with-pulse"],
                 "--with-pulse cannot be combined with --polarity both",

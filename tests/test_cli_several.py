@@ -11,6 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
+from rocking_cli.errors import InputError
 from rocking_cli.excitation.records import read_record
 from tests.conftest import EXAMPLES
 
@@ -52,6 +53,14 @@ class TestRespond:
             alone[0],
             alone[2],
         ]
+
+    def test_nothing_is_shown_where_one_is_not_read_and_the_other_has_no_answer(self, records, monkeypatch):
+        def refuse(*_, **__):
+            raise InputError("no answer")
+
+        monkeypatch.setattr("rocking_cli.ask.respond.respond", refuse)
+        result = run("respond", BLOCK, "--record", "bad.csv", "--record", "r/east.csv", code=InputError.exit_code)
+        assert result.stdout == "" and "bad.csv" in result.stderr and "east.csv: no answer" in result.stderr
 
     def test_a_row_each_and_how_many_overturn_it(self, records):
         text = run("respond", BLOCK, "--record", records, "--model", "linear2,nonlinear").stdout

@@ -103,7 +103,7 @@ def test_one_column_takes_its_own_interval_or_that_of_the_record(tmp_path):
 
 def test_wrong_use_is_refused(up, tmp_path):
     assert "--record" in run("respond", "--release", "0.3", "--vertical", up, code=2).stderr
-    assert "--vertical FILE" in run("respond", "--record", ACCEL, "--vertical-dt", "0.1", code=2).stderr
+    assert "give --vertical" in run("respond", "--record", ACCEL, "--vertical-dt", "0.1", code=2).stderr
     assert "no such file" in run("respond", "--record", ACCEL, "--vertical", tmp_path / "none.csv", code=2).stderr
     assert "overwrite" in run("respond", "--record", ACCEL, "--vertical", up, "--out", up, code=2).stderr
 

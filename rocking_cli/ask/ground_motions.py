@@ -192,6 +192,13 @@ class Motions:
         return [each for each in self._found[0] if isinstance(each, Listed)]
 
     @property
+    def has_records(self) -> bool:
+        """Whether anything but pulses is given."""
+        return bool(self._found[1]) or not all(
+            isinstance(each, Pulse) or (isinstance(each, Scaled) and each.pulse is not None) for each in self._found[0]
+        )
+
+    @property
     def are_read(self) -> bool:
         """Whether all motions were read and scaled before."""
         return bool(self.given) and all(isinstance(each, Scaled) for each in self.given)
@@ -231,8 +238,8 @@ class Motions:
         self._check(with_vertical=with_vertical)
         if self.are_read:
             return [each for each in self.given if isinstance(each, Scaled)]
-        sources, errors = self._found
-        several = len(sources) + len(errors) > 1
+        sources, errors = self._found[0], [*self._found[1]]
+        several = self.count > 1
         chosen: list[Scaled] = []
         for place, source in enumerate(sources):
             try:
@@ -400,7 +407,7 @@ class Motions:
 
     def _check(self, *, with_vertical: bool) -> None:
         """Raise `InputError` if an argument describes records and none is given."""
-        if any(not isinstance(each, Pulse) for each in self._found[0]) or self._found[1]:
+        if self.has_records:
             return
         of_records = [f"`{name}`" for name in OF_FILES[2 * with_vertical :] if getattr(self.reading, name) is not None]
         of_records += [f"`{step.name}`" for step in self.reading.steps]

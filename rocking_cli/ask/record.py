@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from time import perf_counter
@@ -151,7 +151,7 @@ def record(
         own,
         View(lambda: data(first), [*parts(examined, 100), said]),
         partial(_columns, scaled[0]),
-        partial(_figure, scaled[0], first, motions.unprocessed(read)),
+        partial(_figure, scaled[0], first, partial(motions.unprocessed, read)),
         examined=tuple(examined),
         motions=tuple(scaled),
     )
@@ -195,7 +195,9 @@ def _columns(motion: GroundMotion) -> Columns:
     return {"t [s]": np.arange(motion.npts) * motion.dt, "a_g [g]": motion.acceleration / STANDARD_GRAVITY}
 
 
-def _figure(motion: GroundMotion, examined: Examined, before: GroundMotion | None) -> Figure:
+def _figure(
+    motion: GroundMotion, examined: Examined, unprocessed: Callable[[], GroundMotion | None]
+) -> Figure:  # fmt: skip
     """Draw the fitted pulses, or the record before and after its corrections, or the record alone."""
     from rocking_cli.plotting.processing import draw_before_and_after
     from rocking_cli.plotting.pulse_fit import draw_pulses
@@ -203,7 +205,7 @@ def _figure(motion: GroundMotion, examined: Examined, before: GroundMotion | Non
 
     if examined.pulses:
         return draw_pulses(motion, _best(examined.pulses), examined.measures.t_95 or motion.duration)
-    if before is not None:
+    if (before := unprocessed()) is not None:
         return draw_before_and_after(before.scaled(examined.factor), motion, _shift(motion))
     return draw_record(motion, examined.measures)
 

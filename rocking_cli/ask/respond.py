@@ -137,7 +137,8 @@ def respond(
         what = f"{rtol:g} is not a number from {FINEST_RTOL:g} to below 1: smaller errors are below rounding"
         raise InputError(Problem(what, field="`rtol`"))
     ready = structure_of(structure, opening)
-    motions = Motions.of(() if motion is None else motion, options)
+    motions, signs = Motions.of(() if motion is None else motion, options), signs_of(polarity)
+    _check(motions, signs, vertical, (vertical_dt, vertical_channel), with_pulse)
     given = motions.one(ready.growth, watch, with_vertical=vertical is not None) if motions else None
     if given is None and release is None:
         raise InputError("no excitation is given: give a motion or a `release`")
@@ -147,7 +148,7 @@ def respond(
         given = given._replace(motion=replace(given.motion, vertical=vertical))
     tilt = release if release is None or isinstance(release, Release) else Release.of(release)
     question = Question(
-        signs_of(polarity),
+        signs,
         tilt.ratio(ready) if tilt is not None else None,
         tail,
         rtol,
@@ -170,6 +171,22 @@ def respond(
     figure = partial(_figure, response, ready, title, contact=contact or ready.mechanism.friction is not None)
     blocks = partial(_blocks, response, ready)
     return ResponseAnswer("response", response, shown, partial(_columns, response, ready), figure, blocks)
+
+
+def _check(
+    motions: Motions, signs: Sequence[int], vertical: object, of_vertical: Sequence[object], with_pulse: str | None
+) -> None:
+    """Raise `InputError` if arguments have no effect or cannot be combined."""
+    if not motions and vertical is not None:
+        raise InputError("`vertical` requires a horizontal component: give `motion`")
+    if vertical is None and any(value is not None for value in of_vertical):
+        raise InputError("`vertical_dt` and `vertical_channel` require a vertical component: give `vertical`")
+    if not motions and tuple(signs) != (1,):
+        raise InputError("`polarity` reverses a ground motion: give `motion`")
+    if with_pulse is not None and not motions.has_records:
+        raise InputError("`with_pulse` requires a record: give the file of one")
+    if with_pulse is not None and len(signs) > 1:
+        raise InputError("`with_pulse` cannot be combined with `polarity` both: ask for one polarity at a time")
 
 
 def usual_models(structure: Structure, watch: Watcher = SILENT) -> tuple[ModelName, ...]:

@@ -153,10 +153,10 @@ def blame(error: click.BadParameter) -> InputError | None:
     return InputError(Problem(error.message.rstrip("."), default.key)) if default is not None else None
 
 
-def whose(error: click.UsageError) -> str:
-    """Return sentences on the options named in an error that were not typed; empty if all were."""
-    taken = of_run(error.ctx).values() if error.ctx is not None else ()
-    named = [each for each in taken if re.search(rf"--{each.option}(?![\w-])", error.message)]
+def whose(message: str, context: click.Context | None) -> str:
+    """Return sentences on the options named in an error message that were not typed; empty if all were."""
+    taken = of_run(context).values() if context is not None else ()
+    named = [each for each in taken if re.search(rf"--{each.option}(?![\w-])", message)]
     return "".join(f" --{each.option} {each.value} was not typed; it is a default from {each.key}." for each in named)
 
 

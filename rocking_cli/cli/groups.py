@@ -119,7 +119,9 @@ class Scaling:
     @property
     def signs(self) -> tuple[int, ...]:
         """The polarities, of 1 and -1."""
-        return polarities(self.polarity)
+        from rocking_cli.ask.ground_motions import signs_of
+
+        return signs_of(self.polarity)
 
 
 @dataclass(frozen=True)
@@ -161,11 +163,6 @@ class GroundMotions(Scaling, ReadingOptions):
             raise click.UsageError(
                 "--scale, --target-pga and --target-pgv change a ground motion: give --record FILE or --pulse PULSE."
             )
-
-
-def polarities(polarity: str) -> tuple[int, ...]:
-    """Return the polarities of an option, of 1 and -1."""
-    return (1, -1) if polarity == "both" else (int(polarity),)
 
 
 @dataclass(frozen=True)

@@ -187,23 +187,10 @@ def _show_each(
 
 def _check(asked: GroundMotions, output: Output, question: Mapping[str, Any]) -> None:
     """Raise if options have no effect or cannot be combined."""
-    motions = bool(asked.records or asked.pulses)
     if asked.records and asked.pulses:
         raise click.UsageError("--record and --pulse cannot be combined: choose one.")
-    if not motions and question["release"] is None:
+    if not asked and question["release"] is None:
         raise click.UsageError("No excitation given: add --record FILE, --pulse PULSE or --release TILT.")
-    if not motions and question["vertical"] is not None:
-        raise click.UsageError("--vertical requires a horizontal component: give --record FILE or --pulse PULSE.")
-    if question["vertical"] is None and (question["vertical_dt"] or question["vertical_channel"]) is not None:
-        raise click.UsageError(
-            "--vertical-dt and --vertical-channel require a vertical component: give --vertical FILE."
-        )
     asked.check(question["vertical"])
-    if not motions and asked.polarity != "1":
-        raise click.UsageError("--polarity reverses a ground motion: give --record FILE or --pulse PULSE.")
-    if question["with_pulse"] is not None and not asked.records:
-        raise click.UsageError("--with-pulse requires a record: give --record FILE.")
-    if question["with_pulse"] is not None and asked.polarity == "both":
-        raise click.UsageError("--with-pulse cannot be combined with --polarity both: run one polarity at a time.")
     if question["contact"] and (output.plot is None or "nonlinear" not in (question["models"] or NAMES)):
         raise click.UsageError("--contact adds a panel to the plot of the nonlinear history: give --plot FILE.")
