@@ -41,6 +41,8 @@ _HOME = {
     "ask.respond_each": ["respond_each"],
     "ask.response_spectrum": ["response_spectrum"],
     "ask.results": ["results"],
+    "ask.score": ["score"],
+    "ask.shares": ["shares"],
     "ask.spectrum": ["spectrum"],
     "ask.motions": ["correct", "on_floor", "respond_around"],
     "ask.selection": ["select"],

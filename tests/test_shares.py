@@ -1,9 +1,8 @@
-"""Shares of neighbours: how they are drawn, and whether what is stated is met."""
+"""Shares of neighbours: how they are drawn, and what they are where that is known exactly."""
 
 from __future__ import annotations
 
-import csv
-from math import log, sqrt, tan
+from math import log, sqrt
 from statistics import NormalDist
 
 import numpy as np
@@ -12,9 +11,7 @@ import pytest
 from rocking_cli import GroundMotion, Registry, build_models
 from rocking_cli.errors import InputError
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
-from tests.conftest import SHARED
 
-TESTS = SHARED / "experiments" / "granite_boulders.csv"
 NORMAL = NormalDist()
 
 
@@ -95,42 +92,3 @@ def test_a_release_stays_a_share_of_phi_cr_or_an_angle():
     assert share.overturned == 0
     # An angle of 0.9 phi_cr overturns whatever is less slender than 0.9 of the nominal.
     assert angle.overturned == pytest.approx(NORMAL.cdf(log(0.9) / 0.10), abs=0.02)
-
-
-@pytest.mark.skipif(not TESTS.is_file(), reason=f"no shake-table tests in {TESTS}")
-def test_shares_are_met_in_600_tests_of_two_boulders():
-    """All 600 rows with 200 neighbours give Brier 0.061, log loss 0.198 and gap 0.021; every third and 100 here."""
-    stated, seen = boulders(count=100, every=3)
-    held_off = np.clip(stated, 0.5 / 101, 1 - 0.5 / 101)
-    assert np.mean((stated - seen) ** 2) < 0.064
-    assert -np.mean(seen * np.log(held_off) + (1 - seen) * np.log(1 - held_off)) < 0.205
-
-
-def boulders(count, every):
-    """Stated shares and outcomes of tests of both specimens."""
-    with np.load(TESTS.with_name("granite_motions_100hz.npz")) as archive:
-        shaken = dict(archive)  # unpacked once
-    numbers = shaken["test"].tolist()
-    shapes = ((0.2943, 0.0510, 4.97), (0.2920, 0.0507, 5.47))
-    specimens = [boulder(*shape) for shape in shapes]
-    stated, seen = [], []
-    with TESTS.open(encoding="utf-8") as file:
-        for row in list(csv.DictReader(file))[::every]:
-            k = numbers.index(int(row["test"]))
-            part = slice(shaken["start"][k], shaken["start"][k] + shaken["length"][k])
-            motion = GroundMotion(row["test"], 0.01, shaken["samples"][part] / 32767 * float(shaken["peak"][k]))
-            for each, outcome in zip(specimens, ("sp1", "sp2"), strict=True):
-                stated.append(neighbours(each, motion, Neighbourhood(count)).overturned)
-                seen.append(int(row[outcome]))
-    return np.array(stated), np.array(seen)
-
-
-def boulder(height, gyration, angle):
-    """A body on an edge by the height of its centroid [m], its squared radius of gyration [m2] and angle [deg]."""
-    half = height * tan(np.radians(angle))
-    shape = {
-        "polygon": [[-half, 0.0], [half, 0.0], [half, 2 * height], [-half, 2 * height]],
-        "mass": 100.0, "centroid": [0.0, height], "inertia": 100.0 * gyration,
-    }  # fmt: skip
-    pivot = {"pivot": "rock", "at": [half, 0.0]}
-    return model("linkage", bodies={"rock": shape}, positive={"lead": "rock", "joints": {"O": pivot}})

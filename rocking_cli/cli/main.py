@@ -20,7 +20,7 @@ from rocking_cli.text import cut, one_line, printable
 
 COMMANDS = (
     "draw", "equiv", "collapse", "error", "record", "select", "respond", "margin", "verify", "survey", "design",
-    "animate", "pulse", "overturning", "spectrum", "equivalent", "fragility",
+    "score", "animate", "pulse", "overturning", "spectrum", "equivalent", "fragility",
     "results", "report", "figure", "mechanisms", "measures", "new", "info", "warm",
     "completion",
 )  # fmt: skip
@@ -46,8 +46,12 @@ class _Context(Context):
         if self.refused is not None and self.info_name not in DO_WITHOUT:
             raise self.refused
         defaults.say(self)
-        with terminal.plugins_apart():
-            return super().invoke(callback, *args, **named)
+        try:
+            with terminal.plugins_apart():
+                return super().invoke(callback, *args, **named)
+        except InputError as error:
+            error.add_note(defaults.whose(terminal.as_typed(str(error), self.command), self))
+            raise
 
 
 def _check_environment() -> None:
@@ -116,7 +120,7 @@ class LazyGroup(click.Group):
                 terminal.error(str(blamed))
                 terminal.debug_traceback(error)
                 ctx.exit(blamed.exit_code)
-            more = defaults.whose(error) if isinstance(error, click.UsageError) else ""
+            more = defaults.whose(error.message, error.ctx) if isinstance(error, click.UsageError) else ""
             # It quotes what was typed.
             said = terminal.beside(printable(error.format_message() + more), "Error: ")
             error.format_message = lambda: said  # type: ignore[method-assign]
@@ -127,7 +131,7 @@ class LazyGroup(click.Group):
             ctx.exit(endings.exit_code(stopped))
         except RockingError as error:
             command = self.get_command(ctx, ctx.invoked_subcommand or "")
-            terminal.error(terminal.as_typed(str(error), command))
+            terminal.error("".join([terminal.as_typed(str(error), command), *getattr(error, "__notes__", ())]))
             terminal.debug_traceback(error)
             ctx.exit(error.exit_code)
         except MemoryError as error:

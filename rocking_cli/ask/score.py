@@ -1,0 +1,148 @@
+"""`rk.score`: score stated shares of overturning against shake-table tests."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import lru_cache, partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Unpack
+
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.given import checked, structure_of
+from rocking_cli.ask.ground_motions import Motions, ReadingArguments, pulse_in, reading_of
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import RockingError
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.structure import Structure
+from rocking_cli.studies.neighbours import Neighbourhood
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.processing.reading import Reading
+    from rocking_cli.studies.experiments.score import Scored
+    from rocking_cli.studies.experiments.table import TableOfTests
+
+KEPT = 16  # records in memory at a time; tests under one record are simulated together
+
+
+def score(
+    tests: str | Path | Mapping[str, Sequence[Any]] | TableOfTests,
+    *,
+    neighbours: int = Neighbourhood.count,
+    amplitude_deviation: float = Neighbourhood.amplitude,
+    slenderness_deviation: float | None = None,
+    restitution_deviation: float | None = None,
+    opening: float | None = None,
+    threads: int | None = None,
+    readings: tuple[Reading, Reading | None] | None = None,
+    watch: Watcher = SILENT,
+    **options: Unpack[ReadingArguments],
+) -> Answer[Scored]:
+    """Score stated shares of overturning against the outcomes of shake-table tests.
+
+    Parameters
+    ----------
+    tests : str or Path, or mapping
+        A table of tests as a CSV file, whose paths are relative to its folder; or its columns by their headings (a
+        frame of pandas is one), with paths relative to the current folder. The columns are `structure`, `record`,
+        `overturned` or `peak`, and optionally `censored`, `scale`, `time_scale`, `polarity`, `cluster`, `half`,
+        `motion`, `pgv` and `pred_NAME`; see docs/score.md.
+    neighbours : int
+        Number of neighbouring motions to simulate for each test, at least 1.
+    amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
+        Standard deviations of the neighbours: of ln amplitude, of ln slenderness and of restitution; by default those
+        of each structure.
+    opening : float, optional
+        Largest opening of a joint up to which a history is valid, over D_cr; by default that of each structure.
+    threads : int, optional
+        Number of tests at a time; by default, one for each processor.
+    readings : tuple of (Reading, Reading or None), optional
+        How the records are read, and how those are that do not state their unit, interval or channel; by default
+        according to `options`.
+    watch : Watcher
+        Told how far the work is, and which tests cannot be simulated.
+    **options
+        How the records are read and corrected: see `rocking_cli.ask.ground_motions.ReadingArguments`.
+
+    Returns
+    -------
+    Answer of Scored
+        `tests` are the stated shares, `scores` those of each rule with intervals, `bins` the calibration.
+
+    Raises
+    ------
+    InputError
+        If the table has wrong rows, which the error lists, or a value is out of range.
+
+    Notes
+    -----
+    An interval is the range from 5 to 95 % of 2000 draws of clusters of tests with replacement.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> motions = ["sine:0.2g:0.8s", "sine:0.6g:0.8s", "sine:0.9g:0.8s"]
+    >>> tests = {"structure": ["examples/block.yaml"] * 3, "record": motions, "overturned": [0, 0, 1]}
+    >>> [each.share for each in rk.score(tests, neighbours=20).tests]
+    [0.0, 0.0, 1.0]
+    """
+    from rocking_cli.studies.experiments.score import score_tests
+    from rocking_cli.views.score import columns, view
+
+    around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
+    table = tests_of(tests)
+    structures = _structures(table, checked(opening))
+    motions = Motions((), *readings) if readings is not None else Motions((), reading_of(options))
+    motion_of = lru_cache(KEPT)(partial(_motion, table.folder, motions))
+    watch.compile()
+    with watch.progress(len(table.tests), "tests") as advance:
+        found = score_tests(
+            table.tests, partial(_known, structures), motion_of, around, threads=threads, progress=advance
+        )
+    return Answer("score", found, view(found, table.file), partial(columns, found), partial(_figure, found))
+
+
+def tests_of(given: str | Path | Mapping[str, Sequence[Any]] | TableOfTests) -> TableOfTests:
+    """Read a table of tests from its file, or take its columns. Raises `InputError`."""
+    from rocking_cli.studies.experiments.table import TableOfTests, parse_columns, read_tests
+
+    if isinstance(given, TableOfTests):
+        return given
+    if isinstance(given, str | Path):
+        return read_tests(Path(given))
+    return parse_columns(given)
+
+
+def _structures(table: TableOfTests, opening: float | None) -> dict[str, Structure | RockingError]:
+    """Read each structure once; instead of one that cannot be used, its error."""
+    structures: dict[str, Structure | RockingError] = {}
+    for named in dict.fromkeys(test.structure for test in table.tests):
+        try:
+            structure = structure_of(table.folder / named, opening)
+            structure.model("nonlinear")
+            structures[named] = structure
+        except RockingError as error:
+            structures[named] = error
+    return structures
+
+
+def _known(structures: Mapping[str, Structure | RockingError], named: str) -> Structure:
+    found = structures[named]
+    if isinstance(found, RockingError):
+        raise found
+    return found
+
+
+def _motion(folder: Path, motions: Motions, named: str) -> GroundMotion:
+    """Read the record of a test as these motions are read, or sample its pulse."""
+    if (pulse := pulse_in(named)) is not None:
+        return motions.reading.on_floor(pulse.sampled())
+    return replace(motions, given=(folder / named,)).one(0.0).motion
+
+
+def _figure(found: Scored) -> Figure:
+    from rocking_cli.plotting.score import draw_reliability
+
+    return draw_reliability(found)

@@ -1,0 +1,1 @@
+"""What shake-table tests say of the tool, and of a structure."""

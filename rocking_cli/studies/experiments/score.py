@@ -1,0 +1,321 @@
+"""Scoring: stated shares of overturning, and those of simpler rules, against what shake-table tests showed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from math import inf, isnan, nan
+from typing import NamedTuple
+
+import numpy as np
+
+from rocking_cli.dynamics.outcome import Outcomes
+from rocking_cli.dynamics.parallel import in_parts
+from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.measures import measure
+from rocking_cli.processing.steps import parse_step, process
+from rocking_cli.structure import Structure
+from rocking_cli.studies.experiments.scores import (
+    BINS,
+    CalibrationBin,
+    Draws,
+    Estimate,
+    Reals,
+    RuleScore,
+    base_rates,
+    calibration,
+    difference,
+    distance_from_uniform,
+    mean_gap,
+    score,
+)
+from rocking_cli.studies.experiments.table import ObservedTest
+from rocking_cli.studies.neighbours import Neighbourhood, follow
+
+TOOL, WITH_UNKNOWN, BASE_RATE, WEST, VELOCITY = "tool", "tool_with_unknown", "base_rate", "west", "velocity"
+DRIFT = "0.1"  # Hz, below which the velocity of a record is drift
+
+
+class PeakRank(NamedTuple):
+    """Rank of an observed peak rotation among those of the neighbours.
+
+    Parameters
+    ----------
+    line : int
+        Line of the test.
+    rank : float
+        Share of the neighbours with a smaller peak; equal peaks count half, and neighbours that overturn or whose
+        outcome is unknown have larger ones.
+    censored : bool
+        Whether the rank is at least this large.
+    """
+
+    line: int
+    rank: float
+    censored: bool
+
+
+@dataclass(frozen=True)
+class Stated:
+    """What is stated of one test.
+
+    Parameters
+    ----------
+    test : ObservedTest
+        The test.
+    overturned, unknown : int
+        Number of neighbours that overturn, and of those whose outcome is unknown.
+    count : int
+        Number of neighbours, under one polarity or two; 0 if the test could not be simulated.
+    west, velocity : float
+        1 if the rule states that the structure overturns, 0 if it stands; NaN if it states neither.
+    rank : float
+        Rank of the observed peak among the neighbours; NaN without one.
+    error : RockingError, optional
+        Why the test could not be simulated.
+    """
+
+    test: ObservedTest
+    overturned: int = 0
+    unknown: int = 0
+    count: int = 0
+    west: float = nan
+    velocity: float = nan
+    rank: float = nan
+    error: RockingError | None = None
+
+    @property
+    def share(self) -> float | None:
+        """Share of the neighbours that overturn; None if the test could not be simulated."""
+        return self.overturned / self.count if self.count else None
+
+    @property
+    def unknown_share(self) -> float | None:
+        """Share of the neighbours whose outcome is unknown; None if the test could not be simulated."""
+        return self.unknown / self.count if self.count else None
+
+
+@dataclass(frozen=True)
+class Scored:
+    """Stated shares of tests, and their scores.
+
+    Parameters
+    ----------
+    around : Neighbourhood
+        How the neighbours were drawn.
+    tests : sequence of Stated
+        One entry for each row of the table, in its order.
+    scores : mapping of str to RuleScore
+        Scores by the name of the rule; empty if no outcome was observed.
+    differences : mapping of str to Estimate
+        Brier score of the tool less that of each other rule: negative if the tool is better.
+    bins : sequence of CalibrationBin
+        Stated and observed shares of the tool in five equal bins.
+    mean_gap : float
+        Mean absolute difference of stated and observed shares over the bins, weighted by tests; NaN without outcomes.
+    bias : Estimate
+        Mean stated share less the observed one.
+    clusters : int
+        Number of clusters of the scored tests.
+    ranks : sequence of PeakRank
+        Ranks of the observed peaks.
+    distance : float
+        Largest distance of the distribution of uncensored ranks from a uniform one; NaN without any.
+    """
+
+    around: Neighbourhood
+    tests: Sequence[Stated]
+    scores: Mapping[str, RuleScore]
+    differences: Mapping[str, Estimate]
+    bins: Sequence[CalibrationBin]
+    mean_gap: float
+    bias: Estimate
+    clusters: int
+    ranks: Sequence[PeakRank]
+    distance: float
+
+    @property
+    def failed(self) -> Sequence[Stated]:
+        """The tests that could not be simulated."""
+        return [each for each in self.tests if each.error is not None]
+
+    @property
+    def observed(self) -> Sequence[Stated]:
+        """The tests that are scored: simulated, and with an observed outcome."""
+        return [each for each in self.tests if each.error is None and each.test.overturned is not None]
+
+
+def score_tests(
+    tests: Sequence[ObservedTest],
+    structure_of: Callable[[str], Structure],
+    motion_of: Callable[[str], GroundMotion],
+    around: Neighbourhood | None = None,
+    *,
+    threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> Scored:
+    """Simulate the neighbours of each test, and score what they state.
+
+    Parameters
+    ----------
+    tests : sequence of ObservedTest
+        The tests.
+    structure_of, motion_of : callable
+        Return the structure and the motion that a test names. They may raise `RockingError`; the test then enters no
+        score. Called from several threads.
+    around : Neighbourhood, optional
+        How to draw the neighbours.
+    threads : int, optional
+        Number of threads; by default, one for each processor.
+    progress : callable, optional
+        Called with the number of tests done since the last call.
+
+    Raises
+    ------
+    InputError
+        If the number of neighbours is 0.
+    """
+    around = around or Neighbourhood()
+    if not around.count:
+        raise InputError(Problem("must be at least 1", field="neighbours"))
+    first = {test.record: k for k, test in reversed(list(enumerate(tests)))}
+    order = sorted(range(len(tests)), key=lambda k: (first[tests[k].record], k))  # each record is read once
+    stated: dict[int, Stated] = {}
+
+    def work(start: int, stop: int) -> None:
+        for k in order[start:stop]:
+            try:
+                stated[k] = state(tests[k], structure_of(tests[k].structure), motion_of(tests[k].record), around)
+            except RockingError as error:
+                stated[k] = Stated(tests[k], error=error)
+
+    in_parts(work, len(tests), 1, threads, progress)
+    return scored([stated[k] for k in range(len(tests))], around)
+
+
+def state(test: ObservedTest, structure: Structure, motion: GroundMotion, around: Neighbourhood) -> Stated:
+    """Return what the neighbours of a test, and the simpler rules, state of it.
+
+    Parameters
+    ----------
+    test : ObservedTest
+        The test.
+    structure : Structure
+        Its structure.
+    motion : GroundMotion
+        Its motion as recorded, before it is scaled in amplitude or time.
+    around : Neighbourhood
+        How to draw the neighbours.
+
+    Raises
+    ------
+    InputError, MechanismError, SolverError
+        If the structure has no model, or the motion cannot be simulated.
+    """
+    model = structure.model("nonlinear")
+    shaking = _in_time(motion.scaled(test.scale), test.time_scale)
+    signs = (1, -1) if test.polarity == "both" else (int(test.polarity),)
+    drawn = around.drawn(model)
+    found = [follow(model, shaking, drawn, polarity=sign, threads=1) for sign in signs]
+    peaks = np.concatenate([_peaks(each) for each in found])
+    rank = nan
+    if test.peak is not None:
+        rank = float(((peaks < test.peak).sum() + 0.5 * (peaks == test.peak).sum()) / peaks.size)
+    return Stated(
+        test,
+        sum(int(each.overturned.sum()) for each in found),
+        sum(int(each.unknown.sum()) for each in found),
+        len(signs) * around.count,
+        float(shaking.pga_g > min(structure.uplift)),
+        _by_velocity(test, structure, shaking),
+        rank,
+    )
+
+
+def _in_time(motion: GroundMotion, factor: float) -> GroundMotion:
+    """Return a motion with a factor on its times, and on those of its other components."""
+    vertical, ground = (None if each is None else _in_time(each, factor) for each in (motion.vertical, motion.ground))
+    return replace(motion, dt=factor * motion.dt, vertical=vertical, ground=ground)
+
+
+def _peaks(found: Outcomes) -> Reals:
+    """Return the peak rotation of each neighbour [rad]; infinite if it overturns or its outcome is unknown."""
+    peaks = np.fmax(found.peak_positive, found.peak_negative)
+    return np.where(found.overturned | found.unknown, inf, peaks)
+
+
+def _by_velocity(test: ObservedTest, structure: Structure, motion: GroundMotion) -> float:
+    """Return 1 if the peak velocity exceeds the step that overturns, 0 if not, and NaN if there is no such step."""
+    if structure.why_no_block is not None:
+        return nan
+    pgv = test.pgv
+    if pgv is None:
+        with suppress(InputError):  # too short to be filtered, and to drift
+            motion = process(motion, [parse_step("highpass", DRIFT)])
+        pgv = measure(motion).pgv
+    step = min(structure.equivalence.positive.v_imp, structure.equivalence.negative.v_imp)
+    return nan if isnan(step) else float(pgv > step)
+
+
+def scored(stated: Sequence[Stated], around: Neighbourhood) -> Scored:
+    """Score what is stated of tests.
+
+    Parameters
+    ----------
+    stated : sequence of Stated
+        What is stated of each test.
+    around : Neighbourhood
+        How the neighbours were drawn.
+    """
+    kept = [each for each in stated if each.count and each.test.overturned is not None]
+    ranks = [
+        PeakRank(each.test.line, each.rank, each.test.censored)
+        for each in stated
+        if each.count and not isnan(each.rank)
+    ]
+    certain = np.array([each.rank for each in ranks if not each.censored])
+    distance = distance_from_uniform(certain) if certain.size else nan
+    if not kept:
+        return Scored(around, stated, {}, {}, [], nan, Estimate(nan, nan, nan), 0, ranks, distance)
+    seen = np.array([float(each.test.overturned or 0) for each in kept])
+    rules = stated_by(kept, seen)
+    draws = Draws([each.test.cluster for each in kept])
+    tool = rules[TOOL]
+    places = np.array([min(BINS * each.overturned // each.count, BINS - 1) for each in kept])
+    bins = calibration(tool, places, seen, draws)
+    return Scored(
+        around,
+        stated,
+        {name: score(shares, seen, draws, around.count) for name, shares in rules.items()},
+        {name: difference(tool, shares, seen, draws) for name, shares in rules.items() if name != TOOL},
+        bins,
+        mean_gap(bins),
+        draws.mean(tool - seen),
+        draws.count,
+        ranks,
+        distance,
+    )
+
+
+def stated_by(tests: Sequence[Stated], seen: Reals) -> dict[str, Reals]:
+    """Return the shares that each rule states of tests, NaN where it states none, by the name of the rule.
+
+    Parameters
+    ----------
+    tests : sequence of Stated
+        The tests, all with an observed outcome.
+    seen : ndarray, shape (n,)
+        1 for tests that overturned, 0 for others.
+    """
+    rules = {
+        TOOL: [each.overturned / each.count for each in tests],
+        WITH_UNKNOWN: [(each.overturned + each.unknown) / each.count for each in tests],
+        BASE_RATE: base_rates(seen, [each.test.cluster for each in tests], [each.test.half for each in tests]),
+        WEST: [each.west for each in tests],
+        VELOCITY: [each.velocity for each in tests],
+    }
+    for name in dict.fromkeys(name for each in tests for name in each.test.forecasts):
+        rules[name] = [each.test.forecasts.get(name, nan) for each in tests]
+    return {name: np.array(shares, dtype=np.float64) for name, shares in rules.items()}

@@ -1,0 +1,213 @@
+"""View of scores of stated shares, as text and as data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import isnan
+from typing import Any
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.names import percent
+from rocking_cli.studies.experiments.score import BASE_RATE, TOOL, VELOCITY, WEST, WITH_UNKNOWN, Scored, Stated
+from rocking_cli.studies.experiments.scores import DRAWS, CalibrationBin, Estimate, RuleScore
+from rocking_cli.text import one_line
+from rocking_cli.views.column import Column, data_of, frame_of, of, rounded, table_of
+from rocking_cli.views.view import ABSENT, Table, View
+
+FEW_CLUSTERS = 10
+NAMES = {
+    TOOL: "the tool",
+    WITH_UNKNOWN: "the tool, unknown as overturned",
+    BASE_RATE: "base rate of other tests",
+    WEST: "West: PGA > lambda g",
+    VELOCITY: "PGV > v_imp",
+}
+ROWS: tuple[Column[Stated], ...] = (
+    Column("line", of("test.line")),
+    Column("structure", of("test.structure"), text=True),
+    Column("record", of("test.record"), text=True),
+    Column("cluster", of("test.cluster"), text=True),
+    Column("share", of("share")),
+    Column("unknown", of("unknown_share")),
+    Column("overturned", of("test.overturned"), text=True),
+)
+BINS: tuple[Column[CalibrationBin], ...] = (
+    Column("", lambda each: f"{each.low:g} to {each.high:g}", head="stated share", text=True),
+    Column("low", of("low")),
+    Column("high", of("high")),
+    Column("tests", of("tests"), head="tests"),
+    Column("clusters", of("clusters"), head="clusters"),
+    Column("stated", lambda each: _number(each.stated), head="mean\nstated", form=rounded(3)),
+    Column("observed", lambda each: _number(each.observed.value), head="observed", form=rounded(3)),
+    Column("interval", lambda each: _list(each.observed)[1:], head="5 to 95 %", form=lambda ends: _range(*ends)),
+)
+
+
+def view(found: Scored, file: str) -> View:
+    """Show the scores of a table of tests; `file` is its name."""
+    return View(lambda: _data(found), [*_parts(found, file)])
+
+
+def columns(found: Scored) -> dict[str, list[Any]]:
+    """Return what is stated of each test as columns by name."""
+    return {**frame_of(ROWS, found.tests), "error": [reason(each) or "" for each in found.tests]}
+
+
+def reason(each: Stated) -> str | None:
+    """Return why a test could not be simulated, in one line; None if it could."""
+    if not isinstance(each.error, InputError):
+        return None if each.error is None else one_line(str(each.error))
+    return "; ".join(str(Problem(one.message, one.file, one.line, field=one.field)) for one in each.error.problems)
+
+
+def _parts(found: Scored, file: str) -> Iterator[Table | str]:
+    kept, tests = found.observed, found.tests
+    structures, records = ({getattr(each.test, name) for each in tests} for name in ("structure", "record"))
+    yield (
+        f"{file}: {_count(len(tests), 'test')} of {_count(len(structures), 'structure')} under "
+        f"{_count(len(records), 'motion')}. {found.around.count} neighbouring motions are simulated for each, "
+        f"{found.around.words}; the stated share is that of the neighbours that overturn."
+    )
+    if commanded := sum(each.test.commanded for each in tests):
+        yield (
+            f"Caution: the motions of {_count(commanded, 'test')} are those commanded, not those recorded: what the "
+            "table did may differ by far more than the neighbours do."
+        )
+    if kept:
+        yield from _scores(found, len(kept))
+    if found.ranks:
+        yield _peaks(found)
+    if found.failed:
+        yield f"{_count(len(found.failed), 'test')} could not be simulated, and no score includes what they showed."
+
+
+def _scores(found: Scored, count: int) -> Iterator[Table | str]:
+    unknown = any(each.unknown for each in found.observed)
+    shown = {name: each for name, each in found.scores.items() if name != WITH_UNKNOWN or unknown}
+    heads = ["rule", "tests", "Brier", "tool less\nrule", "log loss", "right", "area"]
+    rows = [
+        [
+            NAMES.get(name, name),
+            str(each.tests),
+            _cell(each.brier),
+            _cell(found.differences.get(name)),
+            *map(_cell, (each.log_loss, each.right, each.auc)),
+        ]
+        for name, each in shown.items()
+    ]
+    overturned = sum(bool(each.test.overturned) for each in found.observed)
+    yield Table(f"Scores of {_count(count, 'test')} in {_count(found.clusters, 'cluster')}", heads, rows, range(1, 7))
+    yield (
+        f"{overturned} of these tests overturned. 'Brier' is the mean squared difference of stated share and outcome: "
+        "smaller is better. 'Tool less rule' is the Brier score of the tool less that of the rule: negative if the "
+        "tool is better. 'Right' is the share of tests in which the more likely outcome was observed, 'area' the "
+        "probability that a test that overturned has a larger share than one that did not. Brackets hold 5 to 95 % of "
+        f"{DRAWS} draws of clusters."
+    )
+    if found.clusters < FEW_CLUSTERS:
+        yield (
+            f"Caution: with {_count(found.clusters, 'cluster')} of tests only, the true intervals are wider: "
+            "no rule can be called better than another."
+        )
+    else:
+        yield " ".join(
+            _compared(NAMES.get(name, name), each) for name, each in found.differences.items() if name in shown
+        )
+    yield table_of("Stated and observed shares of overturning", BINS, found.bins)
+    yield _calibrated(found)
+
+
+def _compared(name: str, each: Estimate) -> str:
+    """Return a sentence on whether the tool is better than a rule: only if the whole interval says so."""
+    if isnan(each.value):
+        return f"There is no test on which {name} can be compared."
+    how = "better than" if each.high < 0 else "worse than" if each.low > 0 else "not distinguishable from"
+    interval = _range(each.low, each.high)
+    return f"The tool is {how} '{name}': its Brier score differs by {each.value:+.3f} {interval}."
+
+
+def _calibrated(found: Scored) -> str:
+    """Return a sentence on how far stated shares are from observed ones."""
+    points = 100 * found.bias.value
+    more = "more" if points > 0 else "less"
+    low, high = (100 * each for each in found.bias[1:])
+    apart = "the interval includes 0" if low <= 0 <= high else "the interval excludes 0"
+    return (
+        f"On average, the tool states {abs(points):.2g} percentage points {more} than was observed "
+        f"[{low:.2g} {high:.2g}]; {apart}. The mean gap of the bins is {100 * found.mean_gap:.2g} points."
+    )
+
+
+def _peaks(found: Scored) -> str:
+    """Return sentences on the ranks of observed peaks."""
+    certain = sorted(each.rank for each in found.ranks if not each.censored)
+    censored = len(found.ranks) - len(certain)
+    said = f"Peak rotations were observed in {_count(len(found.ranks), 'test')}"
+    said += f", {censored} of them as a lower bound only" if censored else ""
+    if not certain:
+        return f"{said}."
+    inside = sum(0.05 <= each <= 0.95 for each in certain) / len(certain)
+    return (
+        f"{said}. Of the others, {percent(inside)} lie between 5 and 95 % of their neighbours, where 90 % should; the "
+        f"distribution of their ranks departs from a uniform one by {found.distance:.2g}."
+    )
+
+
+def _data(found: Scored) -> dict[str, Any]:
+    tests = []
+    for each in found.tests:
+        error = reason(each)
+        tests.append(data_of(ROWS, each) | ({"error": error} if error is not None else {}))
+    return {
+        "neighbours": {
+            "count": found.around.count,
+            "amplitude": found.around.amplitude,
+            "restitution": found.around.restitution,
+            "slenderness": found.around.slenderness,
+        },
+        "tests": tests,
+        "scores": {name: _score(each) for name, each in found.scores.items()},
+        "differences": {name: _list(each) for name, each in found.differences.items()},
+        "calibration": [data_of(BINS, each) for each in found.bins],
+        "mean_gap": _number(found.mean_gap),
+        "bias": _list(found.bias),
+        "clusters": found.clusters,
+        "peaks": {
+            "tests": len(found.ranks),
+            "censored": sum(each.censored for each in found.ranks),
+            "uniformity": _number(found.distance),
+            "ranks": [each._asdict() for each in found.ranks],
+        }
+        if found.ranks
+        else None,
+    }
+
+
+def _score(each: RuleScore) -> dict[str, Any]:
+    return {
+        "tests": each.tests,
+        **{name: _list(getattr(each, name)) for name in ("brier", "log_loss", "right", "auc")},
+    }
+
+
+def _list(each: Estimate) -> list[float | None]:
+    return [_number(value) for value in each]
+
+
+def _number(value: float) -> float | None:
+    return None if isnan(value) else value
+
+
+def _cell(each: Estimate | None) -> str:
+    """Format an estimate in two lines: the value, and its interval."""
+    if each is None or isnan(each.value):
+        return ABSENT
+    return f"{each.value:.3f}\n{_range(each.low, each.high)}"
+
+
+def _range(low: float | None, high: float | None) -> str:
+    return ABSENT if low is None or high is None else f"[{low:.3f} {high:.3f}]"
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}{'s' * (number != 1)}"
