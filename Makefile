@@ -10,7 +10,7 @@ STAMP := $(VENV)/.installed
 RELEASE_STAMP := $(VENV)/.installed-release
 DOCS_STAMP := $(VENV)/.installed-docs
 
-.PHONY: setup demo test test-kernels test-versions test-elsewhere damage soak fuzz fields properties lint type contracts check bench kernels same-kernels validation stub pictures \
+.PHONY: setup demo test test-kernels test-versions test-elsewhere damage soak fuzz fields properties lint type contracts check bench kernels same-kernels validation scoreboard stub pictures \
 	docs release clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
@@ -84,6 +84,9 @@ soak: setup  ## What takes too long for the tests, an hour: damaged stores, race
 
 validation: setup  ## Write docs/validation.md anew
 	$(BIN)/python docs/make_validation.py
+
+scoreboard: setup  ## Write the line of this version into docs/scoreboard.md; ROCKING_EXPERIMENTS is the folder of the tests
+	$(BIN)/python docs/make_scoreboard.py "$(ROCKING_EXPERIMENTS)"
 
 KERNELS := out/kernels
 kernels:  ## Compile the kernels that are shipped, rocking_cli/dynamics/ready; PYTHON up to 3.13, READY=FOLDER for another place

@@ -21,7 +21,7 @@ version = release = __version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml"]
 # All but the first are parts of other pages.
-exclude_patterns = ["_generated", "corrections.md", "validation_*.md"]
+exclude_patterns = ["_generated", "corrections.md", "validation_*.md", "trust/*.md"]
 myst_enable_extensions = ["dollarmath"]
 myst_fence_as_directive = ["math"]  # ```math is what code forges draw
 myst_heading_anchors = 3

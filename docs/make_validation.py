@@ -334,7 +334,7 @@ def page() -> str:
             f"## {title}\n\n| quantity | reference | its value | ours | difference | held by |\n"
             f"|---|---|---|---|---|---|\n{rows}"
         )
-    more = ("validation_shares.md", "validation_faults.md", "corrections.md")
+    more = ("validation_faults.md", "corrections.md")
     parts += [(DOCS / name).read_text(encoding="utf-8").rstrip() for name in more]
     return "\n\n".join(parts) + "\n"
 

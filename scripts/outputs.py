@@ -63,6 +63,8 @@ ONCE = (
     f"respond examples/frame.yaml {ACCEL} --with examples/accel_transverse.csv --azimuth all --json",
     f"respond examples/block.yaml {ACCEL} --floor T1=0.4,xi=0.05,z=0.67,gamma=1.29 --json",
     f"respond examples/block.yaml {ACCEL} --release 0.05 --json",
+    "score examples/tests.csv --neighbours 20 --json --out shares.csv",
+    "score examples/tests.csv --neighbours 20",
     "pulse --a 2 --omega 3 --json",
     "pulse --a 4 --omega 6",
     "overturning examples/block.yaml --json",

@@ -232,7 +232,8 @@ MODULES = ("", *VERBS, ".dynamics.batch", ".dynamics.exact", ".names", ".units",
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_examples_in_docstrings_run(name):
+def test_examples_in_docstrings_run(name, monkeypatch):
+    monkeypatch.chdir(PROJECT)
     found = doctest.testmod(import_module(f"rocking_cli{name}"))
     assert found.attempted > 0 and found.failed == 0
 

@@ -217,6 +217,13 @@ def test_each_row_is_stated_in_its_order_and_as_shares_state_it(tmp_path):
     assert data["peaks"] is None
 
 
+def test_a_polarity_that_is_not_known_is_both():
+    leaning = {"structure": [str(EXAMPLES / "rigid_body.yaml")] * 3, "record": ["sine:0.5g:0.9s"] * 3}
+    found = rk.score({**leaning, "overturned": [1] * 3, "polarity": [1, -1, ""]}, neighbours=COUNT).tests
+    one, other, both = (each.share for each in found)
+    assert abs(one - other) > 0.2 and both == pytest.approx((one + other) / 2)
+
+
 def test_scales_of_amplitude_and_time_are_those_of_a_pulse():
     given = {
         "structure": [BLOCK] * 2,
@@ -254,7 +261,9 @@ def test_peaks_are_ranked_among_the_neighbours():
     assert [each.rank for each in found.ranks[1:3]] == [1, 1]
     assert [each.censored for each in found.ranks] == [0, 0, 1, 0]
     near = rk.shares(BLOCK, "sine:0.3g:0.8s", neighbours=50)
-    assert near.overturned == 0 and not found.scores and found.distance >= 1 / 3
+    assert near.overturned == 0 and not found.scores
+    assert found.distance == pytest.approx(distance_from_uniform(np.array([found.ranks[k].rank for k in (0, 1, 3)])))
+    assert found.distance != pytest.approx(distance_from_uniform(np.array([each.rank for each in found.ranks])))
     model = rk.build_models(rk.load_structure(BLOCK), ("nonlinear",))[0]
     from rocking_cli.excitation.pulses import parse_pulse
     from rocking_cli.studies.neighbours import follow

@@ -64,6 +64,7 @@ def folder(tmp_path_factory):
         "site.yaml": SITE,
         "study.yaml": STUDY,
         "table.csv": "file\narch.yaml\n",
+        "tests.csv": "structure,record,overturned\narch.yaml,sine:2g:0.4s,1\n",
     }
     for name, text in files.items():
         (made / name).write_text(text)
@@ -89,6 +90,7 @@ HISTORIES = {
         ),
     ),
     "survey": (["table.csv", *PULSE], lambda found: found["rows"][0]["unknown"] == 1),
+    "score": (["tests.csv", "--neighbours", 2], lambda found: found["tests"][0]["unknown"] == 1),
     "design": (
         [
             "arch.yaml",

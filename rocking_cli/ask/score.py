@@ -48,7 +48,7 @@ def score(
         A table of tests as a CSV file, whose paths are relative to its folder; or its columns by their headings (a
         frame of pandas is one), with paths relative to the current folder. The columns are `structure`, `record`,
         `overturned` or `peak`, and optionally `censored`, `scale`, `time_scale`, `polarity`, `cluster`, `half`,
-        `motion`, `pgv` and `pred_NAME`; see docs/score.md.
+        `motion`, `pgv` and `pred_NAME`; see docs/commands.md.
     neighbours : int
         Number of neighbouring motions to simulate for each test, at least 1.
     amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
@@ -83,7 +83,7 @@ def score(
     Examples
     --------
     >>> import rocking_cli as rk
-    >>> motions = ["sine:0.2g:0.8s", "sine:0.6g:0.8s", "sine:0.9g:0.8s"]
+    >>> motions = ["sine:0.2g:0.8s", "sine:0.3g:0.8s", "sine:0.6g:0.8s"]
     >>> tests = {"structure": ["examples/block.yaml"] * 3, "record": motions, "overturned": [0, 0, 1]}
     >>> [each.share for each in rk.score(tests, neighbours=20).tests]
     [0.0, 0.0, 1.0]

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-class Shares(NamedTuple):
+class OutcomeShares(NamedTuple):
     """Shares of the neighbours of a motion by outcome, each from 0 to 1; their sum is 1.
 
     Parameters
@@ -48,7 +48,7 @@ def shares(
     opening: float | None = None,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
-) -> Answer[Shares]:
+) -> Answer[OutcomeShares]:
     """Compute the shares of the neighbours of a motion that overturn, that do not, and whose outcome is unknown.
 
     Parameters
@@ -73,7 +73,7 @@ def shares(
 
     Returns
     -------
-    Answer of Shares
+    Answer of OutcomeShares
         `overturned`, `stands` and `unknown`.
 
     Raises
@@ -93,7 +93,7 @@ def shares(
     Examples
     --------
     >>> import rocking_cli as rk
-    >>> answer = rk.shares(rk.Block(width=0.7, height=2.8), "sine:0.8g:0.8s")
+    >>> answer = rk.shares(rk.Block(width=0.7, height=2.8), "sine:0.39g:0.8s")
     >>> 0.3 < answer.overturned < 0.7
     True
     """
@@ -105,13 +105,13 @@ def shares(
     found = [neighbours_of(model, given.motion.scaled(sign * given.factor), around) for sign in signs_of(polarity)]
     overturned = sum(each.overturned for each in found) / len(found)
     unknown = sum(each.unknown or 0.0 for each in found) / len(found)
-    result = Shares(overturned, 1 - overturned - unknown, unknown, model.joints is not None)
+    result = OutcomeShares(overturned, 1 - overturned - unknown, unknown, model.joints is not None)
     said = f"Of {around.count} neighbours of {given.motion.name}, {percent(overturned)} overturn {ready.name}"
     said += f", and the outcome of {percent(unknown)} is unknown." if unknown else "."
     return Answer("shares", result, View(result._asdict(), [said]), partial(_columns, result), _no_figure)
 
 
-def _columns(found: Shares) -> dict[str, list[float]]:
+def _columns(found: OutcomeShares) -> dict[str, list[float]]:
     return {name: [value] for name, value in found._asdict().items()}
 
 

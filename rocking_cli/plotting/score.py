@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import PercentFormatter
+from matplotlib.ticker import MaxNLocator, PercentFormatter
 
 from rocking_cli.errors import InputError
 from rocking_cli.plotting import style
 from rocking_cli.studies.experiments.score import Scored
 
 FINE = 20  # bins of the counts below
+MANY = 10  # tests of a bin, above which counts are drawn by their logarithm
 
 
 def draw_reliability(found: Scored) -> Figure:
@@ -54,12 +55,15 @@ def draw_reliability(found: Scored) -> Figure:
         [each.share or 0.0 for each in found.observed if bool(each.test.overturned) is overturned]
         for overturned in (False, True)
     ]
-    below.hist(
+    counts, _, _ = below.hist(
         shares, bins=np.linspace(0, 1, FINE + 1),
         color=[style.SHADE, style.EXCEEDED], edgecolor=style.INK, linewidth=style.HAIR, label=["stood", "overturned"],
     )  # fmt: skip
-    below.set_yscale("symlog", linthresh=10)
-    below.yaxis.set_major_formatter(lambda count, _: f"{count:g}")
+    if np.max(counts) > MANY:
+        below.set_yscale("symlog", linthresh=MANY)
+        below.yaxis.set_major_formatter(lambda count, _: f"{count:g}")
+    else:
+        below.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=4))
     below.set_ylabel("tests", fontsize=style.LABEL)
     below.set_xlabel("stated share of neighbours that overturn (numbers: tests in the bin)", fontsize=style.LABEL)
     below.set_xlim(-0.02, 1.02)

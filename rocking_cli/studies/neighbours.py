@@ -79,7 +79,7 @@ class Neighbourhood:
     Amplitude and slenderness are lognormal. The restitution is normal, truncated at the value with which an impact
     keeps all energy; if it were clipped to that value instead, a third of all neighbours would never lose energy. With
     these deviations, computed shares agree with those observed in shake-table tests of two boulders, see
-    docs/validation.md.
+    docs/how_far_to_trust_it.md.
     """
 
     count: int = 200

@@ -9,7 +9,7 @@ from typing import Any
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import percent
 from rocking_cli.studies.experiments.score import BASE_RATE, TOOL, VELOCITY, WEST, WITH_UNKNOWN, Scored, Stated
-from rocking_cli.studies.experiments.scores import DRAWS, CalibrationBin, Estimate, RuleScore
+from rocking_cli.studies.experiments.scores import DRAWS, CalibrationBin, RuleScore, ScoreEstimate
 from rocking_cli.text import one_line
 from rocking_cli.views.column import Column, data_of, frame_of, of, rounded, table_of
 from rocking_cli.views.view import ABSENT, Table, View
@@ -117,7 +117,7 @@ def _scores(found: Scored, count: int) -> Iterator[Table | str]:
     yield _calibrated(found)
 
 
-def _compared(name: str, each: Estimate) -> str:
+def _compared(name: str, each: ScoreEstimate) -> str:
     """Return a sentence on whether the tool is better than a rule: only if the whole interval says so."""
     if isnan(each.value):
         return f"There is no test on which {name} can be compared."
@@ -190,7 +190,7 @@ def _score(each: RuleScore) -> dict[str, Any]:
     }
 
 
-def _list(each: Estimate) -> list[float | None]:
+def _list(each: ScoreEstimate) -> list[float | None]:
     return [_number(value) for value in each]
 
 
@@ -198,7 +198,7 @@ def _number(value: float) -> float | None:
     return None if isnan(value) else value
 
 
-def _cell(each: Estimate | None) -> str:
+def _cell(each: ScoreEstimate | None) -> str:
     """Format an estimate in two lines: the value, and its interval."""
     if each is None or isnan(each.value):
         return ABSENT

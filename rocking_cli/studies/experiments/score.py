@@ -20,10 +20,10 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.experiments.scores import (
     BINS,
     CalibrationBin,
-    Draws,
-    Estimate,
+    ClusterDraws,
     Reals,
     RuleScore,
+    ScoreEstimate,
     base_rates,
     calibration,
     difference,
@@ -109,13 +109,13 @@ class Scored:
         One entry for each row of the table, in its order.
     scores : mapping of str to RuleScore
         Scores by the name of the rule; empty if no outcome was observed.
-    differences : mapping of str to Estimate
+    differences : mapping of str to ScoreEstimate
         Brier score of the tool less that of each other rule: negative if the tool is better.
     bins : sequence of CalibrationBin
         Stated and observed shares of the tool in five equal bins.
     mean_gap : float
         Mean absolute difference of stated and observed shares over the bins, weighted by tests; NaN without outcomes.
-    bias : Estimate
+    bias : ScoreEstimate
         Mean stated share less the observed one.
     clusters : int
         Number of clusters of the scored tests.
@@ -128,10 +128,10 @@ class Scored:
     around: Neighbourhood
     tests: Sequence[Stated]
     scores: Mapping[str, RuleScore]
-    differences: Mapping[str, Estimate]
+    differences: Mapping[str, ScoreEstimate]
     bins: Sequence[CalibrationBin]
     mean_gap: float
-    bias: Estimate
+    bias: ScoreEstimate
     clusters: int
     ranks: Sequence[PeakRank]
     distance: float
@@ -278,10 +278,10 @@ def scored(stated: Sequence[Stated], around: Neighbourhood) -> Scored:
     certain = np.array([each.rank for each in ranks if not each.censored])
     distance = distance_from_uniform(certain) if certain.size else nan
     if not kept:
-        return Scored(around, stated, {}, {}, [], nan, Estimate(nan, nan, nan), 0, ranks, distance)
+        return Scored(around, stated, {}, {}, [], nan, ScoreEstimate(nan, nan, nan), 0, ranks, distance)
     seen = np.array([float(each.test.overturned or 0) for each in kept])
     rules = stated_by(kept, seen)
-    draws = Draws([each.test.cluster for each in kept])
+    draws = ClusterDraws([each.test.cluster for each in kept])
     tool = rules[TOOL]
     places = np.array([min(BINS * each.overturned // each.count, BINS - 1) for each in kept])
     bins = calibration(tool, places, seen, draws)

@@ -18,7 +18,7 @@ RANGE = (0.05, 0.95)  # of the draws, between which an interval lies
 BINS = 5  # of stated shares, equally wide
 
 
-class Estimate(NamedTuple):
+class ScoreEstimate(NamedTuple):
     """A number and its interval, 5 to 95 % of the draws of clusters; NaN where it does not exist."""
 
     value: float
@@ -33,21 +33,21 @@ class RuleScore(NamedTuple):
     ----------
     tests : int
         Number of tests for which the rule states a share.
-    brier : Estimate
+    brier : ScoreEstimate
         Mean squared difference of share and outcome: 0 is perfect, .25 is a coin.
-    log_loss : Estimate
+    log_loss : ScoreEstimate
         Mean of -ln of the share stated for what was observed; shares are held off 0 and 1 by .5/(N + 1).
-    right : Estimate
+    right : ScoreEstimate
         Share of tests in which the more likely outcome was observed; a share of exactly one half counts as standing.
-    auc : Estimate
+    auc : ScoreEstimate
         Probability that a test that overturned has the larger share than one that did not; equal ones count half.
     """
 
     tests: int
-    brier: Estimate
-    log_loss: Estimate
-    right: Estimate
-    auc: Estimate
+    brier: ScoreEstimate
+    log_loss: ScoreEstimate
+    right: ScoreEstimate
+    auc: ScoreEstimate
 
 
 class CalibrationBin(NamedTuple):
@@ -61,7 +61,7 @@ class CalibrationBin(NamedTuple):
         Number of tests, and of the clusters they belong to.
     stated : float
         Mean stated share; NaN if the bin is empty.
-    observed : Estimate
+    observed : ScoreEstimate
         Share of the tests that overturned.
     """
 
@@ -70,10 +70,10 @@ class CalibrationBin(NamedTuple):
     tests: int
     clusters: int
     stated: float
-    observed: Estimate
+    observed: ScoreEstimate
 
 
-class Draws:
+class ClusterDraws:
     """Draws of clusters with replacement, as many in each draw as there are; the same for every score.
 
     Parameters
@@ -94,21 +94,21 @@ class Draws:
         drawn = np.random.default_rng(SEED).integers(self.count, size=(DRAWS, self.count))
         return np.stack([np.bincount(row, minlength=self.count) for row in drawn]).astype(np.float64)
 
-    def mean(self, values: Reals, inside: NDArray[np.bool_] | None = None) -> Estimate:
+    def mean(self, values: Reals, inside: NDArray[np.bool_] | None = None) -> ScoreEstimate:
         """Return the mean of a value of each test, of those `inside` only, with its interval."""
         kept = np.isfinite(values) if inside is None else inside & np.isfinite(values)
         if not kept.any():
-            return Estimate(np.nan, np.nan, np.nan)
+            return ScoreEstimate(np.nan, np.nan, np.nan)
         sums = np.bincount(self.of[kept], values[kept], self.count)
         counts = np.bincount(self.of[kept], minlength=self.count).astype(np.float64)
         return _estimate(float(values[kept].mean()), lambda: (self.weights @ sums, self.weights @ counts))
 
-    def area(self, stated: Reals, seen: Reals) -> Estimate:
+    def area(self, stated: Reals, seen: Reals) -> ScoreEstimate:
         """Return the area under the curve of hits against false alarms, with its interval."""
         kept = np.isfinite(stated)
         fell, stood = kept & (seen == 1), kept & (seen == 0)
         if not (fell.any() and stood.any()):
-            return Estimate(np.nan, np.nan, np.nan)
+            return ScoreEstimate(np.nan, np.nan, np.nan)
         above = np.zeros((self.count, self.count))  # pairs that are in order, by the clusters of both
         one, other = stated[fell][:, None], stated[stood][None, :]
         np.add.at(above, (self.of[fell][:, None], self.of[stood][None, :]), (one > other) + 0.5 * (one == other))
@@ -121,12 +121,12 @@ class Draws:
         return _estimate(float(above.sum() / (fallen.sum() * standing.sum())), drawn)
 
 
-def _estimate(value: float, drawn: Callable[[], tuple[Reals, Reals]]) -> Estimate:
+def _estimate(value: float, drawn: Callable[[], tuple[Reals, Reals]]) -> ScoreEstimate:
     """Return a ratio with the interval of its draws; draws in which it does not exist are left out."""
     above, below = drawn()
     there = below > 0
     low, high = np.quantile(above[there] / below[there], RANGE)
-    return Estimate(value, float(low), float(high))
+    return ScoreEstimate(value, float(low), float(high))
 
 
 def squared(stated: Reals, seen: Reals) -> Reals:
@@ -141,7 +141,7 @@ def surprise(stated: Reals, seen: Reals, count: int) -> Reals:
     return np.asarray(-(seen * np.log(held) + (1 - seen) * np.log(1 - held)))
 
 
-def score(stated: Reals, seen: Reals, draws: Draws, count: int) -> RuleScore:
+def score(stated: Reals, seen: Reals, draws: ClusterDraws, count: int) -> RuleScore:
     """Score the shares of one rule.
 
     Parameters
@@ -150,7 +150,7 @@ def score(stated: Reals, seen: Reals, draws: Draws, count: int) -> RuleScore:
         Stated shares of overturning; NaN where the rule states none.
     seen : ndarray, shape (n,)
         1 for tests that overturned, 0 for others.
-    draws : Draws
+    draws : ClusterDraws
         Draws of the clusters of these tests.
     count : int
         Number of neighbours behind a share, by which shares are held off 0 and 1.
@@ -165,12 +165,12 @@ def score(stated: Reals, seen: Reals, draws: Draws, count: int) -> RuleScore:
     )
 
 
-def difference(one: Reals, other: Reals, seen: Reals, draws: Draws) -> Estimate:
+def difference(one: Reals, other: Reals, seen: Reals, draws: ClusterDraws) -> ScoreEstimate:
     """Return the Brier score of one rule less that of another, on the tests for which both state a share."""
     return draws.mean(squared(one, seen) - squared(other, seen))
 
 
-def calibration(stated: Reals, places: Integers, seen: Reals, draws: Draws) -> list[CalibrationBin]:
+def calibration(stated: Reals, places: Integers, seen: Reals, draws: ClusterDraws) -> list[CalibrationBin]:
     """Return stated and observed shares in bins of the stated share.
 
     Parameters
@@ -179,7 +179,7 @@ def calibration(stated: Reals, places: Integers, seen: Reals, draws: Draws) -> l
         As for `score`, without NaN.
     places : ndarray of int, shape (n,)
         The bin of each test, from 0.
-    draws : Draws
+    draws : ClusterDraws
         Draws of the clusters of these tests.
     """
     bins = []
