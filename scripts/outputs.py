@@ -82,6 +82,7 @@ ONCE = (
 
 FOR_KEYS = (
     "info --json",
+    "selfcheck --quick --json",
     "warm --json",
     "completion bash --json",
     "new block --json",
