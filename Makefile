@@ -10,7 +10,7 @@ STAMP := $(VENV)/.installed
 RELEASE_STAMP := $(VENV)/.installed-release
 DOCS_STAMP := $(VENV)/.installed-docs
 
-.PHONY: setup demo test test-kernels test-versions test-elsewhere damage soak fuzz fields properties lint type contracts check bench kernels same-kernels validation scoreboard stub pictures \
+.PHONY: setup demo selfcheck test test-kernels test-versions test-elsewhere damage soak fuzz fields properties lint type contracts check bench kernels same-kernels validation scoreboard stub pictures \
 	docs release clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
@@ -26,11 +26,15 @@ $(STAMP): $(PACKAGE_STAMP)
 	$(BIN)/python -m pip install --quiet --editable ".[dev]"
 	$(BIN)/python -c "import pathlib; pathlib.Path('$(STAMP)').touch()"
 
-demo: $(PACKAGE_STAMP)  ## The main job on the shipped example: equiv, respond with a plot, pulse
+demo: $(PACKAGE_STAMP)  ## The main job on the shipped example: equiv, respond with a plot, pulse; and a quick selfcheck
 	$(BIN)/python -c "import pathlib; pathlib.Path('out').mkdir(exist_ok=True)"
 	$(BIN)/rocking equiv examples/frame.yaml
 	$(BIN)/rocking respond examples/frame.yaml --record examples/accel.csv --plot out/response.png --out out/history.csv
 	$(BIN)/rocking pulse --a 2 --omega 3
+	$(BIN)/rocking selfcheck --quick
+
+selfcheck: $(PACKAGE_STAMP)  ## Whether this installation computes correctly
+	$(BIN)/rocking selfcheck
 
 test: setup  ## All tests, and the twenty slowest
 	$(BIN)/python -m pytest -n auto --dist worksteal --durations=20

@@ -46,6 +46,7 @@ _HOME = {
     "ask.spectrum": ["spectrum"],
     "ask.motions": ["correct", "on_floor", "respond_around"],
     "ask.selection": ["select"],
+    "ask.selfcheck": ["selfcheck"],
     "ask.survey": ["survey"],
     "ask.verify": ["verify"],
     "core": ["Body", "Direction", "Equivalence", "EquivalentBlock", "Mechanism", "RigidMotion", "equivalent_block"],

@@ -84,6 +84,7 @@ ONCE = (
 
 FOR_KEYS = (
     "info --json",
+    "selfcheck --quick --json",
     "warm --json",
     "completion bash --json",
     "new block --json",

@@ -76,7 +76,7 @@ class TestWorkflow:
         called = [word for make, *words in lines for word in words if "=" not in word]
         assert all(line[0] == "make" and "PYTHON=python" in line for line in lines)
         assert set(called) <= targets
-        assert {"test", "lint", "type", "contracts", "docs", "release", "same-kernels"} == set(called)
+        assert {"test", "selfcheck", "lint", "type", "contracts", "docs", "release", "same-kernels"} == set(called)
 
     def test_it_keeps_what_pip_fetched_and_may_change_nothing(self):
         assert WORKFLOW["permissions"] == {"contents": "read"}

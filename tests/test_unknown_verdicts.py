@@ -136,10 +136,11 @@ HISTORIES = {
         lambda found: found["motions"][0]["unknown"] and found["motions"][0]["headline"] == "unknown",
     ),
 }
-# These follow no history; `figure` follows those of the paper's structures, `warm` those that compile the kernels.
+# These follow no history; `figure` follows those of the paper's structures, `selfcheck` those of its blocks, and `warm`
+# those that compile the kernels.
 WITHOUT = {
-    "draw", "equiv", "collapse", "error", "record", "select", "figure", "mechanisms", "measures", "new", "info", "warm",
-    "completion",
+    "draw", "equiv", "collapse", "error", "record", "select", "figure", "mechanisms", "measures", "new", "info",
+    "selfcheck", "warm", "completion",
 }  # fmt: skip
 LINEAR = {"linear1", "linear2", "closed_form"}  # equivalent blocks have no joints: their outcomes are their own
 KNOWN = {"at_rest", "rocks", "still_rocking", "does not uplift", "overturned"}

@@ -21,10 +21,10 @@ from rocking_cli.text import cut, one_line, printable
 COMMANDS = (
     "draw", "equiv", "collapse", "error", "record", "select", "respond", "margin", "verify", "survey", "design",
     "score", "animate", "pulse", "overturning", "spectrum", "equivalent", "fragility",
-    "results", "report", "figure", "mechanisms", "measures", "new", "info", "warm",
-    "completion",
+    "results", "report", "figure", "mechanisms", "measures", "new", "info", "selfcheck",
+    "warm", "completion",
 )  # fmt: skip
-DO_WITHOUT = ("info",)
+DO_WITHOUT = ("info", "selfcheck")
 """Commands that run even if the user's defaults are invalid."""
 LATEST = 11  # digits of SOURCE_DATE_EPOCH, up to the year 5138
 
@@ -179,8 +179,8 @@ def main(verbose: bool, debug: bool) -> None:
       rocking report block.yaml --record accel.csv -o report.html
 
     Exit codes: 0 success (also if the structure overturns or fails a verification), 1 system error (such as a full
-    disk), 2 invalid input, 3 mechanism or plugin error, 4 solver error, 5 completed, but the records or runs named in
-    the output were skipped; 128 + n terminated by signal n.
+    disk), 2 invalid input, 3 mechanism or plugin error, 4 solver error, or a check of selfcheck failed, 5 completed,
+    but the records or runs named in the output were skipped; 128 + n terminated by signal n.
 
     Put -v and --debug before the command: rocking --debug equiv block.yaml. ROCKING_DEBUG=1 in the environment has the
     same effect as --debug.

@@ -1,0 +1,53 @@
+"""`rk.selfcheck`: check that this installation computes correctly."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from functools import partial
+from typing import TYPE_CHECKING
+
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError, Problem
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.studies.selfcheck.check import SelfCheck
+
+
+def selfcheck(*, quick: bool = False, watch: Watcher = SILENT) -> Answer[SelfCheck]:
+    """Check that this installation computes correctly, each result against something that shares no code with it.
+
+    Parameters
+    ----------
+    quick : bool
+        Whether to compute a few cases of each check only.
+    watch : Watcher
+        Told how far the work is.
+
+    Returns
+    -------
+    Answer of SelfCheck
+        `passed` is whether no check failed; `checks` are the results, `failed` and `not_run` some of them. A check
+        that ends by an error fails; this is not raised.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> rk.selfcheck(quick=True).passed
+    True
+    """
+    from rocking_cli.studies.selfcheck.run import CHECKS, run_checks
+    from rocking_cli.views.selfcheck import columns, view
+
+    with suppress(Exception):  # what is wrong shows in the checks
+        watch.compile()
+        watch.compile(exact=True)
+    with watch.progress(len(CHECKS), "checks") as advance:
+        found = run_checks(CHECKS, quick=quick, progress=advance)
+    return Answer("selfcheck", found, view(found), partial(columns, found), _figure)
+
+
+def _figure() -> Figure:
+    raise InputError(Problem("the checks of an installation have no plot", hint="`to_frame` has them as a table"))

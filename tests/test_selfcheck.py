@@ -1,0 +1,320 @@
+"""`rocking selfcheck`: every check fails if what it checks is wrong, and whatever is broken becomes a row."""
+
+from __future__ import annotations
+
+import json
+import pickle
+import re
+import shutil
+import sys
+import tempfile
+from contextlib import nullcontext
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import rocking_cli as rk
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.cli.main import main
+from rocking_cli.dynamics import kernels, shipped, ways
+from rocking_cli.dynamics.calling import SETS
+from rocking_cli.excitation.records.registry import Readers
+from rocking_cli.studies.selfcheck import (
+    integrated,
+    record_files,
+    records,
+    released,
+    run,
+    threads,
+    thresholds,
+)
+from rocking_cli.studies.selfcheck.check import Check, NotRun
+from rocking_cli.studies.selfcheck.comparing import different_values, largest_difference
+from rocking_cli.studies.selfcheck.free_block import FreeBlock
+from rocking_cli.views.selfcheck import view
+
+CHECKS = {each.name: each for each in run.CHECKS}
+
+
+def checked(name, *, quick=True):
+    return CHECKS[name].run(quick=quick)
+
+
+def asked(*arguments):
+    return CliRunner().invoke(main, ["selfcheck", *arguments], env={"COLUMNS": "200"})
+
+
+def deviation(value, quick):
+    if isinstance(value, Exception):
+        raise value
+    return value
+
+
+def few(monkeypatch, **found):
+    """Replace the checks by some whose deviation is a number, or an error to raise."""
+    own = tuple(Check(name, f"meaning of {name}", "s", 1e-9, partial(deviation, each)) for name, each in found.items())
+    monkeypatch.setattr(run, "CHECKS", own)
+
+
+class TestEachCheck:
+    @pytest.mark.parametrize("name", CHECKS)
+    def test_it_passes_far_below_its_limit(self, name):
+        found = checked(name, quick=False)
+        if name != "records_by_obspy" or found.passed is not None:
+            assert found.passed and found.why is None and found.found <= CHECKS[name].limit / 10
+
+    def test_release_fails_if_the_histories_are_wrong(self, monkeypatch):
+        follow = released.follow
+        monkeypatch.setattr(released, "follow", partial(follow, eta=FreeBlock(0.7, 2.8).eta * (1 + 1e-9)))
+        assert checked("release").passed is False
+        monkeypatch.setattr(released, "follow", partial(follow, most_kept=7))
+        found = checked("release")
+        assert found.passed is False and found.why == "values are missing, or are not numbers"
+
+    def test_pulses_fail_if_the_motion_is_wrong(self, monkeypatch):
+        exact = thresholds.exact_many
+        monkeypatch.setattr(thresholds, "exact_many", lambda *a, **k: exact(*a, **{**k, "gravity": 9.80665000001}))
+        assert checked("pulses").passed is False
+
+    def test_pulses_see_a_wrong_closed_form(self, monkeypatch):
+        closed = thresholds.closed_form
+        monkeypatch.setattr(thresholds, "closed_form", lambda a, omega, eta: closed(a, omega, eta * (1 + 1e-10)))
+        assert checked("pulses").passed is False
+
+    @pytest.mark.parametrize("model", integrated.MODELS)
+    def test_histories_fail_if_they_are_wrong(self, monkeypatch, model):
+        follow = integrated.follow
+
+        def stronger(of, motion):
+            scaled = replace(motion, acceleration=motion.acceleration * (1 + 1e-8))
+            return follow(of, scaled if of.name == model else motion)
+
+        monkeypatch.setattr(integrated, "follow", stronger)
+        assert checked("histories").passed is False
+
+    def test_histories_compare_overturning_too(self, monkeypatch):
+        motion = integrated.MOTIONS[1]
+        times = integrated.event_times(FreeBlock(0.7, 2.8), motion, linear=False)
+        history = integrated.follow(FreeBlock(0.7, 2.8).structure().model("nonlinear"), motion)
+        assert history.overturned and times[-1] == pytest.approx(history.overturning_time, abs=1e-9)
+
+    def test_a_file_of_each_format_of_this_package(self):
+        readers = Readers()
+        own = {name for name in readers if readers.package_of(name).startswith("rocking-cli ")}
+        assert {*record_files.FILES, *record_files.OBSPY_FILES} == own
+        assert len(record_files.FILES) == 11 and sum(record_files.SAMPLES) == 0
+
+    @pytest.mark.parametrize("name", record_files.FILES)
+    def test_records_fail_if_a_sample_of_one_format_is_wrong(self, monkeypatch, name):
+        file = record_files.FILES[name]
+        monkeypatch.setitem(record_files.FILES, name, file._replace(unit=file.unit * (1 + 1e-11)))
+        found = checked("records")
+        assert found.passed is False and 1e-12 < found.found < 2e-11
+
+    def test_records_name_all_formats_that_are_not_read(self, monkeypatch):
+        files = record_files.FILES
+        monkeypatch.setitem(files, "esm", files["esm"]._replace(content=lambda: "nothing"))
+        monkeypatch.setitem(files, "smc", files["smc"]._replace(content=files["knet"].content))
+        found = checked("records")
+        assert found.passed is False
+        assert re.match(r"esm: .*esm: not a record format that can be read: [^;]*; smc: ", found.why)
+        assert "smc: read as K-NET/KiK-net with an interval of 0.01 s" in found.why
+
+    def test_records_by_obspy_fail_and_are_not_run_without_it(self, monkeypatch):
+        pytest.importorskip("obspy")
+        file = record_files.OBSPY_FILES["sac"]
+        with monkeypatch.context() as patch:
+            patch.setitem(record_files.OBSPY_FILES, "sac", file._replace(options={"units": "g"}))
+            assert checked("records_by_obspy").passed is False
+        monkeypatch.setattr(records, "find_spec", lambda name: None)
+        found = checked("records_by_obspy")
+        assert found.passed is None and found.found is None and "pip install" in found.why
+
+    @pytest.mark.parametrize("name", ["respond_many", "exact_many"])
+    def test_threads_fail_if_one_bit_differs(self, monkeypatch, name):
+        compute = getattr(threads, name)
+
+        def by_another(*arguments, **named):
+            found = compute(*arguments, **named)
+            if named["threads"] > 1:
+                found.peak_positive[-1] = np.nextafter(found.peak_positive[-1], 9.0)
+            return found
+
+        monkeypatch.setattr(threads, name, by_another)
+        found = checked("threads")
+        assert found.passed is False and found.found == 1
+
+    def test_threads_share_the_work(self, monkeypatch):
+        asked = []
+        for name in ("respond_many", "exact_many"):
+            compute = getattr(threads, name)
+            monkeypatch.setattr(
+                threads, name, lambda *a, of=compute, **k: asked.append((k["threads"], of)) or of(*a, **k)
+            )
+        checked("threads")
+        assert [count for count, _ in asked] == [1, 4, 1, 4]
+
+    @pytest.mark.parametrize("name", SETS)
+    def test_kernels_fail_if_one_value_of_a_set_differs(self, monkeypatch, name):
+        python = ways.MAKE[ways.PYTHON]
+
+        def spoilt(of):
+            run = python(of)
+
+            def kernel(*arguments):
+                run(*arguments)
+                if of.name == name:
+                    row = arguments[6][0, -1:] if name == "pulses" else arguments[8][0, kernels.PEAK :][:1]
+                    row[:] = np.nextafter(row, 9.0)
+
+            return kernel
+
+        monkeypatch.setitem(ways.MAKE, ways.PYTHON, spoilt)
+        found = checked("kernels")
+        assert found.passed is False and found.found >= 1
+
+    def test_kernels_are_not_run_where_none_can_be_loaded(self, monkeypatch, tmp_path):
+        folder = tmp_path / "ready"
+        shutil.copytree(shipped.FOLDER, folder)
+        monkeypatch.setattr(shipped, "FOLDER", folder)
+        shipped.place().write_bytes(b"damaged")
+        shipped.forget()
+        found = checked("kernels")
+        monkeypatch.undo()
+        shipped.forget()
+        assert found.passed is None and "is damaged, reinstall rocking-cli" in found.why
+
+
+class TestCommand:
+    def test_all_pass(self, monkeypatch):
+        few(monkeypatch, one=1e-12, two=1e-9)
+        done = asked()
+        assert done.exit_code == 0
+        assert "All 2 checks passed in " in done.stdout and done.stdout.count("passed") == 3
+
+    def test_one_that_fails_gives_exit_code_4_and_says_what_to_do(self, monkeypatch):
+        few(monkeypatch, one=1e-12, two=2e-9, three=ValueError("no such thing"), four=float("nan"))
+        done = asked()
+        assert done.exit_code == 4
+        assert "two failed: the deviation exceeds the limit." in done.stdout
+        assert "three failed: ValueError: no such thing." in done.stdout
+        assert "four failed: values are missing, or are not numbers." in done.stdout
+        assert "3 of 4 checks failed: do not rely on" in done.stdout and "`rocking info`" in done.stdout
+        assert "Traceback" not in done.output
+
+    def test_one_that_is_not_run_is_no_failure_and_has_not_passed(self, monkeypatch):
+        few(monkeypatch, one=1e-12, two=NotRun("there is none"))
+        done = asked()
+        assert done.exit_code == 0
+        assert "two not run: there is none." in done.stdout
+        assert "1 of 2 checks passed in" in done.stdout and "1 could not be run" in done.stdout
+
+    def test_json_has_the_same(self, monkeypatch):
+        few(monkeypatch, one=1e-12, two=NotRun("there is none"), three=MemoryError())
+        done = asked("--quick", "--json")
+        found = json.loads(done.stdout)
+        assert done.exit_code == 4 and found["passed"] is False and found["quick"] is True
+        first = found["checks"][0]
+        assert first.pop("seconds") >= 0 and first == {
+            "check": "one", "meaning": "meaning of one", "unit": "s", "found": 1e-12, "limit": 1e-9, "passed": True,
+            "why": None,
+        }  # fmt: skip
+        assert [each["passed"] for each in found["checks"]] == [True, None, False]
+        assert [each["why"] for each in found["checks"]] == [None, "there is none", "MemoryError"]
+
+    def test_a_traceback_is_shown_with_debug(self, monkeypatch):
+        few(monkeypatch, one=ValueError("no such thing"))
+        done = CliRunner().invoke(main, ["--debug", "selfcheck"])
+        assert done.exit_code == 4 and "Traceback" in done.stderr
+
+    def test_quick_runs_all_checks(self):
+        done = asked("--quick", "--json")
+        found = json.loads(done.stdout)
+        assert done.exit_code == 0, done.stdout
+        assert found["quick"] and [each["check"] for each in found["checks"]] == list(CHECKS)
+        assert [each.name for each in pickle.loads(pickle.dumps(run.CHECKS))] == list(CHECKS)
+
+    def test_broken_defaults_do_not_prevent_it(self, monkeypatch, tmp_path):
+        few(monkeypatch, one=0.0)
+        monkeypatch.chdir(tmp_path)
+        Path("rocking.toml").write_text("[", encoding="utf-8")
+        assert asked().exit_code == 0
+
+
+class TestHostilePlaces:
+    def test_without_a_folder_for_temporary_files(self, monkeypatch):
+        monkeypatch.setattr(tempfile, "tempdir", "/nowhere/at/all")
+        found = checked("records")
+        assert found.passed is False and found.why.startswith("FileNotFoundError: ")
+
+    def test_without_the_mechanism(self, monkeypatch):
+        monkeypatch.setattr("rocking_cli.studies.selfcheck.free_block.Registry", dict)
+        assert checked("release").why == "KeyError: 'block'"
+
+    @pytest.mark.parametrize(("module", "name"), [("released", "release"), ("records", "records")])
+    def test_with_a_module_that_cannot_be_imported(self, monkeypatch, module, name):
+        monkeypatch.setitem(sys.modules, f"rocking_cli.studies.selfcheck.{module}", None)
+        found = checked(name)
+        assert found.passed is False and found.why.startswith("ModuleNotFoundError: ")
+
+    def test_with_a_kernel_that_is_none(self, monkeypatch):
+        monkeypatch.setenv(ways.CHOSEN, "fast")
+        ways.forget()
+        found = rk.selfcheck(quick=True)
+        monkeypatch.undo()
+        ways.forget()
+        assert {each.check.name for each in found.failed} >= {"release", "pulses", "histories", "threads"}
+        assert all("ROCKING_KERNELS is 'fast'" in each.why for each in found.failed)
+
+
+class TestAnswer:
+    def test_it_is_the_json_of_the_command(self, monkeypatch):
+        few(monkeypatch, one=1e-12, two=NotRun("there is none"))
+        answer = rk.selfcheck()
+        assert answer.passed and not answer.failed and [each.check.name for each in answer.not_run] == ["two"]
+        assert [each["check"] for each in answer.to_dict()["checks"]] == ["one", "two"]
+        assert answer.columns()["why"] == ["", "there is none"]
+        assert pickle.loads(pickle.dumps(answer)).to_dict() == answer.to_dict()
+        with pytest.raises(rk.InputError, match="have no plot"):
+            answer.plot()
+
+    def test_reasons_are_said_once(self):
+        checks = tuple(Check(name, "", "", 0.0, lambda quick: 1 / 0) for name in ("one", "two"))
+        found = view(run.run_checks(checks, quick=True, progress=lambda count, failed: None))
+        assert "one, two failed: ZeroDivisionError: division by zero." in found.parts
+
+    def test_the_watcher_is_told(self, monkeypatch):
+        few(monkeypatch, one=1e-12, two=1.0)
+        told = []
+
+        class Watching(Watcher):
+            def progress(self, total, what, *, done=0, failed=0):
+                return nullcontext(lambda count, failed=0: told.append((total, what, count, failed)))
+
+        rk.selfcheck(watch=Watching())
+        assert told == [(2, "checks", 1, 0), (2, "checks", 1, 1)]
+
+
+class TestComparing:
+    @pytest.mark.parametrize(
+        ("found", "expected", "largest"),
+        [
+            ([1.0, 2.0], [1.0, 2.5], 0.5),
+            ([], [], 0.0),
+            ([1.0], [1.0, 2.0], np.inf),
+            ([np.nan], [1.0], np.inf),
+            ([1.0], [np.nan], np.inf),
+        ],
+    )
+    def test_the_largest_difference(self, found, expected, largest):
+        assert largest_difference(found, expected) == largest
+
+    def test_bits(self):
+        one = np.array([0.0, 1.0, np.nan, 2.0])
+        assert different_values(one, np.array([-0.0, 1.0, -np.nan, np.nan])) == 2
+        assert different_values(np.array([True, False]), np.array([True, True])) == 1
+        assert different_values(np.array([1, 2]), np.array([1, 3])) == 1
