@@ -22,6 +22,7 @@ __version__ = "0.1.0"
 # What is in which module. The stub beside this file, `__init__.pyi`, is written from it by `make stub`.
 _HOME = {
     "ask.animate": ["animate"],
+    "ask.calibrate": ["calibrate"],
     "ask.answer": ["Answer", "MappingAnswer"],
     "ask.collapse": ["collapse"],
     "ask.design": ["design"],

@@ -15,6 +15,7 @@ from mechanisms.wall import Wall as Wall
 from rocking_cli.ask.animate import animate as animate
 from rocking_cli.ask.answer import Answer as Answer
 from rocking_cli.ask.answer import MappingAnswer as MappingAnswer
+from rocking_cli.ask.calibrate import calibrate as calibrate
 from rocking_cli.ask.collapse import collapse as collapse
 from rocking_cli.ask.design import design as design
 from rocking_cli.ask.draw import draw as draw

@@ -65,6 +65,8 @@ ONCE = (
     f"respond examples/block.yaml {ACCEL} --release 0.05 --json",
     "score examples/tests.csv --neighbours 20 --json --out shares.csv",
     "score examples/tests.csv --neighbours 20",
+    "calibrate examples/calibrate/block.yaml --free examples/calibrate/trace.csv --json -o measured.yaml",
+    "calibrate examples/calibrate/block.yaml --free examples/calibrate/trace.csv",
     "pulse --a 2 --omega 3 --json",
     "pulse --a 4 --omega 6",
     "overturning examples/block.yaml --json",

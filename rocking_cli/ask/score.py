@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
@@ -94,8 +94,7 @@ def score(
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     table = tests_of(tests)
     structures = _structures(table, checked(opening))
-    motions = Motions((), *readings) if readings is not None else Motions((), reading_of(options))
-    motion_of = lru_cache(KEPT)(partial(_motion, table.folder, motions))
+    motion_of = motions_of(table, readings, options)
     watch.compile()
     with watch.progress(len(table.tests), "tests") as advance:
         found = score_tests(
@@ -113,6 +112,14 @@ def tests_of(given: str | Path | Mapping[str, Sequence[Any]] | TableOfTests) -> 
     if isinstance(given, str | Path):
         return read_tests(Path(given))
     return parse_columns(given)
+
+
+def motions_of(
+    table: TableOfTests, readings: tuple[Reading, Reading | None] | None, options: ReadingArguments
+) -> Callable[[str], GroundMotion]:
+    """Return the function that reads the record of a test, or samples its pulse; it keeps the last ones."""
+    motions = Motions((), *readings) if readings is not None else Motions((), reading_of(options))
+    return lru_cache(KEPT)(partial(_motion, table.folder, motions))
 
 
 def _structures(table: TableOfTests, opening: float | None) -> dict[str, Structure | RockingError]:

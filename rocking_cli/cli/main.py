@@ -20,7 +20,7 @@ from rocking_cli.text import cut, one_line, printable
 
 COMMANDS = (
     "draw", "equiv", "collapse", "error", "record", "select", "respond", "margin", "verify", "survey", "design",
-    "score", "animate", "pulse", "overturning", "spectrum", "equivalent", "fragility",
+    "score", "calibrate", "animate", "pulse", "overturning", "spectrum", "equivalent", "fragility",
     "results", "report", "figure", "mechanisms", "measures", "new", "info", "selfcheck",
     "warm", "completion",
 )  # fmt: skip

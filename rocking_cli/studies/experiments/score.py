@@ -215,7 +215,7 @@ def state(test: ObservedTest, structure: Structure, motion: GroundMotion, around
         If the structure has no model, or the motion cannot be simulated.
     """
     model = structure.model("nonlinear")
-    shaking = _in_time(motion.scaled(test.scale), test.time_scale)
+    shaking = in_time(motion.scaled(test.scale), test.time_scale)
     signs = (1, -1) if test.polarity == "both" else (int(test.polarity),)
     drawn = around.drawn(model)
     found = [follow(model, shaking, drawn, polarity=sign, threads=1) for sign in signs]
@@ -234,9 +234,9 @@ def state(test: ObservedTest, structure: Structure, motion: GroundMotion, around
     )
 
 
-def _in_time(motion: GroundMotion, factor: float) -> GroundMotion:
+def in_time(motion: GroundMotion, factor: float) -> GroundMotion:
     """Return a motion with a factor on its times, and on those of its other components."""
-    vertical, ground = (None if each is None else _in_time(each, factor) for each in (motion.vertical, motion.ground))
+    vertical, ground = (None if each is None else in_time(each, factor) for each in (motion.vertical, motion.ground))
     return replace(motion, dt=factor * motion.dt, vertical=vertical, ground=ground)
 
 

@@ -1,0 +1,194 @@
+"""Hold `rocking calibrate --free` against simulated traces of known restitution: docs/trust/traces.md.
+
+    python docs/make_traces.py [COUNT]     # traces of each case, 200
+
+The traces are integrated here by Runge and Kutta's method, by nothing of the package.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from math import atan, hypot, sin, sqrt
+from multiprocessing import Pool
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli import Block, InputError
+from rocking_cli.structure import Structure
+from rocking_cli.studies.experiments.trace import Trace
+from rocking_cli.studies.experiments.trace_fit import fit_trace
+
+Reals = NDArray[np.float64]
+
+PART = Path(__file__).resolve().parent / "trust" / "traces.md"
+G, DT, STEPS, HELD, IMPACTS = 9.80665, 0.01, 20, 30, 7
+COUNT, NOISE, RELEASE = 200, 0.01, 0.7  # traces; noise over the release; release over alpha
+SCATTER = 0.02
+
+
+def simulate(alpha: float, p: float, etas: Sequence[float], release: float, until: int) -> tuple[Reals, list[float]]:
+    """Return the rotation of a block at samples until an impact, and the times of the impacts before.
+
+    Parameters
+    ----------
+    alpha, p : float
+        Slenderness [rad] and frequency parameter [rad/s].
+    etas : sequence of float
+        Restitution of each impact.
+    release : float
+        Rotation at which it is let go [rad].
+    until : int
+        Number of the impact with which the trace ends.
+    """
+    side = 1 if release > 0 else -1
+    angle, rate, time, impacts, samples = release, 0.0, 0.0, [], [release]
+
+    def after(angle: float, rate: float, h: float) -> tuple[float, float]:
+        def turn(at: float) -> float:
+            return -p * p * sin(side * alpha - at)
+
+        k1, l1 = rate, turn(angle)
+        k2, l2 = rate + h / 2 * l1, turn(angle + h / 2 * k1)
+        k3, l3 = rate + h / 2 * l2, turn(angle + h / 2 * k2)
+        k4, l4 = rate + h * l3, turn(angle + h * k3)
+        return angle + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4), rate + h / 6 * (l1 + 2 * l2 + 2 * l3 + l4)
+
+    while True:
+        for _ in range(STEPS):
+            left = DT / STEPS
+            while left > 0:
+                ahead = after(angle, rate, left)
+                if ahead[0] * side >= 0:
+                    angle, rate, left = *ahead, 0.0
+                    continue
+                low, high = 0.0, left
+                for _ in range(50):
+                    middle = (low + high) / 2
+                    low, high = (middle, high) if after(angle, rate, middle)[0] * side >= 0 else (low, middle)
+                rate, angle, left, side = after(angle, rate, high)[1] * etas[len(impacts)], 0.0, left - high, -side
+                impacts.append(time + DT / STEPS - left)
+                if len(impacts) == until:
+                    return np.array(samples), impacts[:-1]
+            time += DT / STEPS
+        samples.append(angle)
+
+
+@dataclass(frozen=True)
+class Case:
+    """Traces of one kind."""
+
+    words: str
+    height: float  # of a block 0.1 m wide [m]
+    eta: float
+    drift: float = 0.0  # over alpha [1/s]
+    scatter: float = 0.0
+    free: bool = False
+
+    @property
+    def block(self) -> Block:
+        """The block."""
+        return Block(width=0.1, height=self.height)
+
+
+def fitted(case: Case, seed: int) -> tuple[float, ...] | None:
+    """Return the errors of eta, mean eta and scatter of one trace, its error as stated, and those of p and alpha."""
+    random = np.random.default_rng([seed, *case.words.encode(), case.free])
+    alpha, p = atan(0.1 / case.height), sqrt(3 * G / (2 * hypot(0.1, case.height)))
+    etas = np.minimum(case.eta + case.scatter * random.standard_normal(IMPACTS + 1), 1.0)
+    angles, _ = simulate(alpha, p, etas.tolist(), RELEASE * alpha, IMPACTS + 1)
+    angles = np.concatenate([np.full(HELD, angles[0]), angles])
+    times = DT * np.arange(angles.size)
+    read = angles + case.drift * alpha * times + random.normal(0, NOISE * RELEASE * alpha, angles.size)
+    try:
+        found = fit_trace(Structure(case.block), Trace("trace", times, read), free_geometry=case.free)
+    except InputError:
+        return None
+    geometry = (found.p.value / p - 1, found.alpha.value / alpha - 1) if found.p and found.alpha else ()
+    return (
+        found.eta.value - case.eta,
+        found.eta.value - etas[:-1].mean(),
+        found.scatter,
+        found.eta.deviation,
+        *geometry,
+    )
+
+
+CASES = [
+    case
+    for height, eta in ((0.5, 0.9323), (1.0, 0.98), (0.25, 0.8))
+    for case in (
+        Case(f"0.1 x {height:g} m, eta {eta:g}", height, eta),
+        Case(f"0.1 x {height:g} m, eta {eta:g}, drift", height, eta, drift=0.01),
+        Case(f"0.1 x {height:g} m, eta {eta:g} +- {SCATTER:g}", height, eta, scatter=SCATTER),
+        Case(f"0.1 x {height:g} m, eta {eta:g} +- {SCATTER:g}, drift", height, eta, drift=0.01, scatter=SCATTER),
+    )
+]
+FREE = [
+    Case(f"0.1 x {height:g} m, eta {eta:g}{', drift' * (drift > 0)}", height, eta, drift=drift, free=True)
+    for height, eta in ((0.5, 0.9323), (0.25, 0.8))
+    for drift in (0.0, 0.01)
+]
+
+
+def row(case: Case, found: Sequence[tuple[float, ...] | None]) -> str:
+    """Return a line of the table."""
+    kept = np.array([each for each in found if each is not None])
+    bias, spread = kept.mean(axis=0), kept.std(axis=0, ddof=1)
+    alpha = atan(0.1 / case.height)
+    cells = [case.words, f"{alpha:.2f}", f"{bias[0]:+.5f}", f"{spread[0]:.5f}", f"{bias[3]:.5f}"]
+    if case.free:
+        cells += [f"{100 * bias[k]:+.2f} +- {100 * spread[k]:.2f} %" for k in (4, 5)]
+    else:
+        cells += [f"{bias[1]:+.5f}", f"{spread[1]:.5f}", f"{bias[2]:.4f}", f"{spread[2]:.4f}"]
+    return f"| {' | '.join(cells)} | {len(found) - len(kept)} |"
+
+
+def page(rows: Sequence[str], free: Sequence[str], count: int) -> str:
+    """Return the part of the page."""
+    heads = (
+        "| trace | alpha | bias of eta | deviation | as stated | bias to the mean of its etas | deviation | "
+        "scatter, mean | deviation | refused |"
+    )
+    other = "| trace | alpha | bias of eta | deviation | as stated | p | alpha | refused |"
+    return f"""## Restitution from a trace
+
+`rocking calibrate --free` on {count} simulated traces of each kind: a block let go at {RELEASE:g} alpha, seven
+impacts, 100 Hz, noise of {100 * NOISE:g} % of the release, with and without a drift of 1 % of alpha a second.
+`docs/make_traces.py` integrates them by a method of its own. 'As stated' is the mean error that the fit states of
+itself. Where eta scatters from impact to impact (+- {SCATTER:g}), no single eta is right: the fit is held against the
+mean of the seven that the trace had, too.
+
+{heads}
+{"|---" * 10}|
+{chr(10).join(rows)}
+
+The error that a fit states is that of noise alone. Where eta scatters, the fitted value is off by far more, as a trace
+has only seven impacts: the scatter is what counts, and it is written as `uncertainty`. Of constant eta, the scatter
+should be 0: what is found instead is what seven impacts cannot tell from noise.
+
+With p and alpha fitted as well:
+
+{other}
+{"|---" * 8}|
+{chr(10).join(free)}
+"""
+
+
+def main() -> int:
+    """Write the part of the page."""
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else COUNT
+    with Pool() as pool:
+        found = {case: pool.map(partial(fitted, case), range(count), chunksize=5) for case in [*CASES, *FREE]}
+    PART.parent.mkdir(exist_ok=True)
+    text = page([row(case, found[case]) for case in CASES], [row(case, found[case]) for case in FREE], count)
+    PART.write_text(text, encoding="utf-8", newline="\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

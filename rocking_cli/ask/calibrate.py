@@ -1,0 +1,200 @@
+"""`rk.calibrate`: find the restitution of a structure from a trace of free rocking, or from shake-table tests."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Unpack
+
+import numpy as np
+
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.given import StructureLike, structure_of
+from rocking_cli.ask.ground_motions import ReadingArguments
+from rocking_cli.ask.score import motions_of, tests_of
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.studies.neighbours import Neighbourhood
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.processing.reading import Reading
+    from rocking_cli.structure import Structure
+    from rocking_cli.studies.experiments.region import JointRegion
+    from rocking_cli.studies.experiments.table import ObservedTest, TableOfTests
+    from rocking_cli.studies.experiments.trace import Trace
+    from rocking_cli.studies.experiments.trace_fit import TraceFit
+
+LEAST_POINTS, MOST_POINTS = 3, 101
+
+
+def calibrate(
+    structure: StructureLike,
+    *,
+    free: str | Path | Trace | None = None,
+    tests: str | Path | Mapping[str, Sequence[Any]] | TableOfTests | None = None,
+    free_geometry: bool = False,
+    slenderness: tuple[float, float] = (0.7, 1.3),
+    restitution: tuple[float, float] = (0.7, 0.99),
+    points: int = 9,
+    neighbours: int = 40,
+    out: str | Path | None = None,
+    threads: int | None = None,
+    readings: tuple[Reading, Reading | None] | None = None,
+    watch: Watcher = SILENT,
+    **options: Unpack[ReadingArguments],
+) -> Answer[TraceFit] | Answer[JointRegion]:
+    """Find the restitution of a structure from a trace of free rocking, or its joint region from shake-table tests.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        The structure, or its YAML file.
+    free : str or Path, or Trace, optional
+        Angle over time of a free-rocking test, a CSV file with the headings `time [s]` and `angle [deg]` or [rad].
+    tests : str or Path, or mapping, optional
+        Shake-table tests as in `score`, of which those of this structure are used. Give `free` or `tests`.
+    free_geometry : bool
+        Whether the trace also determines p and alpha; only of a free-standing block with alpha of 0.07 rad or more.
+    slenderness, restitution : (float, float)
+        Ranges of the grid for `tests`: factors on the slenderness of the structure, and coefficients of restitution.
+    points : int
+        Number of values of each of them, 3 to 101.
+    neighbours : int
+        Number of neighbours of each test at each point of the grid, at least 1.
+    out : str or Path, optional
+        Write a copy of the file of the structure with the fitted `restitution` and its scatter (`uncertainty`) to this
+        YAML file; with `free` only.
+    threads : int, optional
+        Number of tests at a time; by default, one for each processor.
+    readings : tuple of (Reading, Reading or None), optional
+        How the records of `tests` are read; by default according to `options`.
+    watch : Watcher
+        Told how far the work is.
+    **options
+        How the records are read and corrected: see `rocking_cli.ask.ground_motions.ReadingArguments`.
+
+    Returns
+    -------
+    Answer of TraceFit or JointRegion
+        From a trace: `eta`, its `scatter` from impact to impact, `etas`, `release`, `offset` and `drift`. From tests:
+        the log-likelihood over the grid, the `best` point and the `ranges` of the joint region of 90 %.
+
+    Raises
+    ------
+    InputError
+        If neither or both of `free` and `tests` are given, if a file is not valid, or if what is given does not
+        determine the restitution: fewer than three impacts above the noise, a best point on the edge of the grid, ...
+    MechanismError
+        If the structure has no critical rotation.
+    """
+    if (free is None) == (tests is None):
+        raise InputError("give either `free`, a trace of free rocking, or `tests`, a table of shake-table tests")
+    source = Path(structure) if isinstance(structure, str | Path) else None
+    ready = structure_of(structure)
+    source = Path(ready.file) if source is None and ready.file is not None else source
+    if free is not None:
+        return _of_trace(ready, source, free, free_geometry, out)
+    assert tests is not None
+    for name, given in (("free_geometry", free_geometry), ("out", out is not None)):
+        if given:
+            raise InputError(
+                f"`{name}` requires a trace (`free`): outcomes alone leave slenderness and restitution open"
+            )
+    table = tests_of(tests)
+    kept = _of_structure(table, source)
+    grid = [_grid(name, ends, points) for name, ends in (("slenderness", slenderness), ("restitution", restitution))]
+    from rocking_cli.studies.experiments.region import joint_region
+    from rocking_cli.views.calibrate import region_columns, region_view
+
+    watch.compile()
+    with watch.progress(len(kept), "tests") as advance:
+        found = joint_region(
+            kept, ready, motions_of(table, readings, options), Neighbourhood(neighbours), *grid,
+            threads=threads, progress=advance,
+        )  # fmt: skip
+    shown = region_view(found, ready.name, table.file, len(table.tests))
+    return Answer("calibrate", found, shown, partial(region_columns, found), partial(_region_figure, found, ready.name))
+
+
+def _of_trace(
+    ready: Structure, source: Path | None, free: str | Path | Trace, free_geometry: bool, out: str | Path | None
+) -> Answer[TraceFit]:
+    """Fit a trace, and write the structure with what was fitted."""
+    from rocking_cli.studies.experiments.trace import Trace, read_trace
+    from rocking_cli.studies.experiments.trace_fit import fit_trace
+    from rocking_cli.views.calibrate import trace_columns, trace_view
+
+    trace = free if isinstance(free, Trace) else read_trace(Path(free))
+    found = fit_trace(ready, trace, free_geometry=free_geometry)
+    eta = ready.with_eta(found.eta.value)  # or it says why the structure cannot have this restitution
+    if out is not None:
+        if source is None:
+            raise InputError(Problem("needs the file of the structure, of which it is a copy", field="`out`"))
+        _write(eta, source, Path(out), found)
+    return Answer(
+        "calibrate",
+        found,
+        trace_view(found, ready),
+        partial(trace_columns, found),
+        partial(_trace_figure, found, ready.name),
+    )
+
+
+def _write(structure: Structure, source: Path, out: Path, found: TraceFit) -> None:
+    """Write a copy of the file of a structure with the fitted restitution and its scatter."""
+    from rocking_cli.io.files import keep_apart, write_whole
+    from rocking_cli.io.yaml_edit import with_fields
+    from rocking_cli.io.yaml_file import read_text
+    from rocking_cli.structure_file import parse_structure
+
+    keep_apart([("`out`", out)], [str(source), found.trace.name])
+    mechanism = structure.mechanism
+    given = mechanism.uncertainty.slenderness if mechanism.uncertainty is not None else None
+    uncertainty = {"slenderness": given, "restitution": round(found.scatter, 4)}
+    words = ", ".join(f"{key}: {value:g}" for key, value in uncertainty.items() if value is not None)
+    where = f"fitted to {Path(found.trace.name).name}, {len(found.etas)} impacts"
+    fields = {
+        "restitution" if mechanism.rocks_both_ways else "rebound": f"{found.eta.value:.4f}  # {where}",
+        "uncertainty": f"{{{words}}}  # restitution: scatter from impact to impact, {where}",
+    }
+    text = with_fields(read_text(source, "structure"), fields, str(source))
+    parse_structure(text, str(out), structure.name)  # as it will be read
+    write_whole(out, lambda file: file.write(text.encode("utf-8")))
+
+
+def _of_structure(table: TableOfTests, source: Path | None) -> Sequence[ObservedTest]:
+    """Return the tests of a structure: those that name its file, or all of a structure without a file."""
+    if source is None:
+        return table.tests
+    kept = [each for each in table.tests if (table.folder / each.structure).resolve() == source.resolve()]
+    if not kept:
+        names = list(dict.fromkeys(each.structure for each in table.tests))
+        what = f"no test is of {source}: its structures are {', '.join(names[:5])}{', ...' * (len(names) > 5)}"
+        raise InputError(Problem(what, table.file))
+    return kept
+
+
+def _grid(name: str, ends: tuple[float, float], points: int) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Return the values of one axis of the grid. Raises `InputError`."""
+    low, high = ends
+    if not LEAST_POINTS <= points <= MOST_POINTS:
+        raise InputError(Problem(f"must be from {LEAST_POINTS} to {MOST_POINTS}, got {points}", field="`points`"))
+    if not (0 < low < high and (name != "restitution" or high <= 1)):
+        what = "from above 0 to 1" if name == "restitution" else "above 0"
+        raise InputError(Problem(f"must be two increasing numbers {what}, got {low:g} and {high:g}", field=f"`{name}`"))
+    return np.geomspace(low, high, points) if name == "slenderness" else np.linspace(low, high, points)
+
+
+def _trace_figure(found: TraceFit, name: str) -> Figure:
+    from rocking_cli.plotting.calibrate import draw_trace
+
+    return draw_trace(found, name)
+
+
+def _region_figure(found: JointRegion, name: str) -> Figure:
+    from rocking_cli.plotting.calibrate import draw_region
+
+    return draw_region(found, name)

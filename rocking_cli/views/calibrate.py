@@ -1,0 +1,179 @@
+"""Views of a calibrated restitution, as text and as data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import degrees
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from rocking_cli.names import percent
+from rocking_cli.structure import Structure
+from rocking_cli.studies.experiments.region import INSIDE, JointRegion
+from rocking_cli.studies.experiments.trace_fit import Estimated, TraceFit
+from rocking_cli.views.column import Column, of, rounded, table_of
+from rocking_cli.views.view import Table, View, heading
+
+OFF = 1.5  # times the noise: a residual that says more than noise
+
+
+class ImpactRow(NamedTuple):
+    """An impact of a trace: its number, its time [s], and the restitution that was fitted to it."""
+
+    number: int
+    time: float
+    eta: Estimated
+
+
+IMPACTS: tuple[Column[ImpactRow], ...] = (
+    Column("", of("number"), head="impact"),
+    Column("", of("time"), "s", head="time [s]", form=rounded(5)),
+    Column("", of("eta.value"), head="eta", form=rounded(4)),
+    Column("", of("eta.deviation"), head="error of\nits fit", form=rounded(2)),
+)
+
+
+def trace_view(found: TraceFit, structure: Structure) -> View:
+    """Show the restitution that was fitted to a trace."""
+    return View(lambda: _trace_data(found, structure), [*_trace_parts(found, structure)])
+
+
+def trace_columns(found: TraceFit) -> dict[str, list[float]]:
+    """Return the trace and both fits as columns by name."""
+    columns = {
+        "time [s]": found.trace.times, "angle [rad]": found.trace.angles, "fitted [rad]": found.fitted,
+        "fitted, eta of each impact [rad]": found.own,
+    }  # fmt: skip
+    return {name: values.tolist() for name, values in columns.items()}
+
+
+def _trace_parts(found: TraceFit, structure: Structure) -> Iterator[Table | str]:
+    trace, count = found.trace, len(found.etas)
+    yield (
+        f"{Path(trace.name).name}: {trace.times.size} samples over {trace.times[-1] - trace.times[0]:.4g} s. "
+        f"{heading(structure.mechanism)}, let go at {degrees(found.release):.4g} deg at {found.release_time:.4g} s. "
+        f"{count} impacts are seen above the noise of {degrees(found.noise):.2g} deg."
+    )
+    yield (
+        f"Restitution eta = {found.eta.value:.4f}, fitted to the whole trace at once; the error of this fit is "
+        f"{found.eta.deviation:.2g}. From impact to impact eta scatters by {found.scatter:.2g}, the last impact left "
+        "out: this is what neighbours should draw, not the error of the fit."
+    )
+    if found.p is not None and found.alpha is not None:
+        block = structure.equivalence.positive
+        yield (
+            f"Fitted geometry: p = {found.p.value:.4g} rad/s +- {found.p.deviation:.2g} (the file: {block.p:.4g}), "
+            f"alpha = {found.alpha.value:.4g} rad +- {found.alpha.deviation:.2g} (the file: {block.phi_cr:.4g})."
+        )
+    yield table_of(
+        "", IMPACTS, [ImpactRow(k, *pair) for k, pair in enumerate(zip(found.impacts, found.etas, strict=True), 1)]
+    )
+    yield (
+        f"At rest, the trace reads {degrees(found.offset):.3g} deg at time zero and drifts by "
+        f"{degrees(found.drift):.3g} deg/s."
+    )
+    yield _residuals(found)
+
+
+def _residuals(found: TraceFit) -> str:
+    """Return a sentence on how far the fits are from the trace."""
+    one, own = found.residual / found.noise, found.own_residual / found.noise
+    said = f"The residual is {degrees(found.residual):.2g} deg, {one:.2g} times the noise"
+    if one <= OFF:
+        return f"{said}: free rocking with one restitution explains the trace."
+    if own <= OFF:
+        return f"{said}, and {own:.2g} times with a restitution for each impact: it differs from impact to impact."
+    return (
+        f"Caution: {said[0].lower()}{said[1:]}, and {own:.2g} times even with a restitution for each impact. The trace "
+        "is more than free rocking of this structure, and the error of the fit is larger than stated: check the size "
+        "of the structure, and whether it slid, bounced or turned."
+    )
+
+
+def _trace_data(found: TraceFit, structure: Structure) -> dict[str, Any]:
+    block = None
+    if found.p is not None and found.alpha is not None:
+        block = {"p": found.p._asdict(), "alpha": found.alpha._asdict()}
+    return {
+        "structure": structure.name,
+        "restitution": {"value": found.eta.value, "deviation": found.eta.deviation, "scatter": found.scatter},
+        "impacts": len(found.etas),
+        "etas": [each.value for each in found.etas],
+        "eta_deviations": [each.deviation for each in found.etas],
+        "impact_times": found.impacts.tolist(),
+        "drift": found.drift,
+        "offset": found.offset,
+        "release": found.release,
+        "release_time": found.release_time,
+        "noise": found.noise,
+        "residual": found.residual,
+        "own_residual": found.own_residual,
+        "geometry": block,
+    }
+
+
+def region_view(found: JointRegion, name: str, file: str, count: int) -> View:
+    """Show the joint region of slenderness and restitution; `count` is the number of tests in the table."""
+    return View(lambda: _region_data(found, name), [*_region_parts(found, name, file, count)])
+
+
+def region_columns(found: JointRegion) -> dict[str, list[Any]]:
+    """Return the points of the grid as columns by name."""
+    points = [(i, k) for i in range(found.slenderness.size) for k in range(found.restitution.size)]
+    return {
+        "slenderness": [float(found.slenderness[i]) for i, _ in points],
+        "restitution": [float(found.restitution[k]) for _, k in points],
+        "log_likelihood": [float(found.likelihood[i, k]) for i, k in points],
+        "inside": [bool(found.inside[i, k]) for i, k in points],
+    }
+
+
+def _region_parts(found: JointRegion, name: str, file: str, count: int) -> Iterator[Table | str]:
+    yield (
+        f"{file}: {found.tests} of {count} tests are of {name} and have an outcome, in {found.clusters} clusters. Grid "
+        f"of {found.slenderness.size} x {found.restitution.size} points, {found.around.count} neighbours of each test "
+        "at each."
+    )
+    slender, eta = found.best
+    (low, high), (least, most) = found.ranges
+    points = int(found.inside.sum())
+    yield (
+        f"Likeliest: slenderness times {slender:.3g}, restitution {eta:.3g}. Joint region of {percent(INSIDE)}, "
+        f"{points} of {found.inside.size} points: slenderness times {low:.3g} to {high:.3g}, restitution {least:.3g} "
+        f"to {most:.3g}. Not every pair of values from these ranges is in it."
+    )
+    inside = found.inside
+    if inside[[0, -1]].any() or inside[:, [0, -1]].any():
+        yield "Caution: the region reaches the edge of the grid, and is wider than the grid shows."
+    heads = ["slenderness", *(f"{each:.3g}" for each in found.restitution)]
+    top = float(found.likelihood.max())
+    rows = [
+        [f"x {one:.3g}", *(f"{value - top:.1f}{'*' * bool(inside)}" for value, inside in zip(*row, strict=True))]
+        for one, *row in zip(found.slenderness, found.likelihood, inside, strict=True)
+    ]
+    yield Table("Log-likelihood less the largest, over restitution; * in the region", heads, rows, range(1, len(heads)))
+    if found.unknown:
+        yield (
+            f"Caution: at the likeliest point, the outcome of {percent(found.unknown)} of the neighbours is unknown, "
+            "and counted as not overturning."
+        )
+
+
+def _region_data(found: JointRegion, name: str) -> dict[str, Any]:
+    slenderness, restitution = found.best
+    ranges = dict(zip(("slenderness", "restitution"), map(list, found.ranges), strict=True))
+    return {
+        "structure": name,
+        "tests": found.tests,
+        "clusters": found.clusters,
+        "neighbours": found.around.count,
+        "best": {"slenderness": slenderness, "restitution": restitution},
+        "region": {"probability": INSIDE, **ranges},
+        "grid": {
+            "slenderness": found.slenderness.tolist(),
+            "restitution": found.restitution.tolist(),
+            "log_likelihood": found.likelihood.tolist(),
+            "inside": found.inside.tolist(),
+        },
+        "unknown": found.unknown,
+    }

@@ -1,0 +1,379 @@
+"""Restitution from traces and from tests: against traces integrated here, and as a user runs the command."""
+
+from __future__ import annotations
+
+import csv
+import json
+import runpy
+from math import atan, cos, degrees, hypot, sin, sqrt
+
+import numpy as np
+import pytest
+import yaml
+from click.testing import CliRunner
+
+import rocking_cli as rk
+from rocking_cli.cli.main import main
+from rocking_cli.core import Direction
+from rocking_cli.errors import InputError
+from rocking_cli.io.yaml_edit import with_fields
+from rocking_cli.structure import Structure
+from rocking_cli.studies.experiments.free_rocking import BlockSide, MechanismSide, free_rocking
+from rocking_cli.studies.experiments.region import JointRegion, joint_region
+from rocking_cli.studies.experiments.table import parse_columns
+from rocking_cli.studies.experiments.trace import Trace
+from rocking_cli.studies.experiments.trace_fit import Estimated, TraceFit, fit_trace
+from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.views.calibrate import region_view, trace_view
+from tests.conftest import EXAMPLES
+from tests.elsewhere import PROJECT
+
+simulate = runpy.run_path(str(PROJECT / "docs" / "make_traces.py"))["simulate"]  # by Runge and Kutta
+BLOCK = rk.Block(width=0.1, height=0.5)
+ALPHA, P = atan(0.2), sqrt(3 * 9.80665 / (2 * hypot(0.1, 0.5)))
+ETA, RELEASE, DT = 0.9323, 0.7 * ALPHA, 0.01
+
+
+@pytest.fixture(scope="module")
+def clean():
+    """Seven impacts of the block, and their times."""
+    return simulate(ALPHA, P, [ETA] * 8, RELEASE, 8)
+
+
+def trace(angles, *, noise=0.01, drift=0.0, offset=0.0, held=30, seed=1, start=0.0):
+    random = np.random.default_rng(seed)
+    read = np.concatenate([np.full(held, angles[0]), angles])
+    times = DT * np.arange(read.size)
+    read = read + drift * ALPHA * times + offset * ALPHA + random.normal(0, noise * abs(angles[0]), read.size)
+    return Trace("trace.csv", times + start, read)
+
+
+def sides_of(structure):
+    return {
+        each: MechanismSide(structure.mechanism, each, side.reference)
+        for each, side in zip(Direction, structure.statics, strict=True)
+        if each in structure.mechanism.directions
+    }
+
+
+def write(folder, given, unit="deg", name="trace.csv"):
+    factor = {"deg": degrees(1), "rad": 1.0}[unit]
+    rows = [
+        f"{t:.9g},{'' if np.isnan(a) else f'{a * factor:.9g}'}" for t, a in zip(given.times, given.angles, strict=True)
+    ]
+    (folder / name).write_text("\n".join([f"time [s],angle [{unit}]", *rows]) + "\n", encoding="utf-8")
+    return folder / name
+
+
+def run(*arguments, code=0):
+    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
+    assert result.exit_code == code, result.output
+    assert "Traceback" not in result.output
+    return result
+
+
+class TestFreeRocking:
+    def test_a_block_is_that_of_runge_and_kutta(self, clean):
+        angles, impacts = clean
+        for sides in (
+            dict.fromkeys(Direction, BlockSide(P, ALPHA)),
+            {each: MechanismSide(BLOCK, each, ALPHA) for each in Direction},
+        ):
+            motion = free_rocking(sides, RELEASE, ETA)
+            assert motion.at(DT * np.arange(angles.size)) == pytest.approx(angles, abs=1e-6 * ALPHA)
+            assert motion.impacts[:7] == pytest.approx(impacts, abs=1e-8)
+            assert motion.at(np.array([-1.0, 1e3])) == pytest.approx([RELEASE, 0])
+        other = free_rocking(sides, -RELEASE, np.array([ETA, 0.5]), until=1.0)
+        assert other.peaks[1] == pytest.approx(motion.peaks[1])
+        assert P**2 * (cos(ALPHA - other.peaks[2]) - cos(ALPHA)) == pytest.approx(
+            (ETA * 0.5) ** 2 * P**2 * (cos(ALPHA - RELEASE) - cos(ALPHA))
+        )
+
+    @pytest.mark.parametrize("name", ["frame.yaml", "rigid_body.yaml", "masonry/portal.yaml", "walls/facade.yaml"])
+    def test_any_structure_rocks_as_its_history_does(self, name):
+        structure = Structure(rk.load_structure(EXAMPLES / name)).with_eta(0.7)
+        sides = sides_of(structure)
+        first = structure.mechanism.directions[0]
+        release = min(0.3 * sides[first].end, 0.05)
+        run = rk.respond(structure, release=f"{int(first) * release}rad", models="nonlinear", tail=3.0).runs[1][
+            "nonlinear"
+        ]
+        rebounds = not structure.mechanism.rocks_both_ways
+        motion = free_rocking(sides, int(first) * release, 0.7, rebounds=rebounds)
+        assert run.impacts.size > 3
+        assert run.phi == pytest.approx(motion.at(run.time), abs=2e-5 * sides[first].end)
+
+
+class TestFit:
+    @pytest.mark.parametrize("drift", [0.0, 0.01])
+    def test_the_bars_of_accuracy_are_met(self, clean, drift):
+        """Bias below .0002 and deviation below .0003; docs/make_traces.py has 200 traces."""
+        found = [fit_trace(Structure(BLOCK), trace(clean[0], drift=drift, seed=k)).eta for k in range(5)]
+        values = np.array([each.value for each in found])
+        assert abs(values.mean() - ETA) < 0.0002 and values.std(ddof=1) < 0.0003
+        assert np.mean([each.deviation for each in found]) == pytest.approx(1e-4, rel=0.5)
+
+    def test_what_else_a_trace_shows(self, clean):
+        found = fit_trace(Structure(BLOCK), trace(clean[0], drift=0.01, offset=0.03, start=5.0))
+        assert len(found.etas) == 7 and found.scatter < 0.005
+        assert found.impacts == pytest.approx(np.array(clean[1]) + 5.3, abs=0.005)
+        assert (found.release_time, found.release) == pytest.approx((5.3, RELEASE), abs=0.004)
+        assert found.drift == pytest.approx(0.01 * ALPHA, rel=0.2)
+        assert found.offset == pytest.approx((0.03 - 0.05) * ALPHA, abs=0.005 * ALPHA)  # at time zero
+        assert found.noise == pytest.approx(0.01 * RELEASE, rel=0.15)
+        assert 0.8 < found.residual / found.noise < 1.3
+
+    @pytest.mark.parametrize("way", ["reversed", "uneven", "gaps", "late", "in parts"])
+    def test_any_sense_sampling_and_gaps(self, clean, way):
+        given = trace(clean[0], noise=0.002)
+        random, kept = np.random.default_rng(2), np.full(given.times.size, True)
+        if way == "reversed":
+            given = Trace("t", given.times, -given.angles)
+        elif way == "uneven":
+            kept = random.random(kept.size) < 0.6
+        elif way == "gaps":
+            kept = ~((np.abs(given.times - 1.2) < 0.12) | (np.abs(given.times - 2.2) < 0.2))
+        elif way == "late":  # it begins while the block rises to its second peak
+            kept = given.times > clean[1][0] + 0.3 + 0.05
+        else:
+            kept = np.arange(kept.size) % 50 < 40
+        found = fit_trace(Structure(BLOCK), Trace("t", given.times[kept], given.angles[kept]))
+        assert found.eta.value == pytest.approx(ETA, abs=5e-4)
+        assert len(found.etas) == 7 - (way == "late")
+
+    def test_scatter_is_that_of_the_impacts(self):
+        etas = [0.93, 0.96, 0.92, 0.95, 0.9, 0.94, 0.93, 0.9]
+        found = fit_trace(Structure(BLOCK), trace(simulate(ALPHA, P, etas, RELEASE, 8)[0], noise=0.001))
+        assert [each.value for each in found.etas[:6]] == pytest.approx(etas[:6], abs=0.004)
+        assert found.scatter == pytest.approx(np.std(etas[:6], ddof=1), rel=0.1)
+        assert found.residual > 3 * found.own_residual
+        assert "it differs from impact to impact" in trace_view(found, Structure(BLOCK)).parts[-1]
+
+    def test_scatter_is_free_of_noise(self):
+        """The variance beyond that of the errors: with equal errors, the difference of the two."""
+        fit = object.__new__(TraceFit)
+        values = [0.9, 0.94, 0.92, 0.95, 0.93, 0.5]
+        object.__setattr__(fit, "etas", [Estimated(value, 0.01) for value in values])
+        assert fit.scatter**2 == pytest.approx(np.var(values[:-1], ddof=1) - 0.01**2, rel=1e-6)
+        object.__setattr__(fit, "etas", [Estimated(value, 0.05) for value in values])
+        assert fit.scatter == 0
+
+    def test_p_and_alpha_may_be_free(self, clean):
+        near = rk.Block(width=0.103, height=0.49)  # what somebody measured
+        found = [fit_trace(Structure(near), trace(clean[0], seed=k), free_geometry=True) for k in range(4)]
+        assert np.mean([each.p.value for each in found]) == pytest.approx(P, rel=0.01)
+        assert np.mean([each.alpha.value for each in found]) == pytest.approx(ALPHA, rel=0.01)
+        assert abs(found[0].p.value / P - 1) < 4 * found[0].p.deviation / P
+
+    def test_both_directions_of_a_leaning_stone(self):
+        structure = Structure(rk.load_structure(EXAMPLES / "rigid_body.yaml"))
+        sides = sides_of(structure)
+        for sign in (1, -1):
+            first = sides[Direction.POSITIVE if sign > 0 else Direction.NEGATIVE]
+            motion = free_rocking(sides, sign * 0.6 * first.end, 0.85)
+            times = np.arange(0, motion.impacts[5], 0.02)
+            angles = sign * motion.at(times)  # the trace has a sense of its own
+            noise = np.random.default_rng(4).normal(0, 0.003 * first.end, times.size)
+            found = fit_trace(structure, Trace("t", times, angles + noise))
+            assert found.eta.value == pytest.approx(0.85, abs=0.002)
+
+
+class TestRefusals:
+    def refused(self, given, structure=BLOCK, **how):
+        with pytest.raises(InputError) as caught:
+            fit_trace(Structure(structure), given, **how)
+        return str(caught.value)
+
+    def test_fewer_than_three_impacts(self, clean):
+        end = clean[1][2] - 0.02  # before the third
+        short = clean[0][: int(end / DT)]
+        assert "can be seen above the noise, and a fit needs 3" in self.refused(trace(short))
+
+    def test_noise_above_the_motion(self, clean):
+        assert "there is no motion to fit" in self.refused(trace(clean[0], noise=0.6))
+
+    def test_too_few_samples(self):
+        assert "at least 30 samples, got 10" in self.refused(Trace("t", np.arange(10.0), np.ones(10)))
+
+    def test_a_trace_of_something_else(self, clean):
+        given = trace(clean[0])
+        other = Trace("t", given.times, 0.1 * np.exp(-0.3 * given.times) * np.cos(40 * given.times))
+        said = self.refused(other)
+        assert "this is not free rocking of this structure" in said or "can be seen above the noise" in said
+
+    def test_free_geometry_of_a_slender_block_and_of_no_block(self, clean):
+        slender = rk.Block(width=0.03, height=0.5)
+        assert "a trace does not tell p and alpha apart" in self.refused(trace(clean[0]), slender, free_geometry=True)
+        frame = rk.load_structure(EXAMPLES / "frame.yaml")
+        assert "of a free-standing block" in self.refused(trace(clean[0]), frame, free_geometry=True)
+
+    @pytest.mark.parametrize(
+        ("text", "said"),
+        [
+            ("time [s],angle\n0,1\n", "t.csv:1: angle: its unit must be one of rad, deg"),
+            ("time [s],force [N]\n0,1\n", "one column must be the angle, none of 2 is"),
+            ("time [s],angle [deg],rotation [deg]\n0,1,1\n", "one column must be the angle, 2 of 3 is"),
+            ("time [s],angle [deg]\n0,1\n1,x\n1.5,y\n", "t.csv:4: angle [deg]: 'y' is not a number"),
+            ("time [s],angle [deg]\n0,1\n1,2\n0.5,2\n", "t.csv:4: time [s] must be later than the row before, 1 s"),
+        ],
+    )
+    def test_wrong_files(self, tmp_path, text, said):
+        (tmp_path / "t.csv").write_text(text, encoding="utf-8")
+        assert said in run("calibrate", EXAMPLES / "block.yaml", "--free", tmp_path / "t.csv", code=2).stderr
+
+    def test_ways_that_do_not_fit_together(self, tmp_path):
+        block = EXAMPLES / "block.yaml"
+        assert "either --free" in run("calibrate", block, code=2).stderr
+        assert "either --free" in run("calibrate", block, "--free", "a", "--tests", "b", code=2).stderr
+        both = ("--tests", EXAMPLES / "tests.csv", "--out", tmp_path / "new.yaml")
+        assert "--out requires a trace" in run("calibrate", block, *both, code=2).stderr
+
+
+class TestCommand:
+    @pytest.fixture
+    def folder(self, tmp_path, clean):
+        write(tmp_path, trace(clean[0], drift=0.01))
+        (tmp_path / "block.yaml").write_text(
+            "# of a museum\nmechanism: block\nwidth: 0.1  # m\nuncertainty: {slenderness: 0.03}\nheight: 0.5\n"
+        )
+        return tmp_path
+
+    def test_what_is_printed_and_written(self, folder):
+        block, new = folder / "block.yaml", folder / "new.yaml"
+        asked = ("calibrate", block, "--free", folder / "trace.csv")
+        data = json.loads(run(*asked, "--json", "-o", new, "--plot", folder / "fit.png").stdout)
+        eta = data["restitution"]
+        assert eta["value"] == pytest.approx(ETA, abs=5e-4) and eta["deviation"] < 3e-4
+        assert data["impacts"] == len(data["etas"]) == len(data["impact_times"]) == 7 and data["geometry"] is None
+        text = run(*asked).stdout
+        assert f"eta = {eta['value']:.4f}" in text and "7 impacts are seen" in text
+        assert (folder / "fit.png").read_bytes().startswith(b"\x89PNG")
+        written = new.read_text(encoding="utf-8")
+        assert "# of a museum" in written and "fitted to trace.csv, 7 impacts" in written
+        fields = yaml.safe_load(written)
+        assert fields["restitution"] == pytest.approx(eta["value"], abs=5e-5)
+        assert fields["uncertainty"] == {"slenderness": 0.03, "restitution": pytest.approx(eta["scatter"], abs=5e-5)}
+        assert fields["width"] == 0.1 and rk.load_structure(new).restitution == fields["restitution"]
+
+    def test_degrees_and_radians_are_the_same(self, folder, clean):
+        radians = write(folder, trace(clean[0], drift=0.01), "rad", "rad.csv")
+        one, other = (rk.calibrate(folder / "block.yaml", free=each) for each in (folder / "trace.csv", radians))
+        assert one.eta.value == pytest.approx(other.eta.value, abs=1e-6)
+        assert one.to_dict()["release"] == pytest.approx(RELEASE, rel=0.02)
+
+    def test_a_file_is_never_overwritten_by_its_copy(self, folder):
+        asked = ("calibrate", folder / "block.yaml", "--free", folder / "trace.csv", "-o", folder / "block.yaml")
+        before = (folder / "block.yaml").read_text(encoding="utf-8")
+        run(*asked, code=2)
+        assert (folder / "block.yaml").read_text(encoding="utf-8") == before
+        with pytest.raises(InputError, match="needs the file"):
+            rk.calibrate(BLOCK, free=folder / "trace.csv", out=folder / "new.yaml")
+
+    def test_a_restitution_above_its_bound_is_refused(self, folder):
+        """With the trace of a larger angle scale, energy would grow."""
+        angles, _ = simulate(ALPHA, P, [1.02] * 8, 0.3 * ALPHA, 6)
+        grows = write(folder, trace(angles, noise=0.002), name="grows.csv")
+        assert "restitution" in run("calibrate", folder / "block.yaml", "--free", grows, code=2).stderr
+
+
+def test_a_copy_keeps_all_but_the_fields():
+    old = "restitution:  # old\n  positive_to_negative: .9\n  negative_to_positive: .8  # x\n"
+    text = f"a: 1 # one\n{old}# kept\nb: [1,\n 2]"
+    assert with_fields(text, {"restitution": "0.7  # new", "c": "3", "b": "4"}, "f") == (
+        "a: 1 # one\nrestitution: 0.7  # new\n# kept\nb: 4\nc: 3\n"
+    )
+    assert with_fields("a: 1\r\nb: 2\r\n", {"a": "3"}, "f") == "a: 3\r\nb: 2\r\n"
+    with pytest.raises(InputError, match="in braces"):
+        with_fields("{a: 1}", {"a": "2"}, "f")
+
+
+GRID = {"slenderness": (0.8, 1.25), "restitution": (0.32, 0.98), "points": 3, "neighbours": 20}
+
+
+SCATTER = {"restitution": 0.05, "slenderness": 0.03}
+
+
+@pytest.fixture(scope="module")
+def outcomes():
+    """Outcomes drawn by the shares of a block with eta .65."""
+    block = rk.Block(width=0.7, height=2.8, restitution=0.65, uncertainty=SCATTER)
+    pulses = [f"sine:{level:g}g:{period:g}s" for level in np.arange(0.3, 0.6, 0.03) for period in (0.6, 0.9, 1.3)]
+    shares = np.array([rk.shares(block, pulse, neighbours=20).overturned for pulse in pulses])
+    assert 5 < shares.sum() < shares.size - 5
+    return {
+        "structure": ["x"] * 30, "record": pulses, "polarity": [1] * 30,
+        "overturned": (np.random.default_rng(1).random(30) < shares).astype(int).tolist(),
+        "cluster": [f"c{k // 2}" for k in range(30)],
+    }  # fmt: skip
+
+
+class TestRegion:
+    def test_the_likelihood_is_that_of_shares(self, outcomes):
+        tests = outcomes
+        block = rk.Block(width=0.7, height=2.8, uncertainty=SCATTER)
+        found = rk.calibrate(block, tests=tests, **GRID)
+        assert found.best == pytest.approx((1, 0.65))
+        # Once more at another point: its shares one by one, and the formula written out.
+        other = rk.Block(width=0.7, height=2.8, restitution=0.98, uncertainty=SCATTER)
+        shares = np.array([rk.shares(other, each, neighbours=20).overturned for each in tests["record"]])
+        held = np.clip(shares, 0.5 / 21, 1 - 0.5 / 21)
+        total = np.log(np.where(np.array(tests["overturned"]) == 1, held, 1 - held)).sum()
+        assert (found.tests, found.clusters) == (30, 15)
+        assert found.likelihood[1, 2] == pytest.approx(total * 15 / 30, rel=1e-9)
+        assert found.inside[1, 1] and not found.inside.all()
+        (low, high), (least, most) = found.ranges
+        assert low <= found.best[0] <= high and least <= found.best[1] <= most
+
+    def test_a_factor_on_slenderness_is_a_structure_made_anew(self, outcomes):
+        """Of twice the slenderness, the same uplift is twice the acceleration: by scaling, and by another block."""
+        tests = parse_columns(outcomes).tests
+        motions = {test.record: rk.parse_pulse(test.record).sampled() for test in tests}
+        block = rk.Block(width=0.7, height=2.8, restitution=0.65, uncertainty=SCATTER)
+        grid = np.array([0.5, 1.0, 1.5]), np.array([0.5, 0.65, 0.8])
+        found = joint_region(tests, Structure(block), motions.__getitem__, Neighbourhood(20), *grid)
+        size, alpha = hypot(0.7, 2.8), 1.5 * atan(0.25)
+        wide = rk.Block(width=size * sin(alpha), height=size * cos(alpha), restitution=0.65, uncertainty=SCATTER)
+        shares = np.array([rk.shares(wide, each, neighbours=20).overturned for each in outcomes["record"]])
+        assert found.likelihood[2, 1] == pytest.approx(
+            np.log(np.where(np.array(outcomes["overturned"]) == 1, shares, 1 - shares).clip(0.5 / 21, 1)).sum() / 2,
+            rel=0.1,
+        )
+
+    def test_a_best_point_on_the_edge_is_refused(self, outcomes):
+        grid = {**GRID, "restitution": (0.65, 0.98)}
+        with pytest.raises(InputError, match=r"lies on its edge \(restitution 0\.65\)"):
+            rk.calibrate(rk.Block(width=0.7, height=2.8, uncertainty=SCATTER), tests=outcomes, **grid)
+
+    def test_the_command_and_its_words(self, tmp_path, outcomes):
+        tests = outcomes
+        (tmp_path / "block.yaml").write_text(
+            "mechanism: block\nwidth: 0.7\nheight: 2.8\nuncertainty: {slenderness: 0.03}\n", encoding="utf-8"
+        )
+        with (tmp_path / "tests.csv").open("w", newline="", encoding="utf-8") as stream:
+            table = csv.writer(stream)
+            table.writerow(tests)
+            table.writerows(
+                zip(["block.yaml"] * len(tests["record"]), *[tests[key] for key in list(tests)[1:]], strict=True)
+            )
+        asked = ["calibrate", tmp_path / "block.yaml", "--tests", tmp_path / "tests.csv", "--points", 3]
+        asked += ["--slenderness", "0.8:1.25", "--restitution", "0.32:0.98", "--neighbours", 10]
+        data = json.loads(run(*asked, "--json", "--plot", tmp_path / "region.png").stdout)
+        assert data["tests"] == 30 and data["clusters"] == 15
+        assert np.shape(data["grid"]["log_likelihood"]) == (3, 3)
+        assert data["region"]["probability"] == 0.9
+        text = run(*asked).stdout
+        assert f"restitution {data['best']['restitution']:.3g}" in text and "30 of 30 tests are of" in text
+        assert (tmp_path / "region.png").read_bytes().startswith(b"\x89PNG")
+        said = run("calibrate", EXAMPLES / "block.yaml", "--tests", tmp_path / "tests.csv", code=2).stderr
+        assert "no test is of" in said and "its structures are block.yaml" in said
+
+    @pytest.mark.parametrize(("drop", "wide"), [(1.0, True), (9.0, False)])
+    def test_a_region_that_reaches_the_edge_is_said_to(self, drop, wide):
+        likelihood = np.full((3, 3), -drop)
+        likelihood[1, 1] = 0.0
+        found = JointRegion(
+            Neighbourhood(9), np.array([0.8, 1, 1.2]), np.array([0.8, 0.9, 0.95]), likelihood, 5, 4, 0.0
+        )
+        text = " ".join(part for part in region_view(found, "a", "f", 5).parts if isinstance(part, str))
+        assert ("the region reaches the edge" in text) == wide
+        assert found.inside.sum() == (9 if wide else 1)
