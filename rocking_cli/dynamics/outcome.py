@@ -43,7 +43,8 @@ class Outcome(Generic[Flags, Counts, Numbers]):
         Number of impacts before overturning, or up to the end of the motion, or up to where the solver stopped because
         the outcome could no longer change.
     end_time : float
-        Time at which the structure came to rest for good, or was certain to overturn [s]; NaN if not computed.
+        Time at which the structure came to rest for good, or was certain to overturn [s]; 0 if it never moved, the last
+        time that was computed if it still rocks, and NaN if not computed.
     unknown : bool
         Whether a joint opened or slid so far, before the motion ended, that the model is not valid from then on: peaks,
         uplift and impacts are those until then.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import asdict
 from typing import Any, NamedTuple
 
 from rocking_cli.core import Mechanism
@@ -94,12 +95,7 @@ def _data(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
         "model": "nonlinear",
         "polarity": polarity,
-        "neighbours": {
-            "count": around.count,
-            "amplitude": around.amplitude,
-            "restitution": around.restitution,
-            "slenderness": around.slenderness,
-        },
+        "neighbours": asdict(around),
         "motions": [
             {
                 "name": row.name,

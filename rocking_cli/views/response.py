@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import asdict, fields
 from math import isinf, nan
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -141,10 +141,7 @@ def neighbours_data(near: Neighbours) -> dict[str, Any]:
     """Return the outcomes of the neighbours of a motion as plain data; peaks of overturning are null."""
     peaks = zip(FRACTILES, near.peak_ratio, strict=True)
     return {
-        "count": near.around.count,
-        "amplitude": near.around.amplitude,
-        "restitution": near.around.restitution,
-        "slenderness": near.around.slenderness,
+        **asdict(near.around),
         "overturned": near.overturned,
         "unknown": near.unknown,
         "peak_ratio": {f"{100 * share:.0f}": None if isinf(peak) else peak for share, peak in peaks},

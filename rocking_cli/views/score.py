@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict
 from math import isnan
 from typing import Any
 
@@ -159,12 +160,7 @@ def _data(found: Scored) -> dict[str, Any]:
         error = reason(each)
         tests.append(data_of(ROWS, each) | ({"error": error} if error is not None else {}))
     return {
-        "neighbours": {
-            "count": found.around.count,
-            "amplitude": found.around.amplitude,
-            "restitution": found.around.restitution,
-            "slenderness": found.around.slenderness,
-        },
+        "neighbours": asdict(found.around),
         "tests": tests,
         "scores": {name: _score(each) for name, each in found.scores.items()},
         "differences": {name: _list(each) for name, each in found.differences.items()},

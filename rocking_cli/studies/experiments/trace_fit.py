@@ -161,7 +161,7 @@ class _Problem:
         low[RELEASE], low[ETA : x.size - self.more], high[ETA : x.size - self.more] = 1e-6, 0.02, 1.2
         found = least_squares(
             lambda each: self.model(each, times) - angles, np.clip(x, low, high), bounds=(low, high),
-            x_scale="jac", diff_step=1e-6, xtol=1e-10, ftol=1e-10, gtol=1e-10, max_nfev=30,
+            x_scale="jac", diff_step=1e-6, xtol=1e-10, ftol=1e-10, gtol=1e-10, max_nfev=20,
         )  # fmt: skip
         free = max(angles.size - x.size, 1)
         covariance = np.linalg.pinv(found.jac.T @ found.jac) * (2 * found.cost / free)
@@ -358,7 +358,7 @@ def _common(problem: _Problem, geometry: Reals, noise: float) -> tuple[_Problem,
             impacts = held.motion(x).impacts + x[START]
             until = impacts[count - 1] if count <= impacts.size else np.inf
             x, covariance, rms = held.fit(x, until)
-            if until >= held.times[-1]:
+            if until >= held.times[-1] or rms > POOR:
                 break
         if best is None or rms < best[3]:
             best = held, x, covariance, rms
