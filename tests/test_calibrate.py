@@ -201,6 +201,11 @@ class TestRefusals:
         said = self.refused(other)
         assert "this is not free rocking of this structure" in said or "can be seen above the noise" in said
 
+    def test_angles_beyond_overturning(self, clean):
+        given = trace(clean[0])
+        said = self.refused(Trace("t", given.times, np.degrees(given.angles)))
+        assert "more than twice the rotation at which the structure overturns" in said and "check the unit" in said
+
     def test_free_geometry_of_a_slender_block_and_of_no_block(self, clean):
         slender = rk.Block(width=0.03, height=0.5)
         assert "a trace does not tell p and alpha apart" in self.refused(trace(clean[0]), slender, free_geometry=True)
@@ -260,6 +265,11 @@ class TestCommand:
         one, other = (rk.calibrate(folder / "block.yaml", free=each) for each in (folder / "trace.csv", radians))
         assert one.eta.value == pytest.approx(other.eta.value, abs=1e-6)
         assert one.to_dict()["release"] == pytest.approx(RELEASE, rel=0.02)
+
+    def test_a_trace_may_come_from_standard_input(self, folder):
+        text = (folder / "trace.csv").read_text(encoding="utf-8")
+        result = CliRunner().invoke(main, ["calibrate", str(folder / "block.yaml"), "--free", "-"], input=text)
+        assert result.exit_code == 0 and "7 impacts are seen" in result.stdout
 
     def test_a_file_is_never_overwritten_by_its_copy(self, folder):
         asked = ("calibrate", folder / "block.yaml", "--free", folder / "trace.csv", "-o", folder / "block.yaml")

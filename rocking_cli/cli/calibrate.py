@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -11,6 +11,9 @@ from rocking_cli.cli import complete, options
 from rocking_cli.cli.groups import Output, ReadingOptions
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import QuantityKind, Range
+
+if TYPE_CHECKING:
+    from rocking_cli.studies.experiments.trace import Trace
 
 FACTOR = QuantityKind("factor", "", "0.8", "0.8:1.2", 1e-3, 1e3)
 ETA = QuantityKind("restitution", "", "0.8", "0.8:0.99", 1e-3, 1.0)
@@ -23,7 +26,7 @@ ETA = QuantityKind("restitution", "", "0.8", "0.8:0.99", 1e-3, 1.0)
     metavar="TRACE.csv",
     type=click.Path(),
     shell_complete=complete.files,
-    help="Trace of a free-rocking test: columns time [s] and angle [deg] or [rad].",
+    help="Trace of a free-rocking test: columns time [s] and angle [deg] or [rad]; - is standard input.",
 )
 @click.option(
     "--tests",
@@ -106,8 +109,20 @@ def command(file: str, reading: ReadingOptions, output: Output, **question: Any)
     output.keep_apart(file, question["free"], question["tests"])
     watch = OnTerminal()
     readings = reading.readings
+    question["free"] = _trace(question["free"])
     answer = calibrate(structures.prepared([file]), out=output.out, watch=watch, readings=readings, **question)
     if output.out is not None:
         watch.note(f"wrote {output.out}")
     replace(output, out=None).show(answer)
     watch.end()
+
+
+def _trace(file: str | None) -> Trace | str | None:
+    """Return the trace of standard input, or the file of a trace."""
+    if file != options.STANDARD_OUTPUT:
+        return file
+    from rocking_cli.excitation.records.opening import name_of, original
+    from rocking_cli.io.spreadsheet import parse_sheet
+    from rocking_cli.studies.experiments.trace import parse_trace
+
+    return parse_trace(parse_sheet(original(file), name_of(file)))

@@ -200,6 +200,12 @@ def fit_trace(structure: Structure, trace: Trace, *, free_geometry: bool = False
             f"{trace.name}: the noise, {np.degrees(noise):.2g} deg, is not below a fifth of the largest angle, "
             f"{np.degrees(scale):.2g} deg: there is no motion to fit"
         )
+    most = max(side.end for side in sides_of(np.array(more)).values())
+    if scale > 2 * most:
+        raise InputError(
+            f"{trace.name}: the largest angle, {np.degrees(scale):.3g} deg, is more than twice the rotation at which "
+            f"the structure overturns, {np.degrees(most):.3g} deg: check the unit of the angles, and the structure"
+        )
     both = structure.mechanism.rocks_both_ways
     origin = float(kept.times[0])
     base = _Problem(
@@ -381,11 +387,6 @@ def _each(
     problem: _Problem, x: Reals, covariance: Reals, trace: Trace, noise: float, origin: float, free: bool
 ) -> TraceFit:
     """Fit a restitution for each impact, and return both fits in the units of the trace. Raises `InputError`."""
-    motion = problem.motion(x)
-    inside = motion.impacts[:-1] + x[START] < problem.times[-1]
-    count = int(np.count_nonzero(inside & (motion.peaks[1:] > SEEN * noise)))
-    if count < LEAST_IMPACTS:
-        raise InputError(_too_few(trace, count))
     fitted = problem.model(x, trace.times - origin) * problem.scale
     if not _rms(trace.angles - fitted) < POOR * problem.scale:
         share = _rms(trace.angles - fitted) / problem.scale
@@ -393,6 +394,11 @@ def _each(
             f"{trace.name}: the best fit is off by {100 * share:.2g} % of the largest angle (root mean square): this "
             "is not free rocking of this structure. Check its size, and the unit of the angles"
         )
+    motion = problem.motion(x)
+    inside = motion.impacts[:-1] + x[START] < problem.times[-1]
+    count = int(np.count_nonzero(inside & (motion.peaks[1:] > SEEN * noise)))
+    if count < LEAST_IMPACTS:
+        raise InputError(_too_few(trace, count))
     split = np.concatenate([x[:ETA], np.full(count, x[ETA]), x[ETA + 1 :]])
     own, own_covariance, _ = problem.fit(split)
     total = float(problem.times[-1])
