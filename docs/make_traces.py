@@ -182,8 +182,11 @@ With p and alpha fitted as well:
 def main() -> int:
     """Write the part of the page."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else COUNT
+    found = {}
     with Pool() as pool:
-        found = {case: pool.map(partial(fitted, case), range(count), chunksize=5) for case in [*CASES, *FREE]}
+        for case in [*CASES, *FREE]:
+            found[case] = pool.map(partial(fitted, case), range(count), chunksize=5)
+            print(case.words, file=sys.stderr)
     PART.parent.mkdir(exist_ok=True)
     text = page([row(case, found[case]) for case in CASES], [row(case, found[case]) for case in FREE], count)
     PART.write_text(text, encoding="utf-8", newline="\n")

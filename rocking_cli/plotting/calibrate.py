@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from rocking_cli.plotting import style
 from rocking_cli.studies.experiments.region import DROP, JointRegion
-from rocking_cli.studies.experiments.trace_fit import TraceFit
+from rocking_cli.studies.experiments.trace_fit import GAP, Reals, TraceFit
 
 
 def draw_trace(found: TraceFit, name: str) -> Figure:
@@ -33,7 +33,7 @@ def draw_trace(found: TraceFit, name: str) -> Figure:
         linestyle="none",
         label="trace",
     )
-    axes.plot(times, degrees(found.fitted), color=style.INK, linewidth=style.MEDIUM, label="fit")
+    axes.plot(*_broken(times, degrees(found.fitted)), color=style.INK, linewidth=style.MEDIUM, label="fit with one eta")
     rest = degrees(found.offset + found.drift * times)
     axes.plot(times, rest, color=style.FAINT, linewidth=style.THIN, linestyle="--", label="at rest")
     at_impact = degrees(found.offset + found.drift * found.impacts)
@@ -44,7 +44,7 @@ def draw_trace(found: TraceFit, name: str) -> Figure:
         (found.fitted, {"color": style.INK, "linewidth": style.THIN}, "one eta"),
         (found.own, {"color": style.EXCEEDED, "linewidth": style.THIN, "linestyle": "--"}, "an eta for each impact"),
     ):
-        below.plot(times, degrees(found.trace.angles - values), label=label, **look)
+        below.plot(*_broken(times, degrees(found.trace.angles - values)), label=label, **look)
     noise = degrees(found.noise)
     below.axhspan(-2 * noise, 2 * noise, color=style.SHADE, zorder=0, label="twice the noise")
     below.set_ylabel("residual [deg]", fontsize=style.LABEL)
@@ -55,6 +55,13 @@ def draw_trace(found: TraceFit, name: str) -> Figure:
     for panel in (axes, below):
         style.tidy(panel)
     return figure
+
+
+def _broken(times: Reals, values: Reals) -> tuple[Reals, Reals]:
+    """Return a curve with breaks where the trace has gaps."""
+    steps = np.diff(times)
+    gaps = np.flatnonzero(steps > GAP * np.median(steps)) + 1
+    return np.insert(times, gaps, np.nan), np.insert(values, gaps, np.nan)
 
 
 def draw_region(found: JointRegion, name: str) -> Figure:

@@ -68,7 +68,8 @@ class TraceFit:
     etas : sequence of Estimated
         That of each impact that is seen, each fitted on its own.
     release : float
-        Angle at which the structure was let go, in the sense of the trace [rad].
+        Angle at which the structure was let go, in the sense of the trace [rad]; like all that follows but `fitted`, it
+        is that of the fit with a restitution for each impact, which a scatter does not disturb.
     release_time : float
         Time at which it was let go [s].
     offset, drift : float
@@ -408,16 +409,16 @@ def _each(
         side = problem.sides_of(x[-2:])[problem.first]
         assert isinstance(side, BlockSide)
         p, alpha = Estimated(side.p, side.p * deviation[-2]), Estimated(side.end, side.end * deviation[-1])
-    drift = float(x[DRIFT]) * problem.scale / total
+    drift = float(own[DRIFT]) * problem.scale / total
     return TraceFit(
         trace,
         Estimated(float(x[ETA]), float(deviation[ETA])),
         [Estimated(float(own[ETA + k]), float(own_deviation[ETA + k])) for k in range(count)],
-        problem.sense * int(problem.first) * float(x[RELEASE]) * problem.scale,
-        float(x[START]) + origin,
-        float(x[OFFSET]) * problem.scale - drift * origin,
+        problem.sense * int(problem.first) * float(own[RELEASE]) * problem.scale,
+        float(own[START]) + origin,
+        float(own[OFFSET]) * problem.scale - drift * origin,
         drift,
-        motion.impacts[:count] + float(x[START]) + origin,
+        problem.motion(own).impacts[:count] + float(own[START]) + origin,
         fitted,
         problem.model(own, trace.times - origin) * problem.scale,
         noise,
