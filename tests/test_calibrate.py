@@ -21,7 +21,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.experiments.free_rocking import BlockSide, MechanismSide, free_rocking
 from rocking_cli.studies.experiments.region import JointRegion, joint_region
 from rocking_cli.studies.experiments.table import parse_columns
-from rocking_cli.studies.experiments.trace import Trace
+from rocking_cli.studies.experiments.trace import Trace, read_trace
 from rocking_cli.studies.experiments.trace_fit import Estimated, TraceFit, fit_trace
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.calibrate import region_view, trace_view
@@ -265,6 +265,14 @@ class TestCommand:
         one, other = (rk.calibrate(folder / "block.yaml", free=each) for each in (folder / "trace.csv", radians))
         assert one.eta.value == pytest.approx(other.eta.value, abs=1e-6)
         assert one.to_dict()["release"] == pytest.approx(RELEASE, rel=0.02)
+
+    @pytest.mark.parametrize("headings", ["time,angle_deg", "t (s),theta (deg)", "Time [s];Rotation [deg]"])
+    def test_headings_as_people_write_them(self, folder, headings):
+        lines = (folder / "trace.csv").read_text(encoding="utf-8").splitlines()[1:]
+        lines = [line.replace(",", ";") if ";" in headings else line for line in lines]
+        (folder / "other.csv").write_text("\n".join([headings, *lines]), encoding="utf-8")
+        one, other = (read_trace(folder / name) for name in ("trace.csv", "other.csv"))
+        assert one.angles == pytest.approx(other.angles) and one.times == pytest.approx(other.times)
 
     def test_a_trace_may_come_from_standard_input(self, folder):
         text = (folder / "trace.csv").read_text(encoding="utf-8")

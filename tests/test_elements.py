@@ -16,7 +16,7 @@ import rocking_cli as rk
 from rocking_cli.cli.main import main
 from rocking_cli.core import Direction, Spot
 from rocking_cli.core.coefficients import Coefficients
-from rocking_cli.core.hung.element import Element
+from rocking_cli.core.hung.element import NO_ANSWER, Element
 from rocking_cli.core.hung.elements import ConstantForce, Spring, SpringBed
 from rocking_cli.core.hung.ties import Laws, Tie, laws
 from rocking_cli.errors import MechanismError
@@ -146,7 +146,7 @@ def test_elements_say_what_may_be_asked_of_them():
     class Damper(Spring):
         has_rate = True
 
-    questions = ("linear models", "equivalent block", "sizes", "verification")
+    questions = tuple(NO_ANSWER)
 
     def unanswered(element):
         return {each for each in questions if element.refuses(each)}
@@ -268,6 +268,10 @@ def test_the_law_of_the_guide_is_this_one():
         (("overturning", "--model", "nonlinear"), "spectra and maps are not available: cable yields"),
         (("spectrum", "--record", ACCEL), "spectra and maps are not available: cable yields"),
         (("verify", "--site", EXAMPLES / "verify" / "site.yaml"), "no code of practice here covers it: cable yields"),
+        (
+            ("calibrate", "--free", EXAMPLES / "calibrate" / "trace.csv"),
+            "no trace of free rocking can be fitted: cable yields",
+        ),
         (("equivalent", EXAMPLES / "block.yaml", "--ag", "1g", "--period", "0.5"), "wall: the linear models do not"),
     ],
     ids=lambda value: value[0] if isinstance(value, tuple) else "",

@@ -341,6 +341,7 @@ class TestBadInput:
             ("structure,record,overturnd", "did you mean overturned?"),
             ("structure,record,overturned,pred_tool", "followed by a name other than"),
             ("structure,record,peak [kg]", "must be one of rad, deg"),
+            ("structure,record,peak_kg", "is not a column of a table of tests"),
             ("structure,record,overturned [g]", "has no unit"),
             ("structure,record,peak [deg],peak [rad]", "is the heading of two columns"),
         ],
@@ -384,6 +385,8 @@ def test_tables_of_spreadsheets_and_of_python(tmp_path):
 
     (test,) = read_tests(table).tests
     assert (test.peak, test.scale, test.cluster) == (pytest.approx(np.radians(1.5)), 0.5, "r.csv")
+    for heading in ("peak_deg", "peak (deg)"):
+        assert parse_columns({"structure": ["b"], "record": ["r"], heading: [1.5]}).tests[0].peak == np.radians(1.5)
     (test,) = parse_columns({"structure": ["b"], "record": ["r"], "overturned": [True], "peak": [None]}).tests
     assert test.overturned is True and test.peak is None
 

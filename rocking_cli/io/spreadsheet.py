@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from rocking_cli.text import cut, one_line
 LARGEST = 100_000_000  # bytes; a million rows of ten columns take half of it
 SEPARATORS = ",;\t"
 DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?\s*(?:[^\d\s,.;][^,;]*)?", re.ASCII)
+_BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\]]*)\]|\(([^)]*)\))\s*", re.DOTALL)
 _LINE_END = re.compile("\r\n|\r|\n")
 
 
@@ -64,6 +65,17 @@ class Spreadsheet:
     headings: tuple[str, ...]
     rows: tuple[Row, ...]
     decimal_comma: bool
+
+
+def unit_in(heading: str, units: Collection[str]) -> tuple[str, str]:
+    """Return the name in a heading and its unit, empty if it gives none: `peak [deg]`, `peak (deg)` or `peak_deg`.
+
+    What follows an underscore is a unit only if it is one of `units`.
+    """
+    if found := _BRACKETS.fullmatch(heading):
+        return found[1], (found[2] or found[3] or "").strip()
+    name, _, unit = heading.rpartition("_")
+    return (name, unit) if name and unit in units else (heading, "")
 
 
 def read_sheet(path: Path) -> Spreadsheet:

@@ -23,12 +23,13 @@ from rocking_cli.core.kinematics import Direction, Points, Reals
 from rocking_cli.plugins.errors import failed, guard
 
 Sense = Literal["tension", "compression"]
-Question = Literal["linear models", "equivalent block", "sizes", "verification"]
+Question = Literal["linear models", "equivalent block", "sizes", "verification", "trace"]
 NO_ANSWER: dict[Question, str] = {
     "linear models": "the linear models do not hold",
     "equivalent block": "no single block is equivalent to it",
     "sizes": "spectra and maps are not available",
     "verification": "no code of practice here covers it",
+    "trace": "no trace of free rocking can be fitted",
 }
 """What a structure may be asked beside its nonlinear history, and what is said where its elements do not allow it."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -11,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Spreadsheet, read_sheet
+from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Spreadsheet, read_sheet, unit_in
 from rocking_cli.text import cut, did_you_mean, one_line
 from rocking_cli.units import UnitError, read, units_of
 
@@ -29,7 +28,8 @@ MOTIONS = ("recorded", "commanded")
 POLARITIES = ("1", "-1", "both")
 FLAGS = {"0": False, "0.0": False, "false": False, "1": True, "1.0": True, "true": True}
 """What is read as no and yes: as people write it, and as frames of pandas do."""
-_HEADING = re.compile(r"(.*?)\s*\[([^\]]*)\]\s*", re.DOTALL)
+UNITS = {"peak": "rad", "pgv": "m/s"}
+"""Units of the columns of quantities."""
 
 
 @dataclass(frozen=True)
@@ -148,8 +148,7 @@ def _check_headings(sheet: Spreadsheet) -> dict[str, tuple[int, str]]:
     for k, heading in enumerate(sheet.headings):
         if not heading or heading.startswith(NOTE):
             continue
-        found = _HEADING.fullmatch(heading)
-        name, unit = (found[1], found[2].strip()) if found else (heading, "")
+        name, unit = unit_in(heading, [each for kind in UNITS.values() for each in units_of(kind)])
         shown = cut(one_line(heading))
         if name.startswith(FORECAST):
             if name == FORECAST or name.removeprefix(FORECAST) in OWN:
@@ -159,7 +158,7 @@ def _check_headings(sheet: Spreadsheet) -> dict[str, tuple[int, str]]:
             guess = did_you_mean(name, list(HEADINGS))
             hint = f"{guess}; other predictions are headed pred_NAME, and columns for people {NOTE}"
             problems.append(at("is not a column of a table of tests", field=shown, hint=hint))
-        kind = {"peak": "rad", "pgv": "m/s"}.get(name)
+        kind = UNITS.get(name)
         if unit and (kind is None or unit not in units_of(kind)):
             must = f"must be one of {', '.join(units_of(kind))}" if kind else "has no unit"
             problems.append(at(must, field=shown))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Spreadsheet, read_sheet
+from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Spreadsheet, read_sheet, unit_in
 from rocking_cli.text import cut, one_line
 from rocking_cli.units import UnitError, read, units_of
 
@@ -84,8 +84,7 @@ def _column(sheet: Spreadsheet, names: Sequence[str], kind: str) -> tuple[int, s
     """Return the place and the unit of a column, by its name or else by its unit. Raises `InputError`."""
     found = []
     for k, heading in enumerate(sheet.headings):
-        name, _, unit = heading.partition("[")
-        unit = unit.partition("]")[0].strip()
+        name, unit = unit_in(heading, units_of(kind))
         if name.strip().lower() in names or unit in units_of(kind):
             found.append((k, unit))
     if len(found) != 1:

@@ -231,8 +231,7 @@ def _geometry(
 ) -> tuple[Callable[[Reals], Mapping[Direction, RockingSide]], list[float]]:
     """Return how both directions follow from the parameters of the geometry, and the start of these."""
     mechanism = structure.mechanism
-    if why := structure.refuses("sizes"):
-        raise InputError(f"{structure.name}: no trace can be fitted, as its energy is not that of its rotation: {why}")
+    structure.ask("trace")
     if not free:
         sides: dict[Direction, RockingSide] = {
             direction: MechanismSide(mechanism, direction, each.reference)
