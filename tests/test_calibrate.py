@@ -187,7 +187,7 @@ class TestRefusals:
     def test_fewer_than_three_impacts(self, clean):
         end = clean[1][2] - 0.02  # before the third
         short = clean[0][: int(end / DT)]
-        assert "can be seen above the noise, and a fit needs 3" in self.refused(trace(short))
+        assert "2 impacts can be seen above the noise, and a fit needs 3" in self.refused(trace(short))
 
     def test_noise_above_the_motion(self, clean):
         assert "there is no motion to fit" in self.refused(trace(clean[0], noise=0.6))

@@ -212,6 +212,9 @@ def fit_trace(structure: Structure, trace: Trace, *, free_geometry: bool = False
     base = _Problem(
         kept.times - origin, kept.angles / scale, scale, sides_of, Direction.POSITIVE, not both, 1.0, len(more)
     )
+    count = max(len(_crossings(base.times, base.angles - level, _held_off(noise / scale))) for level in _levels(base))
+    if both and count < LEAST_IMPACTS:
+        raise InputError(_too_few(trace, count))
     tries = [
         problem
         for problem in (replace(base, first=first, sense=sense) for first in Direction for sense in (1.0, -1.0))
@@ -297,6 +300,11 @@ def _levels(problem: _Problem) -> list[float]:
     return levels
 
 
+def _held_off(noise: float) -> float:
+    """Return how far an angle must be from rest to have a sign, in units of the largest."""
+    return max(4 * noise, 0.01)
+
+
 def _crossings(times: Reals, angles: Reals, hold: float) -> list[tuple[float, bool]]:
     """Return when the angle changes its sign by more than `hold` on both sides, and whether that is in a gap."""
     usual = float(np.median(np.diff(times)))
@@ -319,7 +327,7 @@ def _increasing(values: Reals, times: Reals) -> tuple[Reals, Reals]:
 def _starts(problem: _Problem, geometry: Reals, level: float, noise: float) -> list[Reals]:
     """Return where a fit may start, best first: the restitution by the times of impacts, then given ones."""
     angles = problem.angles - level
-    crossings = _crossings(problem.times, angles, max(4 * noise, 0.01))
+    crossings = _crossings(problem.times, angles, _held_off(noise))
     if problem.rebounds:
         crossings = []
     before = angles[problem.times <= (crossings[0][0] if crossings else np.inf)]

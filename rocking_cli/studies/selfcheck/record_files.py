@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import struct
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.io.json_text import json_text
 
 _HALF = [0.25 * ((37 * k) % 79 - 39) for k in range(100)]
 SAMPLES = [*_HALF, *(-each for each in _HALF)]
@@ -61,7 +61,7 @@ def _peer() -> str:
 
 
 def _simcenter() -> str:
-    return json.dumps({"info": "units of g", "numPoints": COUNT, "dT": DT, "accel_data": SAMPLES}, indent=1)
+    return json_text({"info": "units of g", "numPoints": COUNT, "dT": DT, "accel_data": SAMPLES})
 
 
 def _esm() -> str:
