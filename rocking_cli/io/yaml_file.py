@@ -218,9 +218,12 @@ def parse(text: str, file: str, what: str, hint: str) -> Document:
         If it is not YAML, or not a mapping.
     """
     document = Document(what, file, _LINE_END.split(text))
+    too_deep = Problem(f"nested too deep to be a {what}", file)
     try:
         node = _composed(text)
     except yaml.MarkedYAMLError as error:
+        if "nesting depth" in (error.problem or ""):  # newer parsers in C count, where Python's runs out of stack
+            raise InputError(too_deep) from None
         said = " ".join(part for part in (error.context, error.problem) if part)
         began, noticed = error.context_mark, error.problem_mark
         if began is not None and (noticed is None or not text[noticed.index :].strip()):
@@ -236,7 +239,7 @@ def parse(text: str, file: str, what: str, hint: str) -> Document:
         message = f"not valid YAML: it contains the character {printable(chr(error.character))}"
         raise InputError(Problem(message, file, line)) from None
     except RecursionError:
-        raise InputError(Problem(f"nested too deep to be a {what}", file)) from None
+        raise InputError(too_deep) from None
     except yaml.YAMLError as error:
         raise InputError(Problem(f"not YAML: {str(error).splitlines()[0]}", file)) from None
     if node is None:
