@@ -11,6 +11,7 @@ from contextlib import closing
 import pytest
 
 from rocking_cli.errors import InputError
+from rocking_cli.studies.fragility import store_file
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.store_file import new_name, this_process
 from tests.stores import Sound, command, shown
@@ -145,6 +146,38 @@ def test_who_is_at_work_is_named_while_he_is(sound, place):
     with closing(sqlite3.connect(place)) as connection:
         assert not connection.execute("SELECT * FROM study WHERE key = 'at work'").fetchall()
     assert names(place.parent) == ["study.db"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="an open file is not replaced there")
+@pytest.mark.parametrize("options", [[], ["--restart"]])
+@pytest.mark.parametrize("is_at_work", [True, False])
+def test_a_store_that_is_replaced_while_it_is_opened_is_left_for_the_new_one(
+    sound, place, monkeypatch, options, is_at_work
+):
+    """Another process restarts the study between the look at the file and its lock: the one locked has moved."""
+    open_store, opened = store_file.open_store, []
+
+    def open_and_lose(path):
+        connection = open_store(path)
+        if not opened:
+            opened.append(sqlite3.connect(path.rename(path.with_name("study.before.db"))))  # keeps its number from reuse
+            path.write_bytes(sound.store.read_bytes())
+            if is_at_work:
+                opened.append(sqlite3.connect(path, isolation_level=None))
+                opened[-1].execute("BEGIN IMMEDIATE")
+        return connection
+
+    monkeypatch.setattr(store_file, "open_store", open_and_lose)
+    result = command("fragility", sound.study, "--store", place, "--json", *options)
+    for each in opened:
+        each.close()
+    if is_at_work:
+        assert result.exit_code == 2 and "another process is at work on this study" in result.stderr
+        assert names(place.parent) == ["study.before.db", "study.db"]
+    else:
+        assert result.exit_code == 0 and shown(result.stdout) == sound.shown
+        assert ("study.before-2.db" in names(place.parent)) == bool(options)
+    assert place.with_name("study.before.db").read_bytes() == sound.store.read_bytes()
 
 
 def test_a_study_that_another_process_begins_meanwhile_is_left_to_it(sound, tmp_path):

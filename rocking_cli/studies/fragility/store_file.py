@@ -107,7 +107,30 @@ def is_beyond_reading(path: Path, error: sqlite3.DatabaseError) -> bool:
 
 
 def open_locked(path: Path) -> sqlite3.Connection:
-    """Open a store, making it if missing, in a transaction that keeps others from writing; return the connection."""
+    """Open a store, making it if missing, in a transaction that keeps others from writing; return the connection.
+
+    Whoever replaces a store lets go of the old file only afterwards: that of the connection may have another name by
+    now. Then the one that has taken its place is opened.
+    """
+    while True:
+        before = _identity(path)
+        connection = _locked(path)
+        if before is not None and before == _identity(path):
+            return connection
+        connection.close()
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    """Return what tells a file from any that replaces it; None if there is none."""
+    try:
+        found = path.stat()
+    except FileNotFoundError:
+        return None
+    return found.st_dev, found.st_ino
+
+
+def _locked(path: Path) -> sqlite3.Connection:
+    """Return a connection to a file in a transaction that keeps others from writing."""
     connection = open_store(path)
     try:
         connection.execute("PRAGMA busy_timeout = 0")
