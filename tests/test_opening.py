@@ -66,12 +66,20 @@ def test_values_that_two_other_programs_agree_on(name, fields, reach, rows):
 
 
 @pytest.mark.parametrize(("name", "factor"), [("masonry/buttressed_arch.yaml", 0.5), ("masonry/portal.yaml", 1.75)])
-def test_openings_are_those_of_an_integration_that_shares_nothing(name, factor):
-    made = structure(name)
-    largest, first = openings(made.model_copy(update={"opening": 1.0}), read_record(ACCEL), factor)
-    found = history(made, factor)
-    assert found.opening == pytest.approx(largest, rel=0.02)
-    assert found.known_to == pytest.approx(first[0.005], abs=0.003)
+def test_motion_and_openings_are_those_of_a_program_that_shares_nothing(name, factor):
+    theirs, found = openings(EXAMPLES / name, ACCEL, factor), history(structure(name), factor)
+    assert found.check.reach == pytest.approx(theirs.reach, rel=1e-9)
+    assert found.opening == pytest.approx(theirs.largest, rel=0.001)
+    assert found.known_to == pytest.approx(theirs.passed, abs=0.0015)  # each says it at its next node
+    made = structure(name, opening=1.0)
+    whole = history(made, factor)
+    assert whole.uplift_time == pytest.approx(theirs.motion.uplifts[0], abs=1e-9)
+    for impact in theirs.motion.impacts:
+        if impact.before > 1e-3:  # not those of before rest, which comes a little sooner or later
+            times = whole.impacts[whole.impacts[:, 1] == impact.side, 0]
+            assert abs(times - impact.time).min() < 1e-9
+    for direction, peak in zip(Direction, (whole.peak_positive, whole.peak_negative), strict=True):
+        assert peak == pytest.approx(theirs.turned(made.collapse(direction).lead, int(direction)), rel=1e-8)
 
 
 @pytest.mark.skipif(not BLOCKS.is_file(), reason=f"no assemblies in {BLOCKS}")

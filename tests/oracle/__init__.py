@@ -15,6 +15,7 @@ joint let go. A motion is integrated by DOP853 at 1e-12 from event to event. It 
     simulate(Block(0.6, 8.0), release=0.03, rebound=0.48, impacts=4)  # one-sided
     reactions(wall, 1, phi=0.05, rate=0.2, u=-3.0)["hinge"].on(-0.05)  # T and N in a crack that has turned with it
     impulses(wall, 1)["foot"].friction
+    openings(Path("portal.yaml"), Path("accel.csv"), factor=1.75).largest  # of `tests.oracle.openings`; an assembly
 
 Points are x + iy of the structure at rest; forces Fx + i Fy; x to the right, y up, u and v accelerations of the ground.
 s = 1 is clockwise, and phi >= 0 in either direction. The foot's middle, of a frame the left one's, is the origin.

@@ -30,7 +30,8 @@ class Ground:
         both = np.array([self.horizontal, np.zeros(len(times)) if self.vertical is None else self.vertical], float)
         for i in range(len(times) - 1):
             yield float(times[i]), float(times[i + 1]), both[:, i], both[:, i + 1]
-        yield float(times[-1]), until, np.zeros(2), np.zeros(2)
+        if until > times[-1]:
+            yield float(times[-1]), until, np.zeros(2), np.zeros(2)
 
 
 QUIET = Ground([0.0], [0.0])
@@ -284,19 +285,20 @@ class _Motion:
             self.slopes, (self.t, end), self.y, events=stops, dense_output=True, first_step=first, **options
         )
         assert solution.success, solution.message
-        self.history.flights.append((self.t, float(solution.t[-1]), self.s, solution.sol))
         for t, y in zip(solution.t_events[2], solution.y_events[2], strict=True):
             if not self.history.peaks or t > self.history.peaks[-1].time + 1e-9:  # unloading starts at a peak too
                 self.history.peaks.append(Peak(float(t), self.s, float(y[0])))
         which = [i for i, times in enumerate(solution.t_events) if len(times) and i != 2]
-        self.t, self.y = float(solution.t[-1]), solution.y[:, -1]
-        if not which:
+        start, self.t, self.y = self.t, float(solution.t[-1]), solution.y[:, -1]
+        event = stops[which[0]] if which else None
+        if event is not None:
+            # A spring that has no force at rest goes slack where the structure hits the ground.
+            event = hits if self.y[0] < 1e-11 and self.y[1] < 0 else event
+            self._sharpen(event, float(solution.t[-2]), solution.y[:, -2], options)
+        self.history.flights.append((start, self.t, self.s, solution.sol))
+        if event is None:
             self._commit(self.y[0])
-            return
-        # A spring that has no force at rest goes slack where the structure hits the ground.
-        event = hits if self.y[0] < 1e-11 and self.y[1] < 0 else stops[which[0]]
-        self._sharpen(event, float(solution.t[-2]), solution.y[:, -2], options)
-        if event is hits:
+        elif event is hits:
             self._impact()
         elif event is falls:
             self._commit(self.y[0])

@@ -1,186 +1,160 @@
-"""How far the joints of an assembly open beside a history, by another road than the program's.
+"""How far the joints of an assembly open beside a motion that takes no notice of it, to the end of a record.
 
-Every row stands for itself: velocities of points by the motion of their blocks, forces by least squares at each of
-many rotations, no cubics over q and no bounds; the motion is that under a record with eight times as many samples. Only
-where blocks are and how they move is taken from the program.
+A joint that would pull, or slip, is released alone and followed until it is shut again.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import pairwise
+from math import nan
+from pathlib import Path
+from typing import NamedTuple
+
 import numpy as np
+import yaml
 
-from mechanisms._assembly.mechanism import Opening
-from rocking_cli import GroundMotion, respond
-from rocking_cli.core import Direction
+from .assemblies import Assembly, series, summed
+from .history import Ground, History, simulate
+from .series import Reals
+from .structures import SIDES
 
-FINER = 8
-NODES = 129
-MARKS = (0.005, 0.01)
-
-
-def openings(structure, motion, factor=1.0):
-    """Return the largest opening over D_cr, and when shares of it are first passed [s], None: never."""
-    time = np.arange(motion.npts) * motion.dt
-    fine = np.arange((motion.npts - 1) * FINER + 1) * motion.dt / FINER
-    push = factor * np.interp(fine, time, motion.acceleration)
-    history = respond(structure, GroundMotion("fine", motion.dt / FINER, push), models=("nonlinear",))["nonlinear"]
-    assert not history.unknown  # the caller sets `opening: 1`
-    sides = {direction: _Side(structure, direction) for direction in structure.directions}
-    reach = min(side.reach for side in sides.values())
-    contacts = len(structure._contacts)
-    state = {name: np.zeros((contacts, 2)) for name in ("gap", "gap rate", "slip", "slip rate")}
-    largest, first, last = 0.0, dict.fromkeys(MARKS), None
-    for now, sign, phi, rate, is_impact in _moments(history):
-        if not sign:
-            state["gap"][:] = state["gap rate"][:] = state["slip rate"][:] = 0.0
-            last = None
-            continue
-        side = sides[Direction(sign)]
-        u = float(np.interp(now, fine, push, right=0.0))
-        accelerations = side.accelerations(phi, rate, u)
-        if last is not None and last[1] == sign and now > last[0]:
-            for kind, was, new in zip(("gap", "slip"), last[2], accelerations, strict=True):
-                _advance(state, kind, was, new, now - last[0])
-        last = now, sign, accelerations
-        if is_impact:
-            other = sides[Direction(sign).opposite]
-            _strike(state, side, other, rate, structure.eta(Direction(sign)))
-            rate *= structure.eta(Direction(sign))
-            last = now, -sign, other.accelerations(0.0, rate, u)
-        share = max(state["gap"].max(), state["slip"].sum(axis=1).max()) / reach
-        largest = max(largest, share)
-        for mark in MARKS:
-            if share > mark and first[mark] is None:
-                first[mark] = now
-    return largest, first
+NODES = 12  # in each sample of the record
+MARK = 0.005
+KNOWN = {"mechanism", "name", "density", "depth", "blocks", "ground", "friction"}
+SHEAR = 2  # of a contact, after its two ends
 
 
-def _moments(history):
-    """Samples until it overturns and impacts, in order: time, sign, rotation, rate, whether it is an impact."""
-    end = history.overturning_time if history.overturned else np.inf
-    samples = [
-        (time, int(np.sign(phi) or np.sign(rate)), abs(phi), abs(rate), False)
-        for time, phi, rate in zip(history.time, history.phi, history.rate, strict=True)
-        if np.isfinite(phi) and time <= end
-    ]
-    impacts = [(time, int(sign), 0.0, rate, True) for time, sign, rate in history.impacts if time <= end]
-    return sorted(samples + impacts, key=lambda moment: moment[0])
+class Opened(NamedTuple):
+    """The largest opening over D_cr, when `MARK` is first passed [s], and D_cr [m]."""
+
+    assembly: Assembly
+    motion: History
+    largest: float
+    passed: float
+    reach: float
+
+    def turned(self, block: str, s: int) -> float:
+        """How far a block turns at most in a direction [rad]."""
+        phi = max(peak.phi for peak in self.motion.peaks if peak.side == s)
+        return float(abs(self.assembly.body(self.assembly.place(s, phi), block).psi))
 
 
-def _advance(state, kind, was, new, h):
-    x0, v0 = state[kind], state[f"{kind} rate"]
-    x, v = x0.copy(), v0.copy()
-    for place in np.ndindex(x0.shape):
-        a0, a1 = was[place], new[place]
-        if v0[place] > 0 or (kind == "gap" and x0[place] > 0):
-            v[place] = v0[place] + h * (a0 + a1) / 2
-            x[place] = x0[place] + h * v0[place] + h * h * (2 * a0 + a1) / 6
-            if kind == "gap" and x[place] <= 0:
-                x[place] = v[place] = 0.0
-            elif kind == "slip" and v[place] <= 0:
-                x[place] = x0[place] + h * v0[place] ** 2 / (v0[place] - v[place]) / 2
-                v[place] = 0.0
-        elif a1 > 0:
-            left = h if a0 >= 0 else h * a1 / (a1 - a0)
-            x[place] += left * left * (2 * max(a0, 0.0) + a1) / 6
-            v[place] = left * (max(a0, 0.0) + a1) / 2
-    state[kind][:], state[f"{kind} rate"][:] = x, v
+def openings(file: Path, record: Path, factor: float) -> Opened:
+    """Follow an assembly under a record of two columns, times and shares of g."""
+    assembly = Assembly(file=yaml.safe_load(file.read_text(encoding="utf-8")))
+    assert assembly.file.keys() <= KNOWN
+    times, shares = np.loadtxt(record, delimiter=",", skiprows=1).T
+    push = factor * assembly.gravity * shares
+    motion = simulate(assembly, Ground(times, push), until=times[-1])
+    sides, joints = {s: _Side(assembly, s) for s in SIDES}, _Joints(len(assembly.contacts))
+    reach = min(_reach(assembly, s) for s in SIDES)
+    struck = {impact.time: impact for impact in motion.impacts}
+    largest, passed = 0.0, nan
+    for start, end, s, solution in motion.flights:
+        if start in motion.uplifts:
+            joints.rest()
+        nodes = np.linspace(start, end, 1 + int(np.ceil((end - start) * NODES / times[1])))
+        phi, rate = solution(nodes)[:2]
+        accelerations = sides[s].accelerations(phi, rate, np.interp(nodes, times, push))
+        for (before, now), those in zip(pairwise(nodes), pairwise(accelerations), strict=True):
+            joints.go_on(now - before, *those)
+            share = joints.opening / reach
+            if largest <= MARK < share:
+                passed = float(now)
+            largest = max(largest, share)
+        if end in struck:
+            joints.strike(sides[s], sides[-s], struck[end].before)
+    return Opened(assembly, motion, largest, passed, reach)
 
 
-def _strike(state, old, new, rate, eta):
-    """Let joints fly open that the impulses do not press together."""
-    jump = new.mass * (eta * new.along[0] + old.along[0]) * rate
-    impulse = np.linalg.lstsq(new.rows[0].T, jump, rcond=None)[0]
-    compliance = new.compliance[0]
-    for k in range(len(state["gap"])):
-        if old.ends.get(k) != new.ends.get(k):
-            state["gap"][k] = state["gap rate"][k] = 0.0
-    for k, normals, shear, friction in new.contacts:
-        total = sum(impulse[row] for row in normals)
-        for end, row in zip(new.ends[k], normals, strict=True):
-            state["gap rate"][k, end] += compliance[row] * max(0.0, -impulse[row])
-        if friction is not None:
-            for sense, sign in enumerate((1, -1)):
-                left = friction * max(total, 0.0) - sign * impulse[shear]
-                state["slip rate"][k, sense] += compliance[shear] * max(0.0, -left)
+def _reach(assembly: Assembly, s: int) -> float:
+    """The farthest that a centroid is at phi_cr from where it rests."""
+    phi = assembly.critical(s)
+    assert phi is not None, "no phi_cr"
+    bodies = zip(assembly.place(s, phi), assembly.pieces(), strict=True)
+    return max(float(abs(body.x + 1j * body.y - piece.centre)) for body, piece in bodies)
 
 
 class _Side:
-    """One direction of an assembly, over rotations."""
+    """What contacts bear in one direction: at each of its ends and as shear, and 0 where it does not bear."""
 
-    def __init__(self, structure, direction):
-        critical = structure.critical_rotation(direction)
-        self.phi = np.linspace(0.0, min(0.999 * structure.limit(direction), 1.5 * critical), NODES)
-        bodies, motions = structure.weighed(), structure.motion(self.phi, direction)
-        self.mass = np.array([m for body in bodies for m in (body.mass, body.mass, body.inertia)])
-        self.column = {body.name: 3 * k for k, body in enumerate(bodies)}
-        self.motions = {body.name: motion for body, motion in zip(bodies, motions, strict=True)}
-        places = [motion.carry(body.centroid) for body, motion in zip(bodies, motions, strict=True)]
-        self.centres = {body.name: place[0] for body, place in zip(bodies, places, strict=True)}
-        self.along = self._columns([place[1] for place in places], [motion.dpsi for motion in motions])
-        bend = self._columns([place[2] for place in places], [motion.ddpsi for motion in motions])
-        self.contacts, self.ends, self.rows = self._joints(structure, direction)
-        at, g = structure.coefficients(self.phi, direction), structure.gravity
-        down, across = np.tile([0.0, 1.0, 0.0], len(bodies)), np.tile([1.0, 0.0, 0.0], len(bodies))
-        turning = [-(g * at.G + at.Q) / at.I, -int(direction) * at.B / at.I, -at.J / at.I]
-        more = [g * down, across, bend]
-        needed = [self.mass * (self.along * turn[:, None] + extra) for turn, extra in zip(turning, more, strict=True)]
-        self.forces = np.array([
-            np.linalg.lstsq(rows.T, np.stack([each[k] for each in needed], axis=1), rcond=None)[0]
-            for k, rows in enumerate(self.rows)
-        ])  # fmt: skip
-        self.compliance = np.array([1 / np.diag(np.linalg.inv(rows / self.mass @ rows.T)) for rows in self.rows])
-        there = structure.motion(np.array([critical]), direction)
-        self.reach = max(
-            abs(motion.carry(body.centroid)[0][0] - body.centroid) for body, motion in zip(bodies, there, strict=True)
-        )
+    def __init__(self, assembly: Assembly, s: int) -> None:
+        self.assembly, self.path, self.rows = assembly, assembly.paths[s], assembly.weakest[s][0]
+        self.friction = assembly.file.get("friction")
+        self.ends = self._by_contact(np.ones(len(self.rows)))[:, :SHEAR]
+        self.forces = series(lambda phi: [self._forces(each) for each in phi])
+        self.compliances = series(lambda phi: [self._compliances(each) for each in phi])
 
-    def _columns(self, points, turns):
-        found = np.zeros((NODES, 3 * len(points)))
-        for k, (point, turn) in enumerate(zip(points, turns, strict=True)):
-            found[:, 3 * k], found[:, 3 * k + 1], found[:, 3 * k + 2] = point.real, point.imag, turn
+    def _by_contact(self, values: Reals) -> Reals:
+        found = np.zeros((len(self.assembly.contacts), 3, *values.shape[1:]))
+        for row, value in zip(self.rows, values, strict=True):
+            found[row.contact, SHEAR if row.end is None else row.end] = value
         return found
 
-    def _joints(self, structure, direction):
-        contacts, ends, rows = [], {}, []
-        states = structure._groups(direction).states
-        for k, (contact, state) in enumerate(zip(structure._contacts, states, strict=True)):
-            if state is Opening.LIFTED:
-                continue
-            where = {Opening.START: (0,), Opening.END: (1,)}.get(state, (0, 1))
-            face = contact.face_at(where[0]) if len(where) == 1 else contact.a
-            turn = np.exp(1j * self.motions[face].psi) if face in self.motions else np.ones(NODES)
-            normal = contact.normal * turn
-            first = len(rows)
-            rows += [self._row(contact, contact.ends[end], normal) for end in where]
-            rows.append(self._row(contact, sum(contact.ends[end] for end in where) / len(where), -1j * normal))
-            contacts.append((k, list(range(first, len(rows) - 1)), len(rows) - 1, contact.friction))
-            ends[k] = where
-        return contacts, ends, np.stack(rows, axis=1)
+    def _borne(self, phi: float, changes: Sequence[Reals]) -> Reals:
+        """What contacts bear where velocities change by each of these, and by as much of the motion as is free."""
+        moved, speed, _ = summed(self.path, phi)
+        _, slopes = self.assembly.parted(self.rows, moved)
+        along, *momenta = self.assembly.mass * np.array([speed, *changes])
+        solved = np.linalg.solve(np.column_stack([slopes.T, -along]), np.transpose(momenta))
+        return self._by_contact(solved[:-1])
 
-    def _row(self, contact, point, way):
-        found = np.zeros((NODES, len(self.mass)))
-        at = self.motions[contact.a].carry(point)[0] if contact.a in self.motions else np.full(NODES, point)
-        for name, sign in ((contact.b, 1), (contact.a, -1)):
-            if name in self.column:
-                k, arm = self.column[name], at - self.centres[name]
-                found[:, k], found[:, k + 1] = sign * way.real, sign * way.imag
-                found[:, k + 2] = sign * (arm.conjugate() * way).imag
-        return found
+    def _forces(self, phi: float) -> Reals:
+        """The factors of 1, u and phi.^2."""
+        fall, shift = self.assembly.gravity * self.assembly.all_along(0.0, 1.0), self.assembly.all_along(1.0, 0.0)
+        return self._borne(phi, [fall, shift, summed(self.path, phi)[2]])
 
-    def accelerations(self, phi, rate, u):
-        """How fast each end would open, and each joint slip in either sense; -inf where there is none."""
-        place = min(phi, self.phi[-1] * (1 - 1e-12)) / self.phi[1]
-        k, x = int(place), place - int(place)
-        force = ((1 - x) * self.forces[k] + x * self.forces[k + 1]) @ np.array([1.0, u, rate * rate])
-        compliance = (1 - x) * self.compliance[k] + x * self.compliance[k + 1]
-        most = max(self.ends) + 1
-        opens, slips = np.full((most, 2), -1.0), np.full((most, 2), -1.0)
-        for joint, normals, shear, friction in self.contacts:
-            for end, row in zip(self.ends[joint], normals, strict=True):
-                opens[joint, end] = -compliance[row] * force[row]
-            if friction is not None:
-                total = max(sum(force[row] for row in normals), 0.0)
-                for sense, sign in enumerate((1, -1)):
-                    slips[joint, sense] = -compliance[shear] * (friction * total - sign * force[shear])
-        return opens, slips
+    def _compliances(self, phi: float) -> Reals:
+        """The accelerations of ends and slips let go alone, over what they bore; without a friction nothing slips."""
+        _, slopes = self.assembly.parted(self.rows, summed(self.path, phi)[0])
+        found = self._by_contact(1 / np.diag(np.linalg.inv(slopes / self.assembly.mass @ slopes.T)))
+        return found * [1.0, 1.0, self.friction is not None]
+
+    def _released(self, borne: Reals, compliances: Reals) -> Reals:
+        """How fast each end opens, and each contact slips either way, if let go."""
+        ends, shear = borne[..., :SHEAR], borne[..., SHEAR:]
+        grip = (self.friction or 0.0) * np.maximum(ends.sum(axis=-1, keepdims=True), 0.0)
+        return -compliances[..., [0, 1, SHEAR, SHEAR]] * np.concatenate([ends, grip - shear, grip + shear], axis=-1)
+
+    def accelerations(self, phi: Reals, rate: Reals, u: Reals) -> Reals:
+        """At many instants."""
+        factors = np.stack([np.ones(len(u)), u, rate**2], axis=-1)
+        borne = np.einsum("ncrk,nk->ncr", summed(self.forces, phi), factors)
+        return self._released(borne, summed(self.compliances, phi))
+
+    def thrown(self, other: _Side, rate: float) -> Reals:
+        """At what rates joints fly open where this direction begins, and the other ended at `rate`."""
+        impulses = self._borne(0.0, [rate * summed(other.path, 0.0)[1]])[..., 0]
+        return np.maximum(self._released(impulses, summed(self.compliances, 0.0)), 0.0)
+
+
+class _Joints:
+    """How far both ends of each contact are open, and how far it has slipped either way."""
+
+    def __init__(self, count: int) -> None:
+        self.far, self.rate = np.zeros((2, count, 4))
+
+    @property
+    def opening(self) -> float:
+        """The largest; slips either way are counted together."""
+        return float(max(self.far[:, :2].max(), self.far[:, 2:].sum(axis=1).max()))
+
+    def rest(self) -> None:
+        """All shut; what has slipped stays where it is."""
+        self.far[:, :2] = self.rate[:] = 0.0
+
+    def go_on(self, h: float, first: Reals, last: Reals) -> None:
+        """By a short step: what is shut stays so unless it is thrown open, and nothing rebounds or slips back."""
+        rate = self.rate + h * (first + last) / 2
+        rate[:, 2:] = np.maximum(rate[:, 2:], 0.0)
+        far = self.far + h * (self.rate + rate) / 2
+        shut = far[:, :2] <= 0
+        far[:, :2][shut] = rate[:, :2][shut] = 0.0
+        self.far, self.rate = far, rate
+
+    def strike(self, old: _Side, new: _Side, rate: float) -> None:
+        """Joints that bear at other ends than before start anew, and what the impulses do not press flies open."""
+        anew = (old.ends != new.ends).any(axis=1)
+        self.far[anew, :2] = self.rate[anew, :2] = 0.0
+        self.rate += new.thrown(old, rate)
