@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
 
@@ -69,3 +70,28 @@ def test_what_stands_beside_the_package_imports_what_there_is(path):
     for module, name in named:
         if not hasattr(import_module(module), name):
             import_module(f"{module}.{name}")
+
+
+def _imported(path: Path) -> Iterator[str]:
+    """All that a file imports, anywhere in it, by full names."""
+    package = path.relative_to(ROOT).parent.parts
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (each.name for each in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            above = package[: len(package) + 1 - node.level] if node.level else ()
+            module = ".".join([*above, *filter(None, [node.module])])
+            yield from (f"{module}.{each.name}" for each in node.names)
+            yield module
+
+
+def test_the_oracle_shares_no_code_with_the_project():
+    """Nor does what it imports of the other tests."""
+    files = sorted((ROOT / "tests" / "oracle").glob("*.py"))
+    assert len(files) > 5
+    for path in files:  # longer by what they import
+        for name in _imported(path):
+            assert name.split(".")[0] not in ("rocking_cli", "mechanisms"), f"{path.name} imports {name}"
+            module = ROOT.joinpath(*name.split("."))
+            found = {module.with_suffix(".py"), module / "__init__.py"}
+            files += [each for each in sorted(found) if each.is_file() and each not in files]
