@@ -299,9 +299,8 @@ class Pieces:
         for other in mechanism.attached:
             for push in other.forces(direction, follow):  # type: ignore[arg-type]
                 if self._moves(push.spot):
-                    size = np.abs(push.force)
-                    way = np.where(size > 0, push.force, 1.0) / np.where(size > 0, size, 1.0)
-                    forces[..., ONE] -= size[:, None] * self._spread(push.spot, way.astype(np.complex128))
+                    way = np.exp(1j * np.angle(push.force))  # of any size, also of none
+                    forces[..., ONE] -= np.abs(push.force)[:, None] * self._spread(push.spot, way)
         return forces
 
     def _path(self, spot: Spot) -> object:
