@@ -9,22 +9,31 @@ PACKAGE_STAMP := $(VENV)/.installed-package
 STAMP := $(VENV)/.installed
 RELEASE_STAMP := $(VENV)/.installed-release
 DOCS_STAMP := $(VENV)/.installed-docs
+# The same versions today and next year, those of build tools too; pip itself first, as older ones hold less.
+INSTALL := -m pip install --quiet --constraint constraints.txt --build-constraint constraints.txt
+PYTEST := -m pytest -n auto --dist worksteal
+# The tiers that `make test` leaves out; CONTRIBUTING.md says what is in each.
+LATER := rest or docs or types or kernels
 
-.PHONY: setup demo selfcheck test test-kernels test-versions test-elsewhere damage soak fuzz fields properties lint type contracts check bench kernels same-kernels validation scoreboard stub pictures \
-	docs release clean
+.PHONY: setup constraints demo selfcheck test test-all test-newest test-oldest test-kernels test-versions test-elsewhere damage soak fuzz fields \
+	properties lint type contracts check bench kernels same-kernels validation scoreboard stub pictures docs release clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
 
-$(PACKAGE_STAMP): pyproject.toml
+$(PACKAGE_STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet --editable .
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --upgrade pip
+	$(BIN)/python $(INSTALL) --editable .
 	$(BIN)/python -m compileall -q rocking_cli mechanisms
 	$(BIN)/python -c "import pathlib; pathlib.Path('$(PACKAGE_STAMP)').touch()"
 
 $(STAMP): $(PACKAGE_STAMP)
-	$(BIN)/python -m pip install --quiet --editable ".[dev]"
+	$(BIN)/python $(INSTALL) --editable ".[dev]"
 	$(BIN)/python -c "import pathlib; pathlib.Path('$(STAMP)').touch()"
+
+constraints: setup  ## Write constraints.txt: the newest versions that pyproject.toml allows, for all Pythons and systems
+	$(BIN)/python -m uv pip compile --quiet --universal --all-extras --python-version 3.11 --upgrade --no-annotate \
+		--custom-compile-command "make constraints" --output-file constraints.txt pyproject.toml
 
 demo: $(PACKAGE_STAMP)  ## The main job on the shipped example: equiv, respond with a plot, pulse; and a quick selfcheck
 	$(BIN)/python -c "import pathlib; pathlib.Path('out').mkdir(exist_ok=True)"
@@ -36,8 +45,19 @@ demo: $(PACKAGE_STAMP)  ## The main job on the shipped example: equiv, respond w
 selfcheck: $(PACKAGE_STAMP)  ## Whether this installation computes correctly
 	$(BIN)/rocking selfcheck
 
-test: setup  ## All tests, and the twenty slowest
-	$(BIN)/python -m pytest -n auto --dist worksteal --durations=20
+test: setup  ## What to run before a commit, and the twenty slowest
+	$(BIN)/python $(PYTEST) -m "not ($(LATER))" --durations=20
+
+test-all: test  ## All tests: those of `test`, then the rest
+	$(BIN)/python $(PYTEST) -m "$(LATER)"
+
+test-newest test-oldest: test-%: setup  ## `test` with the newest versions of what it needs that there are, and with the oldest that pyproject.toml allows
+	$(BIN)/python -m uv venv --quiet --clear --python $(BIN)/python out/$*
+	$(BIN)/python -m uv pip install --quiet --python out/$* --resolution $(RESOLUTION-$*) --editable ".[dev]"
+	out/$*/$(notdir $(BIN))/python $(PYTEST) -m "not ($(LATER))"
+
+RESOLUTION-newest := highest
+RESOLUTION-oldest := lowest-direct
 
 test-kernels: setup  ## The tests of fits, studies and linkages, with the last bits as other processors round them
 	$(BIN)/python -m tests.elsewhere kernels
@@ -57,6 +77,7 @@ lint: setup
 
 type: setup
 	$(BIN)/mypy
+	$(BIN)/python $(PYTEST) -m types
 
 contracts: setup  ## Who may import whom
 	$(BIN)/lint-imports
@@ -64,7 +85,7 @@ contracts: setup  ## Who may import whom
 check: lint type contracts test
 
 bench: setup  ## Ratios within one run; see docs/performance.md. RECORD=FILE for a record of your own
-	-$(BIN)/python -m pip install --quiet ".[bench]"
+	-$(BIN)/python $(INSTALL) ".[bench]"
 	$(BIN)/python benchmarks/starting.py
 	$(BIN)/python benchmarks/histories.py $(RECORD)
 	$(BIN)/python benchmarks/maps.py
@@ -98,9 +119,10 @@ kernels:  ## Compile the kernels that are shipped, rocking_cli/dynamics/ready; P
 	$(KERNELS)/$(notdir $(BIN))/python -m pip install --quiet "numba==0.61.2" "llvmlite==0.44.0" "ziglang==0.17.1" "numpy<2.3" "platformdirs>=4"
 	$(KERNELS)/$(notdir $(BIN))/python scripts/make_kernels.py $(READY)
 
-same-kernels:  ## Make the shipped kernels anew, by Python 3.11 as they were, and compare them
+same-kernels: setup  ## Make the shipped kernels anew, by Python 3.11 as they were, and compare them and what they compute
 	$(MAKE) kernels PYTHON=$(PYTHON) READY=out/ready
 	diff -r out/ready rocking_cli/dynamics/ready
+	$(BIN)/python $(PYTEST) -m kernels
 
 stub: setup  ## Write rocking_cli/__init__.pyi, which types what the package hands out
 	$(BIN)/python docs/make_stub.py
@@ -109,7 +131,7 @@ pictures: setup  ## Write the pictures that the tests compare with anew; look at
 	$(BIN)/python -m tests.render
 
 $(DOCS_STAMP): $(STAMP)
-	$(BIN)/python -m pip install --quiet --editable ".[docs]"
+	$(BIN)/python $(INSTALL) --editable ".[docs]"
 	$(BIN)/python -c "import pathlib; pathlib.Path('$(DOCS_STAMP)').touch()"
 
 docs: $(DOCS_STAMP)  ## The documentation as a site, out/site/index.html; every warning is an error
@@ -118,7 +140,7 @@ docs: $(DOCS_STAMP)  ## The documentation as a site, out/site/index.html; every 
 	$(BIN)/python -m sphinx -W --keep-going -E -q -b html -d out/doctrees docs out/site
 
 $(RELEASE_STAMP): $(PACKAGE_STAMP)
-	$(BIN)/python -m pip install --quiet --editable ".[release]"
+	$(BIN)/python $(INSTALL) --editable ".[release]"
 	$(BIN)/python -c "import pathlib; pathlib.Path('$(RELEASE_STAMP)').touch()"
 
 release: $(RELEASE_STAMP)  ## dist/: source distribution and wheel, checked, installed elsewhere and tried there

@@ -7,6 +7,7 @@ import os
 import re
 import signal
 import sys
+from collections import Counter
 from itertools import count
 from pathlib import Path
 
@@ -34,6 +35,9 @@ KEPT = ("ROCKING_RECORDS", "ROCKING_KERNELS")  # the second has all tests run wi
 # Else each of hundreds of child processes compiles the package anew.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
+
+# As many workers as processors run the tests; a library that starts threads of its own is in their way.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 gc.set_threshold(50_000)  # as the program does: what there is of garbage is small beside what stays
 
@@ -112,6 +116,18 @@ def record(name: str) -> Path:
     if not path.is_file():
         pytest.skip(f"no real records in {RECORDS} (ROCKING_RECORDS): {name}")
     return path
+
+
+@pytest.hookimpl(tryfirst=True)  # before those of other tiers are left out
+def pytest_collection_modifyitems(items):
+    """Leave a few cases of a test to `make test` where there are many of one kind."""
+    seen = Counter()
+    for item in items:
+        thinned = item.get_closest_marker("every")
+        if thinned is not None:
+            if seen[item.location[0], item.originalname] % thinned.args[0]:
+                item.add_marker("rest")
+            seen[item.location[0], item.originalname] += 1
 
 
 def pytest_make_parametrize_id(val):

@@ -29,7 +29,8 @@ ROUNDED = [
 ]  # fmt: skip
 # They take long, and rest on random numbers or on processes rather than on rounding: once is enough.
 ONCE = "TestCoverage or killed or interrupted or cluster or while_it_runs or hold_at_their_rate"
-NEEDED = ["hypothesis>=6.100", "pytest>=8", "statsmodels>=0.14.2"]  # besides the package
+NEEDED = ["hypothesis", "pytest", "statsmodels"]  # besides the package
+HELD = ["--constraint", str(PROJECT / "constraints.txt")]  # not --build-constraint: the pip may be as old as the Python
 
 
 def tests(python: Path, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -87,7 +88,8 @@ def under_version(version: tuple[int, int]) -> tuple[str, int, str]:
         return what, 0, "left out: it is not installed here"
     folder = PROJECT / "out" / f"python{version[0]}.{version[1]}"
     python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
-    install = [str(python), "-m", "pip", "install", "--quiet", "--editable", f"{PROJECT}[cluster,parquet]", *NEEDED]
+    wanted = ["--editable", f"{PROJECT}[cluster,parquet]", *NEEDED]
+    install = [str(python), "-m", "pip", "install", "--quiet", *HELD, *wanted]
     for command in ([*known[0], "-m", "venv", str(folder)], install):
         done = subprocess.run(command, check=False, capture_output=True, encoding="utf-8", errors="replace")
         if done.returncode:

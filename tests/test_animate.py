@@ -115,6 +115,7 @@ class TestPage:
         assert f"<title>{html.escape(evil)}</title>" in page and data["about"].startswith(evil)
 
 
+@pytest.mark.rest
 class TestGif:
     def test_frames_show_the_block_where_it_is(self, tmp_path):
         run("animate", "--pulse", "sine:0.3g:0.9s", "--out", "a.gif", "--fps", "10")
@@ -179,6 +180,7 @@ class TestCommand:
         np.testing.assert_allclose(one["film"]["rotation"], np.negative(other["film"]["rotation"]))
         np.testing.assert_allclose(one["film"]["rotation"], data_of(animation_page(film(0.3), ""))["film"]["rotation"])
 
+    @pytest.mark.rest
     def test_a_long_motion_is_shown_faster_in_a_gif_only(self, tmp_path):
         long = np.tile(film(0.3).motion.acceleration[:91], 60)  # 55 s of rocking
         np.savetxt("long.txt", long / STANDARD_GRAVITY)

@@ -369,6 +369,7 @@ def is_four_hinges(hinges, n):
     return len({joint for joint, _ in hinges}) == 4 and [face for _, face in hinges] == list("IEIE")
 
 
+@pytest.mark.every(3)
 def test_wherever_four_hinges_form_lambda_is_the_static_multiplier(swept):
     checked = 0
     for ring, static, hinges, got, message in swept:

@@ -61,6 +61,7 @@ def jumble(seed):
     return blocks, [replace(c, friction=mu) for c in joints], [POSITIVE, NEGATIVE][int(rng.integers(2))]
 
 
+@pytest.mark.rest
 def test_both_theorems_agree_on_two_hundred_assemblies():
     answered = most = 0
     for seed in range(200):
@@ -80,6 +81,7 @@ def test_both_theorems_agree_on_two_hundred_assemblies():
     assert most > 30
 
 
+@pytest.mark.rest
 def test_a_wall_solved_by_interior_points_has_both_theorems():
     blocks = bond(14, 15)
     assert 3 * len(blocks) > LARGE
@@ -143,6 +145,7 @@ def test_the_friction_needed_is_a_bracket():
         assert reached[1] < found.multiplier * (1 - 1e-10), seed
 
 
+@pytest.mark.rest
 def test_the_friction_needed_is_the_same_by_interior_points(monkeypatch):
     """Large walls are solved by interior points, whose multipliers are as exact only if they are corrected."""
     needed = []

@@ -78,6 +78,7 @@ def mixed(count=600, seed=1):
 # --- one by one
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("eta", [np.nan, 0.8])
 @pytest.mark.parametrize("name", MECHANISMS)
 def test_every_run_is_the_history_that_respond_gives_to_the_last_bit(name, eta):
@@ -108,6 +109,7 @@ def test_every_run_is_the_history_that_respond_gives_to_the_last_bit(name, eta):
     assert ("opens" in unknown) == (name == "arch") and "weightless" in unknown
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("k", [0.3, 4.0])
 @pytest.mark.parametrize("name", MECHANISMS)
 def test_a_size_is_the_structure_with_every_length_so_much_larger(name, k):

@@ -105,6 +105,7 @@ class TestFreeRocking:
 
 
 class TestFit:
+    @pytest.mark.every(2)
     @pytest.mark.parametrize("drift", [0.0, 0.01])
     def test_the_bars_of_accuracy_are_met(self, clean, drift):
         """Bias below .0002 and deviation below .0003; docs/make_traces.py has 200 traces."""
@@ -123,6 +124,7 @@ class TestFit:
         assert found.noise == pytest.approx(0.01 * RELEASE, rel=0.15)
         assert 0.8 < found.residual / found.noise < 1.3
 
+    @pytest.mark.every(2)
     @pytest.mark.parametrize("way", ["reversed", "uneven", "gaps", "late", "in parts"])
     def test_any_sense_sampling_and_gaps(self, clean, way):
         given = trace(clean[0], noise=0.002)
@@ -158,6 +160,7 @@ class TestFit:
         object.__setattr__(fit, "etas", [Estimated(value, 0.05) for value in values])
         assert fit.scatter == 0
 
+    @pytest.mark.rest
     def test_p_and_alpha_may_be_free(self, clean):
         near = rk.Block(width=0.103, height=0.49)  # what somebody measured
         found = [fit_trace(Structure(near), trace(clean[0], seed=k), free_geometry=True) for k in range(4)]
@@ -165,6 +168,7 @@ class TestFit:
         assert np.mean([each.alpha.value for each in found]) == pytest.approx(ALPHA, rel=0.01)
         assert abs(found[0].p.value / P - 1) < 4 * found[0].p.deviation / P
 
+    @pytest.mark.rest
     def test_both_directions_of_a_leaning_stone(self):
         structure = Structure(rk.load_structure(EXAMPLES / "rigid_body.yaml"))
         sides = sides_of(structure)
@@ -195,6 +199,7 @@ class TestRefusals:
     def test_too_few_samples(self):
         assert "at least 30 samples, got 10" in self.refused(Trace("t", np.arange(10.0), np.ones(10)))
 
+    @pytest.mark.rest
     def test_a_trace_of_something_else(self, clean):
         given = trace(clean[0])
         other = Trace("t", given.times, 0.1 * np.exp(-0.3 * given.times) * np.cos(40 * given.times))
@@ -326,6 +331,7 @@ def outcomes():
 
 
 class TestRegion:
+    @pytest.mark.rest
     def test_the_likelihood_is_that_of_shares(self, outcomes):
         tests = outcomes
         block = rk.Block(width=0.7, height=2.8, uncertainty=SCATTER)
@@ -342,6 +348,7 @@ class TestRegion:
         (low, high), (least, most) = found.ranges
         assert low <= found.best[0] <= high and least <= found.best[1] <= most
 
+    @pytest.mark.rest
     def test_a_factor_on_slenderness_is_a_structure_made_anew(self, outcomes):
         """Of twice the slenderness, the same uplift is twice the acceleration: by scaling, and by another block."""
         tests = parse_columns(outcomes).tests
@@ -357,11 +364,13 @@ class TestRegion:
             rel=0.1,
         )
 
+    @pytest.mark.rest
     def test_a_best_point_on_the_edge_is_refused(self, outcomes):
         grid = {**GRID, "restitution": (0.65, 0.98)}
         with pytest.raises(InputError, match=r"lies on its edge \(restitution 0\.65\)"):
             rk.calibrate(rk.Block(width=0.7, height=2.8, uncertainty=SCATTER), tests=outcomes, **grid)
 
+    @pytest.mark.rest
     def test_the_command_and_its_words(self, tmp_path, outcomes):
         tests = outcomes
         (tmp_path / "block.yaml").write_text(

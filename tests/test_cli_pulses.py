@@ -25,6 +25,7 @@ SINE = "sine:0.3g:0.8s"
 
 
 class TestInPlaceOfARecord:
+    @pytest.mark.every(3)
     @pytest.mark.parametrize("name", list(PulseShapes()))
     def test_every_shape_gives_the_response_of_the_library(self, name):
         text = f"{name}:0.3g:0.8s"
@@ -121,6 +122,7 @@ class TestInARecord:
             assert (sine["sign"], sine["amplitude"]) == (-1, pytest.approx(0.8, rel=0.03))
             assert (sine["start"], sine["period"]) == (pytest.approx(2, abs=0.03), pytest.approx(0.8, rel=0.03))
 
+    @pytest.mark.rest
     @pytest.mark.parametrize("width", [40, 60, 80, 200])
     def test_the_tables_fit_the_terminal_and_say_what_is_maximised(self, width, made, monkeypatch):
         monkeypatch.setenv("COLUMNS", str(width))

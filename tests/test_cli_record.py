@@ -207,6 +207,7 @@ class TestCleanFile:
         assert back.dt == 0.01 and (back.acceleration == want.acceleration).all()
         run("record", source, "--dt", "0.01", "--out", ".")  # its own file may be renewed
 
+    @pytest.mark.every(3)
     @settings(deadline=None)  # it writes files
     @given(
         st.lists(st.floats(-1e29, 1e29), min_size=2, max_size=60),

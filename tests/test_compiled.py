@@ -23,6 +23,7 @@ def run(code):
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
 
 
+@pytest.mark.kernels
 def test_scipy_and_the_linear_algebra_of_numba_work_after_it():
     code = (
         f"{RESPOND}; import numpy as np, scipy.linalg; from numba import njit;"
@@ -49,6 +50,7 @@ def tiny(folder, cache, **more):
     return subprocess.run([sys.executable, folder / "tiny.py"], capture_output=True, text=True, env=environment)
 
 
+@pytest.mark.kernels
 class TestCache:
     def test_it_is_in_its_folder(self, tmp_path):
         (tmp_path / "source").mkdir()
@@ -89,6 +91,7 @@ def without_settings():
     return {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")}
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize("setting", ["NUMBA_NUM_THREADS=0", "NUMBA_NUM_THREADS=many", "NUMBA_CPU_FEATURES=fast"])
 def test_settings_with_which_numba_does_not_start_are_named(setting):
     name, value = setting.split("=")

@@ -53,6 +53,7 @@ class TestEveryInstalledMechanism(MechanismContract):
         return parse_structure(template(Registry()[name]), f"{name}.yaml", name)
 
 
+@pytest.mark.rest
 @pytest.mark.parametrize("file", sorted(path.name for path in EXAMPLES.glob("*.yaml")))
 class TestEveryExample(MechanismContract):
     @pytest.fixture
@@ -527,6 +528,7 @@ def test_a_right_mechanism_passes_every_check(cls):
     assert [verdict for verdict in contract(made(cls)) if not verdict.passed] == []
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize(("cls", "check", "words"), WRONG, ids=[f"{cls.__name__}-{check}" for cls, check, _ in WRONG])
 def test_a_wrong_mechanism_fails_the_check_that_is_for_it(cls, check, words):
     found = {verdict.check: verdict for verdict in contract(made(cls))}

@@ -82,6 +82,7 @@ BY_REAL = pytest.mark.parametrize("path", REAL, ids=lambda path: path.name)
 # --- one character lost ---------------------------------------------------------------------------------------------
 
 
+@pytest.mark.every(5)
 @BY_REAL
 def test_a_character_lost_from_a_real_record_is_seldom_silent(path, tmp_path):
     if not path.is_file():
@@ -211,6 +212,7 @@ EDITORS = {
 BY_EDITOR = pytest.mark.parametrize("editor", EDITORS)
 
 
+@pytest.mark.every(3)
 @BY_EDITOR
 @BY_MADE
 def test_a_made_file_that_an_editor_has_saved_is_read(name, editor, tmp_path):
@@ -219,6 +221,7 @@ def test_a_made_file_that_an_editor_has_saved_is_read(name, editor, tmp_path):
     _same_after_saving(MADE_UP[name](SMOOTH), Kind({"channel": "1"}, 1), editor, tmp_path)
 
 
+@pytest.mark.every(5)
 @BY_EDITOR
 @BY_REAL
 def test_a_real_record_that_an_editor_has_saved_is_read(path, editor, tmp_path):

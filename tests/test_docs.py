@@ -54,6 +54,7 @@ def runs(made, tmp_path_factory):
     return made.make_runs.run(made.make_pages.commands(), tmp_path_factory.mktemp("shown"))
 
 
+@pytest.mark.docs
 def test_the_made_parts_of_the_pages_are_not_stale(made, runs):
     texts = {page.stem: page.read_text(encoding="utf-8") for page in PAGES}
     stale = [
@@ -64,12 +65,14 @@ def test_the_made_parts_of_the_pages_are_not_stale(made, runs):
     assert stale == [], "run make docs"
 
 
+@pytest.mark.docs
 def test_the_pictures_are_not_stale(made, runs):
     drawn = made.make_pages.drawn(runs)
     assert made.make_runs.stale(drawn) == [], "run make docs"
     assert {*drawn, "content.json"} == {file.name for file in (DOCS / "pictures").iterdir()}
 
 
+@pytest.mark.docs
 def test_another_picture_is_not_alike(made, tmp_path):
     commands = {
         "pedestal": "rocking new block > pedestal.yaml",

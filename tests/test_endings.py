@@ -19,6 +19,7 @@ from tests.test_study_runs import program
 SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
+@pytest.mark.rest
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no signals to send to one process")
 @pytest.mark.parametrize("number", SIGNALS)
 def test_a_picture_on_its_way_is_taken_away(tmp_path, number):
@@ -99,6 +100,7 @@ def test_a_date_of_build_that_is_none_is_named(monkeypatch, given):
     assert CliRunner().invoke(main, ["equiv", str(EXAMPLES / "block.yaml")]).exit_code == 0
 
 
+@pytest.mark.rest
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="Linux has it")  # noqa: PTH110
 @pytest.mark.parametrize("arguments", [["--help"], ["equiv", "--json", EXAMPLES / "block.yaml"], ["mechanisms"]])
 def test_results_on_a_full_disk(arguments):

@@ -72,6 +72,7 @@ def missing(structure, rtol):
     return lost / found[0]
 
 
+@pytest.mark.every(3)
 @settings(max_examples=25)
 @given(laden())
 def test_from_a_tilt_to_the_impact_no_energy_is_lost(structure):
@@ -80,6 +81,7 @@ def test_from_a_tilt_to_the_impact_no_energy_is_lost(structure):
             assert missing(structure, rtol) < 100 * rtol
 
 
+@pytest.mark.rest
 @settings(max_examples=25)
 @given(laden(), st.floats(-6.0, 6.0), st.floats(2.0, 12.0), st.booleans())
 def test_what_the_ground_puts_in_less_what_impacts_lose_is_stored(structure, strength, pace, both_ways):

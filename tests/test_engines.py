@@ -169,6 +169,7 @@ class TestAgreement:
     def test_both_use_the_restitution_of_housner(self):
         assert Structure(BLOCK).etas == pytest.approx((1 - 1.5 * sin(atan(WIDTH / HEIGHT)) ** 2,) * 2, rel=1e-14)
 
+    @pytest.mark.every(3)
     @pytest.mark.parametrize("name", MOTIONS)
     def test_an_engine_that_shares_no_code_agrees_with_the_exact_one(self, by_solve_ivp, name):
         """Measured: 2e-8 of the rotations, 1e-8 s of the impacts."""

@@ -169,6 +169,7 @@ class TestDefaults:
         assert "--neighbours 5  # --neighbours from ROCKING_NEIGHBOURS" in Path("r.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.kernels
 class TestCompiling:
     MAP = ("-m", "rocking_cli", "overturning", "--points", "6", "--json")
 

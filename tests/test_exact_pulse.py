@@ -247,6 +247,7 @@ def points():
     return found
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(("shape", "a", "w", "polarity", "asymmetric"), points())
 def test_exact_answer_agrees_with_50_digits(shape, a, w, polarity, asymmetric):
     equivalence = lopsided() if asymmetric else equivalent_block(BLOCK)
@@ -596,6 +597,7 @@ def test_progress_is_told_and_adds_up():
     assert len(told) > 1
 
 
+@pytest.mark.kernels
 def test_a_second_process_finds_the_machine_code(tmp_path):
     code = (
         "from rocking_cli.dynamics.exact_batch import exact_many; from rocking_cli.dynamics import ways;"

@@ -26,6 +26,8 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.io.yaml_file import parse
 from tests.conftest import EXAMPLES, PROJECT
 
+pytestmark = pytest.mark.rest
+
 WHOLE = "ROCKING_FIELDS" in os.environ
 PAIRS = int(os.environ.get("ROCKING_FIELDS") or 0) if WHOLE else 8
 SINGLES = 36  # in the suite

@@ -46,6 +46,7 @@ def test_figure_5_the_right_column_has_the_larger_error_of_the_linearised_uplift
             assert np.abs(one - other)[-1] > np.abs(one - other)[1]
 
 
+@pytest.mark.rest
 def test_figures_12_and_13_kappa2_is_the_better_for_arches():
     first, second = paper_figure(12), paper_figure(13)
     for row in range(2):
@@ -54,6 +55,7 @@ def test_figures_12_and_13_kappa2_is_the_better_for_arches():
             assert all(np.abs(two - 1).max() < np.abs(one - 1).max() for one, two in pairs)
 
 
+@pytest.mark.rest
 def test_figure_11_errors_of_the_free_period_are_small_and_grow_for_less_slender_arches():
     """As the text has it: small in general, largest at the bottom right, where arches are the least slender."""
     worst = [
@@ -65,6 +67,7 @@ def test_figure_11_errors_of_the_free_period_are_small_and_grow_for_less_slender
     assert worst == sorted(worst) and worst[0] < 0.21
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("number", [7, 11, 12, 13])
 def test_a_curve_is_whole_or_the_caption_says_where_it_is_cut(number):
     paper = paper_figure(number)
@@ -78,6 +81,7 @@ def test_a_curve_is_whole_or_the_caption_says_where_it_is_cut(number):
     assert cut == (number == 7) == ("cut off" in drawn.get_supxlabel())
 
 
+@pytest.mark.rest
 def test_a_legend_that_all_panels_share_is_on_none_of_them():
     drawn = draw_paper_figure(paper_figure(13))
     assert not any(axes.get_legend() for axes in drawn.axes)
@@ -93,6 +97,7 @@ def test_curves_are_close_where_they_bend():
         assert np.abs(turn).max() < np.radians(15)  # between two chords of a panel as wide as high
 
 
+@pytest.mark.rest
 def test_figure_10_wider_and_thinner_arches_are_the_more_slender():
     figure = paper_figure(10)
     for column in (0, 1):
@@ -110,6 +115,7 @@ def test_figure_14_the_linear_response_follows_the_nonlinear_one_through_the_pul
     assert "0.197 g positive" in figure.caption
 
 
+@pytest.mark.rest
 def test_figure_15_block_and_symmetric_frame_do_the_same_and_the_others_nearly():
     figure = equivalent_vulnerability()
     peaks = {curve.label: np.abs(curve.y).max() for curve in figure.panels[1][0].curves}

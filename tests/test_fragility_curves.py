@@ -289,7 +289,9 @@ def assert_covers(fits):
         assert chi2.ppf(0.005, n) <= squares <= chi2.ppf(0.995, n)
 
 
+@pytest.mark.rest
 class TestCoverage:
+    @pytest.mark.rest
     def test_of_independent_runs(self):
         random = np.random.default_rng(11)
         fits = []
@@ -298,6 +300,7 @@ class TestCoverage:
             fits.append(fit(seen))
         assert_covers(fits)
 
+    @pytest.mark.rest
     def test_of_records_used_repeatedly_where_the_naive_interval_fails(self):
         random = np.random.default_rng(12)
         robust, naive = [], []
@@ -309,11 +312,13 @@ class TestCoverage:
         assert_covers(robust)
         assert covered(naive)[0] < binom.ppf(1e-4, len(naive), 0.95)
 
+    @pytest.mark.rest
     def test_of_capacities_known_to_within_brackets(self):
         random = np.random.default_rng(13)
         fits = [fit_capacities(*brackets(random, 80)).fit for _ in range(1000)]
         assert_covers(fits)
 
+    @pytest.mark.rest
     def test_of_several_capacities_of_a_record_where_the_naive_interval_fails(self):
         random = np.random.default_rng(14)
         record = np.repeat(np.arange(240), 4)  # most of the scatter is from record to record
@@ -337,11 +342,13 @@ def coverage_table():
     return {row[0]: [tuple(map(int, cell.split(", "))) for cell in row[1:]] for row in rows if row[0] in known}
 
 
+@pytest.mark.rest
 class TestCoverageOfFewRecords:
     """The table of docs/fragility.md, and the words of the warning."""
 
     TABLE = coverage_table()
 
+    @pytest.mark.rest
     @pytest.mark.parametrize("case", CASES, ids=lambda case: case.words)
     def test_is_what_the_table_says(self, case):
         for records, said in zip(RECORDS, self.TABLE[case.words], strict=True):
@@ -350,6 +357,7 @@ class TestCoverageOfFewRecords:
                 least, most = max(rate - 0.7, 0) / 100, min(rate + 0.7, 100) / 100  # of 2000 trials, in whole percents
                 assert binom.ppf(1e-4, fitted, least) <= count <= binom.ppf(1 - 1e-4, fitted, most)
 
+    @pytest.mark.rest
     def test_is_what_the_warning_says(self):
         for records, (low, high) in HELD.items():
             rates = [rate for said in self.TABLE.values() for rate in said[RECORDS.index(records)]]
@@ -633,6 +641,7 @@ class TestWords:
         two = fit_capacities(np.array([1.0, 2, 1, 3]), np.array([2.0, 3, 3, 4]), np.array([0, 0, 1, 1]))
         assert "the 4 capacities are of 2 records" in two.why
 
+    @pytest.mark.every(2)
     def test_of_the_measure_that_serves_alone(self):
         random, seen = np.random.default_rng(58), 0
         for _ in range(400):
@@ -733,6 +742,7 @@ class TestGoodness:
         assert curve.goodness.p_value is None and "takes three groups" in curve.goodness.why
         assert curve.why.endswith(f"whether the data fit a lognormal curve is not tested: {curve.goodness.why}")
 
+    @pytest.mark.rest
     @pytest.mark.parametrize(
         ("records", "each", "count"), [(20, 4, 12), (50, 1, 12), (50, 4, 12), (100, 1, 500), (30, 1, 40)]
     )

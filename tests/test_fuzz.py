@@ -24,6 +24,8 @@ from rocking_cli.excitation.records import read_record
 from rocking_cli.structure_file import parse_structure
 from tests import hostile
 
+pytestmark = pytest.mark.rest
+
 INPUTS = int(os.environ.get("ROCKING_FUZZ", "0"))
 PATIENCE = 120.0  # s for one input, where hangs are looked for
 EXPANSION = 1000  # samples that a byte of a record may become, and then some

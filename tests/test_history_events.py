@@ -716,6 +716,7 @@ def made_ready(mechanism, name):
     return Structure(mechanism, _models=models)
 
 
+@pytest.mark.every(5)
 @pytest.mark.parametrize("start", range(0, 160, 40))
 def test_random_motions_are_consistent_and_never_fail(start, monkeypatch):
     unknown = 0

@@ -75,6 +75,7 @@ def test_after_overturning_fields_are_empty_and_after_rest_zero():
     assert lines[-1][2:8] == ["", "", "", "0", "0", "0"]
 
 
+@pytest.mark.rest
 def test_a_long_history_never_stands_in_memory_as_text():
     one = respond(BLOCK, PULSE, models=("nonlinear",), tail=0.0)["nonlinear"]
     size = 300_000

@@ -236,6 +236,7 @@ def arch(kind=Arch, **fields):
     return kind(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, **fields)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(("amplitude", "release"), [(2.5, None), (1.4, None), (1.2, 0.1)])
 def test_the_joints_that_are_checked_change_nothing_of_the_motion(amplitude, release):
     dt, samples = pulse("arch", amplitude, 5.0)
@@ -256,6 +257,7 @@ def test_the_joints_that_are_checked_change_nothing_of_the_motion(amplitude, rel
             assert (history.peak_ratio, history.end_time, history.words) == (free.peak_ratio, free.end_time, free.words)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(("amplitude", "limit"), [(2.5, 0.05), (1.4, 0.05), (1.1, 1.0)])
 def test_joints_of_a_symmetric_structure_open_alike_under_the_reversed_record(amplitude, limit):
     dt, samples = pulse("arch", amplitude, 5.0)

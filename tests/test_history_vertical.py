@@ -126,6 +126,7 @@ CASES = {
 }
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize(
     ("name", "model"),
@@ -144,6 +145,7 @@ def test_uplift_impacts_and_peaks_are_those_of_an_independent_integration(name, 
     assert abs(level.impacts[0, 0] - history.impacts[0, 0]) > 1e-4
 
 
+@pytest.mark.every(3)
 @every_model
 @pytest.mark.parametrize("v_dt", [0.01, 0.0037, 0.025])
 def test_an_overturning_motion_agrees_at_the_sample_intervals_of_real_records(model, v_dt):

@@ -363,6 +363,7 @@ class TestReport:
         assert "It rocks in the positive direction only" in text
         assert "Constant forces" in text
 
+    @pytest.mark.rest
     def test_a_bare_structure_has_no_such_section(self, frame_report):
         page = frame_report[0].read_text("utf-8")
         assert ">Loads and ties<" not in page and "peak horizontal displacement of the top" in page

@@ -116,6 +116,7 @@ def written():
     }
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("command", ASKED)
 def test_a_command_follows_a_structure_by_the_kernel_that_serves_it(command, monkeypatch, ran):
     words = [command, *ASKED[command]]
@@ -155,6 +156,7 @@ def test_a_study_runs_each_structure_by_its_own_kernel(memory, ran):
 
 
 class TestPython:
+    @pytest.mark.kernels
     def test_it_follows_by_the_kernel_that_serves(self, memory, ran, monkeypatch):
         motion = rk.parse_pulse("sine:0.6g:0.6s").sampled()
         assert rk.respond("tied.yaml", motion, models="nonlinear")["nonlinear"].lifted

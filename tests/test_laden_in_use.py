@@ -253,6 +253,7 @@ SITE = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
 class TestWithoutARebound:
     """Only time histories need the rebound of a one-sided structure: what is static does without."""
 
+    @pytest.mark.every(2)
     @pytest.mark.parametrize(
         ("mechanism", "fields"),
         [

@@ -114,6 +114,7 @@ def test_the_wall():
     agrees(wall.coefficients(np.array(phis), Direction.POSITIVE), (phi, upper), pieces, [head[0] - foot.real], phis)
 
 
+@pytest.mark.rest
 @pytest.mark.parametrize(("thickness", "angle", "voussoirs"), [(1.5, 157.5, 7), (1.8, 130.0, None)])
 def test_the_arch(thickness, angle, voussoirs):
     arch = Arch(radius=10.0, thickness=thickness, inclusion_angle_deg=angle, voussoirs=voussoirs)

@@ -60,6 +60,7 @@ def unchecked(mechanism, monkeypatch):
 # --- the integrals
 
 
+@pytest.mark.every(3)
 @every_direction
 @pytest.mark.parametrize("file", FILES)
 def test_periods_are_those_of_the_integrated_motion(file, direction, monkeypatch):
@@ -71,6 +72,7 @@ def test_periods_are_those_of_the_integrated_motion(file, direction, monkeypatch
         assert period == pytest.approx(4 * motion.impacts[0, 0], rel=precision_of(mechanism))
 
 
+@pytest.mark.every(3)
 @every_direction
 @pytest.mark.parametrize("file", FILES)
 def test_overturning_times_are_those_of_the_integrated_motion(file, direction, monkeypatch):
@@ -217,6 +219,7 @@ VALLEY = AsymmetricFrame(
 )
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(
     "structure", [VALLEY, TALL, wall_of(0.1), wall_of(0.5), arch_of(1.5, 150.0), arch_of(3.0, 100.0)]
 )
@@ -262,6 +265,7 @@ def test_the_verdict_is_that_of_its_own_numbers(structure, asked, tmp_path):
     assert last in said and said.count("Prefer") == (expected in ("kappa1", "kappa2"))
 
 
+@pytest.mark.every(2)
 def test_equiv_error_and_respond_disregard_the_same_kappa1(tmp_path):
     for structure in (VALLEY, TALL, wall_of(0.3), arch_of(1.5, 157.5)):
         file = tmp_path / "s.yaml"
@@ -302,6 +306,7 @@ def test_advice_on_both_sides_of_its_bounds(ratio, prefer, words):
     assert advice.prefer == prefer and words in advice.why and f"lambda_lin/lambda = {ratio:.4g}" in advice.why
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
 def test_it_draws(suffix, tmp_path):
     file = tmp_path / f"error.{suffix}"

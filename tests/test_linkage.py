@@ -218,6 +218,7 @@ class TestCracks:
             wall.restitution_from_kinematics(Direction.POSITIVE), rel=1e-4
         )
 
+    @pytest.mark.rest
     def test_two_cracks_by_brute_force(self):
         """A wall whose foot part rests: no pair of heights on a grid gives less."""
         side = {

@@ -25,6 +25,7 @@ def structure(name):
     return rk.load_structure(EXAMPLES / f"{name}.yaml")
 
 
+@pytest.mark.rest
 @pytest.mark.parametrize("name", LINKAGES)
 def test_a_linkage_of_the_gallery_is_equivalent_to_a_block_and_holds_the_contract(name):
     found = structure(f"linkages/{name}")

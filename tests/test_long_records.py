@@ -63,6 +63,7 @@ def read(path: Path):
     return read_record(path, dt=0.005)
 
 
+@pytest.mark.rest
 @BY_FORM
 def test_memory_is_a_small_multiple_of_the_file(made, make):
     path = made(make)
@@ -79,6 +80,7 @@ def test_memory_is_a_small_multiple_of_the_file(made, make):
     assert peak < 3 * path.stat().st_size + arrays
 
 
+@pytest.mark.rest
 @BY_FORM
 @pytest.mark.parametrize("content", ["NaN", "oops"])
 def test_one_bad_value_near_the_end_is_placed(made, make, content):
@@ -90,6 +92,7 @@ def test_one_bad_value_near_the_end_is_placed(made, make, content):
     assert found.line == line or f"up to line {line - 1}" in found.message
 
 
+@pytest.mark.rest
 @pytest.mark.parametrize(
     ("content", "fragment"),
     [
@@ -108,6 +111,7 @@ def test_one_bad_row_near_the_end_is_placed(made, content, fragment):
     assert found.line == (299_000 if content[:1] not in ("", "#") else 299_001)  # a gap is seen after it
 
 
+@pytest.mark.rest
 @pytest.mark.parametrize("make", [one_column, two_columns])
 def test_pages_of_comments_and_blank_lines_are_passed_over(made, make):
     filling = ["# " + 100 * "x", *[""] * module.PAGE, "% x"] * 3  # one page of them is all blank

@@ -123,6 +123,7 @@ class TestDraws:
 LIFTED = replace(ACCEL, vertical=GroundMotion("up", 0.02, 4.0 * np.sin(np.arange(500) * 0.7)))
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("motion", [ACCEL, LIFTED], ids=["level", "vertical"])
 @pytest.mark.parametrize("mechanism", [BLOCK, FRAME], ids=["block", "frame"])
 @pytest.mark.parametrize("scale", [0.6, 0.9])
@@ -141,6 +142,7 @@ def test_neighbours_are_what_each_would_be_alone(mechanism, scale, motion):
     assert found.sensitive == (found.as_itself < 0.9)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(
     ("file", "opening", "scale", "some", "fell"),
     [("arch", 0.005, 1.0, 0.3, 0.0), ("arch", 0.005, 1.1, 0.6, 0.0), ("wall", 0.0, 2.5, 0.3, 0.3)],
@@ -165,6 +167,7 @@ def test_nothing_is_known_of_joints_that_the_mechanism_does_not_name():
     assert found.unknown is None and found.at_most == found.overturned
 
 
+@pytest.mark.rest
 @pytest.mark.parametrize(
     ("file", "pulse"),
     [
@@ -182,6 +185,7 @@ def test_two_hundred_tell_the_share_of_thousands(file, pulse):
     assert few.unknown == pytest.approx(many.unknown, abs=3.5 * 0.035)
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("varied", ["amplitude", "slenderness"])
 def test_the_share_of_a_linear_block_is_that_of_its_islands(varied):
     """A linear block under a sine is solved exactly: the factors that overturn it are known, to the last island.

@@ -144,6 +144,7 @@ class TestNames:
             assert {each for each in names if each[0].isupper()} - known <= {"MyCode", "TestContract"}
 
 
+@pytest.mark.rest
 def test_it_works_in_an_environment_of_its_own(written, tmp_path):
     """As a newcomer does it, but for the network: a new environment, installed from its folder, used and tested."""
     pytest.importorskip("hatchling", reason="pip cannot build it without a network: no hatchling here")

@@ -198,6 +198,7 @@ class TestFolder:
     def test_it_goes_with_a_plugin_only(self):
         assert "--out requires --plugin" in run("new", "arch", "-o", "x", code=2).stderr
 
+    @pytest.mark.every(3)
     @pytest.mark.parametrize("empty", [False, True])
     @pytest.mark.parametrize(
         ("raised", "code"), [(OSError(errno.ENOSPC, "No space left"), 1), (OSError(errno.EACCES, "No"), 2),
@@ -226,6 +227,7 @@ class TestFolder:
         assert in_this_folder() == (["pier"] if empty else []) and there(".") == []
 
 
+@pytest.mark.rest
 def test_it_can_be_installed_and_is_a_mechanism_like_all_others(written, tmp_path):
     """As a newcomer does it, but for the network: installed from its folder, checked, drawn and tested."""
     pytest.importorskip("hatchling", reason="pip cannot build it without a network: no hatchling here")

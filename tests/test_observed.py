@@ -127,6 +127,7 @@ class TestIntervals:
         uneven = Observations.of(np.ones(105), np.zeros(105, dtype=bool), np.repeat(np.arange(6), runs)).parts(0.95)
         assert uneven.high[0] > 0.8
 
+    @pytest.mark.rest
     @pytest.mark.parametrize("records", [3, 6, 20])
     @pytest.mark.parametrize("alike", [0.1, 0.5, 0.9, 1.0])
     @pytest.mark.parametrize("true", [0.03, 0.3, 0.5])

@@ -82,6 +82,7 @@ def test_motion_and_openings_are_those_of_a_program_that_shares_nothing(name, fa
         assert peak == pytest.approx(theirs.turned(made.collapse(direction).lead, int(direction)), rel=1e-8)
 
 
+@pytest.mark.rest
 @pytest.mark.skipif(not BLOCKS.is_file(), reason=f"no assemblies in {BLOCKS}")
 def test_seventy_assemblies_followed_by_two_engines_of_free_blocks():
     stated, wrong = 0, []
@@ -192,6 +193,20 @@ def test_compliance_of_a_block_with_a_load_of_unequal_shares():
     compliance = foot @ np.linalg.inv(mass) @ foot.T
     found = released(made, Direction.NEGATIVE, np.zeros(1)).compliance[0]
     assert found == pytest.approx(1 / np.diag(np.linalg.inv(compliance)), rel=1e-12)
+
+
+def test_a_force_of_any_size_has_its_direction():
+    """Of the smallest that there is the quotient by its size is no number."""
+    bar = {"name": "bar", "from": {"ground": [-1.0, 0.0]}, "to": {"at": [-0.35, 1.0]}, "stiffness": 0.0}
+    bare, faint, tied, pulled = (
+        released(
+            Registry()["block"](width=0.7, height=2.8, mass=1.0, **more), Direction.POSITIVE, np.array([0.0, 0.1])
+        ).force
+        for more in ({}, *({"ties": [bar | {"prestress": size}]} for size in (5e-323, 1e-3, 1.0)))
+    )
+    assert faint == pytest.approx(bare, rel=1e-12)
+    assert 1e3 * (tied - bare) == pytest.approx(pulled - bare, rel=1e-6, abs=1e-9)
+    assert abs(pulled - bare).max() > 0.1
 
 
 def test_a_lone_block_that_jumps_is_known_no_further():
@@ -483,6 +498,7 @@ def test_a_plugin_of_several_bodies_that_names_no_contacts_is_not_checked():
     assert found.check is None and isnan(found.opening) and not found.unknown
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize(
     ("name", "factor"), [("masonry/portal.yaml", 1.5), ("masonry/portal.yaml", 2.0), ("assembly.yaml", 1.5)]
 )

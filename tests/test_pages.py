@@ -209,6 +209,7 @@ def test_the_slider_moves_the_drawing_to_where_the_structure_is(what, browser, f
             assert f"t = {time:.2f} s" in page.locator(".now").first.text_content()
 
 
+@pytest.mark.rest
 def test_hovering_reads_the_histories_and_moves_the_drawing(browser, report, film):
     with opened(browser, report) as page:
         page.locator(".plot").first.scroll_into_view_if_needed()
@@ -231,6 +232,7 @@ def ends(page, plot=0):
     return float(texts[0].split()[0]), float(texts[-1])
 
 
+@pytest.mark.rest
 def test_zoom_by_wheel_drag_button_and_key_changes_both_charts_and_reset_restores(browser, report):
     with opened(browser, report) as page:
         page.locator(".plot").first.scroll_into_view_if_needed()

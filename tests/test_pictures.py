@@ -20,6 +20,7 @@ def baseline(name):
     return Image.open(FOLDER / f"{name}.png").convert("L")
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("name", FIGURES)
 def test_it_looks_as_it_did(name):
     found = render(FIGURES[name]())
@@ -42,6 +43,7 @@ def drop(axes, kind, keep):
         each.remove()
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize(
     ("name", "panel", "kind", "keep"),
     [

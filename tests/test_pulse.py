@@ -394,12 +394,14 @@ def test_closed_form_of_a_very_slow_pulse_keeps_to_its_formulas(point):
 # The exact answer
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("point", POINTS)
 def test_exact_answer_agrees_with_30_digits(point):
     if reference(*point).margin > NEAR:
         assert_matches(point)
 
 
+@pytest.mark.rest
 def test_the_grid_holds_every_kind_of_motion_and_hardly_a_point_on_a_boundary():
     compared = [reference(*point) for point in POINTS if reference(*point).margin > NEAR]
     count = Counter(name for motion in compared for name in kinds(motion))

@@ -54,6 +54,7 @@ def share(motion, fit, criterion):
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize("pulse", PULSES, ids=str)
 class TestWhatWasPutIn:
+    @pytest.mark.every(3)
     def test_it_comes_back(self, pulse, sign, criterion):
         motion = hidden(pulse, sign=sign)
         fit = fit_pulse(motion, pulse.name, criterion)
@@ -69,6 +70,7 @@ class TestWhatWasPutIn:
             assert fit.pulse.phase == pytest.approx(pulse.phase, abs=200 * close)
             assert fit.pulse.cycles == pytest.approx(pulse.cycles, rel=3 * close)
 
+    @pytest.mark.every(3)
     def test_it_comes_back_from_noise(self, pulse, sign, criterion):
         fit = fit_pulse(hidden(pulse, sign=sign, noise=0.02), pulse.name, criterion)
         assert fit.sign == sign and fit.captured > 0.8
@@ -76,6 +78,7 @@ class TestWhatWasPutIn:
         assert fit.pulse.period == pytest.approx(pulse.period, rel=0.06)
         assert fit.centre == pytest.approx(3.217 + pulse.duration / 2, abs=0.06 * pulse.period)
 
+    @pytest.mark.every(3)
     def test_the_energy_captured_is_what_it_is_defined_as(self, pulse, sign, criterion):
         motion = hidden(pulse, sign=sign, noise=0.2)
         fit = fit_pulse(motion, pulse.name, criterion)
@@ -152,6 +155,7 @@ class TestRinaldi:
         t = np.linspace(1.5, 4, 2501)
         assert np.abs(fits["mavroeidis", "velocity"].velocity(t)).max() == pytest.approx(peak, rel=0.15)
 
+    @pytest.mark.rest
     @by
     def test_a_global_search_finds_nothing_better(self, criterion):
         """Over start, period and cycles; amplitude and phase by linear least squares on formulas of its own."""

@@ -186,6 +186,7 @@ def test_a_picture_of_little_is_drawn_too(some):
     assert any(each.get_text() == "overturns" for each in above.get_yticklabels()) == falls
 
 
+@pytest.mark.rest
 def test_the_command_draws_one_for_each_structure_and_measure(tmp_path):
     path = study(tmp_path, "stripes", ["PGA"])
     assert command("fragility", path, "--plot", tmp_path / "pictures").exit_code == 0

@@ -98,7 +98,9 @@ class TestStatistics:
         assert 0.02 < seen / 400 < 0.09
 
 
+@pytest.mark.rest
 class TestStudy:
+    @pytest.mark.rest
     def test_the_numbers_are_those_of_its_runs(self, study):
         folder, shown = study
         assert command("results", folder / "study.db", "--out", folder / "runs.csv").exit_code == 0

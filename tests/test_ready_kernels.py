@@ -178,12 +178,14 @@ def bits_of_shipped(choose):
 class TestSameBits:
     """Of histories and exact pulses: arithmetic is that of IEEE 754, in one order, and functions are those of one C."""
 
+    @pytest.mark.kernels
     def test_shipped_and_in_python(self, choose):
         shipped_bits = bits_of_shipped(choose)
         choose("python")
         assert {ways.way(each) for each in SETS.values()} == {"python"}
         assert (bits_of_histories(), bits_of_pulses()) == shipped_bits
 
+    @pytest.mark.kernels
     def test_shipped_and_compiled_here(self, choose):
         pytest.importorskip("numba")
         shipped_bits = bits_of_shipped(choose)

@@ -78,6 +78,7 @@ def by_brute_force(found: Candidates, wanted: SetRequirements) -> tuple[float, f
     return *best, sets
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("policy", POLICIES)
 @pytest.mark.parametrize(("seed", "rough"), [(1, 0.25), (2, 0.25), (3, 0.5), (5, 0.9)])
 def test_the_best_of_all_sets_is_that_of_brute_force(policy, seed, rough):

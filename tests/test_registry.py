@@ -95,6 +95,7 @@ def test_an_installed_plugin_carries_loads_ties_and_side_walls(installed_plugin,
     assert found["tie"]["phi_cr"] > atan(0.4) and found["side"]["eta"] == 0.4
 
 
+@pytest.mark.rest
 def test_the_installed_plugin_keeps_the_contract(installed_plugin):
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", "capped_block"]
     run = subprocess.run(
@@ -242,6 +243,7 @@ def odd_plugin(tmp_path_factory):
 
 
 class TestMeasuresOfOthers:
+    @pytest.mark.rest
     def test_one_is_listed_printed_and_taken_by_a_study(self, odd_plugin, tmp_path):
         listed = json.loads(rocking(odd_plugin, "measures", "--json").stdout)["measures"]
         found = {each["name"]: each for each in listed}
@@ -261,6 +263,7 @@ class TestMeasuresOfOthers:
         rows = list(csv.DictReader((tmp_path / "runs.csv").read_text(encoding="utf-8").splitlines()))
         assert [float(row["scale"]) for row in rows] == pytest.approx([1.0, 2.0])
 
+    @pytest.mark.every(3)
     @pytest.mark.parametrize(
         ("name", "said"),
         [
@@ -323,6 +326,7 @@ class TestPluginsThatGoWrong:
         alone = rocking({**odd_plugin, "ROCKING_DEBUG": "1"}, "respond", "--record", str(tmp_path / "odd.txt"))
         assert alone.returncode == 3 and "Traceback" in alone.stderr and 'return {}["lost"]' in alone.stderr
 
+    @pytest.mark.every(3)
     @pytest.mark.parametrize(
         ("name", "said"),
         [
@@ -363,6 +367,7 @@ class TestPluginsThatGoWrong:
         assert "this file does not work as it is" in run.stderr
         assert "Fill in" not in rocking(odd_plugin, "new", "odd").stdout
 
+    @pytest.mark.every(3)
     @pytest.mark.parametrize(
         ("name", "failing", "said"),
         [
@@ -381,6 +386,7 @@ class TestPluginsThatGoWrong:
         assert (found["mechanism"], found["package"], found["file"]) == (name, "odd 1.0", None)
         assert said in " ".join(each["why"] or "" for each in found["checks"])
 
+    @pytest.mark.rest
     def test_check_shows_the_traceback_of_what_cannot_be_loaded_or_fails(self, odd_plugin):
         run = rocking(odd_plugin, "mechanisms", "--check", "breaker")
         assert run.returncode == 3
@@ -423,6 +429,7 @@ def test_check_takes_a_file(tmp_path):
     assert "FILE requires --check" in run("mechanisms", "wall", file, code=2).stderr
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_check_passes_every_built_in_mechanism(name):
     assert run_json("mechanisms", "--check", name)["passed"]

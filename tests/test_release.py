@@ -15,6 +15,8 @@ from importlib import import_module
 
 import pytest
 import yaml
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 from tests.conftest import PROJECT
 from tests.elsewhere import VERSIONS
@@ -23,8 +25,11 @@ from tests.test_cli import run
 MAKEFILE = (PROJECT / "Makefile").read_text(encoding="utf-8")
 README = (PROJECT / "README.md").read_text(encoding="utf-8")
 WORKFLOW = yaml.safe_load((PROJECT / ".github" / "workflows" / "tests.yml").read_text(encoding="utf-8"))
-PYPROJECT = tomllib.loads((PROJECT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+VERSIONED = yaml.safe_load((PROJECT / ".github" / "workflows" / "versions.yml").read_text(encoding="utf-8"))
+SETTINGS = tomllib.loads((PROJECT / "pyproject.toml").read_text(encoding="utf-8"))
+PYPROJECT = SETTINGS["project"]
 CLASSIFIERS = PYPROJECT["classifiers"]
+TARGET = re.compile(r"^([a-z][a-z -]*):", re.M)
 NEEDS_MAKE = pytest.mark.skipif(shutil.which("make") is None, reason="no make here")
 
 
@@ -58,12 +63,21 @@ class TestScript:
         assert "1201" in run("record", "a.AT2").stdout and "0.55" in run("record", "a.AT2").stdout
 
 
+def targets():
+    """The targets of the Makefile."""
+    return {name for names in TARGET.findall(MAKEFILE) for name in names.split()}
+
+
 class TestWorkflow:
     JOBS = WORKFLOW["jobs"]
 
+    @staticmethod
+    def matrix(workflow):
+        return workflow["jobs"]["test"]["strategy"]["matrix"]
+
     def test_it_runs_on_what_the_metadata_name(self):
         said = [each.rpartition(" :: ")[2] for each in CLASSIFIERS if re.search(r"Python :: 3\.\d", each)]
-        matrix = self.JOBS["test"]["strategy"]["matrix"]
+        matrix = self.matrix(WORKFLOW)
         assert matrix["python"] == said == [f"{major}.{minor}" for major, minor in VERSIONS]
         assert PYPROJECT["requires-python"] == f">={said[0]}"
         systems = {"ubuntu-latest": "POSIX :: Linux", "macos-latest": "MacOS", "windows-latest": "Microsoft :: Windows"}
@@ -71,19 +85,37 @@ class TestWorkflow:
         assert sorted(systems[each] for each in matrix["os"]) == sorted(named)
 
     def test_it_calls_targets_of_the_makefile_and_nothing_else(self):
-        targets = set(re.findall(r"^([a-z-]+):", MAKEFILE, re.M))
-        lines = [step["run"].split() for job in self.JOBS.values() for step in job["steps"] if "run" in step]
-        called = [word for make, *words in lines for word in words if "=" not in word]
+        jobs = [*self.JOBS.values(), *VERSIONED["jobs"].values()]
+        lines = [step["run"].split() for job in jobs for step in job["steps"] if "run" in step]
+        called = {word for make, *words in lines for word in words if "=" not in word}
         assert all(line[0] == "make" and "PYTHON=python" in line for line in lines)
-        assert set(called) <= targets
-        assert {"test", "selfcheck", "lint", "type", "contracts", "docs", "release", "same-kernels"} == set(called)
+        (chosen,) = (line[1:-1] for line in lines if "matrix.versions" in " ".join(line))
+        called = called - set(chosen) | {f"test-{each}" for each in self.matrix(VERSIONED)["versions"]}
+        assert called <= targets()
+        assert called == {
+            "test", "test-all", "test-newest", "test-oldest", "selfcheck", "lint", "type", "contracts", "docs",
+            "release", "same-kernels",
+        }  # fmt: skip
 
     def test_it_keeps_what_pip_fetched_and_may_change_nothing(self):
-        assert WORKFLOW["permissions"] == {"contents": "read"}
-        for job in self.JOBS.values():
+        assert WORKFLOW["permissions"] == VERSIONED["permissions"] == {"contents": "read"}
+        for job in [*self.JOBS.values(), *VERSIONED["jobs"].values()]:
             (python,) = (step["with"] for step in job["steps"] if "setup-python" in step.get("uses", ""))
             assert python["cache"] == "pip"
             assert (PROJECT / python["cache-dependency-path"]).is_file()
+
+
+def test_what_is_held_is_what_may_be_installed():
+    """Every dependency has a version in constraints.txt, which `make constraints` writes."""
+    held = {}
+    for line in (PROJECT / "constraints.txt").read_text(encoding="utf-8").splitlines():
+        if not line.startswith("#"):
+            each = Requirement(line)
+            held.setdefault(canonicalize_name(each.name), []).append(each)
+    groups = PYPROJECT["dependencies"], *PYPROJECT["optional-dependencies"].values()
+    for wanted in map(Requirement, (text for group in groups for text in group)):
+        versions = [next(iter(each.specifier)).version for each in held[canonicalize_name(wanted.name)]]
+        assert versions and all(wanted.specifier.contains(each) for each in versions), wanted
 
 
 @NEEDS_MAKE
@@ -99,10 +131,28 @@ class TestMakefile:
         assert "[" not in self.planned("demo", tmp_path)
         assert ".[dev]" in self.planned("test", tmp_path)
 
+    def test_versions_are_held_wherever_something_is_installed_but_in_two_tests_of_versions(self, tmp_path):
+        for target in ("demo", "test", "docs", "release"):
+            installs = [line for line in self.planned(target, tmp_path).splitlines() if "pip install" in line]
+            assert installs and all("--constraint constraints.txt" in line for line in installs), target
+        for target, resolution in (("test-newest", "highest"), ("test-oldest", "lowest-direct")):
+            (free,) = (line for line in self.planned(target, tmp_path).splitlines() if "uv pip install" in line)
+            assert f"--resolution {resolution}" in free and "constraint" not in free
+
+    def test_every_tier_runs_somewhere_and_is_explained(self, tmp_path):
+        tiers = {each.partition(":")[0] for each in SETTINGS["tool"]["pytest"]["ini_options"]["markers"]} - {"every(n)"}
+        later = " or ".join(sorted(tiers))
+        named = {target: re.findall(r'-m "(.*?)"', self.planned(target, tmp_path)) for target in ("test", "test-all")}
+        first, rest = named["test-all"]
+        assert named["test"] == [first] == [f"not ({rest})"]
+        assert " or ".join(sorted(rest.split(" or "))) == later
+        contributing = (PROJECT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+        assert all(f"`{tier}`" in contributing for tier in tiers)
+
     def test_a_release_needs_its_own_tools_only(self, tmp_path):
         planned = self.planned("release", tmp_path)
         assert ".[release]" in planned and ".[dev]" not in planned and "scripts/release.py" in planned
 
     def test_every_target_is_named_as_one(self):
         phony = set(re.search(r"^\.PHONY: ((?:.*\\\n)*.*)$", MAKEFILE, re.M)[1].replace("\\", "").split())
-        assert phony == set(re.findall(r"^([a-z-]+):", MAKEFILE, re.M))
+        assert phony == targets()

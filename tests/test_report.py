@@ -105,6 +105,7 @@ class TestContent:
         assert data["answer"].endswith("overturns under sine:1g:2s.") and motion["headline"] == "overturns"
         assert motion["margin"]["levels"]["90"]["first"] < 1 and motion["neighbours"]["overturned"] > 0.9
 
+    @pytest.mark.rest
     def test_the_worse_polarity_is_shown(self, tmp_path):
         out = tmp_path / "r.html"
         data = run_json(
@@ -118,6 +119,7 @@ class TestContent:
         assert ground[np.abs(ground).argmax()] == pytest.approx(record[np.abs(record).argmax()], rel=1e-4)
         assert np.sign(pulse[np.abs(pulse).argmax()]) == np.sign(record[np.abs(record).argmax()])
 
+    @pytest.mark.every(3)
     @pytest.mark.parametrize(
         ("structure", "pulse", "said"),
         [
@@ -258,6 +260,7 @@ class TestReproduction:
         data = run_json("report", *FEW, BLOCK, *given)
         assert shlex.split(data["command"]) == ["rocking", "report", str(BLOCK), *given, *FEW, "--json"]
 
+    @pytest.mark.rest
     def test_elsewhere_it_is_the_same_and_folders_stay_out_unless_given(self, frame_report, tmp_path, monkeypatch):
         monkeypatch.chdir(EXAMPLES)
         out = tmp_path / "r.html"
@@ -326,6 +329,7 @@ class TestCommand:
         assert record.read_bytes() == ACCEL.read_bytes()
 
 
+@pytest.mark.rest
 def test_a_structure_is_made_ready_once(monkeypatch, tmp_path):
     """Whatever a report asks of it: its equivalent block and its tables are derived once."""
     counts = {"equivalent_block": 0, "tabulate": 0}
@@ -347,6 +351,7 @@ class TestSize:
     def test_one_record(self, frame_report):
         assert frame_report[0].stat().st_size < LARGEST / 4
 
+    @pytest.mark.rest
     def test_many_long_records_too(self, tmp_path):
         rng = np.random.default_rng(1)
         records = []
@@ -363,6 +368,7 @@ class TestSize:
         assert max(ground["y"]) == pytest.approx(written.max(), rel=1e-4)  # peaks survive the thinning
         assert min(ground["y"]) == pytest.approx(written.min(), rel=1e-4)
 
+    @pytest.mark.rest
     @NEEDS_RECORDS
     def test_two_real_records(self, tmp_path):
         out = tmp_path / "r.html"
@@ -383,6 +389,7 @@ class TestSize:
         assert max(map(abs, page.data[1]["charts"][1]["series"][0]["y"])) == pytest.approx(0.8741, rel=1e-3)
 
 
+@pytest.mark.rest
 def test_the_head_names_project_place_and_author(tmp_path):
     out = tmp_path / "r.html"
     head = ("--project", "Survey <2026>", "--place", "L'Aquila", "--author", "A. & B.")

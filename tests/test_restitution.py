@@ -334,6 +334,7 @@ def test_the_reason_for_no_restitution_is_the_sign_of_the_product():
     assert "<t+, t->, is positive" in why_none(-0.1) and "is zero" in why_none(0.0)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(
     ("given", "said"),
     [

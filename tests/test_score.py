@@ -129,6 +129,7 @@ class TestScores:
             others = [each.test.overturned for each in stated if each.test.cluster != test.cluster]
         return sum(others) / len(others)
 
+    @pytest.mark.every(2)
     @pytest.mark.parametrize("rule", ["tool", "tool_with_unknown", "base_rate", "west", "velocity", "other"])
     def test_every_score_is_that_of_another_program(self, both, rule):
         stated, found = both
@@ -409,6 +410,7 @@ def test_files_and_picture(tmp_path):
         draw_reliability(scored([], Neighbourhood(COUNT)))
 
 
+@pytest.mark.rest
 @pytest.mark.skipif(not EXPERIMENTS.is_dir(), reason=f"no shake-table tests in {EXPERIMENTS}")
 def test_shares_are_met_in_tests_of_two_boulders(tmp_path):
     """All 600 rows with 200 neighbours give Brier .061, log loss .198 and gap .018; every third row and 100 here."""

@@ -94,6 +94,7 @@ def test_the_sums_of_the_new_zealand_guidelines(e_p, J, b, C_m):
     assert found.uplift(POSITIVE) == pytest.approx(C_m, abs=5e-8)
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("direction", Direction)
 def test_the_equation_of_motion_is_that_of_lagrange(direction):
     s, xi, load = int(direction), 0.62, 0.04

@@ -102,6 +102,7 @@ class TestEntryPoints:
         declare(first)
         assert [point.value for point in of_odd()] == ["elsewhere.law:Odd"]
 
+    @pytest.mark.rest
     @pytest.mark.parametrize(
         "content",
         [

@@ -9,6 +9,8 @@ import pytest
 
 from tests.stores import RUNS, Sound, attack, race, sql
 
+pytestmark = pytest.mark.rest
+
 
 @pytest.fixture(scope="module")
 def sound(tmp_path_factory):

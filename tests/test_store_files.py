@@ -160,7 +160,8 @@ def test_a_store_that_is_replaced_while_it_is_opened_is_left_for_the_new_one(
     def open_and_lose(path):
         connection = open_store(path)
         if not opened:
-            opened.append(sqlite3.connect(path.rename(path.with_name("study.before.db"))))  # keeps its number from reuse
+            # Open, its number is not used again.
+            opened.append(sqlite3.connect(path.rename(path.with_name("study.before.db"))))
             path.write_bytes(sound.store.read_bytes())
             if is_at_work:
                 opened.append(sqlite3.connect(path, isolation_level=None))

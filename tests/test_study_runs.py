@@ -218,6 +218,7 @@ def long_study(tmp_path_factory):
     return path, carry_out(path, folder / "whole.db"), folder / "whole.db"
 
 
+@pytest.mark.rest
 def test_killed_and_run_again_it_is_as_if_nothing_had_happened(long_study, tmp_path):
     path, prepared, whole = long_study
     place = tmp_path / "killed.db"
@@ -234,6 +235,7 @@ def test_killed_and_run_again_it_is_as_if_nothing_had_happened(long_study, tmp_p
     assert dump(place) == dump(whole)
 
 
+@pytest.mark.rest
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no interrupt to send to one process")
 def test_interrupted_it_says_so_and_keeps_what_is_finished(long_study, tmp_path):
     place = tmp_path / "interrupted.db"
@@ -246,6 +248,7 @@ def test_interrupted_it_says_so_and_keeps_what_is_finished(long_study, tmp_path)
     assert 0 < finished(place) < long_study[1].plan.total
 
 
+@pytest.mark.rest
 def test_while_it_runs_others_read_and_do_not_write(long_study, tmp_path):
     path, prepared, _ = long_study
     place = tmp_path / "busy.db"
@@ -263,6 +266,7 @@ def test_while_it_runs_others_read_and_do_not_write(long_study, tmp_path):
         process.communicate()
 
 
+@pytest.mark.rest
 def test_a_cluster_gives_the_same_though_a_worker_is_killed(long_study, tmp_path):
     path, prepared, whole = long_study
     place, address = tmp_path / "cluster.db", tmp_path / "scheduler.json"
@@ -609,6 +613,7 @@ def alike(data, factor=1.0):
     }
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("method", ["stripes", "ida"])
 @pytest.mark.parametrize("of", ["PGA/(g lambda)", "PGV"])
 def test_measures_in_proportion_give_one_curve(tmp_path, method, of):
@@ -692,6 +697,7 @@ def test_few_records_and_what_is_not_tested_are_said_in_words_and_in_json(tmp_pa
         assert f"{each['why']}." in said
 
 
+@pytest.mark.rest
 def test_structures_of_like_names_have_a_picture_each(tmp_path):
     text = STUDY.replace("name: uncertain", "name: Valley/bridge")
     result = CliRunner().invoke(main, ["fragility", str(write(tmp_path, text, 5)), "--plot", "drawn"])
@@ -773,6 +779,7 @@ def test_a_linear_block_under_one_pulse_shape_overturns_at_a_step(tmp_path):
             assert step["low"] < exact < step["high"] and step["high"] - step["low"] == pytest.approx(0.002)
 
 
+@pytest.mark.rest
 def test_the_example_runs_with_pictures_and_tables(tmp_path):
     study = EXAMPLES / "study" / "near_fault.yaml"
     where = ["--store", "near.db", "--plot", "drawn"]
@@ -799,6 +806,7 @@ def test_the_example_runs_with_pictures_and_tables(tmp_path):
         assert (row["phi/phi_cr"] == "") == (row["outcome"] == "overturns")
 
 
+@pytest.mark.rest
 def test_incremental_analysis_takes_the_first_exceedance(tmp_path):
     path = write(tmp_path, STUDY.replace("method: stripes", "method: ida"), count=6)
     result = CliRunner().invoke(main, ["fragility", str(path), "--json", "--plot", "drawn"])

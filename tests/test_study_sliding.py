@@ -115,6 +115,7 @@ def test_the_shares_of_a_curve_are_those_of_the_runs(whole):
     assert counted.exceeding["sliding"].sum(axis=(0, 1)).tolist() == expected
 
 
+@pytest.mark.rest
 def test_restitutions_of_the_study_are_those_of_the_check(tmp_path):
     path = write(
         tmp_path, ETAS, block=STRUCTURES["block"].replace("restitution: 0.9\nfriction: 0.27", "friction: 0.31")
@@ -169,6 +170,7 @@ def test_all_else_is_as_without_it(whole, tmp_path):
     assert versions == [store_file.VERSION] * 2 == [6, 6]
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("size", [1, 7, 1000])
 def test_it_is_the_same_whatever_the_units(whole, tmp_path, monkeypatch, size):
     monkeypatch.setattr("rocking_cli.studies.fragility.campaign.unit_size", lambda runs, workers: size)
@@ -186,6 +188,7 @@ def test_a_unit_can_be_sent_elsewhere(whole, tmp_path):
     assert np.array_equal(found, rows_of(whole[2]).slide_time, equal_nan=True)
 
 
+@pytest.mark.rest
 def test_killed_and_run_again_it_is_as_if_nothing_had_happened(tmp_path):
     path = write(tmp_path, count=40)
     prepared = carry_out(path, tmp_path / "whole.db")
@@ -228,6 +231,7 @@ class TestTheStore:
         assert [said in str(each) for each in caught.value.problems] == [True] and "`restart`" in str(caught.value)
         assert dump(tmp_path / "study.db") == kept
 
+    @pytest.mark.rest
     def test_results_show_it_with_tables_and_pictures(self, whole, tmp_path):
         shown = command("results", whole[2], "--json", "--out", tmp_path / "runs.csv", "--plot", tmp_path / "pictures")
         assert shown.exit_code == 0, shown.stderr
@@ -249,6 +253,7 @@ class TestTheStore:
         rows = rows_of(whole[2])
         assert count == np.isfinite(rows.slide_time).sum() and tuple(names) == (*rows.columns, "checksum")
 
+    @pytest.mark.rest
     def test_damage_is_found_and_mended(self, whole, tmp_path):
         sound = Sound.__new__(Sound)
         sound.study = sound.other = whole[0]

@@ -346,6 +346,7 @@ class TestRanking:
         one, two = (survey(entries, [motion], threads=count) for count in (1, 3))
         assert [str(row) for row in one.rows] == [str(row) for row in two.rows]
 
+    @pytest.mark.rest
     def test_processes_change_nothing(self):
         text = HEAD + "".join(f"block,b{k},{0.3 + 0.05 * k},2.8\n" for k in range(12)) + "block,bad,-1,2\n"
         entries, motion = StructureTable.read(Path(table(text))), rk.read_record(ACCEL)

@@ -25,6 +25,7 @@ def interpolate(cells, width, q):
     return np.stack([sum(cells[k, 4 * part + power] * x**power for power in range(4)) for part in range(2)])
 
 
+@pytest.mark.every(3)
 @every_direction
 @pytest.mark.parametrize("file", FILES)
 def test_tables_reproduce_the_coefficients_between_their_nodes(file, direction):
@@ -60,6 +61,7 @@ def test_tables_hold_up_to_where_a_linkage_locks(file, direction):
         assert abs(got - expected).max() < 2e-11 * abs(expected).max()
 
 
+@pytest.mark.every(3)
 @every_direction
 @pytest.mark.parametrize("file", FILES)
 def test_q_is_the_integral_of_the_root_of_the_inertia(file, direction):

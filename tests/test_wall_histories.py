@@ -123,6 +123,7 @@ def test_a_mode_of_stuck_pieces_is_that_of_all_pieces(friction):
     assert seen > 8
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("friction", [None, 1.2])
 def test_what_known_modes_say_is_not_asked_again(friction, monkeypatch):
     """Fewer programmes find the same modes as all directions of all rotations do."""
@@ -192,6 +193,7 @@ def bearable(made, direction, phi, demand, *, jumps=False):
     return solved.fun < 1e-8
 
 
+@pytest.mark.rest
 @pytest.mark.parametrize("direction", list(Direction))
 @pytest.mark.parametrize("made", [wall(2, 3), wall(2, 3, friction=1.5), wall(1, 4, friction=0.9)])
 def test_modes_say_of_any_state_what_a_programme_of_all_forces_says(made, direction):
@@ -319,6 +321,7 @@ def test_pieces_are_not_stuck_that_move_at_some_rotation():
     assert stuck(Rates.of(rows, 1, 2).rotations([0]), np.zeros((1, 1), complex)).count == 0
 
 
+@pytest.mark.rest
 def test_joints_of_a_wall_take_little_memory():
     """Rows are of two blocks each: no matrix of all blocks and joints is held for every rotation."""
     made = wall(3, 8)

@@ -62,6 +62,7 @@ def test_its_script_prints_the_file(capsys):
     assert capsys.readouterr().out == WALL.read_text(encoding="utf-8")
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("direction", list(Direction))
 def test_the_elevation_sways_on_its_piers(found, direction):
     """By hand: each pier turns as a whole about opposite corners, and the upper storey goes along."""

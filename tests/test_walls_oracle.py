@@ -353,6 +353,7 @@ HAPPENS = {
 }
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("name", HANGINGS)
 def test_energy_put_in_less_what_is_lost_is_stored(name):
     motion = simulate(HANGINGS[name], SHAKING, until=1.2)

@@ -136,6 +136,7 @@ def test_python_says_why_there_is_no_block_and_takes_tuples_and_arrays():
     assert list(both) == ["nonlinear"]
 
 
+@pytest.mark.every(2)
 @pytest.mark.usefixtures("small_maps")
 @pytest.mark.parametrize(
     ("checked", "words"),
