@@ -4,7 +4,6 @@ import re
 from importlib import import_module
 
 import click
-import pytest
 from click.testing import CliRunner
 
 from rocking_cli.cli.help import OF_RECORDS, OPTIONS
@@ -44,14 +43,19 @@ def words(option):
     return re.sub(r"  \[default: .*\]$", "", option.help or "")
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_the_short_help_of_a_command_is_a_verb_and_its_object(name):
-    said = COMMANDS_BY_NAME[name].get_short_help_str(1000)
-    assert len(said) <= WIDEST, f"{name}: {len(said)} characters: {said}"
-    assert said.endswith("."), f"{name}: no full stop: {said}"
-    for text in (said, COMMANDS_BY_NAME[name].help):
-        first = text.split()[0]
-        assert re.fullmatch(r"[A-Z][a-z]+,?", first) and first not in NO_VERBS, f"{name}: {first} is not a verb: {text}"
+def test_the_short_help_of_a_command_is_a_verb_and_its_object():
+    wrong = []
+    for name, command in COMMANDS_BY_NAME.items():
+        said = command.get_short_help_str(1000)
+        if len(said) > WIDEST:
+            wrong.append(f"{name}: {len(said)} characters: {said}")
+        if not said.endswith("."):
+            wrong.append(f"{name}: no full stop: {said}")
+        for text in (said, command.help):
+            first = text.split()[0]
+            if not re.fullmatch(r"[A-Z][a-z]+,?", first) or first in NO_VERBS:
+                wrong.append(f"{name}: {first} is not a verb: {text}")
+    assert not wrong, "\n".join(wrong)
 
 
 def test_options_of_one_name_have_one_text():
@@ -62,31 +66,36 @@ def test_options_of_one_name_have_one_text():
         assert (len(found) > 1) == (option in DIFFERENT), f"{option}: {found}"
 
 
-@pytest.mark.parametrize(
-    ("name", "option", "each"), EVERY_OPTION, ids=lambda value: value if isinstance(value, str) else ""
-)
-def test_an_option_says_what_its_value_is(name, option, each):
-    said = words(each)
-    assert said[:1].isupper() and said.rstrip().endswith((".", "standard output.")), f"{name} {option}: {said!r}"
-    for question in QUESTIONS:
-        assert not re.match(rf"{question}\b", said), f"{name} {option} begins with {question}: {said}"
-    if each.multiple and option not in ONCE and (name, option) not in ONCE:
-        assert "Repeatable." in said, f"{name} {option} may be given several times and does not say Repeatable.: {said}"
+def test_an_option_says_what_its_value_is():
+    wrong = []
+    for name, option, each in EVERY_OPTION:
+        said = words(each)
+        if not said[:1].isupper() or not said.rstrip().endswith((".", "standard output.")):
+            wrong.append(f"{name} {option} is no sentence: {said!r}")
+        if begun := re.match(rf"({'|'.join(QUESTIONS)})\b", said):
+            wrong.append(f"{name} {option} begins with {begun[0]}: {said}")
+        several = each.multiple and option not in ONCE and (name, option) not in ONCE
+        if several and "Repeatable." not in said:
+            wrong.append(f"{name} {option} may be given several times and does not say Repeatable.: {said}")
+    assert not wrong, "\n".join(wrong)
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_options_of_records_have_a_heading_of_their_own(name):
-    result = CliRunner().invoke(main, [name, "--help"], env={"COLUMNS": "100"})
-    before, _, after = result.output.partition(f"\n{OF_RECORDS}:\n")
-    assert f"\n{OPTIONS}:\n" in before, f"{name}: no {OPTIONS}"
-    assert "--help" in before, f"{name}: --help is not among its {OPTIONS}"
-    rows = re.findall(r"^  \S+", before.partition(f"\n{OPTIONS}:\n")[2] + after, re.MULTILINE)
-    assert all(row.startswith("  -") for row in rows), f"{name}: {rows} are not all options"
-    for _, option, each in (found for found in EVERY_OPTION if found[0] == name):
-        of_records = getattr(each, "heading", OPTIONS) == OF_RECORDS
-        listed = re.compile(rf"^  (-\w, )?{option}\b(?!-)", re.MULTILINE)
-        assert bool(listed.search(after)) == of_records, f"{name} {option} is listed under the wrong heading"
-        assert bool(listed.search(before)) != of_records, f"{name} {option} is listed under the wrong heading"
+def test_options_of_records_have_a_heading_of_their_own():
+    wrong = []
+    for name in COMMANDS:
+        result = CliRunner().invoke(main, [name, "--help"], env={"COLUMNS": "100"})
+        before, _, after = result.output.partition(f"\n{OF_RECORDS}:\n")
+        own = before.partition(f"\n{OPTIONS}:\n")[2]
+        if "--help" not in own:
+            wrong.append(f"{name}: --help is not among its {OPTIONS}")
+        rows = re.findall(r"^  \S+", own + after, re.MULTILINE)
+        wrong += [f"{name}: {row} is not an option" for row in rows if not row.startswith("  -")]
+        for _, option, each in (found for found in EVERY_OPTION if found[0] == name):
+            of_records = getattr(each, "heading", OPTIONS) == OF_RECORDS
+            listed = re.compile(rf"^  (-\w, )?{option}\b(?!-)", re.MULTILINE)
+            if bool(listed.search(after)) != of_records or bool(listed.search(before)) == of_records:
+                wrong.append(f"{name} {option} is listed under the wrong heading")
+    assert not wrong, "\n".join(wrong)
 
 
 def test_every_command_that_reads_records_has_the_same_options_for_that():

@@ -10,24 +10,39 @@ from pathlib import Path
 
 import pytest
 
-import mechanisms
 import rocking_cli
 
+ROOT = Path(rocking_cli.__file__).resolve().parents[1]
 FLAG = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
-BELOW = [
-    path
-    for package in (rocking_cli, mechanisms)
-    for path in sorted(Path(package.__file__).parent.rglob("*.py"))
-    if "cli" not in path.relative_to(Path(package.__file__).parent).parts
-]
 
 
-@pytest.mark.parametrize("path", BELOW, ids=lambda path: "/".join(path.parts[-2:]))
-def test_no_layer_below_the_command_line_knows_a_flag(path):
+def parsed(*patterns):
+    """Return the syntax of every file of some patterns, by its place in the project."""
+    files = sorted(file for pattern in patterns for file in ROOT.glob(pattern))
+    return {file.relative_to(ROOT).as_posix(): ast.parse(file.read_text(encoding="utf-8")) for file in files}
+
+
+@pytest.fixture(scope="module")
+def package():
+    """The syntax of the package and of its mechanisms."""
+    return parsed("rocking_cli/**/*.py", "mechanisms/**/*.py")
+
+
+def texts(tree):
+    """Yield all texts in a file, with their lines."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            yield node.lineno, node.value
+
+
+def test_no_layer_below_the_command_line_knows_a_flag(package):
     """Messages name arguments, in backticks, and the command line spells them as they are typed."""
-    texts = (node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.Constant))
-    found = [(node.lineno, node.value) for node in texts if isinstance(node.value, str) and FLAG.search(node.value)]
-    assert not found
+    below = {place: tree for place, tree in package.items() if "/cli/" not in place}
+    assert len(below) > 400
+    found = [
+        f"{place}:{line}: {text}" for place, tree in below.items() for line, text in texts(tree) if FLAG.search(text)
+    ]
+    assert not found, "\n".join(found)
 
 
 # Classes that share a name: plugins import the load of `rocking_cli.core`, users the mechanism of `rocking_cli`; the
@@ -38,38 +53,45 @@ SHARED = {
 }
 
 
-def test_no_class_name_is_defined_in_two_files():
+def test_no_class_name_is_defined_in_two_files(package):
     """One name for one thing, see `docs/architecture.md#names`."""
     homes: dict[str, set[str]] = {}
-    for package in (rocking_cli, mechanisms):
-        folder = Path(package.__file__).parent
-        for path in sorted(folder.rglob("*.py")):
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-                if isinstance(node, ast.ClassDef):
-                    homes.setdefault(node.name, set()).add(path.relative_to(folder.parent).as_posix())
+    for place, tree in package.items():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ClassDef):
+                homes.setdefault(node.name, set()).add(place)
     assert {name: files for name, files in homes.items() if len(files) > 1} == SHARED
 
 
-ROOT = Path(rocking_cli.__file__).resolve().parents[1]
-BESIDE = [path for folder in ("benchmarks", "docs", "scripts") for path in sorted((ROOT / folder).glob("*.py"))]
+def imported(tree):
+    """Yield line, module and name of what a file imports of the project, also in code that it hands to a process."""
+    for line, text in texts(tree):
+        for module, names in re.findall(r"from (rocking_cli[\w.]*) import ([\w, ]+)", text):
+            yield from ((line, module, name.strip()) for name in names.split(","))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(("rocking_cli", "mechanisms")):
+            yield from ((node.lineno, node.module, each.name) for each in node.names)
 
 
-@pytest.mark.parametrize("path", BESIDE, ids=lambda path: "/".join(path.parts[-2:]))
-def test_what_stands_beside_the_package_imports_what_there_is(path):
-    """They run seldom: a name that has changed would be seen late, also in code that is handed to another process."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    texts = [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
-    handed = [found for text in texts for found in re.findall(r"from (rocking_cli[\w.]*) import ([\w, ]+)", text)]
-    named = [(module, name.strip()) for module, names in handed for name in names.split(",")]
-    named += [
-        (node.module, each.name)
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith(("rocking_cli", "mechanisms"))
-        for each in node.names
-    ]
-    for module, name in named:
-        if not hasattr(import_module(module), name):
-            import_module(f"{module}.{name}")
+def is_there(module, name):
+    """Return whether a module has a name, or a module of that name."""
+    try:
+        return hasattr(import_module(module), name) or bool(import_module(f"{module}.{name}"))
+    except ImportError:
+        return False
+
+
+def test_what_stands_beside_the_package_imports_what_there_is():
+    """They run seldom: a name that has changed would be seen late."""
+    beside = parsed("benchmarks/*.py", "docs/*.py", "scripts/*.py")
+    named = {
+        (module, name): f"{place}:{line}: {module} has no {name}"
+        for place, tree in beside.items()
+        for line, module, name in imported(tree)
+    }
+    assert len(beside) > 10 and len(named) > 10
+    found = [said for each, said in named.items() if not is_there(*each)]
+    assert not found, "\n".join(found)
 
 
 def _imported(path: Path) -> Iterator[str]:
