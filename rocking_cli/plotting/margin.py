@@ -36,7 +36,7 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
     beyond = False
     for k, (name, each) in enumerate(margins.items()):
         look = style.distinct(k) | {"marker": "", "linewidth": style.BOLD}
-        axes.plot(each.factors, each.overturned, label=shorten(name, NAME, placeholder=" ..."), **look)
+        axes.plot(each.factors, each.overturned, label=style.plain(shorten(name, NAME, placeholder=" ...")), **look)
         axes.plot(1.0, each.itself, color=look["color"], clip_on=False, **style.STAR)
         if each.unknown.any():
             between = style.UNKNOWN | {"edgecolor": look["color"]}
