@@ -90,11 +90,11 @@ FOR_KEYS = (
     "warm --json",
     "completion bash --json",
     "new block --json",
-    "figure 5 --json",
+    "figure 14 --json",
     "animate examples/block.yaml --pulse ricker:0.4g:1s --out moving.html --json",
     "select examples/accel.csv --target examples/target.csv --count 1 --band 0.2:2 --json",
     "overturning examples/block.yaml --points 5 --json",
-    "overturning --compare examples/block.yaml examples/frame.yaml --points 5 --json",
+    "overturning --compare examples/block.yaml examples/frame.yaml examples/wall.yaml --points 3 --json",
     "report examples/frame.yaml --json",
 )
 """Commands of which only the keys are held: their values depend on the machine, or others have the like."""

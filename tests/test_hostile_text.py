@@ -1,12 +1,12 @@
-"""Names, keys and lines that would command a terminal, or break a picture or a page, are shown as text."""
+"""Names, keys and lines that would command a terminal, or break a picture or a page, are shown as text.
+
+That files of such names are worked on by all commands is in `test_every_command.py`.
+"""
 
 from __future__ import annotations
 
-import json
 import re
-import shutil
 import sys
-import xml.etree.ElementTree as ElementTree
 
 import pytest
 from hypothesis import given
@@ -14,12 +14,10 @@ from hypothesis import strategies as st
 
 from rocking_cli.errors import Problem
 from rocking_cli.text import cut, is_one_line, one_line, printable
-from tests.conftest import EXAMPLES
 from tests.test_cli import run
 
 HARMFUL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 BLOCK = "mechanism: block\nwidth: 0.7\nheight: 2.8\n"
-MATHS = '"$\\\\frac{1$<b>&\'"'  # neither a formula nor markup
 
 
 @given(st.text(st.characters(), max_size=40))
@@ -59,66 +57,6 @@ def test_no_message_commands_the_terminal(arguments, tmp_path):
     found = run(*arguments, code=2)
     assert r"\x1b[31m" in found.stderr
     assert not HARMFUL.search(found.stderr)
-
-
-@pytest.fixture
-def hostile(tmp_path):
-    """A structure and a record whose files no terminal can spell, and a structure with a name of formulas."""
-    bad = b"\xff\x1b[31m$\\frac{1$<b>" if sys.platform == "linux" else "\u202e$\\frac{1$&'".encode()
-    import os
-
-    structure, record = (os.fsdecode(bad + suffix) for suffix in (b".yaml", b".csv"))
-    (tmp_path / structure).write_text(BLOCK, encoding="utf-8")
-    shutil.copy(EXAMPLES / "accel.csv", tmp_path / record)
-    (tmp_path / "n.yaml").write_text(BLOCK + f"name: {MATHS}\n", encoding="utf-8")
-    return structure, record
-
-
-COMMANDS = {
-    "draw": "draw S --plot out.svg",
-    "error": "error S --plot out.svg",
-    "record": "record R --plot out.svg",
-    "record and pulse": "record R --fit-pulse --plot out.svg",
-    "respond": "respond S --record R --plot out.svg --out out.csv",
-    "spectrum": "spectrum S n.yaml --record R --sizes 1:3:3 --plot out.svg --out out.csv",
-    "overturning": "overturning S n.yaml --compare --points 3 --plot out.svg",
-    "overturning map": "overturning n.yaml --points 3 --plot out.svg",
-    "equivalent": "equivalent S n.yaml --ag 0.6g --period 0.8 --plot out.svg",
-    "figure": "figure 14 --record R --format svg",
-    "report": "report S --record R -o out.html",
-    "animate": "animate S --record R --out out.html",
-    "equiv": "equiv S n.yaml --csv",
-    "error of formulas": "error n.yaml --plot out.svg",
-    "draw formulas": "draw n.yaml --plot out.svg",
-}
-
-
-@pytest.mark.parametrize("case", COMMANDS)
-def test_files_that_nobody_can_spell_are_worked_on(case, hostile, tmp_path):
-    words = [dict(zip("SR", hostile, strict=True)).get(word, word) for word in COMMANDS[case].split()]
-    found = run(*words)
-    assert not HARMFUL.search(found.stdout + found.stderr)
-    pictures = list(tmp_path.glob("*.svg"))
-    assert len(pictures) == (".svg" in COMMANDS[case] or "svg" in words)
-    for picture in pictures:
-        ElementTree.parse(picture)
-    for text in [*tmp_path.glob("out.csv"), *tmp_path.glob("out.html")]:
-        shown = text.read_text(encoding="utf-8")
-        assert not HARMFUL.search(shown)
-        assert "<b>" not in shown or "csv" in text.name
-
-
-def test_a_study_of_files_that_nobody_can_spell(hostile, tmp_path):
-    (tmp_path / "st.yaml").write_text(
-        f"structures: [{{file: n.yaml, name: {MATHS}}}]\nrecords: ['*.csv']\nmethod: stripes\n"
-        "levels: {measure: PGA, least: 0.1, most: 1.5, count: 3}\n",
-        encoding="utf-8",
-    )
-    found = run("fragility", "st.yaml", "--plot", "pictures")
-    assert not HARMFUL.search(found.stdout + found.stderr)
-    run("results", "st.db", "--out", "runs.csv")
-    assert printable(hostile[1]) in (tmp_path / "runs.csv").read_text(encoding="utf-8")
-    json.loads(run("results", "st.db", "--json").stdout)
 
 
 def test_names_in_a_study_are_printable(tmp_path):

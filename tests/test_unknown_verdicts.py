@@ -1,9 +1,10 @@
-"""An unknown outcome does not pass, whatever the command: in shares, ranks, verdicts, sheets and reports."""
+"""An unknown outcome does not pass: in shares, ranks, verdicts, sheets and reports.
+
+That it passes for no command is in `test_every_command.py`.
+"""
 
 from __future__ import annotations
 
-import json
-import re
 from dataclasses import replace
 from math import inf, isclose, nan
 from types import SimpleNamespace
@@ -12,8 +13,6 @@ import numpy as np
 import pytest
 
 import rocking_cli as rk
-from rocking_cli.cli import terminal
-from rocking_cli.cli.main import COMMANDS
 from rocking_cli.codes.italian import dynamic
 from rocking_cli.codes.italian.results import Dynamic, RecordPeak
 from rocking_cli.codes.italian.sheet import dynamic as sheets
@@ -25,7 +24,6 @@ from rocking_cli.dynamics.verdict import governs
 from rocking_cli.plotting.azimuths import draw_azimuths
 from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.plotting.survey import draw_survey
-from rocking_cli.studies import assessment
 from rocking_cli.studies import survey as survey_studies
 from rocking_cli.studies.azimuths import AzimuthResponses
 from rocking_cli.studies.margin import LEVELS, Margin
@@ -43,14 +41,6 @@ from tests.test_cli import run, run_json
 
 ARCH = "mechanism: arch\nname: {0}\nradius: {1}\nthickness: 0.8\ninclusion_angle_deg: 150\nvoussoirs: 7\n"
 SITE = "FC: 1.2\nag: 0.9\nF0: 2.5\nTC: 0.5\nS: 1.2\n"  # so strong that the static methods fail too
-STUDY = """\
-name: strong pulses
-structures: [arch.yaml]
-records: [{pulse: sine:1g:0.4s}, {pulse: sine:1g:0.5s}]
-method: stripes
-levels: {measure: PGA, least: 1.9, most: 2.0, count: 2}
-limit_states: [0.5, overturning]
-"""
 PULSE = "--pulse", "sine:2g:0.4s"  # opens a joint of the arch after .06 s, long before it could overturn
 
 
@@ -62,154 +52,11 @@ def folder(tmp_path_factory):
         "arch.yaml": ARCH.format("thin arch", 6.0),
         "sister.yaml": ARCH.format("wide arch", 7.0),
         "site.yaml": SITE,
-        "study.yaml": STUDY,
         "table.csv": "file\narch.yaml\n",
-        "tests.csv": "structure,record,overturned\narch.yaml,sine:2g:0.4s,1\n",
     }
     for name, text in files.items():
         (made / name).write_text(text)
     return made
-
-
-# What each command is asked, and what shows in its JSON that the outcome is unknown.
-HISTORIES = {
-    "respond": (
-        ["arch.yaml", *PULSE, "--model", "nonlinear", "--neighbours", 3],
-        lambda found: found["responses"]["nonlinear"]["outcome"] == "unknown" and found["neighbours"]["unknown"] == 1,
-    ),
-    "margin": (
-        ["arch.yaml", *PULSE, "--neighbours", 2],
-        lambda found: found["motions"][0]["unknown"][-1] == 1 and found["motions"][0]["levels"]["50"]["first"] is None,
-    ),
-    "verify": (
-        ["arch.yaml", "--site", "site.yaml", *PULSE],
-        lambda found: all(
-            side["dynamic"][FC]["unknown"] == ["sine:2g:0.4s"]
-            for side in found["directions"].values()
-            for FC in ("with_FC", "without_FC")
-        ),
-    ),
-    "survey": (["table.csv", *PULSE], lambda found: found["rows"][0]["unknown"] == 1),
-    "score": (["tests.csv", "--neighbours", 2], lambda found: found["tests"][0]["unknown"] == 1),
-    "design": (
-        [
-            "arch.yaml",
-            *PULSE,
-            "--neighbours",
-            2,
-            "--points",
-            2,
-            "--vary",
-            "thickness=0.79:0.8",
-            "--until",
-            "overturned<1",
-        ],
-        lambda found: found["scan"]["unknown"] == [1, 1],
-    ),
-    "animate": (
-        ["arch.yaml", *PULSE, "--neighbours", 2, "--out", "film.html"],
-        lambda found: found["outcome"] == "unknown",
-    ),
-    "pulse": (
-        ["arch.yaml", "--ag", "2g", "--period", 0.4],
-        lambda found: found["responses"]["nonlinear"]["unknown"],
-    ),
-    "overturning": (
-        ["arch.yaml", "--model", "nonlinear", "--ag", "1.9g:2g", "--period", "0.4:0.41", "--points", 3],
-        lambda found: found["shares"]["unknown"] == 1,
-    ),
-    "spectrum": (
-        ["arch.yaml", *PULSE, "--sizes", "2.4:2.5:2"],
-        lambda found: found["spectra"][0]["unknown"] == [1, 1, 1],
-    ),
-    "equivalent": (
-        ["arch.yaml", "sister.yaml", "--ag", "2g", "--period", 0.4],
-        lambda found: [each["unknown"] for each in found["structures"]] == [True, True],
-    ),
-    "fragility": (
-        ["study.yaml", "--jobs", 1, "--quantiles"],
-        lambda found: found["outcomes"][0]["share"] == 1 and all(each["band"] for each in found["curves"]),
-    ),
-    "results": (["study.db", "--quantiles"], lambda found: found["outcomes"][0]["share"] == 1),
-    "report": (
-        ["arch.yaml", *PULSE, "--neighbours", 2, "--out", "report.html"],
-        lambda found: found["motions"][0]["unknown"] and found["motions"][0]["headline"] == "unknown",
-    ),
-}
-# These follow no history; `figure` follows those of the paper's structures, `selfcheck` those of its blocks, and `warm`
-# those that compile the kernels. `calibrate` judges no structure: the outcomes of its tests were observed.
-WITHOUT = {
-    "calibrate", "draw", "equiv", "collapse", "error", "record", "select", "figure", "mechanisms", "measures", "new",
-    "info", "selfcheck", "warm", "completion",
-}  # fmt: skip
-LINEAR = {"linear1", "linear2", "closed_form"}  # equivalent blocks have no joints: their outcomes are their own
-KNOWN = {"at_rest", "rocks", "still_rocking", "does not uplift", "overturned"}
-PASSED = re.compile(
-    r"does not overturn(?! before its first impact)|overturns under none|overturns in no direction\.|"
-    r"none of \d+ motions overturns it\.|"
-    r"^\s*outcome(?!.*unknown).*(?:rocks|at rest|still rocking)|structure rocks|(?<!not )\bsatisfied|\bpasses\b(?! if)",
-    re.IGNORECASE | re.MULTILINE,
-)
-
-
-def offences(data, at=""):
-    """Where JSON takes an outcome for known, or for a pass."""
-    if isinstance(data, dict):
-        for key, value in data.items():
-            if key not in LINEAR:
-                yield from offences(value, f"{at}.{key}")
-    elif isinstance(data, list):
-        for value in data:
-            yield from offences(value, at)
-    else:
-        *_, key = at.rpartition(".")
-        known = key in ("outcome", "headline") and data in KNOWN
-        if known or (key == "overturned" and data is False) or (data is True and (".holds." in at or key == "passes")):
-            yield f"{at} = {data}"
-
-
-def test_every_command_is_walked_or_follows_no_history():
-    assert set(HISTORIES) | WITHOUT == set(COMMANDS) and not set(HISTORIES) & WITHOUT
-
-
-def both(monkeypatch, command, *asked):
-    """What a command prints as JSON, and as text, of one run."""
-    show = terminal.show
-
-    def twice(view, *, as_json):
-        show(view, as_json=True)
-        show(view, as_json=False)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(terminal, "show", twice)
-        line, said = run(command, *asked).stdout.split("\n", 1)
-    return json.loads(line), said
-
-
-@pytest.mark.parametrize("command", HISTORIES)
-def test_no_command_takes_an_unknown_outcome_for_a_pass(folder, command, monkeypatch):
-    monkeypatch.chdir(folder)
-    monkeypatch.setattr(assessment, "POINTS", 3)  # of a map
-    asked, is_unknown = HISTORIES[command]
-    if command == "results" and not (folder / "study.db").exists():
-        run("fragility", *HISTORIES["fragility"][0])
-    found, said = both(monkeypatch, command, *asked)
-    assert is_unknown(found)
-    assert not list(offences(found))
-    if command == "design":
-        assert found["holds"] == [] and found["value"] is None and not found["everywhere"]
-    assert "unknown" in said and not PASSED.findall(said)
-
-
-@pytest.mark.parametrize("command", ["respond", "verify"])
-def test_the_walk_sees_a_pass(folder, command, monkeypatch):
-    """With a weak motion, and a limit that no opening passes, the walk finds what it would else not see."""
-    monkeypatch.chdir(folder)
-    (folder / "site.yaml").write_text(SITE.replace("ag: 0.9", "ag: 0.01"))
-    found, said = both(monkeypatch, command, *HISTORIES[command][0], "--opening", 1, "--scale", 0.25)
-    (folder / "site.yaml").write_text(SITE)
-    assert not HISTORIES[command][1](found)
-    assert list(offences(found)) and PASSED.findall(said)
 
 
 class TestMargin:
@@ -467,29 +314,7 @@ class TestVerification:
         )  # a stronger motion opens it earlier
 
 
-@pytest.fixture(scope="module")
-def page(folder):
-    """The text of a report on the arch, as the walk writes it."""
-    if not (folder / "report.html").exists():
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(assessment, "POINTS", 3)
-            patch.chdir(folder)
-            run("report", *HISTORIES["report"][0])
-    return re.sub(r"\s+", " ", re.sub(r"<[^>]*>", " ", (folder / "report.html").read_text()))
-
-
-@pytest.mark.usefixtures("small_maps")
 class TestReport:
-    def test_the_summary_says_until_when_and_why(self, page):
-        assert "The outcome of thin arch under sine:2g:0.4s is unknown: it is known up to" in page
-        assert "Under sine:2g:0.4s: unknown" in page and "The structure may overturn." in page
-        assert "opens or slides by less than 0.5 %" in page
-        assert not re.search(r"does not overturn\b|agree closely|no, it rocks", page)
-
-    def test_tables_end_there(self, page):
-        assert re.search(r"known up to; peaks, impacts and displacements are those until then 0\.0\d+", page)
-        assert re.search(r"outcome known .* up to 0\.0\d+ s", page)
-
     def test_a_pulse_alone_may_be_unknown_too(self):
         fit, own = SimpleNamespace(pulse=SimpleNamespace(title="sine")), SimpleNamespace(reference="critical rotation")
         result = SimpleNamespace(alone=0.2, alone_unknown=True, fits=[fit], histories={"nonlinear": own})

@@ -1,9 +1,11 @@
-"""What is shown fits the terminal: sentences, tables and help; nothing is lost, and no word is broken."""
+"""What is shown fits the terminal: sentences, tables and help; nothing is lost, and no word is broken.
+
+The results of all commands are in `test_every_command.py`.
+"""
 
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 from collections import Counter
 
@@ -20,43 +22,7 @@ from tests.test_cli import run
 
 ACCEL = EXAMPLES / "accel.csv"
 WIDTHS = (40, 60, 80, 100)
-FRAME, BLOCK, WALL = (EXAMPLES / f"{name}.yaml" for name in ("frame", "block", "wall"))
-NEAR = ("--neighbours", 5)
-STUDY = (
-    "name: s\nmethod: stripes\nstructures: [{file: B}]\nrecords: [A, {pulse: ricker:1g:0.8s}]\n"
-    "levels: {measure: PGA, least: 0.2, most: 1.2, count: 4}\nlimit_states: [uplift, 0.5, overturning]\n"
-)
-SHOWN = {
-    "equiv": ("equiv", FRAME),
-    "error": ("error", FRAME),
-    "record": ("record", ACCEL, "--fit-pulse"),
-    "records": ("record", "a.csv", "RSN1111_KOBE_NIS000.csv", "a_record_with_quite_a_long_name.csv"),
-    "respond": ("respond", FRAME, "--record", ACCEL, "--polarity", "both", "--impacts", *NEAR),
-    "respond, several": ("respond", FRAME, "--record", "*.csv", "--with-pulse", "sine", *NEAR),
-    "margin": ("margin", BLOCK, "--record", "*.csv", *NEAR),
-    "pulse": ("pulse", "--a", "2", "--omega", "3"),
-    "pulse on a structure": ("pulse", FRAME, "--ag", "0.4g", "--period", "0.8"),
-    "overturning": ("overturning", BLOCK, "--points", 3),
-    "overturning, several": ("overturning", "--compare", BLOCK, FRAME, WALL, "--points", 3),
-    "equivalent": ("equivalent", BLOCK, FRAME, "--ag", "0.6g", "--period", "0.5"),
-    "spectrum": ("spectrum", BLOCK, "--record", ACCEL, "--sizes", "1:6:3"),
-    "spectra": ("spectrum", BLOCK, "--record", "*.csv", "--slenderness", "0.2", "--sizes", "1:6:3"),
-    "fragility": ("fragility", "study.yaml"),
-    "results": ("results", "study.db"),
-    "figure": ("figure", "3"),
-    "mechanisms": ("mechanisms",),
-    "mechanism": ("mechanisms", "wall"),
-    "contract": ("mechanisms", "block", "--check"),
-}
-
-
-@pytest.fixture
-def files(tmp_path):
-    """Records with names of all lengths, and a small study."""
-    for name in ("a.csv", "RSN1111_KOBE_NIS000.csv", "a_record_with_quite_a_long_name.csv"):
-        shutil.copy(ACCEL, tmp_path / name)
-    study = STUDY.replace("file: B", f"file: '{BLOCK.as_posix()}'").replace("[A,", f"['{ACCEL.as_posix()}',")
-    (tmp_path / "study.yaml").write_text(study, encoding="utf-8")
+FRAME = EXAMPLES / "frame.yaml"
 
 
 def words(text):
@@ -67,22 +33,6 @@ def words(text):
 def fits(text, width):
     """Whether no line is wider than the terminal, unless it is a single word."""
     return all(cells(line.rstrip()) <= width for line in text.splitlines() if len(line.split()) > 1)
-
-
-@pytest.mark.parametrize("name", SHOWN)
-def test_results_fit_and_nothing_of_them_is_lost(name, files, monkeypatch):
-    arguments = [str(each) for each in SHOWN[name]]
-    if name == "results":
-        run("fragility", "study.yaml")
-    wide = run(*arguments)
-    for width in WIDTHS:
-        monkeypatch.setenv("COLUMNS", str(width))
-        found = run(*arguments)
-        for stream, text, whole in (("out", found.stdout, wide.stdout), ("err", found.stderr, wide.stderr)):
-            assert fits(text, width), text
-            if stream == "out":
-                assert not words(whole) - words(text)
-                assert set(words(text)) - set(words(whole)) <= {"value"}  # no piece of a word
 
 
 @pytest.mark.parametrize("name", ["", *COMMANDS])
