@@ -590,8 +590,8 @@ def test_every_command_takes_both(tmp_path):
         varied = "blocks.left.density" if name == "asm" else "bodies.lower.density"
         # Only these know of the new: heavier models are those of all structures.
         run("draw", file, "--json")
-        run("design", file, "--vary", f"{varied}=1500:2500", "--until", "lambda > 0.1", "--points", 3)
-        run("spectrum", file, "--pulse", "sine:0.5g:0.8s", "--sizes", "1:3:3")
+        run("design", file, "--vary", f"{varied}=1500:2500", "--until", "lambda > 0.1", "--points", 2)
+        run("spectrum", file, "--pulse", "sine:0.5g:0.8s", "--sizes", "1:2:2")
         said = run_json("verify", file, "--site", site)["directions"]["positive"]
         assert said["alpha0"] == approx(rk.load_structure(file).uplift(POSITIVE), rel=1e-9)
 

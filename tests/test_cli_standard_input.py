@@ -29,13 +29,14 @@ def piped(*arguments, code=0, content=None):
     return result
 
 
+@pytest.mark.usefixtures("small_maps")
 @pytest.mark.parametrize(
     "arguments",
     [
         ("record", "{}", "--json"),
-        ("respond", BLOCK, "--record", "{}", "--model", "linear2", "--json"),
+        ("respond", BLOCK, "--record", "{}", "--model", "linear2", "--neighbours", "2", "--json"),
         ("spectrum", BLOCK, "--record", "{}", "--sizes", "2:3:2", "--json"),
-        ("report", BLOCK, "--record", "{}", "--json"),
+        ("report", BLOCK, "--record", "{}", "--neighbours", "2", "--json"),
     ],
 )
 def test_every_command_takes_standard_input(arguments):

@@ -28,6 +28,7 @@ def flat(text):
     return " ".join(text.split())
 
 
+@pytest.mark.usefixtures("small_maps")
 @pytest.mark.parametrize("name", WITHOUT)
 def test_without_masses_it_is_per_unit_mass(name, tmp_path):
     file = EXAMPLES / f"{name}.yaml"
@@ -46,6 +47,7 @@ def test_without_masses_it_is_per_unit_mass(name, tmp_path):
     assert "kg m" not in page and page.count("Per unit mass of the whole structure") == 3
 
 
+@pytest.mark.usefixtures("small_maps")
 @pytest.mark.parametrize("masses", MASSES)
 def test_with_masses_it_is_in_kilograms(masses, tmp_path):
     file = tmp_path / "frame.yaml"
@@ -70,6 +72,7 @@ def test_a_mechanism_may_say_so_itself():
 # --- what a mechanism warns of
 
 
+@pytest.mark.usefixtures("small_maps")
 def test_the_caution_of_the_wall_is_shown_where_it_is_looked_up_and_used(tmp_path):
     wall, file = Registry()["wall"], EXAMPLES / "wall.yaml"
     assert "Unconservative without a load on top" in wall.caution

@@ -229,7 +229,7 @@ def check(text, motion, folder):
     """Recompute the grades and read the sentences, from the JSON and the table of the histories alone."""
     file, table = folder / "s.yaml", folder / "h.csv"
     file.write_text(text, encoding="utf-8")
-    data = json.loads(run("respond", file, *motion, "--json", "--out", table).stdout)
+    data = json.loads(run("respond", file, *motion, "--neighbours", 0, "--json", "--out", table).stdout)
     block = json.loads(run("equiv", file, "--json").stdout)["directions"]
     with table.open(encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
@@ -349,6 +349,7 @@ def test_an_outcome_has_one_name(facts, word):
     assert names.outcome(**facts) == word
 
 
+@pytest.mark.usefixtures("small_maps")
 @pytest.mark.parametrize(
     ("structure", "pulse", "word"),
     [
@@ -365,7 +366,7 @@ def test_every_command_calls_an_outcome_the_same(structure, pulse, word, tmp_pat
     texts = {
         "respond": run("respond", block, "--pulse", pulse, "--neighbours", 0).stdout,
         "animate": run("animate", block, "--pulse", pulse, "--neighbours", 0, "--out", tmp_path / "a.html").stdout,
-        "report": run("report", "--neighbours", 20, block, "--pulse", pulse, "-o", tmp_path / "r.html").stdout,
+        "report": run("report", "--neighbours", 2, block, "--pulse", pulse, "-o", tmp_path / "r.html").stdout,
         "spectrum": re.findall(r" s: (it.*?\w)\.", smaller)[0],
         "pulse": run("pulse", block, "--ag", amplitude, "--period", period[:-1]).stdout,
     }
