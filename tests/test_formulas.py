@@ -7,6 +7,7 @@ import importlib
 import re
 import shutil
 import sys
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
 from math import log, pi, sqrt
@@ -126,21 +127,33 @@ def used():
     return where, printed
 
 
-@pytest.mark.parametrize("name", EVERY)
-def test_a_formula_that_is_blanked_is_blank_in_every_printout(name, used):
-    where, printed = used
-    assert name in where, "no case uses this formula"
-    formula = EVERY[name]
-    before, kept = printed[where[name]], dict(vars(formula))
-    part = "text" if formula.text else "symbol"
+@contextmanager
+def marked():
+    """Every formula has a mark in place of its text, or of its symbol if it has no text; return the marks."""
+    kept = {name: dict(vars(formula)) for name, formula in EVERY.items()}
+    marks = {name: f"MARK{chr(65 + k // 26)}{chr(65 + k % 26)}" for k, name in enumerate(EVERY)}
     try:
-        object.__setattr__(formula, part, "")
-        after = outputs(where[name])
+        for name, formula in EVERY.items():
+            object.__setattr__(formula, "text" if formula.text else "symbol", marks[name])
+        yield marks
     finally:
-        vars(formula).update(kept)
-    for one, other, which in zip(before, after, ("terminal", "workings", "English", "Italian"), strict=True):
-        if kept["text"] != "given" or which in ("terminal", "workings"):  # on the sheet a table without formulas
-            assert one != other, (part, which)
+        for name, formula in EVERY.items():
+            vars(formula).update(kept[name])
+
+
+def test_a_formula_that_is_changed_is_changed_in_every_printout(used):
+    where, _ = used
+    assert where.keys() == EVERY.keys(), "no case uses the others"
+    given = {name for name, formula in EVERY.items() if formula.text == "given"}
+    with marked() as marks:
+        printed = {case: [repr(each) for each in outputs(case)] for case in set(where.values())}
+    missing = [
+        f"{name} in the {which}, {case}"
+        for name, case in where.items()
+        for text, which in zip(printed[case], ("terminal", "workings", "English sheet", "Italian sheet"), strict=True)
+        if marks[name] not in text and not (name in given and "sheet" in which)  # there, a table without formulas
+    ]
+    assert not missing, "\n".join(missing)
 
 
 def test_every_line_gives_its_result_by_the_numbers_that_are_put_in(used):

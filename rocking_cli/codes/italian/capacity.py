@@ -138,7 +138,14 @@ class ExactCurve:
 
     def rotation(self, d: float) -> float:
         """Return the rotation at a displacement on the curve [rad]."""
-        return root(lambda phi: self.displacement_at(phi) - d, 0.0, self.end)
+        if d not in self._rotations:
+            self._rotations[d] = root(lambda phi: self.displacement_at(phi) - d, 0.0, self.end)
+        return self._rotations[d]
+
+    @cached_property
+    def _rotations(self) -> dict[float, float]:
+        """What was found, by displacement: every view asks for the same few."""
+        return {}
 
     @cached_property
     def a0(self) -> float:
