@@ -138,7 +138,7 @@ ANSWERS = {
     "curves": lambda: rk.overturning_curves(
         [EXAMPLES / "block.yaml", EXAMPLES / "wall.yaml"], model="linear2", points=5
     ),
-    "margin": lambda: rk.margin(rk.Block(width=0.7, height=2.8), "sine:0.4g:0.8s", polarity="1"),
+    "margin": lambda: rk.margin(rk.Block(width=0.7, height=2.8), "sine:0.4g:0.8s", polarity="1", neighbours=5),
     "verification": lambda: rk.verify(
         rk.Block(width=0.6, height=8.0), {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
     ),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import json
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from itertools import combinations
 from math import atan2, degrees, hypot, pi
 
@@ -36,12 +36,13 @@ from rocking_cli.testing import MechanismContract
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
-FRAME = load_structure(EXAMPLES / "frame.yaml")
-ARCH = load_structure(EXAMPLES / "arch.yaml")
+loaded = cache(load_structure)
+FRAME = loaded(EXAMPLES / "frame.yaml")
+ARCH = loaded(EXAMPLES / "arch.yaml")
 FILES = sorted(EXAMPLES.glob("*.yaml"))
 OF_STONE = {"density": 2400.0, "depth": 1.0}
 SHAPES = {
-    **{path.stem: partial(load_structure, path) for path in FILES},
+    **{path.stem: partial(loaded, path) for path in FILES},
     "slender block": partial(Block, width=0.1, height=10.0),
     "flat block": partial(Block, width=10.0, height=0.3),
     "slender wall": partial(Wall, thickness=0.1, height=10.0),
@@ -96,7 +97,7 @@ class TestPicture:
     @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
     def test_the_table_of_a_page_has_every_position_between_its_nodes(self, path):
         """Straight between nodes, as a page does it, against the mechanism itself."""
-        shown = picture(load_structure(path))
+        shown = picture(loaded(path))
         data = json.loads(json.dumps(shown.as_dict(), allow_nan=False))
         table = np.array(data["rotation"])
         ways = [0.9 * side for side in shown.directions]
@@ -111,7 +112,7 @@ class TestPicture:
 
     @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
     def test_a_pin_is_carried_by_its_part(self, path):
-        shown = picture(load_structure(path))
+        shown = picture(loaded(path))
         data = shown.as_dict()
         rest = data["rotation"].index(0.0)
         for pin, placed in zip(data["pins"], shown.placed(0.0)[1], strict=True):
@@ -213,7 +214,7 @@ class TestWhatIsMeasured:
         assert values == pytest.approx({"2b": 0.7, "2h": 2.8, "R": hypot(0.35, 1.4), "α": atan2(0.35, 1.4)})
 
     def test_of_a_leaning_stone_in_both_directions(self):
-        stone = load_structure(EXAMPLES / "rigid_body.yaml")
+        stone = loaded(EXAMPLES / "rigid_body.yaml")
         for direction, sign in ((Direction.POSITIVE, "₊"), (Direction.NEGATIVE, "₋")):
             values = self.values(stone, direction)
             assert values[f"α{sign}"] == pytest.approx(stone.alpha(direction))
@@ -266,7 +267,7 @@ class TestWhatIsMeasured:
                 letters = ["A", "B", "C", "D"] if direction > 0 else ["A'", "B'", "C'", "D'"]
                 assert lettered == dict(zip(letters, structure.hinges(direction), strict=True))
         for path in FILES:
-            shown = picture(load_structure(path))
+            shown = picture(loaded(path))
             if len(shown.directions) == 1:
                 assert {pin.direction for pin in shown.pins} == set(shown.directions)
                 continue
@@ -276,7 +277,7 @@ class TestWhatIsMeasured:
 
 def test_only_hinges_of_one_link_are_joined_by_a_line():
     def chains(file):
-        shown = picture(load_structure(EXAMPLES / file))
+        shown = picture(loaded(EXAMPLES / file))
         return shown.chains([pin for pin in shown.pins if pin.direction is Direction.POSITIVE])
 
     assert chains("frame.yaml") == chains("arch.yaml") == [[0, 1, 2, 3]]
@@ -354,7 +355,7 @@ class TestContract:
 class TestFigure:
     @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
     def test_every_example_has_a_panel_for_rest_and_each_direction_to_scale(self, path):
-        structure = load_structure(path)
+        structure = loaded(path)
         figure = draw_structure(picture(structure), "a title with $ in it", 0.5)
         assert len(figure.axes) == 1 + len(structure.directions)
         size = figure.get_size_inches()
@@ -395,7 +396,7 @@ class TestFigure:
     def test_words_neither_meet_nor_leave_the_picture(self, structure):
         figure = draw_structure(picture(SHAPES[structure]()), "a title")
         canvas = FigureCanvasAgg(figure)
-        canvas.draw()
+        figure.draw_without_rendering()
         inside = figure.bbox
         words = [text for axes in figure.axes for text in [*axes.texts, axes.title] if text.get_text()]
         areas = []
