@@ -217,6 +217,7 @@ def test_the_page_on_python_does_what_it_shows(maker, tmp_path):
     assert {path.name for path in tmp_path.glob("*.png")} == {"response.png", "spectrum.png", "fragility.png"}
 
 
+@pytest.mark.types
 def test_a_type_checker_accepts_the_page(maker, tmp_path):
     file = tmp_path / "page.py"
     file.write_text(maker("make_python").script(), encoding="utf-8")
