@@ -56,6 +56,7 @@ def test_lambda_of_voussoirs_is_the_static_multiplier(beta, ratio, n):
         assert equivalent_block(ring)[direction].lambda_ == approx(static, rel=1e-9)
 
 
+@pytest.mark.rest
 @pytest.mark.parametrize(("beta", "ratio"), CONTINUOUS)
 def test_lambda_of_a_continuous_ring_is_the_static_multiplier_of_many_joints(beta, ratio):
     # 1000 joints leave an excess of about 3e-6 (it falls as 1/n^2, next test), within the 1e-5 required.
@@ -66,6 +67,7 @@ def test_lambda_of_a_continuous_ring_is_the_static_multiplier_of_many_joints(bet
         assert ring.uplift(direction) <= static + 1e-10
 
 
+@pytest.mark.rest
 @pytest.mark.parametrize(("beta", "ratio"), CONTINUOUS)
 def test_more_joints_converge_on_the_continuous_ring_from_above(beta, ratio):
     exact = arch(beta, ratio).uplift(POSITIVE)

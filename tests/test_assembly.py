@@ -74,6 +74,7 @@ def arch_of(r=10.0, t=1.5, beta=157.5, n=7, **more):
     return rk.Arch(radius=r, thickness=t, inclusion_angle_deg=beta, voussoirs=n, **given)
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("digits", [None, 3])
 @pytest.mark.parametrize(
     ("beta", "ratio", "n"), [(157.5, 0.15, 7), (120.0, 0.12, 8), (150.0, 0.13, 12), (157.5, 0.2, 9), (90.0, 0.1, 6)]
@@ -499,6 +500,7 @@ CRACKED = {
 }
 
 
+@pytest.mark.every(2)
 def test_all_that_has_a_length_is_enlarged():
     held = {"C": {"slide": "upper", "at": [0.3, 3.0], "along": [0.0, 1.0]}}
     portal = assembly(PORTAL, gap=0.001)

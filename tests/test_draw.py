@@ -392,6 +392,7 @@ class TestFigure:
         assert rows["left"] == [[first, second], [across]]
         assert [each.symbol for each in inside] == ["d"]
 
+    @pytest.mark.every(3)
     @pytest.mark.parametrize("structure", SHAPES, ids=str)
     def test_words_neither_meet_nor_leave_the_picture(self, structure):
         figure = draw_structure(picture(SHAPES[structure]()), "a title")
@@ -428,6 +429,7 @@ class TestFigure:
         assert not ((np.abs(place.real) < size.real / 2) & (np.abs(place.imag) < size.imag / 2)).any()
         assert np.abs(place.imag).min() < size.imag  # and near it
 
+    @pytest.mark.rest
     @pytest.mark.parametrize("word", ["$", "$a", "a$b$", "\udcff", "\u5b57", "\\frac{1", "R_", "_", ""])
     def test_any_word_of_a_plugin_can_be_drawn(self, word):
         class Odd(Block):

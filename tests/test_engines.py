@@ -219,6 +219,7 @@ class TestWhichEngine:
         assert engine_of(Structure(BLOCK)) is engine("exact")
         assert rk.respond(BLOCK, "sine:0.1g:0.8s")["nonlinear"].words == "does not uplift"
 
+    @pytest.mark.rest
     def test_one_that_is_installed_stands_in_where_the_exact_one_refuses(self, by_solve_ivp, exact_refuses, tmp_path):
         answer = rk.respond(BLOCK, MOTIONS["rocks"])
         assert list(answer) == ["nonlinear"] and isnan(answer["nonlinear"].opening)

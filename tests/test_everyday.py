@@ -163,6 +163,7 @@ class TestDefaults:
                 options.setdefault(max(each.opts, key=len)[2:], set()).add(name)
         assert set(defaults.EVERYWHERE) <= set(options) and set(defaults.IN_TABLES) <= set(options)
 
+    @pytest.mark.rest
     def test_a_report_says_what_it_took_from_where(self, monkeypatch):
         monkeypatch.setenv("ROCKING_NEIGHBOURS", "5")
         run("report", BLOCK, "-o", "r.html")

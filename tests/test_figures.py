@@ -91,6 +91,7 @@ def test_a_legend_that_all_panels_share_is_on_none_of_them():
     assert all(axes.get_legend() for axes in panels)  # where they differ each has its own
 
 
+@pytest.mark.rest
 def test_curves_are_close_where_they_bend():
     for curve in paper_figure(11).panels[0][0].curves:
         turn = np.diff(np.arctan2(np.diff(curve.y) / np.ptp(curve.y), np.diff(curve.x)))

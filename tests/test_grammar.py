@@ -25,6 +25,7 @@ def data(*arguments):
     return json.loads(run(*arguments, "--json").stdout)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(
     ("command", "option", "alike"),
     [

@@ -368,6 +368,7 @@ class TestReport:
         page = frame_report[0].read_text("utf-8")
         assert ">Loads and ties<" not in page and "peak horizontal displacement of the top" in page
 
+    @pytest.mark.rest
     def test_a_fall_has_no_largest_movement(self, leaning, tmp_path):
         text = leaning.read_text().replace("stiffness: 100 kN/m", "stiffness: 1 N/m")
         leaning.write_text(text)

@@ -96,6 +96,7 @@ def test_of_joints_that_the_mechanism_does_not_name_nothing_is_said_to_be_unknow
     assert not found.checked and not found.unknown.any()
 
 
+@pytest.mark.every(2)
 def test_a_reversed_motion_is_followed_only_where_it_can_add_something(monkeypatch):
     followed, done = [], []
     follow = margins.follow

@@ -28,6 +28,7 @@ def flat(text):
     return " ".join(text.split())
 
 
+@pytest.mark.every(2)
 @pytest.mark.usefixtures("small_maps")
 @pytest.mark.parametrize("name", WITHOUT)
 def test_without_masses_it_is_per_unit_mass(name, tmp_path):
@@ -47,6 +48,7 @@ def test_without_masses_it_is_per_unit_mass(name, tmp_path):
     assert "kg m" not in page and page.count("Per unit mass of the whole structure") == 3
 
 
+@pytest.mark.every(2)
 @pytest.mark.usefixtures("small_maps")
 @pytest.mark.parametrize("masses", MASSES)
 def test_with_masses_it_is_in_kilograms(masses, tmp_path):

@@ -81,6 +81,7 @@ class TestPackage:
         rocks = cls().verify(rk.Block(width=0.14, height=2.8), site).directions[core.Direction.POSITIVE]
         assert rocks.remarks == ["The structure rocks at the serviceability limit state."] and not rocks.passed
 
+    @pytest.mark.rest
     @pytest.mark.parametrize("name", ["q", NAME, "a" * LONGEST, "_".join("abcdefghijklmnopqrst")])
     def test_its_code_is_clean_whatever_its_name(self, name, tmp_path):
         pytest.importorskip("ruff", reason="no ruff here")

@@ -96,6 +96,7 @@ class TestPackage:
             assert image.format == "PNG" and min(image.size) > 500
             assert len(image.convert("RGB").getcolors(1_000_000)) > 20
 
+    @pytest.mark.rest
     @pytest.mark.parametrize("name", ["q", NAME, "a" * LONGEST, "_".join("abcdefghijklmnopqrst")])
     def test_its_code_is_clean_whatever_its_name(self, name, tmp_path):
         pytest.importorskip("ruff", reason="no ruff here")

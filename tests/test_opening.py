@@ -127,6 +127,7 @@ CHECKED = [
 ]
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("file", CHECKED, ids=lambda file: file.stem)
 def test_forces_balance_every_piece_and_uplift_opens_nothing(file):
     made = load_structure(file)

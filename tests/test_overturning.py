@@ -485,6 +485,7 @@ class TestCommand:
         assert complaint in " ".join(run("overturning", *arguments, code=2).stderr.split())
         assert list(tmp_path.iterdir()) == []
 
+    @pytest.mark.every(2)
     @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
     def test_pictures_are_of_the_kind_their_name_says(self, suffix, tmp_path):
         run("overturning", "--points", 12, "--plot", f"map.{suffix}")

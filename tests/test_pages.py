@@ -18,6 +18,8 @@ from tests.following import respond
 from tests.test_cli import run
 from tests.test_hung import TIED_FILE
 
+pytestmark = pytest.mark.rest
+
 FRAME, ACCEL = EXAMPLES / "frame.yaml", EXAMPLES / "accel.csv"
 EVIL = '<script>alert(1)</script> & "quotes" </script> {{ 7*7 }}'
 # Corners of the bodies [m] as they are on the screen, and pixels to a metre.

@@ -197,6 +197,7 @@ class TestEdges:
         assert (alone.dt, alone.npts, alone.format, alone.vertical) == (motion.dt, motion.npts, "pulse", None)
         np.testing.assert_allclose(alone.acceleration, motion.acceleration, atol=1e-3)
 
+    @pytest.mark.every(2)
     @pytest.mark.parametrize("npts", [25, 40, 100])
     @by
     def test_short_records(self, npts, criterion):

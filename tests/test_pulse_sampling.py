@@ -194,6 +194,7 @@ def test_a_history_keeps_one_of_so_many_samples():
     assert (motion.kept.acceleration == motion.acceleration[:: motion.every]).all()
 
 
+@pytest.mark.rest
 def test_samples_are_refined_until_nothing_changes():
     for shape in SHAPES:
         pulse = pulse_of(shape, 1.04, 5.0)

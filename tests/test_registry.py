@@ -51,6 +51,7 @@ def rocking_each(environment, *commands):
     return [json.loads(line) for line in done.stdout.splitlines()]
 
 
+@pytest.mark.rest
 def test_an_installed_plugin_is_listed_with_its_package(installed_plugin):
     listed = json.loads(rocking(installed_plugin, "mechanisms", "--json").stdout)["mechanisms"]
     found = {row["name"]: row["package"] for row in listed}

@@ -175,6 +175,7 @@ class TestContent:
         assert f"Of 20 neighbouring motions ({around.words}), all overturn the structure." in said
         assert any("scaled by large factors" in each for each in found["doubts"])
 
+    @pytest.mark.rest
     def test_a_motion_beyond_the_critical_rotation_is_told_as_such(self, tmp_path):
         loose = of(LOOSE, tmp_path)
         (motion,) = run_json("report", *FEW, loose, "--pulse", "sine:1.2g:1.2s", "--polarity", "1")["motions"]
@@ -211,6 +212,7 @@ class TestContent:
         assert "they need a measured restitution" in words and "No map is given" in words
         assert "restitution" in run("report", *FEW, stocky, "--record", ACCEL, "-o", out, code=2).stderr
 
+    @pytest.mark.rest
     def test_pulses_are_marked_where_they_are(self, tmp_path):
         out = tmp_path / "r.html"
         run("report", *FEW, BLOCK, "--pulse", "sine:0.6g:0.8s", "--pulse", "ricker:0.4g:1.2s", "-o", out)

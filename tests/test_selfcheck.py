@@ -61,6 +61,7 @@ def few(monkeypatch, **found):
 
 
 class TestEachCheck:
+    @pytest.mark.every(2)
     @pytest.mark.parametrize("name", CHECKS)
     def test_it_passes_far_below_its_limit(self, name):
         found = checked(name, quick=False)

@@ -627,6 +627,7 @@ def test_what_is_printed_is_what_the_command_finds(sheets):
     assert found["α(φ_[SLV])"] == pytest.approx((0.3 - 4 * np.tan(phi)) / (4 + 0.3 * np.tan(phi)), rel=2e-5)
 
 
+@pytest.mark.rest
 @pytest.mark.parametrize("language", ["en", "it"])
 @pytest.mark.parametrize("suffix", [".html", ".docx"])
 def test_hostile_names_break_nothing(suffix, language, tmp_path):
@@ -665,6 +666,7 @@ class TestAskingForIt:
         (tmp_path / "s.yaml").write_text(FACADE, encoding="utf-8")
         return run("verify", tmp_path / "s.yaml", "--site", tmp_path / "site.yaml", *more, code=code)
 
+    @pytest.mark.rest
     def test_a_pdf_is_printed_by_a_browser(self, tmp_path):
         found, driver = launch()  # skipped where there is none
         found.close()

@@ -678,6 +678,7 @@ def test_what_is_counted_does_not_depend_on_how_it_is_read(whole, monkeypatch):
         np.testing.assert_array_equal(piecewise.ladders.first[limit], once.ladders.first[limit])
 
 
+@pytest.mark.rest
 @pytest.mark.parametrize("method", ["stripes", "ida"])
 def test_few_records_and_what_is_not_tested_are_said_in_words_and_in_json(tmp_path, method):
     text = STUDY.replace("method: stripes", f"method: {method}").replace("method:", MORE)

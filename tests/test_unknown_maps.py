@@ -354,6 +354,7 @@ class TestHistory:
             assert max(max(line.get_xdata()) for line in below.lines if len(line.get_xdata()) > 2) > 10
 
 
+@pytest.mark.rest
 @pytest.mark.parametrize(
     ("command", "read"),
     [

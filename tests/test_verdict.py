@@ -349,6 +349,7 @@ def test_an_outcome_has_one_name(facts, word):
     assert names.outcome(**facts) == word
 
 
+@pytest.mark.every(2)
 @pytest.mark.usefixtures("small_maps")
 @pytest.mark.parametrize(
     ("structure", "pulse", "word"),

@@ -47,6 +47,7 @@ def wall(bricks, courses, **given):
     return Registry()["assembly"](blocks=blocks, ground={"floor": {"polygon": floor}}, **given)
 
 
+@pytest.mark.rest
 @pytest.mark.parametrize("name", CHECKED)
 @pytest.mark.parametrize("direction", list(Direction))
 def test_velocities_at_joints_are_those_of_their_points(name, direction):

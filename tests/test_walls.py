@@ -109,6 +109,7 @@ def test_names_in_short():
     assert in_short(names * 200, most=1) == "b0 and 1,999 more" and in_short([]) == ""
 
 
+@pytest.mark.rest
 class TestPicture:
     def test_blocks_that_move_as_one_are_one_part(self, shown):
         grouped = shown.grouped
