@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -62,6 +63,32 @@ def under(body: Sequence[Outline], at: complex) -> BearingFace | None:
     return best
 
 
+def shared(one: Sequence[Outline], other: Sequence[Outline]) -> list[tuple[complex, tuple[complex, complex]]]:
+    """Return the faces on which two bodies lie on one another: unit normals out of the first, and both ends."""
+    size = _size([*one, *other])
+    found = []
+    for (p, q), (r, s) in product(_sides(one), _sides(other)):
+        along = (q - p) / abs(q - p)
+        way = (s - r) / abs(s - r)
+        if abs((along.conjugate() * way).imag) > PARALLEL or (along.conjugate() * way).real > 0:
+            continue
+        if max(abs(((z - p) / along).imag) for z in (r, s)) > NEAR * size:
+            continue
+        # Seen along the side of the first body, that of the second runs backwards.
+        start, end = max(0.0, ((s - p) / along).real), min(abs(q - p), ((r - p) / along).real)
+        if end - start > NEAR * size:
+            found.append((-1j * along, (p + start * along, p + end * along)))
+    return found
+
+
+def lowest(body: Sequence[Outline]) -> tuple[complex, complex] | None:
+    """Return the ends of what a body stands on: its level sides at its lowest point; None if it has none there."""
+    size, sides = _size(body), list(_sides(body))
+    bottom = min((z.imag for side in sides for z in side), default=0.0)
+    level = [z for side in sides if all(z.imag - bottom <= NEAR * size for z in side) for z in side]
+    return (min(level, key=lambda z: z.real), max(level, key=lambda z: z.real)) if level else None
+
+
 def _on_a_side(one: Sequence[Outline], other: Sequence[Outline], at: complex, size: float) -> BearingFace | None:
     """Return the face of a corner of one body on a side of the other; None if there is none."""
     for k, shapes in enumerate((one, other)):
@@ -78,16 +105,19 @@ def _size(shapes: Sequence[Outline]) -> float:
 
 
 def _sides_at(shapes: Sequence[Outline], at: complex, size: float) -> Iterator[tuple[complex, complex]]:
-    """Yield the sides on which a point lies, in anticlockwise order, so that the body is on their left."""
+    """Yield the sides on which a point lies."""
+    for p, q in _sides(shapes):
+        along = min(max(((at - p) / (q - p)).real, 0.0), 1.0)
+        if abs(at - p - along * (q - p)) <= NEAR * size:
+            yield p, q
+
+
+def _sides(shapes: Sequence[Outline]) -> Iterator[tuple[complex, complex]]:
+    """Yield all sides in anticlockwise order, so that the body is on their left."""
     for shape in shapes:
         z: Points = np.asarray(shape, dtype=np.complex128)
         z = z if area_of(z) > 0 else z[::-1]
-        for p, q in zip(z.tolist(), np.roll(z, -1).tolist(), strict=True):
-            if p == q:
-                continue
-            along = min(max(((at - p) / (q - p)).real, 0.0), 1.0)
-            if abs(at - p - along * (q - p)) <= NEAR * size:
-                yield p, q
+        yield from ((p, q) for p, q in zip(z.tolist(), np.roll(z, -1).tolist(), strict=True) if p != q)
 
 
 def _is_inside(p: complex, q: complex, at: complex, size: float) -> bool:

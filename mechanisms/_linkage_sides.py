@@ -24,7 +24,8 @@ class Connection(Described):
     slide: Name | Pair | None = Field(
         None, description="the body of which a point stays on a line, of the ground or of a second body"
     )
-    fixed: Pair | None = Field(None, description="two bodies that are one, or a body and ground")
+    fixed: Pair | None = Field(None, description="two bodies that do not part, or a body and ground")
+    bonded: bool = Field(False, description="of fixed: glued or cramped, so that what opens there is not checked")
     at: Vertex | Name | None = point("where it is; at a crack its name and end, such as: crack left", default=None)
     along: Vertex | None = quantity("the direction of the line of a slide, [x, y]", default=None)
 
@@ -38,6 +39,10 @@ class Connection(Described):
             if (getattr(self, key) is not None) != needed:
                 what = f"is missing: a {kind} needs it" if needed else f"cannot be combined with {kind}"
                 raise geometry_error(key, what)
+        if self.bonded and kind != "fixed":
+            raise geometry_error(
+                "bonded", f"cannot be combined with {kind}: it says that bodies that are fixed are glued"
+            )
         if self.along is not None and not any(self.along):
             raise geometry_error("along", "is not a valid direction: give [x, y], not both zero")
         if len(set(self.bodies)) < len(self.bodies):
@@ -84,40 +89,43 @@ class PlacedSide:
         The body whose rotation is phi.
     joints : sequence of Pin or Guide
         Joints of the bodies.
-    fixed : sequence of pairs of str
-        Pairs of bodies that move as one.
-    ground : sequence of str
-        Bodies at rest.
+    fixings : mapping of pairs of str to bool
+        Pairs of bodies that do not part, or of a body and `GROUND`, and whether they are bonded.
     end : float or None
         Largest rotation of the motion [rad]; None if not given.
     """
 
     lead: str
     joints: Sequence[Pin | Guide]
-    fixed: Sequence[tuple[str, str]]
-    ground: Sequence[str]
+    fixings: Mapping[tuple[str, str], bool]
     end: float | None
+
+    @property
+    def fixed(self) -> list[tuple[str, str]]:
+        """Pairs of bodies that move as one."""
+        return [pair for pair in self.fixings if GROUND not in pair]
+
+    @property
+    def ground(self) -> list[str]:
+        """Bodies at rest."""
+        return [name for pair in self.fixings if GROUND in pair for name in pair if name != GROUND]
 
     @classmethod
     def of(cls, side: LinkageSide) -> PlacedSide:
         """Return a side whose joints all have their points as numbers."""
         joints: list[Pin | Guide] = []
-        fixed: list[tuple[str, str]] = []
-        ground: list[str] = []
+        fixings: dict[tuple[str, str], bool] = {}
         for name, each in side.joints.items():
             at = complex(*each.at) if isinstance(each.at, list) else 0j
             if each.fixed is not None:
-                rests = [body for body in each.bodies if body != GROUND]
-                if len(rests) == 1:
-                    ground += rests
-                else:
-                    fixed.append((rests[0], rests[1]))
+                one, other = each.bodies
+                fixings[one, other] = each.bonded
             elif each.slide is not None:
                 joints.append(Guide(name, each.bodies, at, complex(*(each.along or ()))))
             else:
                 joints.append(Pin(name, each.bodies, at))
         end = None if side.limit_deg is None else radians(side.limit_deg)
-        return cls(side.lead, joints, fixed, ground, end)
+        return cls(side.lead, joints, fixings, end)
 
 
 def mirrored(side: LinkageSide, middle: float, images: Mapping[str, str]) -> LinkageSide:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from math import inf
 from typing import ClassVar, Literal, Self
@@ -11,6 +12,7 @@ import numpy as np
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
+from mechanisms import _faces as faces
 from mechanisms._cracks import EDGE, Crack, Cracked, active, cracked, weakest
 from mechanisms._linkage_checks import beside, closing, face_at, turns_the_wrong_way
 from mechanisms._linkage_sides import GROUND, LinkageSide, PlacedSide, mirrored
@@ -306,10 +308,10 @@ class Linkage(LinkedBodies):
         held = self._held[direction].joints
         if any(isinstance(each, Guide) and len(each.bodies) > 1 for each in held):
             return ()  # its line turns: the forces there are not looked at
-        return [self._joint(each, direction) for each in held]
+        return [self._joint(each, direction, self._linkages[direction].resting) for each in held]
 
-    def _joint(self, each: Pin | Guide, direction: Direction) -> Joint:
-        """Return a hinge with its face, or a guide of the ground."""
+    def _joint(self, each: Pin | Guide, direction: Direction, ground: Collection[str]) -> Joint:
+        """Return a hinge with its face, or a guide of the ground, with the bodies that are the ground here."""
         names, letter = each.bodies, self._letter(each.name, direction)
         if isinstance(each, Guide):
             return Joint(letter, each.at, names, slide=each.along / abs(each.along))
@@ -317,8 +319,8 @@ class Linkage(LinkedBodies):
         normal = face.normal if face is not None else 1j
         if len(names) == 1:
             return Joint(letter, each.at, names, normal=normal)
-        if still := self._linkages[direction].resting.intersection(names):  # what it bears on is the ground here
-            moves = next(name for name in names if name not in still)
+        if any(name in ground for name in names):
+            moves = next(name for name in names if name not in ground)
             return Joint(letter, each.at, (moves,), normal=normal if moves == names[1] else -normal)
         flat = names[face.inside] if face is not None and face.inside is not None else None
         if normal.imag < 0:  # the second bears the first
@@ -326,25 +328,71 @@ class Linkage(LinkedBodies):
         return Joint(letter, each.at, names, normal=normal, face=flat or names[0])
 
     def pieces(self, direction: Direction) -> Sequence[Piece]:
-        """Return the bodies, without those at rest."""
-        return [each for each in super().pieces(direction) if each.of not in self._linkages[direction].resting]
+        """Return the bodies, without those at rest whose joint with the ground is not checked."""
+        return [each for each in super().pieces(direction) if each.of not in self._anchored[direction]]
+
+    @cached_property
+    def _closed(self) -> Mapping[Direction, Mapping[tuple[str, str], Sequence[Contact]]]:
+        """What is fixed in a direction, and the faces on which it may open or slide; none of what is not checked."""
+        return {
+            direction: {
+                pair: [] if bonded else self._closed_faces(pair) for pair, bonded in held.fixings.items()
+            }
+            for direction, held in self._held.items()
+        }  # fmt: skip
+
+    def _closed_faces(self, pair: tuple[str, str]) -> Sequence[Contact]:
+        """Return the faces between two bodies, or a body and the level ground below it, as closed joints."""
+        shapes = [self._members[name].outlines for name in pair if name != GROUND]
+        if len(shapes) == 1:
+            (body,) = (name for name in pair if name != GROUND)
+            ends = faces.lowest(shapes[0])
+            return [] if ends is None else [Contact((None, body), ends, face=None, friction=self.friction)]
+        found: list[Contact] = []
+        one, other = pair
+        for normal, ends in faces.shared(*shapes):
+            # The second one bears the first if the normal points down.
+            below, above, upwards = (one, other, normal) if normal.imag >= 0 else (other, one, -normal)
+            name = f"{below} and {above}" + (f", face {len(found) + 1}" if found else "")
+            found.append(Contact((below, above), ends, upwards, below, self.friction, name=name))
+        return found
+
+    @cached_property
+    def _anchored(self) -> Mapping[Direction, Collection[str]]:
+        """Bodies that are as the ground: nothing between them and it may open."""
+        found = {}
+        for direction, closed in self._closed.items():
+            names = {GROUND}
+            for _ in closed:
+                names |= {
+                    name for pair, faces in closed.items() if not faces and names.intersection(pair) for name in pair
+                }
+            found[direction] = names
+        return found
 
     def contacts(self, direction: Direction) -> Sequence[Contact] | None:
         if direction not in self._held:
             return None
-        bearing, rests = [], self._linkages[direction].resting
+        bearing, ground = [], self._anchored[direction]
         for joint in self._held[direction].joints:
             if not isinstance(joint, Guide) or len(joint.bodies) == 1:
-                bearing += of_joints([self._joint(joint, direction)], self.friction)
+                bearing += of_joints([self._joint(joint, direction, ground)], self.friction)
                 continue
             # A point of the first body on a line that turns with the second.
-            point, line = (None if name in rests else name for name in joint.bodies)
+            point, line = (None if name in ground else name for name in joint.bodies)
             along = joint.along / abs(joint.along)
             bearing.append(Contact((line, point), (joint.at,), 1j * along, face=line, held="slide"))
-        # What is fixed, and a crack of the other direction alone, stays closed.
-        bearing += [Contact(pair, (self._members[pair[0]].body.centroid,), held="fixed")
-                  for pair in self._held[direction].fixed if not rests.intersection(pair)]  # fmt: skip
+        for pair, closed in self._closed[direction].items():
+            if closed:
+                bearing += [_on_ground(each, ground) for each in closed]
+            elif not any(name in ground for name in pair):
+                bearing.append(Contact(pair, (self._members[pair[0]].body.centroid,), held="fixed"))
         return bearing
+
+    def asserted(self) -> Sequence[str]:
+        bonds = [pair for closed in self._closed.values() for pair, faces in closed.items() if not faces]
+        words = dict.fromkeys(f"the bond of {' and '.join(sorted(pair, key=GROUND.__eq__))}" for pair in bonds)
+        return [*super().asserted(), *words]
 
     def _letter(self, name: str, direction: Direction) -> str:
         """Return the letter of a joint, with a prime for a mirror image."""
@@ -373,6 +421,12 @@ class Linkage(LinkedBodies):
             for each in self._held[direction].joints
             if not isinstance(each, Guide)
         ]
+
+
+def _on_ground(contact: Contact, ground: Collection[str]) -> Contact:
+    """Return a joint in which bodies that are as the ground are the ground."""
+    one, other = (None if name in ground else name for name in contact.pieces)
+    return replace(contact, pieces=(one, other), face=None if contact.face in ground else contact.face)
 
 
 def _on_pieces(tie: Tie, found: Cracked) -> Tie:

@@ -171,6 +171,13 @@ class Mechanism(Given, ABC):
         """Return a caution on the results of this structure in particular; by default an empty text."""
         return ""
 
+    def asserted(self) -> Sequence[str]:
+        """Return the joints that are taken to hold and are not checked, in words; by default supports."""
+        held = [
+            each for direction in self.directions for each in self.contacts(direction) or () if each.held == "slide"
+        ]
+        return list(dict.fromkeys(f"the support of {' and '.join(filter(None, each.pieces))}" for each in held))
+
     def extras(self, direction: Direction) -> Sequence[Extra]:
         """Return further results of interest to users, such as the height of the hinge; shown by `equiv`."""
         return ()

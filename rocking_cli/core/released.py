@@ -152,17 +152,22 @@ def _solved(rates: Rates, pieces: Pieces, demand: Reals) -> tuple[Reals, Reals]:
     parts = min(len(rocking), -(-rocking.size * rocking.shape[1] // AT_ONCE))
     for part in np.array_split(np.arange(len(rocking)), parts):
         square = np.concatenate([rates.rotations(part).dense() / scale, rocking[part, None, :]], axis=1)
-        try:
-            inverse = np.linalg.inv(square)
-        except np.linalg.LinAlgError:
-            raise Undetermined(redundant=False) from None
-        if np.abs(inverse).max() > 1 / SINGULAR:
-            raise Undetermined(redundant=False)
-        released = inverse[:, :, :-1] / scale[:, None]
+        released = inverted(square)[:, :, :-1] / scale[:, None]
         moving = pieces.momenta(released, part)
         force.append(released.swapaxes(1, 2) @ demand[part])
         compliance.append(1 / np.einsum("nir,nir->nr", released, moving))
     return np.concatenate(force), np.concatenate(compliance)
+
+
+def inverted(square: Reals) -> Reals:
+    """Return the inverses of matrices of rates over the size. Raises `Undetermined` if they are as good as singular."""
+    try:
+        inverse = np.linalg.inv(square)
+    except np.linalg.LinAlgError:
+        raise Undetermined(redundant=False) from None
+    if np.abs(inverse).max() > 1 / SINGULAR:
+        raise Undetermined(redundant=False)
+    return np.asarray(inverse)
 
 
 class Pieces:
@@ -272,10 +277,25 @@ class Pieces:
         at, g = mechanism.coefficients(self.phi, direction), mechanism.gravity
         # phi.. = -(J phi.^2 + (g + v_g'') G + Q + s B u_g'')/I   [Eq. 8]
         turning = -np.stack([g * at.G + at.Q, int(direction) * at.B, at.J, at.G], axis=-1) / at.I[:, None]
-        forces = np.zeros((n, 3 * len(self._parts), 4))
+        forces = self.held_still()
         along = self.momentum(self.dq)
         forces += along[..., None] * turning[:, None, :]
         forces[..., RATE] += self.momentum(self.ddq)
+        for thing in self._masses:
+            # The point of a body has an acceleration of its own beside those of the coordinates: -psi.^2 times its arm.
+            across, up = (self._spread(thing.spot, np.full(n, way)) for way in (1 + 0j, 1j))
+            name = self._piece(thing.spot)
+            arm = self._carried(name, thing.spot.at) - self._centres[name][0]
+            inwards = -(self._motions[name].dpsi ** 2) * arm
+            moved = thing.horizontal * inwards.real[:, None] * across + thing.vertical * inwards.imag[:, None] * up
+            forces[..., RATE] += thing.mass * moved
+        return forces
+
+    def held_still(self) -> Reals:
+        """Return the forces that contacts must exert on the pieces if these do not move, as `demands`."""
+        mechanism, direction, n = self._mechanism, self._direction, self.phi.size
+        g = mechanism.gravity
+        forces = np.zeros((n, 3 * len(self._parts), 4))
         for part in self._parts:
             k = self._column[part.body.name]
             forces[:, k, PUSH] += part.body.mass
@@ -286,12 +306,6 @@ class Pieces:
             forces[..., PUSH] += thing.mass * thing.horizontal * across
             forces[..., ONE] += thing.mass * thing.weight * g * up
             forces[..., WEIGHT] += thing.mass * thing.weight * up
-            # The point of a body has an acceleration of its own beside those of the coordinates: -psi.^2 times its arm.
-            name = self._piece(thing.spot)
-            arm = self._carried(name, thing.spot.at) - self._centres[name][0]
-            inwards = -(self._motions[name].dpsi ** 2) * arm
-            moved = thing.horizontal * inwards.real[:, None] * across + thing.vertical * inwards.imag[:, None] * up
-            forces[..., RATE] += thing.mass * moved
 
         def follow(spot: Spot) -> object:
             return self._path(spot)

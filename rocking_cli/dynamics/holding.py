@@ -43,15 +43,17 @@ def joints_in_words(history: History) -> str:
         return f"{_until(history)} {NEXT.format(OVERTURNS if alone else HINGES)}"
     if check is None:
         return NOT_CHECKED
+    taken = f" Not checked, and taken to hold: {', '.join(check.asserted)}." if check.asserted else ""
+    every = "All joints that are checked bear" if check.asserted else "All joints bear"
     if isnan(check.warned):
-        return "" if check.alone else "All joints bear throughout the motion."
+        return "" if check.alone else f"{every} throughout the motion.{taken}"
     if check.largest < INSTANT * check.reach:
         where = f"the joint between {check.warned_joint}"
-        return f"All joints bear throughout, except {where} for an instant at {check.warned:.4g} s."
+        return f"{every} throughout, except {where} for an instant at {check.warned:.4g} s.{taken}"
     return (
         f"The joint between {check.largest_joint} opens or slides by up to {_small(check.largest, 'm')} "
         f"({percent(check.largest / check.reach)} of D_cr; the limit is {percent(check.limit)}), for at most "
-        f"{_small(check.longest, 's')} at a time: less than the limit, so the outcome and the peak remain valid."
+        f"{_small(check.longest, 's')} at a time: less than the limit, so the outcome and the peak remain valid.{taken}"
     )
 
 

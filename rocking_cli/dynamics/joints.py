@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.released import ONE, PUSH, RATE, Released, Undetermined, impulses, released
+from rocking_cli.core.released import ONE, PUSH, RATE, WEIGHT, Released, Undetermined, impulses, released
+from rocking_cli.core.resting import resting
 from rocking_cli.core.statics import Statics
 from rocking_cli.core.strength import Strength
 from rocking_cli.dynamics import kernels
@@ -31,6 +32,7 @@ TENSION = 1e-9  # of the weight: a force that is missing by rounding alone
 QUICK = 3e-3  # of 1/p: the longest step in which openings of a small structure are advanced
 ANY = 1e6  # m/s2: more than any ground acceleration
 NEVER = (np.inf, -1.0)  # all joints bear under no q.^2 at all
+ALWAYS = (-np.inf, np.inf)  # no joint fails at rest, whatever u_g''
 SAFE = 0.01  # of the width of the certain bounds, which the cubics may leave between two of their nodes
 
 
@@ -65,6 +67,13 @@ class JointTables:
         Longest time step in which openings are integrated [s]; the kernel may use a shorter one.
     gravity : float
         Acceleration of gravity [m/s2].
+    rest : ndarray, shape (joints, 3, 4)
+        Normal forces and shear force of each joint at rest: the factors of 1, u_g'' and v_g'' [N], and the compliance
+        [1/kg], which is 0 where there is no such force, or it is not known.
+    steady : tuple of float
+        Quick test that no joint fails at rest: least and largest u_g'' [m/s2].
+    asserted : sequence of str
+        Joints that are taken to hold and are not checked, in words.
     redundant : bool
         Whether statics alone does not determine the forces at the joints; then rows are modes in which several joints
         open.
@@ -87,6 +96,9 @@ class JointTables:
     scales: bool
     step: float
     gravity: float
+    rest: Reals
+    steady: tuple[float, float]
+    asserted: Sequence[str]
     redundant: bool = False
     calm: tuple[float, float] = NEVER
     alone: bool = False
@@ -128,6 +140,8 @@ class JointCheck:
         Number of joints checked; 0 if none could open.
     alone : bool
         Whether the only joint is that of a single body with the ground.
+    asserted : sequence of str
+        Joints that are taken to hold and are not checked, in words.
     """
 
     limit: float
@@ -145,6 +159,7 @@ class JointCheck:
     parted_joint: str
     count: int
     alone: bool
+    asserted: Sequence[str] = ()
 
 
 REASONS = ("opens", "slides", "crushes", "weightless")  # in the order of the kernel
@@ -180,6 +195,7 @@ def check_of(joints: JointTables | None, marks: Reals) -> JointCheck | None:
         parted_joint=label(where),
         count=len(joints.labels),
         alone=joints.alone,
+        asserted=joints.asserted,
     )
 
 
@@ -224,13 +240,16 @@ def joints_of(
     found = [one for one, _ in answers if one is not None]
     if len(found) < len(sides):
         return None
-    labels = list(dict.fromkeys(contact.label for one in found for contact in one.contacts if contact.held is None))
+    still = resting(mechanism)
+    known = [*found, still] if still is not None else found
+    labels = list(dict.fromkeys(contact.label for one in known for contact in one.contacts if contact.held is None))
     contacts, bearing = _contacts(mechanism, found, labels)
     most = max(one.force.shape[1] for one in found)
     weight = mechanism.gravity * sum(body.mass for body in mechanism.weighed())
     rows = np.zeros((cells, 2, most, 20))
     within = np.zeros((FINER * cells, 2, 5))
     struck = np.zeros((2, most, 2))
+    rest, steady = _at_rest(still, labels, bearing, weight)
     for d, ((direction, table), one) in enumerate(zip(sides, found, strict=True)):
         force = one.force.copy()
         force[:, [k for normal, _ in one.rows for k in normal], ONE] += TENSION * weight
@@ -245,10 +264,34 @@ def joints_of(
             struck[d, :count] = hit
     return JointTables(
         labels, contacts, bearing, rows, struck, within, _reach(mechanism, statics), mechanism.opening,
-        not any(table.held.size for table in tables), QUICK / p, mechanism.gravity,
-        redundant, _calm(within, tables, statics),
+        not any(table.held.size for table in tables), QUICK / p, mechanism.gravity, rest, steady,
+        mechanism.asserted(), redundant, _calm(within, tables, statics),
         len(mechanism.bodies()) == 1,
     )  # fmt: skip
+
+
+def _at_rest(
+    still: Released | None, labels: Sequence[str], bearing: Reals, weight: float
+) -> tuple[Reals, tuple[float, float]]:
+    """Return `JointTables.rest` and `steady`, and fill in the friction of joints that are joints at rest alone."""
+    rest, planes = np.zeros((len(labels), 3, 4)), []
+    if still is None:
+        return rest, ALWAYS
+    factors = np.concatenate([still.force[0][:, [ONE, PUSH, WEIGHT]], still.compliance[0][:, None]], axis=1)
+    for contact, (normal, shear) in zip(still.contacts, still.rows, strict=True):
+        if contact.held is not None or shear is None:
+            continue
+        j = labels.index(contact.label)
+        rest[j, : len(normal)] = factors[list(normal)]
+        rest[j, : len(normal), 0] += TENSION * weight
+        rest[j, 2] = factors[shear]
+        planes += list(rest[j, : len(normal), :3])
+        if contact.friction is not None:
+            bearing[j, 0] = contact.friction
+            total = contact.friction * rest[j, :2, :3].sum(axis=0)
+            planes += [total - rest[j, 2, :3], total + rest[j, 2, :3]]
+    low, high = _range(np.array(planes)[None, :, [0, 1, 1]] * [1.0, 1.0, 0.0], np.zeros(1))
+    return rest, (float(low[0]), float(high[0]))
 
 
 def _at(table: DirectionTable, cells: int) -> Reals:
@@ -408,10 +451,12 @@ def _reach(mechanism: Mechanism, statics: Sequence[Statics]) -> float:
     return min(reaches)
 
 
-def laid_out(all_joints: Sequence[JointTables | None]) -> tuple[Integers, Integers, Reals, Reals, Reals, Reals, Reals]:
+def laid_out(
+    all_joints: Sequence[JointTables | None],
+) -> tuple[Integers, Integers, Reals, Reals, Reals, Reals, Reals, Reals]:
     """Return the joints of several structures, one after the other, as the fields of `kernels.Joints`."""
     counts = np.zeros((len(all_joints), 8), np.int64)
-    numbers = np.ones((len(all_joints), 6))
+    numbers = np.ones((len(all_joints), 8))
     known = [each for each in all_joints if each is not None]
     first = rows_at = struck_at = within_at = 0
     for k, each in enumerate(all_joints):
@@ -421,7 +466,7 @@ def laid_out(all_joints: Sequence[JointTables | None]) -> tuple[Integers, Intege
             first, len(each.labels), each.rows.shape[2], len(each.rows), rows_at, struck_at, within_at,
             len(each.within),
         )  # fmt: skip
-        numbers[k] = each.gravity, each.limit * each.reach, each.step, each.scales, *each.calm
+        numbers[k] = each.gravity, each.limit * each.reach, each.step, each.scales, *each.calm, *each.steady
         first += len(each.labels)
         rows_at += each.rows.size // kernels.OF_ROW
         struck_at += each.struck.size // 2
@@ -433,5 +478,6 @@ def laid_out(all_joints: Sequence[JointTables | None]) -> tuple[Integers, Intege
         np.concatenate([np.zeros((0, kernels.OF_ROW)), *(each.rows.reshape(-1, kernels.OF_ROW) for each in known)]),
         np.concatenate([np.zeros((0, 2)), *(each.struck.reshape(-1, 2) for each in known)]),
         np.concatenate([np.zeros((0, 5)), *(each.within.reshape(-1, 5) for each in known)]),
+        np.concatenate([np.zeros((0, 3, 4)), *(each.rest for each in known)]),
         numbers,
     )

@@ -74,6 +74,7 @@ SLOW = 0.5  # of 1/p: the interval to go on with after the record
 LOOK = 1.25e-3  # s: the longest step in which openings of joints are advanced, eight in 0.01 s
 BEHIND = 1e-11  # of a cell: how far behind a corner of the force a motion goes on
 COINCIDE = 1e-9  # of an interval: what is closer than this is at one moment
+LONG = 1e3  # s: what slides at rest after the record has stopped by then
 
 SOURCE: list[Callable[..., object]] = []
 """What is to be compiled, each after those it calls."""
@@ -107,8 +108,11 @@ class Joints(NamedTuple):
     # (n, 2): of its directions and rows, impulses over the rate before, a constant and the factor of eta
     struck: np.ndarray
     within: np.ndarray  # (n, 5): of its cells and directions, where all joints bear for certain, see `quiet`
-    # (m, 6): gravity [m/s2], limit of the opening [m], longest step in the structure's own size [s], whether all forces
-    # scale with g, and the u_g'' and the q.^2 that joints bear up to phi_cr, each without the other
+    # (joints, 3, 4): of both normal forces and the shear force at rest, factors of 1, u_g'' and v_g'', and compliance
+    rest: np.ndarray
+    # (m, 8): gravity [m/s2], limit of the opening [m], longest step in the structure's own size [s], whether all forces
+    # scale with g, the u_g'' and the q.^2 that joints bear up to phi_cr, each without the other, and the least and the
+    # largest u_g'' that they bear at rest
     numbers: np.ndarray
 
 
@@ -123,6 +127,9 @@ class Watch(NamedTuple):
     rows: np.ndarray
     struck: np.ndarray
     within: np.ndarray
+    rest: np.ndarray
+    steady_from: float  # u_g'' at which no joint fails at rest
+    steady_to: float
     gravity: float
     limit: float
     step: float
@@ -809,6 +816,53 @@ def settle(watch, t, marks):
 
 
 @inlined
+def steady(watch, u):
+    """Whether no joint moves at rest, nor begins to under a ground acceleration u of a structure of usual weight."""
+    if watch.size == 0:
+        return True
+    least, most = min(u, u * watch.slender), max(u, u * watch.slender)
+    return watch.notes[MOVING] == 0 and watch.steady_from <= least and most <= watch.steady_to
+
+
+@called
+def stand(watch, t, size, steps, u0, u1, weight, lift0, lift1, marks):
+    """Hold the joints at rest against what a step asks of them, as `look` does those of a motion.
+
+    u is u_g'' and lift v_g'' at the start and the end of the step, which begins at t. Openings follow the slenderness
+    of the history, as uplift does, and friction does not.
+    """
+    kept, h = watch.kept, size / steps
+    watch.notes[SO_FAR], watch.notes[SO_FAR + 1] = marks[PEAK], marks[PEAK + 1]
+    for step in range(steps):
+        ua, ub = u0 + (u1 - u0) * step / steps, u0 + (u1 - u0) * (step + 1) / steps
+        la, lb = lift0 + (lift1 - lift0) * step / steps, lift0 + (lift1 - lift0) * (step + 1) / steps
+        moving, missing, where = False, 0.0, -1
+        for j in range(watch.size):
+            rest, total_a, total_b = watch.rest[j], 0.0, 0.0
+            for end in range(2):
+                na = weight * rest[end, 0] + ua * rest[end, 1] + la * rest[end, 2]
+                nb = weight * rest[end, 0] + ub * rest[end, 1] + lb * rest[end, 2]
+                total_a, total_b = total_a + na, total_b + nb
+                if advance_opening(kept, j, end, -na * rest[end, 3], -nb * rest[end, 3], h):
+                    moving = True
+                if -nb * rest[end, 3] > 0 and -nb > missing:
+                    missing, where = -nb, j
+            friction = watch.bearing[j, FRICTION]
+            if isfinite(friction):
+                ta = weight * rest[2, 0] + ua * watch.slender * rest[2, 1] + la * rest[2, 2]
+                tb = weight * rest[2, 0] + ub * watch.slender * rest[2, 1] + lb * rest[2, 2]
+                for sense in range(2):
+                    way = 1.0 - 2.0 * sense
+                    left_a, left_b = friction * max(total_a, 0.0) - way * ta, friction * max(total_b, 0.0) - way * tb
+                    if advance_opening(kept, j, 2 + sense, -left_a * rest[2, 3], -left_b * rest[2, 3], h):
+                        moving = True
+                    if -left_b * rest[2, 3] > 0 and -left_b > missing:
+                        missing, where = -left_b, j
+        note(watch, 0, 1.0, t + h * (step + 1), 0.0, Demand(missing, where, -1, -1), moving, marks)
+        watch.notes[MOVING] = 1.0 if moving else 0.0
+
+
+@inlined
 def misses(law, rtol, state, ended, e_q, e_w):
     """The error of a step over what is allowed: rtol of q and w, and of a hundredth of phi_cr where they are small."""
     if law.exact:
@@ -1034,6 +1088,7 @@ def follow(structure, motion, start, rtol, most_impacts, brief, watch, samples, 
     phi_out[:] = nan
     rate_out[:] = nan
     gravity = numbers[0, GRAVITY]
+    unit = gravity / watch.gravity  # the structure's own accelerations are those of the size of its joints times this
     exact = linear and v.size == 0
     slow_dt = SLOW / max(numbers[0, P], numbers[1, P])
     last, v_last = u.size - 1, v.size - 1
@@ -1055,7 +1110,13 @@ def follow(structure, motion, start, rtol, most_impacts, brief, watch, samples, 
     idle = 0
     while True:
         if resting and v.size == 0:  # quiet: on to the last sample before the ground lifts it
-            while k < last and stays(numbers, u[k] * factor) and stays(numbers, u[k + 1] * factor):
+            while (
+                k < last
+                and stays(numbers, u[k] * factor)
+                and stays(numbers, u[k + 1] * factor)
+                and steady(watch, u[k] * factor / unit)
+                and steady(watch, u[k + 1] * factor / unit)
+            ):
                 if k < every * phi_out.size and k % every == 0:
                     phi_out[k // every] = rate_out[k // every] = 0.0
                     drawn = k // every + 1
@@ -1068,6 +1129,8 @@ def follow(structure, motion, start, rtol, most_impacts, brief, watch, samples, 
             drawn += 1
         shaken = k < last or j < v_last
         if resting and not shaken:
+            if watched and watch.notes[MOVING] != 0:  # it slides on until friction has stopped it
+                stand(watch, t, LONG, 1, 0.0, 0.0, unit, 0.0, 0.0, marks)
             phi_out[drawn:] = rate_out[drawn:] = 0.0
             marks[SIDE] = d
             return AT_REST
@@ -1121,11 +1184,19 @@ def follow(structure, motion, start, rtol, most_impacts, brief, watch, samples, 
                     marks[ENDED], marks[SIDE] = t + tau, d
                     return STALLED
                 if resting:
+                    began = tau
                     tau, lifted = lifts_at(numbers, tau, end, u0, ramp, g, grade)
+                    u_began, u_ended = u0 + ramp * began, u0 + ramp * tau
+                    calm = v.size == 0 and steady(watch, u_began / unit) and steady(watch, u_ended / unit)
+                    if watched and not calm and tau > began:
+                        steps = max(1, ceil((tau - began) / watch.step - 1e-9))
+                        lift0, lift1 = g + grade * began - gravity, g + grade * tau - gravity
+                        stand(watch, t + began, tau - began, steps, u_began, u_ended, unit, lift0, lift1, marks)
                     if lifted < 0 or tau >= end:  # on the sample: the next piece begins with it
                         tau = end
                         break
                     resting = False
+                    watch.kept[:, GAP : GAP + 4] = 0.0
                     d = lifted
                     s = 1.0 - 2.0 * d
                     law = law_of(exact, numbers, d)
@@ -1220,7 +1291,7 @@ def numbers_of(usual, what, numbers):
 def watch_of(joints, m, size, slender, motion, room):
     """The joints of a structure, none of which has opened."""
     first, count, rows, cells, rows_at, struck_at, within_at, within_cells = joints.sizes[m]
-    gravity, limit, quick, scales, push, fast = joints.numbers[m]
+    gravity, limit, quick, scales, push, fast, steady_from, steady_to = joints.numbers[m]
     slow = -1.0
     if motion.v.size == 0 and (scales != 0 or size == 1):
         strongest = abs(motion.factor) * size * slender * (motion.ahead[0] if motion.ahead.size > 0 else 0.0)
@@ -1234,6 +1305,9 @@ def watch_of(joints, m, size, slender, motion, room):
         joints.rows[rows_at : rows_at + cells * 2 * rows],
         joints.struck[struck_at : struck_at + 2 * rows],
         joints.within[within_at : within_at + within_cells * 2],
+        joints.rest[first : first + count],
+        steady_from,
+        steady_to,
         gravity,
         limit,
         min(LOOK, quick * sqrt(size)),

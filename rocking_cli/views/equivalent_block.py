@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from rocking_cli.core import Direction, EquivalentBlock, Mechanism, Statics, one_block
 from rocking_cli.core.advice import preferred_kappa
 from rocking_cli.core.equivalence import AGREEMENT, alike
+from rocking_cli.core.resting import first_failure, resting
 from rocking_cli.core.restitution import why_none
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.structure import Structure
@@ -22,6 +23,7 @@ from rocking_cli.views.view import Table, View, heading, number
 def view(structure: Structure) -> View:
     """Show the parameters of both directions, in one column if they agree, and which kappa to prefer."""
     mechanism, sides = structure.mechanism, sides_of(structure)
+    cautions = [*mechanism.cautions(), *before_rocking(mechanism)]
     data = {
         "mechanism": mechanism.mechanism,
         "name": mechanism.name,
@@ -31,7 +33,7 @@ def view(structure: Structure) -> View:
         "hung": hung_data(mechanism),
         "per_unit_mass": not mechanism.has_mass,
         "restitution": restitution_source(mechanism),
-        "caution": " ".join(mechanism.cautions()) or None,
+        "caution": " ".join(cautions) or None,
         "misleading": structure.misleading,
         "directions": {side.direction.label: _data(side) | _extras(mechanism, side) for side in sides},
     }
@@ -62,8 +64,27 @@ def view(structure: Structure) -> View:
     said += [f"Caution: {structure.misleading}."] if structure.misleading else []
     said += [*hung_in_words(mechanism), *([] if mechanism.rocks_both_ways else [restitution_used(structure)])]
     said += [f"P{mechanism.crushing.words[1:]}."] if mechanism.crushing else []
-    said += [f"Caution: {text}" for text in mechanism.cautions()]
+    said += [f"Caution: {text}" for text in cautions]
     return View(data, [table, *said])
+
+
+def before_rocking(mechanism: Mechanism) -> list[str]:
+    """Return which joint slides or opens at rest before the structure rocks, in words, a sentence a direction."""
+    found: list[str] = []
+    still = resting(mechanism)
+    if still is None:
+        return found
+    for direction in mechanism.directions:
+        failure, lambda_ = first_failure(still, direction), mechanism.uplift(direction)
+        if failure is None or failure.push >= (1 - AGREEMENT) * lambda_ * mechanism.gravity:
+            continue
+        at = f"from {failure.push / mechanism.gravity:.4g} g, below lambda = {lambda_:.4g}"
+        found.append(
+            f"The structure slides before it rocks: at rest the joint between {failure.joint} slides {at}."
+            if failure.slides
+            else f"Another mechanism starts first: at rest the joint between {failure.joint} opens {at}."
+        )
+    return list(dict.fromkeys(found))
 
 
 def _found(mechanism: Mechanism, directions: Sequence[Direction]) -> list[list[str]]:
