@@ -7,9 +7,11 @@ import os
 import re
 import signal
 import sys
-from collections import Counter
+from collections import defaultdict
 from itertools import count
+from math import ceil
 from pathlib import Path
+from zlib import crc32
 
 import hypothesis
 import pytest
@@ -120,14 +122,15 @@ def record(name: str) -> Path:
 
 @pytest.hookimpl(tryfirst=True)  # before those of other tiers are left out
 def pytest_collection_modifyitems(items):
-    """Leave a few cases of a test to `make test` where there are many of one kind."""
-    seen = Counter()
+    """Leave a few cases to `make test` where a test has many: which, a checksum says, so that none is like the next."""
+    cases = defaultdict(list)
     for item in items:
-        thinned = item.get_closest_marker("every")
-        if thinned is not None:
-            if seen[item.location[0], item.originalname] % thinned.args[0]:
-                item.add_marker("rest")
-            seen[item.location[0], item.originalname] += 1
+        if item.get_closest_marker("every") is not None:
+            cases[item.location[0], item.originalname].append(item)
+    for same in cases.values():
+        same.sort(key=lambda item: crc32(item.name.encode()))
+        for item in same[ceil(len(same) / same[0].get_closest_marker("every").args[0]) :]:
+            item.add_marker("rest")
 
 
 def pytest_make_parametrize_id(val):

@@ -75,6 +75,15 @@ def test_after_overturning_fields_are_empty_and_after_rest_zero():
     assert lines[-1][2:8] == ["", "", "", "0", "0", "0"]
 
 
+def test_fields_are_empty_from_where_a_history_is_not_known():
+    rocking = respond(BLOCK, PULSE, models=("nonlinear",), tail=3.0)["nonlinear"]
+    smooth = BLOCK.model_copy(update={"friction": 0.05})
+    unknown = respond(smooth, PULSE, models=("nonlinear",), tail=0.0)["nonlinear"]
+    assert unknown.unknown and rocking.time.size > unknown.time.size
+    _, *lines = rows({"unknown": unknown, "rocking": rocking}, PULSE)
+    assert lines[-1][2:5] == ["", "", ""] and "" not in lines[-1][5:]
+
+
 @pytest.mark.rest
 def test_a_long_history_never_stands_in_memory_as_text():
     one = respond(BLOCK, PULSE, models=("nonlinear",), tail=0.0)["nonlinear"]

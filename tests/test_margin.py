@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from rocking_cli import engines
+from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
@@ -224,6 +225,18 @@ def test_uplift_is_a_quotient(polarities):
 def test_factors_must_ascend(wrong):
     with pytest.raises(InputError, match="ascending"):
         margin(build_model(BLOCK, "nonlinear"), parse_pulse("sine:1g:1s").sampled(), factors=np.array(wrong))
+
+
+def test_uplift_is_that_of_the_worse_polarity():
+    """Of a stone that leans, under a push one way only."""
+    leaning = parse_structure(
+        "mechanism: rigid_body\npolygon: [[-0.4, 0], [0.2, 0], [0.35, 2], [-0.4, 2]]\n", "stone", "stone"
+    )
+    lambdas = [leaning.uplift(direction) for direction in Direction]
+    push = GroundMotion("push", 0.01, np.append(0.1 * leaning.gravity * np.sin(np.linspace(0, np.pi, 41)), np.zeros(9)))
+    for polarities, lam in (((1,), lambdas[1]), ((-1,), lambdas[0]), ((1, -1), min(lambdas))):
+        found = margin(build_model(leaning, "nonlinear"), push, polarities=polarities, around=AROUND)
+        assert found.uplift == pytest.approx(lam / 0.1, rel=1e-9)
 
 
 class TestCommand:

@@ -6,8 +6,10 @@ import csv
 import json
 from io import StringIO
 
+import numpy as np
 import pytest
 
+from mechanisms.cone import Cone
 from mechanisms.wall import Wall
 from rocking_cli import Registry, load_structure
 from rocking_cli.core import Direction
@@ -159,3 +161,12 @@ def test_masses_that_cannot_be_had_are_the_mistake_of_the_file(name):
         parse_structure(text, "s.yaml", "s")
     (found,) = caught.value.problems
     assert (found.line, found.field) == (line, field) and said in found.message
+
+
+@pytest.mark.parametrize("ratio", [None, 0.6])
+def test_a_cone_weighs_what_its_slices_do(ratio):
+    r, h, k = 0.5, 2.0, ratio or 0.0
+    cone = Cone(base_radius=r, height=h, kind="hollow" if ratio else "solid", inner_ratio=ratio)
+    z = (np.arange(20_000) + 0.5) * h / 20_000
+    inner = np.where(z < k * h, k * r - z * r / h, 0.0)  # the inner cone stands on the same base
+    assert cone.volume() == pytest.approx(np.pi * ((r - z * r / h) ** 2 - inner**2).sum() * h / 20_000, rel=1e-6)

@@ -14,7 +14,7 @@ from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.errors import InputError
-from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.pulses.shapes import Sine
 from rocking_cli.excitation.records import read_record
@@ -251,6 +251,18 @@ class TestWithoutShaking:
         found = neighbours(build_model(BLOCK, "nonlinear"), None, release=0.5, release_is_angle=True)
         expected = [0.5 * exp(0.1 * ndtri(share)) for share in (0.16, 0.5, 0.84)]
         assert found.overturned == 0 and found.peak_ratio == pytest.approx(tuple(expected), rel=2e-3)
+
+    def test_a_release_by_an_angle_is_divided_by_the_slenderness_that_the_push_is_divided_by(self):
+        """Each neighbour, tilted and pushed, is one of its own: both by the same k."""
+        model, around = build_model(BLOCK, "nonlinear"), Neighbourhood(40, restitution=0.0)
+        drawn, tilt = around.drawn(model), 0.6
+        push = GroundMotion("push", 0.01, np.append(-0.11 * STANDARD_GRAVITY * np.ones(60), np.zeros(5)))
+        found = neighbours(model, push, around, release=tilt, release_is_angle=True)
+        alone = [
+            follow(model, push, Draws(*(each[k : k + 1] for each in drawn)), release=tilt / k_e).overturned[0]
+            for k, k_e in enumerate(drawn.slender)
+        ]
+        assert 0.1 < np.mean(alone) < 0.9 and found.overturned == np.mean(alone)
 
     @pytest.mark.parametrize("sign", [1, -1])
     def test_a_release_next_to_the_critical_rotation_falls_as_often_as_it_is_beyond_it(self, sign):

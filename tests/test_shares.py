@@ -42,6 +42,15 @@ def test_what_a_force_holds_is_not_scaled_with_the_slenderness():
     assert drawn.slender.std() == pytest.approx(0.10 * made.weight_share, rel=0.05)
 
 
+def test_of_two_directions_the_weaker_says_what_the_weight_holds():
+    fields = {"width": 0.7, "height": 2.8, "depth": 1.0, "density": 2000.0}
+    made = model("block", **fields, loads=[{"name": "thrust", "force": [2000.0, 0.0], "at": [0.0, 2.0]}])
+    own = model("block", **fields).lambda_[0]
+    weak, strong = made.lambda_
+    assert weak < own < strong
+    assert made.weight_share == pytest.approx(own / weak, rel=1e-9)
+
+
 def test_restitution_is_drawn_from_what_no_impact_exceeds():
     made = model()
     drawn = Neighbourhood(4000, restitution=0.05).drawn(made).eta

@@ -258,6 +258,13 @@ def test_a_damaged_name_of_a_column_is_a_damaged_store(sound, place, column):
     assert result.exit_code == 2 and f"{place}: the store is damaged" in result.stderr
 
 
+def test_a_number_next_to_the_last_one_is_no_run_of_the_study(sound, place):
+    with closing(sqlite3.connect(place, isolation_level=None)) as connection:
+        connection.execute("UPDATE run SET id = 240 WHERE id = 17")  # of 240, from 0
+    looked = command("results", place, "--json")
+    assert looked.exit_code == 5 and "1 run is damaged and left out: run 240" in looked.stderr
+
+
 def test_a_run_whose_number_is_damaged_hides_no_others_without_a_warning(sound, place):
     content, told = sound.store.read_bytes(), []
     for number in range(130, 240, 3):

@@ -16,6 +16,7 @@ from rocking_cli.codes.italian import demand, site_hazard
 from rocking_cli.codes.italian.capacity import ExactCurve, root
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum, TableSpectrum
+from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.site_hazard import Hazard
 from rocking_cli.codes.italian.ties import pulls
 from rocking_cli.core import Direction, box
@@ -232,6 +233,15 @@ class TestCurves:
         assert found.states["SLV"].d > 0.4 * 0.7
         free = verified(rk.Block(width=0.7, height=9.5))
         assert not any("Caution" in each or "against its force" in each for each in free.remarks)
+
+    @pytest.mark.parametrize("direction", Direction)
+    def test_a_force_counts_in_the_direction_in_which_it_holds(self, direction):
+        loads = [
+            {"name": name, "force": [force, 0.0], "at": [0.0, 7.0]} for name, force in (("left", -2e3), ("right", 2e3))
+        ]
+        found = verified(rk.Block(width=0.7, height=9.5, density=1900.0, depth=1.0, loads=loads), direction=direction)
+        (pull,) = pulls(found.exact, found.states["SLV"].d)
+        assert pull.name == ("left" if direction > 0 else "right") and pull.elongation > 0
 
     def test_a_tie_says_how_much_longer_it_is(self):
         """Flat and short, of a force at rest: from 1 m beside the face, at 7.5 m."""
@@ -683,6 +693,16 @@ def test_the_barycentre_is_where_d_is_that_of_the_point_over_e_star():
     follow = OPPENHEIM.followed(phi, Direction.POSITIVE)
     ways = [each.inertial * (follow(each.spot).z[0] - each.spot.at).real for each in weights]
     assert chain.moved(phi, Control(0j))[0] == pytest.approx(sum(ways) / sum(each.inertial for each in weights))
+
+
+def test_the_linear_method_takes_the_mode_of_a_damaged_building_from_SLD():
+    """Also where the ground of SLD is not given, and that of SLV is taken."""
+    code = codes()["NTC2018"]
+    floor = {**FLOOR, "SLD": {"T1": 0.25, "xi1": 0.05}}
+    ground = SiteGround(code.site.model_validate({**SITE, "floor": floor}))
+    assert ground.state_of_activation == "SLV"
+    assert (ground.of_activation.T1, ground.of_activation.xi1) == (0.25, 0.05)
+    assert (ground.spectrum("SLV").T1, ground.spectrum("SLV").xi1) == (0.4, 0.1)
 
 
 @pytest.mark.parametrize(("T", "own"), [(0.5, False), (1.0, False), (3.0, False), (6.0, True)])
