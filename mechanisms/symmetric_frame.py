@@ -64,8 +64,9 @@ class SymmetricFrame(Mechanism):
         if self.columns < 3:
             return ""
         return (
-            "Three or more columns may fall out of step at an impact, and one that bears nothing then rocks alone, "
-            "which is not followed: of 32 such histories 12 % were said to overturn, and 24 % did as free blocks."
+            "Three or more columns may fall out of step at an impact. A column that carries nothing then rocks alone, "
+            "which this model leaves out: in 32 time histories the stated share of overturning was 12 %, and 24 % of "
+            "the same frames overturned as free blocks."
         )
 
     def alike(self) -> Mapping[str, int]:

@@ -49,7 +49,8 @@ def test_help_fits_and_uses_a_wide_terminal(name, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "arguments", [("equiv", "--an-option-that-no-command-has"), ("equiv", "a_file_that_is_not_here.yaml"), ("respond", "--dt", "0")]
+    "arguments",
+    [("equiv", "--an-option-that-no-command-has"), ("equiv", "a_file_that_is_not_here.yaml"), ("respond", "--dt", "0")],
 )
 def test_errors_fit(arguments, monkeypatch):
     wide = run(*arguments, code=2).stderr

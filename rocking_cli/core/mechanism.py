@@ -172,7 +172,7 @@ class Mechanism(Given, ABC):
         return ""
 
     def asserted(self) -> Sequence[str]:
-        """Return the joints that are taken to hold and are not checked, in words; by default supports."""
+        """Return the joints that are assumed to hold without a check, in words; by default supports."""
         held = [
             each for direction in self.directions for each in self.contacts(direction) or () if each.held == "slide"
         ]

@@ -79,7 +79,7 @@ def resting(mechanism: Mechanism) -> Released | None:
 
 
 def _closed(contacts: Sequence[Contact], near: float) -> list[Contact] | None:
-    """Return the joints of both directions with all of their points; None if a face differs between the directions."""
+    """Return the joints of both directions with all of their points; None if they are not those of one face."""
     found: dict[tuple[str, str | None], Contact] = {}
     for each in contacts:
         key = (each.label, each.held)
@@ -92,7 +92,7 @@ def _closed(contacts: Sequence[Contact], near: float) -> list[Contact] | None:
         if each.held is None:
             new = [at for at in each.points if min(abs(at - old) for old in known.points) > near]
             found[key] = replace(known, points=(*known.points, *new), face=None)
-    return list(found.values())
+    return None if any(len(each.points) > 2 for each in found.values()) else list(found.values())
 
 
 def _as_one(mechanism: Mechanism, there: Pieces, closed: Sequence[Contact]) -> Released | None:

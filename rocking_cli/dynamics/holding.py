@@ -43,7 +43,7 @@ def joints_in_words(history: History) -> str:
         return f"{_until(history)} {NEXT.format(OVERTURNS if alone else HINGES)}"
     if check is None:
         return NOT_CHECKED
-    taken = f" Not checked, and taken to hold: {', '.join(check.asserted)}." if check.asserted else ""
+    taken = f" Not checked, but assumed to hold: {', '.join(check.asserted)}." if check.asserted else ""
     every = "All joints that are checked bear" if check.asserted else "All joints bear"
     if isnan(check.warned):
         return "" if check.alone else f"{every} throughout the motion.{taken}"

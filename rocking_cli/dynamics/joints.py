@@ -73,7 +73,7 @@ class JointTables:
     steady : tuple of float
         Quick test that no joint fails at rest: least and largest u_g'' [m/s2].
     asserted : sequence of str
-        Joints that are taken to hold and are not checked, in words.
+        Joints that are assumed to hold without a check, in words.
     redundant : bool
         Whether statics alone does not determine the forces at the joints; then rows are modes in which several joints
         open.
@@ -141,7 +141,7 @@ class JointCheck:
     alone : bool
         Whether the only joint is that of a single body with the ground.
     asserted : sequence of str
-        Joints that are taken to hold and are not checked, in words.
+        Joints that are assumed to hold without a check, in words.
     """
 
     limit: float
@@ -290,7 +290,8 @@ def _at_rest(
             bearing[j, 0] = contact.friction
             total = contact.friction * rest[j, :2, :3].sum(axis=0)
             planes += [total - rest[j, 2, :3], total + rest[j, 2, :3]]
-    low, high = _range(np.array(planes)[None, :, [0, 1, 1]] * [1.0, 1.0, 0.0], np.zeros(1))
+    plane = np.array(planes).reshape(1, -1, 3) * [1.0, 1.0, 0.0]  # without v_g'', as rates are none
+    low, high = _range(plane, np.zeros(1))
     return rest, (float(low[0]), float(high[0]))
 
 
