@@ -118,6 +118,19 @@ def test_a_squat_block_slides_as_far_as_the_ground_leaves_it(a, vertical):
     assert not enough.unknown and np.isnan(enough.warned)
 
 
+def test_what_slides_at_the_end_of_a_motion_slides_on_until_friction_stops_it():
+    """Half a sine leaves it at a speed that friction takes more than half a second to take away."""
+    motion = GroundMotion("half", 0.01, np.append(0.45 * G * np.sin(np.linspace(0.0, np.pi, 41)), 0.0))
+    block = rk.Block(**SQUAT, friction=0.1)
+    end, total = motion.time[-1], slid(motion.time, motion.acceleration, 0 * motion.time, 0.1)
+    whole = respond(block.model_copy(update={"opening": 10.0}), motion, models=("nonlinear",))["nonlinear"]
+    assert whole.check.largest == pytest.approx(total, rel=0.01)
+    assert end / 2 < whole.check.longest < end + 1.5
+    late = block.model_copy(update={"opening": 0.99 * total / whole.check.reach})
+    found = respond(late, motion, models=("nonlinear",))["nonlinear"]
+    assert found.unknown and end < found.known_to < end + 1.5
+
+
 def test_each_scale_and_slenderness_of_many_runs_is_its_own_history():
     block = rk.Block(**SQUAT, friction=0.3)
     motion = pulse(1.0, 0.8)

@@ -74,7 +74,7 @@ SLOW = 0.5  # of 1/p: the interval to go on with after the record
 LOOK = 1.25e-3  # s: the longest step in which openings of joints are advanced, eight in 0.01 s
 BEHIND = 1e-11  # of a cell: how far behind a corner of the force a motion goes on
 COINCIDE = 1e-9  # of an interval: what is closer than this is at one moment
-LONG = 1e3  # s: what slides at rest after the record has stopped by then
+LONG = 1e3  # s after the record: what slides at rest has stopped by then
 
 SOURCE: list[Callable[..., object]] = []
 """What is to be compiled, each after those it calls."""
@@ -1129,8 +1129,12 @@ def follow(structure, motion, start, rtol, most_impacts, brief, watch, samples, 
             drawn += 1
         shaken = k < last or j < v_last
         if resting and not shaken:
-            if watched and watch.notes[MOVING] != 0:  # it slides on until friction has stopped it
-                stand(watch, t, LONG, 1, 0.0, 0.0, unit, 0.0, 0.0, marks)
+            later = t
+            while (
+                watched and watch.notes[MOVING] != 0 and later < t + LONG
+            ):  # it slides on until friction has stopped it
+                stand(watch, later, watch.step, 1, 0.0, 0.0, unit, 0.0, 0.0, marks)
+                later += watch.step
             phi_out[drawn:] = rate_out[drawn:] = 0.0
             marks[SIDE] = d
             return AT_REST
