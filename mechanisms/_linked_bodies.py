@@ -3,13 +3,26 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from mechanisms._shapes import Member
-from rocking_cli.core import Body, Direction, LinkageMotion, Mechanism, Reals, RigidMotion, geometry_error, rotation
+from mechanisms.rigid_body import RigidBody
+from rocking_cli.core import (
+    Body,
+    Contact,
+    Direction,
+    LinkageMotion,
+    Mechanism,
+    Reals,
+    RigidMotion,
+    geometry_error,
+    rotation,
+)
+
+SAME = 1e-6  # of their numbers: columns that are the same
 
 
 class LinkedBodies(Mechanism):
@@ -59,3 +72,44 @@ class LinkedBodies(Mechanism):
 
     def limit(self, direction: Direction) -> float:
         return self._linkage(direction).limit
+
+    def columns_alone(self) -> Sequence[Mechanism]:
+        if not self.rocks_both_ways:
+            return ()
+        feet, names = zip(*(columns_of(self.contacts(direction) or ()) for direction in Direction), strict=True)
+        found: list[RigidBody] = []
+        for body in self.weighed():
+            if not all(body.name in each for each in names):
+                continue
+            right, left = (each[body.name] for each in feet)
+            centroid, right = body.centroid - left, right - left
+            if not any(_alike(each, body, centroid, right) for each in found):
+                found.append(RigidBody(
+                    mass=body.mass, inertia=body.inertia, centroid=[centroid.real, centroid.imag],
+                    left_foot=[0.0, 0.0], right_foot=[right.real, right.imag],
+                    gravity=self.gravity, friction=self.friction, restitution=self.restitution,
+                ))  # fmt: skip
+        return found
+
+
+def columns_of(contacts: Sequence[Contact]) -> tuple[Mapping[str, complex], Collection[str]]:
+    """Return the feet of bodies that hinge on the ground, and which of them carry one body with two others or more."""
+    feet: dict[str, complex] = {}
+    carried: dict[str, set[str]] = {}
+    for each in contacts:
+        below, above = each.pieces
+        if each.held is not None or len(each.points) > 1 or above is None:
+            continue
+        if below is None:
+            feet[above] = each.points[0]
+        else:
+            carried.setdefault(above, set()).add(below)
+    shares = [names & feet.keys() for names in carried.values()]
+    return feet, {name for names in shares if len(names) > 2 for name in names}
+
+
+def _alike(known: RigidBody, body: Body, centroid: complex, right: complex) -> bool:
+    """Return whether a column is the same as one that is known."""
+    one = [known.mass, known.inertia, *(known.centroid or ()), *(known.right_foot or ())]
+    other = [body.mass, body.inertia, centroid.real, centroid.imag, right.real, right.imag]
+    return bool(np.allclose(np.array(one, np.float64), other, rtol=SAME, atol=SAME * abs(centroid)))

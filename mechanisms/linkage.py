@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from itertools import combinations
 from math import inf
 from typing import ClassVar, Literal, Self
 
@@ -388,6 +389,36 @@ class Linkage(LinkedBodies):
             elif not any(name in ground for name in pair):
                 bearing.append(Contact(pair, (self._members[pair[0]].body.centroid,), held="fixed"))
         return bearing
+
+    def contacts_at_rest(self) -> Sequence[Contact] | None:
+        """Return the joints of all directions, faces on which bodies lie without a joint, and whole feet."""
+        found = super().contacts_at_rest()
+        if found is None:
+            return None
+        ground = self._anchored[self.directions[0]]
+        joined = {frozenset(each.pieces) for each in found}
+        for pair in combinations([name for name in self._members if name not in ground], 2):
+            if frozenset(pair) not in joined:
+                found = [*found, *self._closed_faces(pair)]
+        return found if self.rocks_both_ways else [self._whole_face(each) for each in found]
+
+    def _whole_face(self, contact: Contact) -> Contact:
+        """Return the hinge of a structure that rocks one way with the whole face that touches at rest."""
+        if contact.held is not None or len(contact.points) > 1:
+            return contact
+        (at,) = contact.points
+        face = face_at(self._members, [name for name in contact.pieces if name is not None], at)
+        far = [] if face is None or face.far == at else [face.far]
+        return replace(contact, points=(at, *far), face=None)
+
+    @property
+    def propped(self) -> bool:
+        """Whether two bodies that stand on the ground touch, in a structure that rocks one way."""
+        if self.rocks_both_ways:
+            return False
+        held = self._held[self.directions[0]].joints
+        stands = {name for each in held if isinstance(each, Pin) and len(each.bodies) == 1 for name in each.bodies}
+        return any(len(each.bodies) == 2 and stands.issuperset(each.bodies) for each in held)
 
     def asserted(self) -> Sequence[str]:
         bonds = [pair for closed in self._closed.values() for pair, faces in closed.items() if not faces]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from math import sqrt
 from typing import ClassVar, Literal, Self
@@ -30,6 +31,7 @@ from rocking_cli.core import (
     of_joints,
     quantity,
 )
+from rocking_cli.core.contacts import MASONRY
 
 TOP = 1e-9  # of the height: a hinge so near the top is at it, and a load of so small a share of the weight is none
 
@@ -194,7 +196,11 @@ class SpanningWall(Mechanism):
             for y, low, up in zip(self._cuts[1:], names, names[1:], strict=False)
             if y != hinge
         ]
-        return [*of_joints(self.joints(direction), self.friction), *whole]
+        foot, crack, top = of_joints(self.joints(direction), self.friction)
+        if self.overburden and self.support == "load":  # friction under the load is all that holds the top
+            friction = MASONRY if self.friction is None else self.friction
+            top = replace(top, pressed_by="overburden", friction=friction, name="the load and the top of the wall")
+        return [foot, crack, top, *whole]
 
     def sketch(self) -> Sketch:
         t, top = self.thickness, 1j * self.height

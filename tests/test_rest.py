@@ -9,7 +9,7 @@ import yaml
 import rocking_cli as rk
 from rocking_cli import GroundMotion, Runs, respond_many
 from rocking_cli.core import Direction
-from rocking_cli.core.resting import first_failure, resting
+from rocking_cli.dynamics.resting import first_failure, resting
 from rocking_cli.structure import build_models
 from tests.conftest import EXAMPLES
 from tests.following import respond

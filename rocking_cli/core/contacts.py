@@ -58,6 +58,8 @@ class Contact:
         Name of the contact; by default the names of both pieces. A joint has the same name in both directions.
     letter : str
         Letter of the hinge in drawings, see `Joint`; empty if it has none.
+    pressed_by : str
+        Of a guide that holds by friction under a load: the name of this load; empty if something else holds it.
     """
 
     pieces: tuple[str | None, str | None]
@@ -69,11 +71,18 @@ class Contact:
     held: Held | None = None
     name: str = ""
     letter: str = ""
+    pressed_by: str = ""
 
     @property
     def label(self) -> str:
         """Name of the contact in messages."""
         return self.name or " and ".join(name or "the ground" for name in self.pieces)
+
+    @property
+    def support(self) -> str:
+        """Name of a guide in messages, by what it holds."""
+        one, other = self.pieces
+        return f"the support of {other}" if one is None else f"the smooth contact of {one} and {other}"
 
     @property
     def forces(self) -> int:

@@ -147,6 +147,23 @@ class Mechanism(Given, ABC):
         joints = self.joints(direction)
         return of_joints(joints, self.friction) if joints and len(self.bodies()) == 1 else None
 
+    def contacts_at_rest(self) -> Sequence[Contact] | None:
+        """Return the joints of a structure at rest; by default those of all its directions, None if not known.
+
+        A joint of two directions is given twice, with the points at which it touches in each.
+        """
+        each = [self.contacts(direction) for direction in self.directions]
+        return [contact for contacts in each for contact in contacts or ()] if all(each) else None
+
+    @property
+    def propped(self) -> bool:
+        """Whether another of its bodies keeps a structure from rocking the other way; by default False."""
+        return False
+
+    def columns_alone(self) -> Sequence[Mechanism]:
+        """Return each column by itself, one of those that are equal, if three or more carry one beam; else none."""
+        return ()
+
     def alike(self) -> Mapping[str, int]:
         """Return the number of identical bodies that a body represents, by name, if more than one; by default none."""
         return {}
@@ -172,11 +189,11 @@ class Mechanism(Given, ABC):
         return ""
 
     def asserted(self) -> Sequence[str]:
-        """Return the joints that are assumed to hold without a check, in words; by default supports."""
-        held = [
-            each for direction in self.directions for each in self.contacts(direction) or () if each.held == "slide"
-        ]
-        return list(dict.fromkeys(f"the support of {' and '.join(filter(None, each.pieces))}" for each in held))
+        """Return the joints that are assumed to hold without a check, in words: by default, supports."""
+        each = [contact for direction in self.directions for contact in self.contacts(direction) or ()]
+        held = [contact for contact in each if contact.held == "slide" and not contact.pressed_by]
+        stops = [] if self.rocks_both_ways or self.propped or len(self.bodies()) == 1 else ["what it leans on"]
+        return [*dict.fromkeys(contact.support for contact in held), *stops]
 
     def extras(self, direction: Direction) -> Sequence[Extra]:
         """Return further results of interest to users, such as the height of the hinge; shown by `equiv`."""

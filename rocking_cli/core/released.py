@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -36,7 +37,7 @@ class Released:
         Contacts of the direction, with guides.
     rows : sequence of (tuple of int, int or None)
         For each contact, the rows of its normal forces (one for each point) and the row of its shear force; a guide has
-        neither.
+        neither, unless a load presses on it: then the row of this load, and that of the force that the guide exerts.
     force : ndarray, shape (n, rows, 4)
         Force of each row [N], by its factors of 1, u_g'', phi.^2 and v_g''.
     compliance : ndarray, shape (n, rows)
@@ -92,7 +93,11 @@ def released(mechanism: Mechanism, direction: Direction, phi: Reals) -> Released
     pieces = Pieces(mechanism, direction, np.asarray(phi, np.float64))
     rates, rows = pieces.rates(contacts)
     force, compliance = _solved(rates, pieces, pieces.demands())
-    return Released(contacts, rows, force, compliance)
+    pressing = [pieces.pressing(contact) for contact in contacts if contact.pressed_by]
+    if pressing:  # loads, which never lift
+        force = np.concatenate([force, np.stack(pressing, axis=1)], axis=1)
+        compliance = np.concatenate([compliance, np.zeros((len(force), len(pressing)))], axis=1)
+    return Released(contacts, _with_loads(contacts, rows), force, compliance)
 
 
 def impulses(mechanism: Mechanism, ended: Direction) -> Reals | None:
@@ -127,7 +132,20 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reals | None:
     rates, _ = new.rates(contacts)
     # The velocities are -t_s before and eta t_-s after, t the derivatives by phi.
     jump = np.stack([old.momentum(old.dq), new.momentum(new.dq)], axis=-1)
-    return np.asarray(_solved(rates, new, jump)[0][0])
+    pressing = [[old.thrown(contact), new.thrown(contact)] for contact in contacts if contact.pressed_by]
+    return np.concatenate([_solved(rates, new, jump)[0][0], np.reshape(pressing, (-1, 2))])
+
+
+def _with_loads(
+    contacts: Sequence[Contact], rows: Sequence[tuple[tuple[int, ...], int | None]]
+) -> Sequence[tuple[tuple[int, ...], int | None]]:
+    """Return the rows of contacts with those of guides under a load, whose own rows come after all others."""
+    found, own = list(rows), sum(contact.forces for contact in contacts)
+    for k, contact in enumerate(contacts):
+        if contact.pressed_by:
+            found[k] = ((own,), sum(each.forces for each in contacts[:k]))
+            own += 1
+    return found
 
 
 def _check_count(contacts: Sequence[Contact], pieces: Sequence[Piece]) -> None:
@@ -273,13 +291,10 @@ class Pieces:
 
         There is a force for each coordinate of each piece, by its factors of 1, u_g'', phi.^2 and v_g''.
         """
-        mechanism, direction, n = self._mechanism, self._direction, self.phi.size
-        at, g = mechanism.coefficients(self.phi, direction), mechanism.gravity
-        # phi.. = -(J phi.^2 + (g + v_g'') G + Q + s B u_g'')/I   [Eq. 8]
-        turning = -np.stack([g * at.G + at.Q, int(direction) * at.B, at.J, at.G], axis=-1) / at.I[:, None]
+        n = self.phi.size
         forces = self.held_still()
         along = self.momentum(self.dq)
-        forces += along[..., None] * turning[:, None, :]
+        forces += along[..., None] * self._turning[:, None, :]
         forces[..., RATE] += self.momentum(self.ddq)
         for thing in self._masses:
             # The point of a body has an acceleration of its own beside those of the coordinates: -psi.^2 times its arm.
@@ -290,6 +305,33 @@ class Pieces:
             moved = thing.horizontal * inwards.real[:, None] * across + thing.vertical * inwards.imag[:, None] * up
             forces[..., RATE] += thing.mass * moved
         return forces
+
+    @cached_property
+    def _turning(self) -> Reals:
+        """phi.. [rad/s2] by its factors of 1, u_g'', phi.^2 and v_g'', shape (n, 4)."""
+        at, g = self._mechanism.coefficients(self.phi, self._direction), self._mechanism.gravity
+        # phi.. = -(J phi.^2 + (g + v_g'') G + Q + s B u_g'')/I   [Eq. 8]
+        return -np.stack([g * at.G + at.Q, int(self._direction) * at.B, at.J, at.G], axis=-1) / at.I[:, None]
+
+    def pressing(self, contact: Contact, *, still: bool = False) -> Reals:
+        """Return the vertical force of the load on a guide [N] by its factors of 1, u_g'', phi.^2, v_g'', (n, 4)."""
+        load, (_, dz, ddz) = self._load(contact)
+        up = np.zeros((self.phi.size, 4))
+        if not still:
+            up += load.vertical * dz.imag[:, None] * self._turning
+            up[:, RATE] += load.vertical * ddz.imag
+        up[:, ONE] += load.weight * self._mechanism.gravity
+        up[:, WEIGHT] += load.weight
+        return np.asarray(load.mass * up)
+
+    def thrown(self, contact: Contact) -> float:
+        """Return the vertical momentum at rest of the load on a guide, over the rotation rate [kg m]."""
+        load, (_, dz, _) = self._load(contact)
+        return float(load.mass * load.vertical * dz.imag[0])
+
+    def _load(self, contact: Contact) -> tuple[PointMass, tuple[Points, Points, Points]]:
+        load = next(thing for thing in self._masses if thing.name == contact.pressed_by)
+        return load, self._motions[self._piece(load.spot)].carry(load.spot.at)
 
     def held_still(self) -> Reals:
         """Return the forces that contacts must exert on the pieces if these do not move, as `demands`."""

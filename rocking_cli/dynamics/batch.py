@@ -13,6 +13,7 @@ from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.deck import MOST_IMPACTS, read_marks
 from rocking_cli.dynamics.dispatch import KERNELS
 from rocking_cli.dynamics.history import RTOL, check_rtol
+from rocking_cli.dynamics.in_step import out_of_step
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts
@@ -211,8 +212,8 @@ def respond_many(
     rows[:, kernels.V_FACTOR] = abs(runs.scale)
     rows[:, kernels.SIZE] = runs.size
     rows[:, kernels.SLENDER] = runs.slender
+    tilts = np.broadcast_to(np.asarray(0.0 if release is None else release, dtype=np.float64), len(runs))
     if release is not None:
-        tilts = np.broadcast_to(np.asarray(release, dtype=np.float64), len(runs))
         different, which = np.unique(tilts, return_inverse=True)
         starts = np.array([[model.q(float(tilt)) for tilt in different] for model in models])
         rows[:, kernels.START] = starts[runs.model, which]
@@ -226,16 +227,25 @@ def respond_many(
         its_rows, its_marks = rows[mine], marks[mine]
         its_rows[:, kernels.STRUCTURE] = np.searchsorted(own, runs.model[mine])
         deck = kernel.lay_out([models[k] for k in own], motions)
-        run = partial(kernel.run, deck, its_rows, its_marks, rtol=rtol, most_impacts=most, brief=True)
-        in_parts(run, len(its_rows), UNIT, threads, progress)
+        run = partial(kernel.run, deck, rtol=rtol, most_impacts=most, brief=True)
+        in_parts(partial(run, its_rows, its_marks), len(its_rows), UNIT, threads, progress)
+        loose = out_of_step(
+            [models[k] for k in own], motions, its_rows, its_marks, tilts[mine],
+            rtol=rtol, most_impacts=most, threads=threads,
+        )  # fmt: skip
+        if loose.any():
+            again, found = its_rows[loose], its_marks[loose]
+            again[:, kernels.LOOSE] = 1.0
+            in_parts(partial(run, again, found), len(again), UNIT, threads, None)
+            its_marks[loose] = found
         marks[mine] = its_marks
     reach = np.array([model.reach for model in models])
     phi_cr = np.array([model.phi_cr for model in models]).reshape(-1, 2)[runs.model]
-    found = read_marks(marks, phi_cr, reach[runs.model])
+    outcomes = read_marks(marks, phi_cr, reach[runs.model])
     if (runs.slender == 1).all():
-        return found
-    peaks = {name: getattr(found, name) * runs.slender for name in ("peak_positive", "peak_negative")}
-    return replace(found, **peaks)
+        return outcomes
+    peaks = {name: getattr(outcomes, name) * runs.slender for name in ("peak_positive", "peak_negative")}
+    return replace(outcomes, **peaks)
 
 
 def _etas(models: Sequence[Model], runs: Runs) -> Reals:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from math import isnan
 from typing import Any
 
-from rocking_cli.core import Equivalence, Mechanism
+from rocking_cli.core import Equivalence, Mechanism, both_statics
 from rocking_cli.core.restitution import why_none
 from rocking_cli.core.statics import Statics
 from rocking_cli.dynamics.deck import lay_out, run_deck
@@ -116,7 +116,8 @@ def build(
             )
     if name == "nonlinear":
         kernel = kernel_for(mechanism)
-        model = replace(kernel.model(mechanism, statics, etas), kernel=kernel.name)
+        columns = [build(each, both_statics(each), None, name) for each in mechanism.columns_alone()]
+        model = replace(kernel.model(mechanism, statics, etas), kernel=kernel.name, columns=tuple(columns))
     else:
         mechanism.hung.ask("linear models")
         assert equivalence is not None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from math import ceil
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, read_marks
 from rocking_cli.dynamics.dispatch import KERNELS
+from rocking_cli.dynamics.in_step import out_of_step
 from rocking_cli.dynamics.joints import JointCheck, check_of
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME, Outcome
@@ -53,6 +55,8 @@ class History(Outcome[bool, int, float]):
         limit, and reaching this limit is overturning.
     check : JointCheck, optional
         Check of the joints; None if they are not known, so that they were not checked.
+    apart : bool
+        Whether the motion is unknown from its first impact on because columns may fall out of step there.
     """
 
     model: ModelName
@@ -66,6 +70,7 @@ class History(Outcome[bool, int, float]):
     p: float = float("nan")
     ends_at_limit: tuple[bool, bool] = (False, False)
     check: JointCheck | None = None
+    apart: bool = False
 
     @property
     def reference(self) -> str:
@@ -128,7 +133,12 @@ def follow(
     runs[0, kernels.START] = model.q(release)
     kernel = KERNELS[model.kernel]
     deck = kernel.lay_out([model], [motion])
-    kernel.run(deck, runs, marks, rtol=rtol, every=every, phi=phi, rate=rate, impacts=impacts)
+    run = partial(kernel.run, deck, runs, marks, rtol=rtol, every=every, phi=phi, rate=rate, impacts=impacts)
+    run()
+    tilts = np.array([release])
+    if out_of_step([model], [motion], runs, marks, tilts, rtol=rtol, most_impacts=MOST_IMPACTS)[0]:
+        runs[0, kernels.LOOSE] = 1.0
+        run()
     found = read_marks(marks, np.array([model.phi_cr]), np.array([model.reach]))
     end = float(marks[0, kernels.ENDED])
     if found.failed[0]:
@@ -155,4 +165,5 @@ def follow(
         p=model.p,
         ends_at_limit=model.ends_at_limit,
         check=check_of(model.joints, marks[0]),
+        apart=bool(marks[0, kernels.REASON] == kernels.APART),
     )

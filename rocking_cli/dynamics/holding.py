@@ -40,7 +40,7 @@ def joints_in_words(history: History) -> str:
     check = history.check
     if history.unknown:
         alone = check is not None and check.alone
-        return f"{_until(history)} {NEXT.format(OVERTURNS if alone else HINGES)}"
+        return f"{_until(history)} {NEXT.format(OVERTURNS if alone or history.apart else HINGES)}"
     if check is None:
         return NOT_CHECKED
     taken = f" Not checked, but assumed to hold: {', '.join(check.asserted)}." if check.asserted else ""
@@ -70,6 +70,11 @@ def why_unknown(history: History) -> str | None:
     check = history.check
     if not history.unknown:
         return None
+    if history.apart:
+        return (
+            "three or more columns may fall out of step at an impact, and one that carries nothing, rocking alone, "
+            "ends otherwise"
+        )
     if check is None or check.reason in (None, "weightless"):
         return "nothing holds the structure down, as v_g'' comes down to -g"
     if check.reason == "crushes":

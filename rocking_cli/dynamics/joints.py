@@ -7,19 +7,19 @@ joints hold.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.released import ONE, PUSH, RATE, WEIGHT, Released, Undetermined, impulses, released
-from rocking_cli.core.resting import resting
+from rocking_cli.core.released import ONE, PUSH, RATE, WEIGHT, Pieces, Released, Undetermined, impulses, released
 from rocking_cli.core.statics import Statics
 from rocking_cli.core.strength import Strength
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.modes import modes
+from rocking_cli.dynamics.resting import EarlyMechanism, Rest, resting
 from rocking_cli.dynamics.tables import DirectionTable
 
 Reals = NDArray[np.float64]
@@ -33,6 +33,7 @@ QUICK = 3e-3  # of 1/p: the longest step in which openings of a small structure 
 ANY = 1e6  # m/s2: more than any ground acceleration
 NEVER = (np.inf, -1.0)  # all joints bear under no q.^2 at all
 ALWAYS = (-np.inf, np.inf)  # no joint fails at rest, whatever u_g''
+MANY = 1e3  # weights: a force that no motion of the ground takes up
 SAFE = 0.01  # of the width of the certain bounds, which the cubics may leave between two of their nodes
 
 
@@ -74,6 +75,8 @@ class JointTables:
         Quick test that no joint fails at rest: least and largest u_g'' [m/s2].
     asserted : sequence of str
         Joints that are assumed to hold without a check, in words.
+    sliding : collection of int
+        Joints that slide in a mechanism at rest that opens others.
     redundant : bool
         Whether statics alone does not determine the forces at the joints; then rows are modes in which several joints
         open.
@@ -99,6 +102,7 @@ class JointTables:
     rest: Reals
     steady: tuple[float, float]
     asserted: Sequence[str]
+    sliding: Collection[int] = ()
     redundant: bool = False
     calm: tuple[float, float] = NEVER
     alone: bool = False
@@ -117,8 +121,9 @@ class JointCheck:
     passed : float
         Time at which the opening passes the limit, a contact crushes or no weight holds the structure down [s]; NaN if
         never.
-    reason : {"opens", "slides", "crushes", "weightless"} or None
-        Which of these happens at `passed`; "weightless" means that no weight holds the structure down.
+    reason : {"opens", "slides", "crushes", "weightless", "apart"} or None
+        Which of these happens at `passed`; "weightless" means that no weight holds the structure down, "apart" that
+        its columns may fall out of step.
     joint : str
         The joint at which this happens; empty if none.
     warned : float
@@ -162,7 +167,7 @@ class JointCheck:
     asserted: Sequence[str] = ()
 
 
-REASONS = ("opens", "slides", "crushes", "weightless")  # in the order of the kernel
+REASONS = ("opens", "slides", "crushes", "weightless", "apart")  # in the order of the kernel
 
 
 def check_of(joints: JointTables | None, marks: Reals) -> JointCheck | None:
@@ -174,7 +179,9 @@ def check_of(joints: JointTables | None, marks: Reals) -> JointCheck | None:
         at = marks[column]
         return joints.labels[int(at)] if np.isfinite(at) and at >= 0 else ""
 
-    reason = marks[kernels.REASON]
+    reason = None if np.isnan(marks[kernels.REASON]) else REASONS[int(marks[kernels.REASON])]
+    if reason == "opens" and marks[kernels.WHERE] in joints.sliding:
+        reason = "slides"
     opens, where = (
         (kernels.WARNED, kernels.WARNED_WHERE) if joints.redundant else (kernels.PARTED, kernels.PARTED_WHERE)
     )
@@ -183,7 +190,7 @@ def check_of(joints: JointTables | None, marks: Reals) -> JointCheck | None:
         limit=joints.limit,
         reach=joints.reach,
         passed=float(marks[kernels.PASSED]),
-        reason=REASONS[int(reason)] if np.isfinite(reason) else None,
+        reason=reason,
         joint=label(kernels.WHERE),
         warned=float(marks[kernels.WARNED]),
         warned_joint=label(kernels.WARNED_WHERE),
@@ -241,45 +248,64 @@ def joints_of(
     if len(found) < len(sides):
         return None
     still = resting(mechanism)
-    known = [*found, still] if still is not None else found
-    labels = list(dict.fromkeys(contact.label for one in known for contact in one.contacts if contact.held is None))
-    contacts, bearing = _contacts(mechanism, found, labels)
-    most = max(one.force.shape[1] for one in found)
+    back = still.modes if mechanism.propped else ()  # what is pushed back goes on as the structure rocks
+    known = [*found, still.closed] if still.closed is not None else found
+    labels = list(dict.fromkeys(
+        contact.label for one in known
+        for contact, (_, shear) in zip(one.contacts, one.rows, strict=True) if shear is not None
+    ))  # fmt: skip
+    contacts, bearing = _contacts(mechanism, found, labels, still.modes)
+    most = max(one.force.shape[1] for one in found) + len(back)
     weight = mechanism.gravity * sum(body.mass for body in mechanism.weighed())
     rows = np.zeros((cells, 2, most, 20))
     within = np.zeros((FINER * cells, 2, 5))
     struck = np.zeros((2, most, 2))
     rest, steady = _at_rest(still, labels, bearing, weight)
+    plain = len(labels)
+    labels += [mode.joint for mode in still.modes]
     for d, ((direction, table), one) in enumerate(zip(sides, found, strict=True)):
         force = one.force.copy()
         force[:, [k for normal, _ in one.rows for k in normal], ONE] += TENSION * weight
         inertia = mechanism.coefficients(_at(table, cells), direction).I
         force[:, :, RATE] /= inertia[:, None]  # phi.^2 = q.^2/I
         whole = np.concatenate([force, one.compliance[..., None]], axis=2)
+        if back:
+            contacts[-len(back) :, d, 0] = contacts[-len(back) :, d, 2] = np.arange(len(back)) + force.shape[1]
+            constant = np.array([[*mode.force, mode.compliance] for mode in back])
+            whole = np.concatenate([whole, np.tile(constant, (len(whole), 1, 1))], axis=1)
+            struck[d, force.shape[1] : whole.shape[1]] = [_pushed_back(mechanism, mode) for mode in back]
         cubics = _lines(whole) if redundant else _cubics(whole)
-        count = force.shape[1]
+        count = whole.shape[1]
         rows[:, d, :count] = cubics.reshape(cells, count, 20)
         within[:, d] = _within(cubics, contacts[:, d], bearing)
         if (hit := answers[d][1]) is not None:
-            struck[d, :count] = hit
+            struck[d, : len(hit)] = hit
+    sliding = {k for k, mode in enumerate(still.modes, plain) if mode.slides}
     return JointTables(
         labels, contacts, bearing, rows, struck, within, _reach(mechanism, statics), mechanism.opening,
         not any(table.held.size for table in tables), QUICK / p, mechanism.gravity, rest, steady,
-        mechanism.asserted(), redundant, _calm(within, tables, statics),
+        mechanism.asserted(), sliding, redundant, _calm(within, tables, statics),
         len(mechanism.bodies()) == 1,
     )  # fmt: skip
 
 
-def _at_rest(
-    still: Released | None, labels: Sequence[str], bearing: Reals, weight: float
-) -> tuple[Reals, tuple[float, float]]:
+def _pushed_back(mechanism: Mechanism, mode: EarlyMechanism) -> list[float]:
+    """Return the row of `JointTables.struck` of a mechanism that a structure pushes back as it comes to rest."""
+    there = Pieces(mechanism, mechanism.directions[0], np.zeros(1))
+    along = float(there.momentum(there.dq)[0] @ mode.velocity)
+    return [along, along]  # its velocities are -t before and eta t after
+
+
+def _at_rest(still: Rest, labels: Sequence[str], bearing: Reals, weight: float) -> tuple[Reals, tuple[float, float]]:
     """Return `JointTables.rest` and `steady`, and fill in the friction of joints that are joints at rest alone."""
-    rest, planes = np.zeros((len(labels), 3, 4)), []
-    if still is None:
-        return rest, ALWAYS
-    factors = np.concatenate([still.force[0][:, [ONE, PUSH, WEIGHT]], still.compliance[0][:, None]], axis=1)
-    for contact, (normal, shear) in zip(still.contacts, still.rows, strict=True):
-        if contact.held is not None or shear is None:
+    known = still.closed
+    if known is None and not still.modes:
+        return np.zeros((len(bearing), 3, 4)), ALWAYS
+    rest, planes = np.zeros((len(bearing), 3, 4)), []
+    if known is not None:
+        factors = np.concatenate([known.force[0][:, [ONE, PUSH, WEIGHT]], known.compliance[0][:, None]], axis=1)
+    for contact, (normal, shear) in zip(known.contacts, known.rows, strict=True) if known is not None else ():
+        if shear is None:
             continue
         j = labels.index(contact.label)
         rest[j, : len(normal)] = factors[list(normal)]
@@ -290,6 +316,16 @@ def _at_rest(
             bearing[j, 0] = contact.friction
             total = contact.friction * rest[j, :2, :3].sum(axis=0)
             planes += [total - rest[j, 2, :3], total + rest[j, 2, :3]]
+    for j, mode in enumerate(still.modes, len(labels)):
+        force = mode.force[[ONE, PUSH, WEIGHT]] + [TENSION * weight, 0.0, 0.0]
+        planes.append(force)
+        if mode.opens:
+            rest[j, 0] = *force, mode.compliance
+            continue
+        # It slides in one sense alone: in the other a force of MANY weights is never missing.
+        bearing[j, 0] = 1.0
+        rest[j, 0, :3] = force * [1.0, 0.0, 1.0] + [MANY * weight, 0.0, 0.0]
+        rest[j, 2] = MANY * weight, -force[1], 0.0, mode.compliance
     plane = np.array(planes).reshape(1, -1, 3) * [1.0, 1.0, 0.0]  # without v_g'', as rates are none
     low, high = _range(plane, np.zeros(1))
     return rest, (float(low[0]), float(high[0]))
@@ -304,19 +340,23 @@ def _at(table: DirectionTable, cells: int) -> Reals:
     return np.asarray(a[:, 0] + x * (a[:, 1] + x * (a[:, 2] + x * a[:, 3])))
 
 
-def _contacts(mechanism: Mechanism, found: Sequence[Released], labels: Sequence[str]) -> tuple[Integers, Reals]:
-    contacts = np.full((len(labels), 2, 4), -1, np.int64)
+def _contacts(
+    mechanism: Mechanism, found: Sequence[Released], labels: Sequence[str], modes: Sequence[EarlyMechanism]
+) -> tuple[Integers, Reals]:
+    """Return `JointTables.contacts` and `bearing`, of joints first and then of mechanisms at rest."""
+    count = len(labels) + len(modes)
+    contacts = np.full((count, 2, 4), -1, np.int64)
     contacts[:, :, 3] = 0
-    bearing = np.tile([np.nan, np.inf], (len(labels), 1))
+    bearing = np.tile([np.nan, np.inf], (count, 1))
     points: dict[str, list[tuple[complex, ...]]] = {label: [(), ()] for label in labels}
     strength, depth, alike = mechanism.strength, mechanism.depth, mechanism.alike()
     for d, one in enumerate(found):
         for contact, (normal, shear) in zip(one.contacts, one.rows, strict=True):
-            if contact.held is not None:
+            if shear is None:
                 continue
             j = labels.index(contact.label)
             contacts[j, d, : len(normal)] = normal
-            contacts[j, d, 2] = -1 if shear is None else shear
+            contacts[j, d, 2] = shear
             points[contact.label][d] = contact.points
             bearing[j, 0] = np.nan if contact.friction is None else contact.friction
             if isinstance(strength, Strength) and depth is not None:

@@ -30,8 +30,9 @@ COLUMNS = 12
 # strongest that is still to come; intervals.
 U_FIRST, U_SIZE, V_FIRST, V_SIZE, AHEAD_FIRST, AHEAD_SIZE, DT, V_DT = range(8)
 # Columns of `runs`, one row a history; an eta that is NaN is the structure's own.
-STRUCTURE, RECORD, FACTOR, V_FACTOR, SIZE, ETA_POSITIVE, ETA_NEGATIVE, START, SLENDER = range(9)
-RUN_COLUMNS = 9
+# LOOSE tells whether its columns fall out of step at its first impact.
+STRUCTURE, RECORD, FACTOR, V_FACTOR, SIZE, ETA_POSITIVE, ETA_NEGATIVE, START, SLENDER, LOOSE = range(10)
+RUN_COLUMNS = 10
 # What `marks` gathers on the way, a row a history. Of the joints: when their opening passes its limit, why and where,
 # with peaks and impacts until then; the first moment at which one does not bear, where, with the peaks until then; the
 # largest opening [m], where and when, the longest time for which a joint is open, and when and where first a joint that
@@ -41,7 +42,7 @@ PASSED, REASON, WHERE, PASSED_PEAK, PASSED_IMPACTS, WARNED, WARNED_WHERE, WARNED
 LARGEST, LARGEST_WHERE, LARGEST_AT, LONGEST, PARTED, PARTED_WHERE = 18, 19, 20, 21, 22, 23
 MARKS = 24
 # Why a history is not known any longer.
-OPENS, SLIDES, CRUSHES, WEIGHTLESS = range(4)
+OPENS, SLIDES, CRUSHES, WEIGHTLESS, APART = range(5)
 # Columns of `contacts`: rows of the two normal forces and of the shear force, and whether the joint bears at other ends
 # in the other direction; of `bearing`: coefficient of friction, strength [N].
 NORMAL, OTHER, SHEAR, CHANGES = range(4)
@@ -1068,10 +1069,10 @@ def draw(structure, law, ground, t, flight, rtol, dt, drawn, watch, samples):
 
 
 @called
-def follow(structure, motion, start, rtol, most_impacts, brief, watch, samples, marks):
+def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, samples, marks):
     """Follow one motion to its end: at rest, overturned, or still rocking after `most_impacts` impacts.
 
-    It begins at rest, with q = `start`. Returns how it ended.
+    It begins at rest, with q = `start`. If `loose`, nothing is known from its first impact on. Returns how it ended.
     """
     linear, numbers, forces, _, _, _, corners = structure
     u, factor, dt, v, v_factor, v_dt, ahead, v_ahead, v_above = motion
@@ -1237,8 +1238,10 @@ def follow(structure, motion, start, rtol, most_impacts, brief, watch, samples, 
                         impacts[n, 0], impacts[n, 1], impacts[n, 2] = t + tau, s, -w * numbers[d, RATE]
                     marks[IMPACTS] += 1
                     side = d if numbers[d, ONE_SIDED] else 1 - d  # a rebound keeps its direction
-                    if watched and side != d:
-                        watch.notes[SO_FAR], watch.notes[SO_FAR + 1] = marks[PEAK], marks[PEAK + 1]
+                    watch.notes[SO_FAR], watch.notes[SO_FAR + 1] = marks[PEAK], marks[PEAK + 1]
+                    if loose and not isfinite(marks[PASSED]):
+                        passed(watch, d, t + tau, 0.0, APART, -1, marks)
+                    if watched:
                         strike(watch, side, t + tau, -w * numbers[d, RATE], numbers[d, ETA], marks)
                     w = numbers[d, ETA] * -w * numbers[d, RATE] / numbers[side, RATE]  # Eq. 6, on phi.
                     d = side
@@ -1381,7 +1384,8 @@ def run(first, stop, runs, deck, rtol, most_impacts, brief, samples, all_marks, 
         )
         marks = all_marks[i]
         watch = watch_of(deck.joints, m, size, what[SLENDER], motion, room)
-        marks[STATUS] = follow(structure, motion, what[START], rtol, most_impacts, brief, watch, samples, marks)
+        loose = what[LOOSE] != 0
+        marks[STATUS] = follow(structure, motion, what[START], loose, rtol, most_impacts, brief, watch, samples, marks)
         for d in range(2):
             for peak in (PEAK, PASSED_PEAK, WARNED_PEAK):
                 if isfinite(marks[peak + d]):

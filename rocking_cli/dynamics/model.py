@@ -72,6 +72,8 @@ class Model:
         Joints by which histories are checked; None if they are not known, and for a linear model.
     scatter : Scatter
         Uncertainty of restitution and slenderness of the structure.
+    columns : tuple of Model
+        Models of its columns, each alone, if three or more carry one beam.
     kernel : str
         Name of the kernel that simulates it, see `rocking_cli.dynamics.dispatch.KERNELS`.
     """
@@ -92,6 +94,7 @@ class Model:
     corners: Integers = field(default_factory=lambda: np.zeros((0, 2), np.int64))
     joints: JointTables | None = None
     scatter: Scatter = field(default_factory=lambda: Scatter(KINEMATIC, SLENDERNESS))
+    columns: tuple[Model, ...] = ()
     kernel: str = "elastic"
 
     @property

@@ -6,7 +6,7 @@ this is true: at every sample while the structure rocks, at its first uplift and
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.core.contacts import MASONRY
+from rocking_cli.core.contacts import MASONRY, Contact
 from rocking_cli.core.reactions import Reactions, at_uplift, impulses, parts, reactions
+from rocking_cli.core.released import Undetermined, released
 from rocking_cli.core.strength import Strength
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
@@ -48,6 +49,25 @@ class CrushingDemand:
     used: float
     joint: str
     time: float
+
+
+class SupportDemand(NamedTuple):
+    """The forces that a guide must exert on a structure while it rocks.
+
+    Parameters
+    ----------
+    support : str
+        Name of the guide.
+    way : complex
+        Unit vector x + iy along which its force acts.
+    most, least : float
+        Largest and smallest force along `way` [N], per unit mass if the structure has no masses.
+    """
+
+    support: str
+    way: complex
+    most: float
+    least: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +124,8 @@ class ContactDemand:
         Whether the history itself records how far joints open and slide, and until when its outcome is known.
     known_to : float
         The time until which the history is known [s]; NaN if all of it is known, or if this was not recorded.
+    supports : sequence of SupportDemand
+        The forces of guides, such as what holds the top of a wall; empty if statics does not determine them.
     """
 
     friction_needed: float
@@ -127,6 +149,7 @@ class ContactDemand:
     shared: bool = False
     followed: bool = False
     known_to: float = NONE
+    supports: Sequence[SupportDemand] = ()
 
     @property
     def beyond_masonry(self) -> bool:
@@ -181,7 +204,7 @@ class Contacts:
                 found = self._forces(direction, states, part)
                 most[:, part], joint[:, part] = self._worst(direction, found)
                 shear = max(shear, float(np.abs(_base(found, self._rest[direction])).max()))
-        asked = self._summed_up(history, states, most, joint, shear)
+        asked = replace(self._summed_up(history, states, most, joint, shear), supports=self._supports(states))
         if history.check is None:
             return asked
         opens, where = history.check.parted, history.check.parted_joint
@@ -198,6 +221,34 @@ class Contacts:
                 part = mine[start : start + BLOCK]
                 shear[part] = _base(self._forces(direction, states, part), self._rest[direction])
         return np.concatenate([shear, np.full(history.time.size - shear.size, np.nan)])
+
+    def _supports(self, states: _States) -> list[SupportDemand]:
+        """Return the largest force of each guide in either sense."""
+        found: dict[str, list[tuple[Contact, Reals]]] = {}
+        for direction in self.mechanism.directions:
+            contacts = self.mechanism.contacts(direction) or ()
+            ends = np.cumsum([contact.forces for contact in contacts])
+            guides = [(int(end) - 1, each) for end, each in zip(ends, contacts, strict=True) if each.held == "slide"]
+            mine = np.flatnonzero(states.rocks & (states.sign == direction)) if guides else np.zeros(0, np.intp)
+            for start in range(0, mine.size, BLOCK):
+                part = mine[start : start + BLOCK]
+                try:
+                    table = released(self.mechanism, direction, states.phi[part])
+                except Undetermined:
+                    return []
+                assert table is not None  # it has guides
+                ground = states.ground[part]
+                terms = np.stack([np.ones(part.size), ground.real, states.rate[part] ** 2, ground.imag], axis=-1)
+                for row, each in guides:
+                    force = np.einsum("nk,nk->n", table.force[:, row], terms)
+                    found.setdefault(each.support, []).append((each, force))
+        demands = []
+        for support, parts_of in found.items():
+            way = parts_of[0][0].normal
+            along = np.concatenate([force * (each.normal * way.conjugate()).real for each, force in parts_of])
+            way, along = (way, along) if way.real + way.imag > 0 else (-way, -along)
+            demands.append(SupportDemand(support, way, float(along.max()), float(along.min())))
+        return demands
 
     @cached_property
     def _rest(self) -> Mapping[Direction, Collection[str]]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.contacts import MASONRY
-from rocking_cli.studies.contact import NEAR_PEAK, ContactDemand
+from rocking_cli.studies.contact import NEAR_PEAK, ContactDemand, SupportDemand
 from rocking_cli.views.column import Column, of, rounded
 from rocking_cli.views.view import ABSENT, number
 
@@ -34,6 +34,10 @@ def contact_data(found: ContactDemand, mechanism: Mechanism) -> dict[str, Any]:
         if crushing is None
         else {"used": crushing.used, "joint": crushing.joint, "time": crushing.time},
         **({} if found.opens is None else {"opens": found.opens, "opens_joint": found.opens_joint or None}),
+        "supports": [
+            {"support": each.support, "way": [each.way.real, each.way.imag], "most": each.most, "least": each.least}
+            for each in found.supports
+        ],
         "sums": _sums(found, mechanism),
         "per_unit_mass": not mechanism.has_mass,
     }
@@ -93,6 +97,7 @@ def contact_words(found: ContactDemand, mechanism: Mechanism) -> str:
             said.append(
                 f"The contacts use at most {number(100 * found.crushing.used, 3)} % of their strength, at {at}."
             )
+    said += [_support(each, mechanism) for each in found.supports]
     sums = _sums(found, mechanism)
     if sums == "whole" and all(mechanism.contacts(direction) for direction in mechanism.directions):
         said.append(
@@ -132,6 +137,17 @@ def _friction(found: ContactDemand, beyond: str) -> str:
         f"{number(found.duration, 2)} s at a time. {where[0].upper()}{where[1:]} requires a coefficient of friction "
         f"of up to {needed}, {at}; {there} is available."
     )
+
+
+def _support(found: SupportDemand, mechanism: Mechanism) -> str:
+    per, unit = (1000, "kN") if mechanism.has_mass else (1, "N/kg")
+    level = abs(found.way.real) > abs(found.way.imag)
+    senses = ("to the right", "to the left") if level else ("upwards", "downwards")
+    parts = [
+        f"{number(force / per, 3)} {unit} {sense}"
+        for force, sense in zip((found.most, -found.least), senses, strict=True) if force > 0
+    ]  # fmt: skip
+    return f"{found.support[0].upper()}{found.support[1:]} must provide up to {' and '.join(parts)}."
 
 
 def _where(letter: str) -> str:

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 from rocking_cli.core import Direction, EquivalentBlock, Mechanism, Statics, one_block
 from rocking_cli.core.advice import preferred_kappa
 from rocking_cli.core.equivalence import AGREEMENT, alike
-from rocking_cli.core.resting import first_failure, resting
 from rocking_cli.core.restitution import why_none
+from rocking_cli.dynamics.resting import first_failure, resting
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.structure import Structure
 from rocking_cli.views.column import data_of
@@ -71,19 +71,19 @@ def view(structure: Structure) -> View:
 def before_rocking(mechanism: Mechanism) -> list[str]:
     """Return which joint slides or opens at rest before the structure rocks, in words, a sentence a direction."""
     found: list[str] = []
-    still = resting(mechanism)
-    if still is None:
-        return found
-    for direction in mechanism.directions:
-        failure, lambda_ = first_failure(still, direction), mechanism.uplift(direction)
-        if failure is None or failure.push >= (1 - AGREEMENT) * lambda_ * mechanism.gravity:
+    still, g = resting(mechanism), mechanism.gravity
+    for direction in Direction if mechanism.propped else mechanism.directions:
+        failure = first_failure(still, direction)
+        if failure is None:
             continue
-        at = f"from {failure.push / mechanism.gravity:.4g} g, below lambda = {lambda_:.4g}"
-        found.append(
-            f"The structure slides before it rocks: at rest the joint between {failure.joint} slides {at}."
-            if failure.slides
-            else f"Another mechanism starts first: at rest the joint between {failure.joint} opens {at}."
+        does = (
+            f"the joint between {failure.joint} {'slides' if failure.slides else 'opens'} from {failure.push / g:.4g} g"
         )
+        if direction not in mechanism.directions:
+            found.append(f"What props the structure is pushed back in the {direction.label} direction: {does}.")
+        elif failure.push < (1 - AGREEMENT) * (lambda_ := mechanism.uplift(direction)) * g:
+            first = "Another mechanism starts first" if failure.opens else "The structure slides before it rocks"
+            found.append(f"{first}: at rest {does}, below lambda = {lambda_:.4g}.")
     return list(dict.fromkeys(found))
 
 

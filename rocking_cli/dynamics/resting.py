@@ -1,0 +1,294 @@
+"""Forces at the joints of a structure at rest, where all are closed: whether one slides, or opens, before it rocks.
+
+At rest a joint touches at all points at which it touches in either direction of rocking. If statics determines the
+forces there, each is affine in u_g'' and v_g'', as in `released`. Otherwise limit analysis finds the first mechanism of
+either sense, and a structure on level feet is also checked as one body, which slides on the ground as a whole.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from rocking_cli.core.contacts import Contact
+from rocking_cli.core.hung.attached import PointMass
+from rocking_cli.core.hung.elements import ConstantForce
+from rocking_cli.core.kinematics import Direction, Reals
+from rocking_cli.core.mechanism import Mechanism
+from rocking_cli.core.released import ONE, PUSH, Pieces, Released, Undetermined, inverted, released
+
+SAME = 1e-6  # of the size of the structure: points that are one; of lambda: accelerations that are
+FAR = 30.0  # g: ground accelerations beyond are not analysed
+MISSING = 1e-9  # of the weight: a force that is missing by rounding alone
+FEET = "the ground and the feet"
+
+
+class Failure(NamedTuple):
+    """How a structure at rest stops being at rest.
+
+    Parameters
+    ----------
+    push : float
+        Ground acceleration at which it does [m/s2].
+    joint : str
+        The joint that fails.
+    slides : bool
+        Whether this joint slides; otherwise one of its ends opens.
+    opens : bool
+        Whether any joint opens.
+    """
+
+    push: float
+    joint: str
+    slides: bool
+    opens: bool
+
+
+class EarlyMechanism(NamedTuple):
+    """A mechanism in which a structure at rest fails, for a velocity of 1 at the joint that moves most.
+
+    Parameters
+    ----------
+    joint : str
+        The joint that moves most.
+    slides : bool
+        Whether this joint slides; otherwise it opens.
+    opens : bool
+        Whether any joint opens.
+    force : ndarray, shape (4,)
+        Work of the joints' forces on the mechanism by its factors of 1, u_g'', phi.^2 and v_g'' [N]; below 0 it moves.
+    compliance : float
+        Acceleration of the mechanism over the work that is missing [1/kg].
+    velocity : ndarray, shape (3 pieces,)
+        Velocities of all pieces.
+    """
+
+    joint: str
+    slides: bool
+    opens: bool
+    force: Reals
+    compliance: float
+    velocity: Reals
+
+
+class Rest(NamedTuple):
+    """What may fail at rest: joints whose forces are known, and mechanisms that start before rocking."""
+
+    closed: Released | None
+    modes: Sequence[EarlyMechanism] = ()
+
+
+def resting(mechanism: Mechanism) -> Rest:
+    """Find what may fail in a structure at rest.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Any mechanism, with loads and ties.
+
+    Returns
+    -------
+    Rest
+        Tables of the joints' forces at one rotation, 0, where statics determines them: their factors of phi.^2 are 0.
+        None if the mechanism does not give its contacts at rest, or statics does not determine the forces and more than
+        level feet holds the structure sideways. Mechanisms that start before rocking, or in the direction in which the
+        structure cannot rock because another body props it.
+    """
+    contacts = mechanism.contacts_at_rest()
+    names = {tuple(piece.body.name for piece in mechanism.pieces(direction)) for direction in mechanism.directions}
+    if contacts is None or len(names) > 1:
+        return Rest(None)
+    there = Pieces(mechanism, mechanism.directions[0], np.zeros(1))
+    closed = _closed(contacts, SAME * there.scale.max())
+    if closed is None:
+        return Rest(None)
+    if mechanism.rocks_both_ways and sum(contact.forces for contact in closed) == there.dq.shape[1]:
+        rates, rows = there.rates(closed)
+        try:
+            inverse = inverted(rates.dense() / there.scale) / there.scale[:, None]
+        except Undetermined:
+            return Rest(None)
+        compliance = 1 / np.einsum("nir,nir->nr", inverse, there.momenta(inverse))
+        return Rest(Released(closed, rows, inverse.swapaxes(1, 2) @ there.held_still(), compliance))
+    whole = _as_one(mechanism, there, closed)
+    if mechanism.rocks_both_ways or mechanism.propped:
+        found = [_first(mechanism, there, closed, direction) for direction in Direction]
+        return Rest(whole if mechanism.rocks_both_ways else None, [mode for mode in found if mode is not None])
+    return Rest(None, [] if whole is None else [_slides_out(whole, there, mechanism.directions[0])])
+
+
+def _closed(contacts: Sequence[Contact], near: float) -> list[Contact] | None:
+    """Return the joints of both directions with all of their points; None if they are not those of one face."""
+    found: dict[tuple[str, str | None], Contact] = {}
+    for each in contacts:
+        key = (each.label, each.held)
+        known = found.setdefault(key, each)
+        if abs(known.normal - each.normal) > SAME or known.pieces != each.pieces:
+            return None
+        apart = (each.points[0] - known.points[0]) * known.normal.conjugate()
+        if each.held == "slide" and abs(apart.imag) > near:  # two lines of action
+            return None
+        if each.held is None:
+            new = [at for at in each.points if min(abs(at - old) for old in known.points) > near]
+            found[key] = replace(known, points=(*known.points, *new), face=None)
+    return None if any(len(each.points) > 2 for each in found.values()) else list(found.values())
+
+
+def _as_one(mechanism: Mechanism, there: Pieces, closed: Sequence[Contact]) -> Released | None:
+    """Return the forces under level feet of a structure as one body; None if more than its feet holds it sideways."""
+    feet = [contact for contact in closed if contact.held is None and None in contact.pieces]
+    sideways = any(contact.held == "slide" for contact in closed)
+    hung = all(isinstance(thing, PointMass | ConstantForce) for thing in mechanism.attached)
+    friction = {contact.friction for contact in feet}
+    level = all(contact.pieces[0] is None and abs(contact.normal - 1j) < SAME for contact in feet)
+    if sideways or not hung or not level or len(friction) != 1 or None in friction:
+        return None
+    total = there.held_still()[0].reshape(-1, 3, 4).sum(axis=0)  # over the pieces
+    force = np.stack([total[1], total[0]])[None]  # N, T
+    mass = there.mass[0, :, 0, 0].sum()
+    foot = Contact((None, None), (0j,), friction=friction.pop(), name=FEET)
+    return Released([foot], [((0,), 1)], force, np.array([[0.0, 1 / mass]]))
+
+
+def _slides_out(whole: Released, there: Pieces, direction: Direction) -> EarlyMechanism:
+    """Return the sliding of a structure as one body away from what it leans on, from the forces under its feet."""
+    (foot,), (normal, shear) = whole.contacts, whole.force[0]
+    velocity = np.tile([float(direction), 0.0, 0.0], there.dq.shape[1] // 3)
+    force = (foot.friction or 0.0) * normal + int(direction) * shear
+    return EarlyMechanism(foot.label, True, False, force, float(whole.compliance[0, 1]), velocity)
+
+
+def _first(
+    mechanism: Mechanism, there: Pieces, closed: Sequence[Contact], direction: Direction
+) -> EarlyMechanism | None:
+    """Return the mechanism that starts first as the ground pushes a structure one way; None if it rocks first."""
+    if direction not in mechanism.directions and not mechanism.propped:
+        return None
+    uplift = mechanism.uplift(direction) if direction in mechanism.directions else FAR
+    if direction in mechanism.directions and _bears_at_uplift(mechanism, direction, uplift):
+        return None
+    mode = _weakest(there, closed, -int(direction), mechanism.gravity)
+    if mode is None:
+        return None
+    push = mode.force[ONE] / abs(mode.force[PUSH])
+    return mode if push < (1 - SAME) * uplift * mechanism.gravity else None
+
+
+def _bears_at_uplift(mechanism: Mechanism, direction: Direction, uplift: float) -> bool:
+    """Return whether all joints bear at uplift in the forces of rocking, which are one state of equilibrium at rest.
+
+    The accelerations of the ground that the joints can bear at rest are an interval, so that all of them up to uplift
+    are borne: this saves the search for most structures.
+    """
+    try:
+        rocking = released(mechanism, direction, np.zeros(1))
+    except Undetermined:
+        return False
+    if rocking is None:
+        return False
+    push = -int(direction) * uplift * mechanism.gravity
+    least = -MISSING * np.abs(rocking.force[0, :, ONE]).sum()
+    return all(force[ONE] + push * force[PUSH] >= least for force, _, _ in _conditions(rocking))
+
+
+def _conditions(found: Released) -> Iterator[tuple[Reals, str, bool]]:
+    """Yield what must not be negative at the first rotation, its joint, and whether this joint slides otherwise."""
+    for contact, (normal, shear) in zip(found.contacts, found.rows, strict=True):
+        for row in normal:
+            yield found.force[0, row], contact.label, False
+        if contact.friction is not None and shear is not None:
+            total = contact.friction * found.force[0, list(normal)].sum(axis=0)
+            for sense in (1, -1):
+                yield total - sense * found.force[0, shear], contact.label, True
+
+
+def _weakest(there: Pieces, closed: Sequence[Contact], sense: int, gravity: float) -> EarlyMechanism | None:
+    """Return the mechanism of the largest ground acceleration of one sense that the joints can bear; None if none is.
+
+    A linear programme: of forces that are in equilibrium with the loads, joints press and friction is not exceeded. Its
+    dual solution is the mechanism, in which a joint that slides opens by friction times slip.
+    """
+    from scipy.optimize import linprog  # slow to import, and only redundant joints need it
+
+    rates, rows = there.rates(closed)
+    jacobian, scale, demand = rates.dense()[0], there.scale, there.held_still()[0]
+    count = len(jacobian)
+    unit = float(np.abs(demand[:, ONE]).max()) or 1.0
+    low, high = np.full(count, -np.inf), np.full(count, np.inf)
+    limits: list[Reals] = []
+    at = 0
+    borne: dict[int, tuple[float, Reals]] = {}  # the row of a guide under a load, its friction and the load
+    for contact, (normal, shear) in zip(closed, rows, strict=True):
+        low[list(normal)] = 0.0
+        if contact.pressed_by:
+            load = there.pressing(contact, still=True)[0]
+            low[at], high[at] = np.array([-1, 1]) * (contact.friction or 0.0) * load[ONE] / unit
+            borne[at] = contact.friction or 0.0, load
+        elif shear is not None and contact.friction is not None:
+            for way in (1.0, -1.0):
+                limit = np.zeros(count + 1)
+                limit[shear], limit[list(normal)] = way, -contact.friction
+                limits.append(limit)
+        at += contact.forces
+    pushed = -demand[:, PUSH] * gravity / unit / scale
+    solved = linprog(
+        np.append(np.zeros(count), -float(sense)),
+        A_ub=np.array(limits) if limits else None, b_ub=np.zeros(len(limits)) if limits else None,
+        A_eq=np.column_stack([(jacobian / scale).T, pushed]), b_eq=demand[:, ONE] / scale / unit,
+        bounds=[*zip(low, high, strict=True), (-FAR, FAR)], method="highs-ds",
+    )  # fmt: skip
+    if solved.status != 0 or sense * solved.x[-1] >= (1 - SAME) * FAR:
+        return None
+    velocity = -np.asarray(solved.eqlin.marginals) / scale
+    speed = jacobian @ velocity
+    force = velocity @ demand
+    if force[PUSH] * sense > 0:
+        velocity, speed, force = -velocity, -speed, -force
+    for row, (friction, load) in borne.items():
+        force = force + friction * abs(speed[row]) * load
+    fastest = np.abs(speed).max()
+    plain = _undilated(jacobian, closed, rows, velocity, scale)
+    presses = [row for normal, _ in rows for row in normal]
+    names = [contact.label for contact in closed for _ in range(contact.forces)]
+    most = int(np.argmax(np.abs(speed) >= (1 - SAME) * fastest))  # the first of several
+    return EarlyMechanism(
+        names[most],
+        most not in presses,
+        bool(np.abs((jacobian @ plain)[presses]).max(initial=0.0) > SAME * fastest),
+        force / fastest,
+        float(fastest**2 / (plain @ there.momentum(plain[None])[0])),
+        velocity / fastest,
+    )
+
+
+def _undilated(
+    jacobian: Reals,
+    closed: Sequence[Contact],
+    rows: Sequence[tuple[tuple[int, ...], int | None]],
+    velocity: Reals,
+    scale: Reals,
+) -> Reals:
+    """Return the motion of a mechanism whose sliding joints do not open as they slide; as it is if there is none."""
+    change = np.zeros(len(jacobian))
+    for contact, (normal, shear) in zip(closed, rows, strict=True):
+        if contact.friction is not None and shear is not None:
+            change[list(normal)] = -contact.friction * abs(jacobian[shear] @ velocity)
+    by = np.linalg.lstsq(jacobian / scale, change, rcond=None)[0] / scale
+    off = np.abs(jacobian @ by - change).max(initial=0.0)
+    return velocity + by if off <= SAME * np.abs(jacobian @ velocity).max() else velocity
+
+
+def first_failure(found: Rest, direction: Direction) -> Failure | None:
+    """Return the joint that fails first at rest as a growing acceleration of the ground tips a structure one way."""
+    rows = [(mode.force, mode.joint, mode.slides, mode.opens) for mode in found.modes]
+    if found.closed is not None:
+        rows += [(force, joint, slides, not slides) for force, joint, slides in _conditions(found.closed)]
+    # A ground acceleration to the left tips it to the right.
+    fails = [
+        Failure(max(float(force[ONE]), 0.0) / (int(direction) * float(force[PUSH])), joint, slides, opens)
+        for force, joint, slides, opens in rows if int(direction) * force[PUSH] > 0
+    ]  # fmt: skip
+    return min(fails, default=None)
