@@ -93,6 +93,8 @@ class TestContent:
         assert all(f"{block[side]['lambda']:.4g}" in words for side in ("positive", "negative"))
         for name, run_of in responses["polarities"]["1"]["responses"].items():
             assert f"{run_of['peak_ratio']:.4g}" in words, name
+        assert "The base shear leaves out impacts: the impulse at an impact is not part of it." in words
+        assert "base shear, without impacts" in words
 
     def test_an_overturning_is_said_with_its_direction_and_time(self):
         data = run_json("report", *FEW, BLOCK, "--pulse", "sine:1g:2s", "--polarity", "1")

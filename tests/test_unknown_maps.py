@@ -294,7 +294,7 @@ class TestPulses:
             "The structure has an unknown outcome. The motion is known up to 0.468 s only" in said
             and "have no joints" in said
         )
-        assert "All joints bear" in run("pulse", FILE, "--ag", "0.4g", "--period", 0.6).stdout
+        assert "All checked joints bear" in run("pulse", FILE, "--ag", "0.4g", "--period", 0.6).stdout
 
     def test_sampling_is_not_refined_beyond_what_is_known(self):
         found = sampled_history(Structure(PORTAL), "nonlinear", parse_pulse("sine:0.9g:0.6s"))

@@ -120,6 +120,7 @@ def animate(
     'The structure rocks to 0.1315 of its critical rotation phi_cr.'
     """
     from rocking_cli.engines import engine_of
+    from rocking_cli.studies.contact import Contacts
     from rocking_cli.studies.neighbours import neighbours as outcomes
     from rocking_cli.studies.picture import picture
     from rocking_cli.views.animation import view
@@ -132,7 +133,9 @@ def animate(
     given = Motions.of(motion, options).one(ready.growth, watch)
     watch.compile()
     scaled = given.motion.scaled(signs[0] * given.factor)
-    film = Film(picture(ready.mechanism), engine_of(ready).follow(ready, scaled, model=name), scaled)
+    history = engine_of(ready).follow(ready, scaled, model=name)
+    assumed = Contacts(ready.mechanism).check(history, scaled).assumed_friction if name == "nonlinear" else None
+    film = Film(picture(ready.mechanism), history, scaled, assumed)
     if path.suffix.lower() == ".html":
         speed, frames = speed or 1.0, None
         _write_page(path, film, heading(ready.mechanism), speed)

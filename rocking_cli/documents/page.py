@@ -230,7 +230,7 @@ def _geometry(content: Assessment) -> Rows:
 
 def _response(content: Assessment, result: MotionResult, k: int, bins: int) -> dict[str, Any]:
     best = result.histories["nonlinear"]
-    film = Film(content.picture, best, result.motion)
+    film = Film(content.picture, best, result.motion, result.contacts[result.polarity].assumed_friction)
     pulses = [replace(each, sign=each.sign * result.polarity) for each in result.fits[:1] if result.file]
     charts = [ratio_chart(result.histories, bins), ground_chart(result.motion, pulses, bins)]
     moment = _peak_time(best, film)

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from math import inf, isfinite, isnan
 
+from rocking_cli.core.contacts import MASONRY
 from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.joints import JointCheck
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.names import percent
 
 NOT_CHECKED = "The joints of this mechanism are not checked: it does not say which of them stay closed."
+ASSUMED = (
+    "The friction required, {:.3g}, is more than the {:g} usual for masonry: the result assumes that nothing slides."
+)
 NO_JOINTS = "The equivalent blocks have no joints, and cannot tell the outcome, whatever they give."
 INSTANT = 1e-6  # of D_cr: less of an opening is said to be none
+# By comparison with free blocks: a peak below this share of phi_cr is off by some 20 % if a joint opens by more than
+# that share of D_cr.
+SMALL_PEAK, SMALL_PEAK_OPENING, SMALL_PEAK_ERROR = 0.02, 0.001, 0.2
 NEXT = "Next: `rocking margin` shows up to which scale factor the outcome is known. For stronger motions, {}."
 OVERTURNS = "assume that it overturns"
 HINGES = f"describe the structure as a linkage that hinges at the joint that opens, or {OVERTURNS}"
@@ -23,13 +31,16 @@ def unchecked(name: str = "") -> str:
     return f"Caution: {of}{NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}"
 
 
-def joints_in_words(history: History) -> str:
+def joints_in_words(history: History, assumed_friction: float | None = None) -> str:
     """Return whether the joints hold in a nonlinear history, in words; empty if no joint could open.
 
     Parameters
     ----------
     history : History
         History of the nonlinear model.
+    assumed_friction : float, optional
+        Friction that the joints require, if the structure gives none and it is more than masonry usually has. The
+        result is then not called valid.
 
     Returns
     -------
@@ -38,23 +49,37 @@ def joints_in_words(history: History) -> str:
         is valid, why, and what to do next.
     """
     check = history.check
+    slides = [] if assumed_friction is None else [ASSUMED.format(assumed_friction, MASONRY)]
     if history.unknown:
         alone = check is not None and check.alone
-        return f"{_until(history)} {NEXT.format(OVERTURNS if alone or history.apart else HINGES)}"
+        return " ".join([_until(history), *slides, NEXT.format(OVERTURNS if alone or history.apart else HINGES)])
     if check is None:
         return NOT_CHECKED
-    taken = f" Not checked, but assumed to hold: {', '.join(check.asserted)}." if check.asserted else ""
-    every = "All joints that are checked bear" if check.asserted else "All joints bear"
-    if isnan(check.warned):
-        return "" if check.alone else f"{every} throughout the motion.{taken}"
-    if check.largest < INSTANT * check.reach:
-        where = f"the joint between {check.warned_joint}"
-        return f"{every} throughout, except {where} for an instant at {check.warned:.4g} s.{taken}"
-    return (
+    if isnan(check.warned) and check.alone:
+        return " ".join(slides)
+    taken = [f"Not checked, but assumed to hold: {', '.join(check.asserted)}."] if check.asserted else []
+    if check.largest >= INSTANT * check.reach and not isnan(check.warned):
+        return " ".join([*_opens(history, check, valid=not slides), *slides, *taken])
+    which = f" ({'; '.join(check.checked)})" if check.checked else ""
+    but = f", except the joint between {check.warned_joint} for an instant at {check.warned:.4g} s"
+    bear = f"All checked joints bear throughout the motion{which}{'' if isnan(check.warned) else but}."
+    return " ".join([bear, *slides, *taken])
+
+
+def _opens(history: History, check: JointCheck, *, valid: bool) -> Iterator[str]:
+    """Yield by how much a joint opens, less than the limit, and what this means for outcome and peak."""
+    uncertain = 0 < history.peak_ratio < SMALL_PEAK and check.largest > SMALL_PEAK_OPENING * check.reach
+    kept = "outcome remains" if uncertain else "outcome and the peak remain"
+    yield (
         f"The joint between {check.largest_joint} opens or slides by up to {_small(check.largest, 'm')} "
         f"({percent(check.largest / check.reach)} of D_cr; the limit is {percent(check.limit)}), for at most "
-        f"{_small(check.longest, 's')} at a time: less than the limit, so the outcome and the peak remain valid.{taken}"
+        f"{_small(check.longest, 's')} at a time: less than the limit{f', so the {kept} valid' if valid else ''}."
     )
+    if uncertain:
+        yield (
+            f"The peak is uncertain by some {percent(SMALL_PEAK_ERROR)}, as it is below {SMALL_PEAK:g} of the "
+            f"{history.reference} and the opening is above {percent(SMALL_PEAK_OPENING)} of D_cr."
+        )
 
 
 def known_until(histories: Mapping[ModelName, History]) -> float:

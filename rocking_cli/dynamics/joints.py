@@ -18,6 +18,7 @@ from rocking_cli.core.released import ONE, PUSH, RATE, WEIGHT, Pieces, Released,
 from rocking_cli.core.statics import Statics
 from rocking_cli.core.strength import Strength
 from rocking_cli.dynamics import kernels
+from rocking_cli.dynamics.checked import checked_joints
 from rocking_cli.dynamics.modes import modes
 from rocking_cli.dynamics.resting import EarlyMechanism, Rest, resting
 from rocking_cli.dynamics.tables import DirectionTable
@@ -86,6 +87,8 @@ class JointTables:
         passes.
     alone : bool
         Whether the only joint is that of a single body with the ground.
+    checked : sequence of str
+        Joints that are checked, by kind, in words.
     """
 
     labels: Sequence[str]
@@ -106,6 +109,7 @@ class JointTables:
     redundant: bool = False
     calm: tuple[float, float] = NEVER
     alone: bool = False
+    checked: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -147,6 +151,8 @@ class JointCheck:
         Whether the only joint is that of a single body with the ground.
     asserted : sequence of str
         Joints that are assumed to hold without a check, in words.
+    checked : sequence of str
+        Joints that are checked, by kind, in words.
     """
 
     limit: float
@@ -165,6 +171,7 @@ class JointCheck:
     count: int
     alone: bool
     asserted: Sequence[str] = ()
+    checked: Sequence[str] = ()
 
 
 REASONS = ("opens", "slides", "crushes", "weightless", "apart")  # in the order of the kernel
@@ -203,6 +210,7 @@ def check_of(joints: JointTables | None, marks: Reals) -> JointCheck | None:
         count=len(joints.labels),
         alone=joints.alone,
         asserted=joints.asserted,
+        checked=joints.checked,
     )
 
 
@@ -285,7 +293,7 @@ def joints_of(
         labels, contacts, bearing, rows, struck, within, _reach(mechanism, statics), mechanism.opening,
         not any(table.held.size for table in tables), QUICK / p, mechanism.gravity, rest, steady,
         mechanism.asserted(), sliding, redundant, _calm(within, tables, statics),
-        len(mechanism.bodies()) == 1,
+        len(mechanism.bodies()) == 1, checked_joints(mechanism),
     )  # fmt: skip
 
 

@@ -123,13 +123,15 @@ def disagree(histories: Mapping[ModelName, History]) -> bool:
     return len({run.overturned for run in fit}) > 1
 
 
-def verdict(histories: Mapping[ModelName, History]) -> str:
+def verdict(histories: Mapping[ModelName, History], assumed_friction: float | None = None) -> str:
     """Return whether a structure uplifts, how far it rocks, whether it overturns, and which model to trust, in words.
 
     Parameters
     ----------
     histories : mapping of str to History
         Histories of one or more models of the same structure and motion.
+    assumed_friction : float, optional
+        Friction that the result assumes, see `joints_in_words`.
 
     Returns
     -------
@@ -141,7 +143,7 @@ def verdict(histories: Mapping[ModelName, History]) -> str:
     by = "" if best == "nonlinear" or len(histories) == 1 else f"By {best} the"
     said = [f"{by or 'The'} structure {_ends(run)}."]
     if run.unknown or (best == "nonlinear" and run.check is not None):
-        said += filter(None, [joints_in_words(run)])
+        said += filter(None, [joints_in_words(run, assumed_friction)])
     if run.unknown and len(histories) > 1:
         said.append(NO_JOINTS)
     else:

@@ -87,8 +87,8 @@ class ContactDemand:
         around the peak for which more than 90 % of `friction_needed` is required.
     base_shear : float
         The largest horizontal force of the ground on the structure while it rocks, in either sense [N], per unit mass
-        if the structure has no masses. Forces of guides that hold the structure sideways are left out; bodies that do
-        not move count as ground.
+        if the structure has no masses. Impacts are left out: the impulse at an impact is not part of it. Forces of
+        guides that hold the structure sideways are left out too; bodies that do not move count as ground.
     least_normal : float
         The smallest normal force N of any joint while the structure rocks [N], per unit mass if it has no masses; of
         all joints together if `whole` or `shared`.
@@ -157,6 +157,11 @@ class ContactDemand:
         return self.friction_needed > MASONRY
 
     @property
+    def assumed_friction(self) -> float | None:
+        """Friction required, if none is given and it is more than masonry usually has; None otherwise."""
+        return self.friction_needed if self.friction is None and self.beyond_masonry else None
+
+    @property
     def holds(self) -> bool:
         """Whether, as far as is known, no joint opens, slides or crushes during the history."""
         crushes = self.crushing is not None and self.crushing.used > 1
@@ -212,7 +217,10 @@ class Contacts:
         return replace(asked, opens=opens, opens_joint=where, followed=followed, known_to=known_to)
 
     def base_shear(self, history: History, motion: GroundMotion | None) -> Reals:
-        """The horizontal force of the ground on the structure at each sample, to the right [N]; NaN at rest."""
+        """The horizontal force of the ground on the structure at each sample, to the right [N]; NaN at rest.
+
+        Impacts are left out: their impulses are not part of it.
+        """
         states = _samples(self.mechanism, history, motion)
         shear = np.full(states.time.size, np.nan)
         for direction in self.mechanism.directions:

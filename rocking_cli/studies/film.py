@@ -34,11 +34,14 @@ class Film:
         Time history of the structure.
     motion : GroundMotion
         The ground motion.
+    assumed_friction : float, optional
+        Friction that the history assumes, see `ContactDemand`.
     """
 
     picture: Picture
     history: History
     motion: GroundMotion
+    assumed_friction: float | None = None
 
     @cached_property
     def _moving(self) -> int:
@@ -69,7 +72,7 @@ class Film:
     @property
     def verdict(self) -> str:
         """The outcome, in words."""
-        return verdict({self.history.model: self.history})
+        return verdict({self.history.model: self.history}, self.assumed_friction)
 
     def rotation(self, time: Reals) -> Reals:
         """Return the signed rotation at some times, shape (n,) [rad]; after the end the last rotation simulated."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.engines import engine_of
+from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.structure import Structure
 
@@ -22,6 +23,8 @@ class SampledHistory:
     ----------
     history : History
         The history under the finest sampling.
+    motion : GroundMotion
+        The pulse so sampled.
     per_period : int
         Number of samples in a period.
     converged : bool
@@ -29,6 +32,7 @@ class SampledHistory:
     """
 
     history: History
+    motion: GroundMotion
     per_period: int
     converged: bool
 
@@ -62,7 +66,7 @@ def sampled_history(structure: Structure, model: ModelName, pulse: Pulse, polari
         history = engine.follow(structure, motion, model=model, tail=0.0)
         converged = before is not None and _alike(before, history)
         if converged or per_period >= FINEST:
-            return SampledHistory(history, per_period, converged)
+            return SampledHistory(history, motion, per_period, converged)
         before, per_period = history, 2 * per_period
 
 

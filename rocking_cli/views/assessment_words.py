@@ -82,6 +82,8 @@ def in_a_sentence(content: Assessment) -> str:
     contacts = [contact for each in content.results for contact in each.contacts.values()]
     if any(not contact.holds and not contact.followed for contact in contacts):
         close += " But its joints do not hold: see below from which time the result is no longer valid."
+    if any(contact.assumed_friction is not None for contact in contacts):
+        close += " The result assumes that nothing slides: see below how much friction this requires."
     if falls:
         under = _listed([each.given.motion.name for each in falls])
         of = f" ({len(falls)} of {len(content.results)} ground motions)" if len(content.results) > 1 else ""
@@ -238,7 +240,7 @@ def _verdict(content: Assessment, result: MotionResult) -> MotionAnswers:
 def _joints(content: Assessment, result: MotionResult) -> tuple[ReaderAnswer, ...]:
     """Answer whether the joints hold, in the polarity that governs; empty for a structure that does not rock."""
     run, contact = result.histories["nonlinear"], result.contacts[result.polarity]
-    said = [joints_in_words(run).replace("`", "") if run.check is not None else ""]
+    said = [joints_in_words(run, contact.assumed_friction).replace("`", "") if run.check is not None else ""]
     said.append(contact_words(contact, content.mechanism))
     return (ReaderAnswer("Do its joints hold?", " ".join(filter(None, said))),) if said[1] else ()
 

@@ -56,7 +56,7 @@ def contact_columns(mechanism: Mechanism) -> list[Column[ContactDemand]]:
         Column("", of("time"), head="at [s]", form=rounded(3)),
         Column("", of("duration"), head="for [s]", form=rounded(3)),
         Column("", of("impact_friction"), head="at impacts", form=rounded(3)),
-        Column("", of("base_shear"), head="base shear", form=force),
+        Column("", of("base_shear"), head="base shear, without impacts", form=force),
         Column("", of("least_normal"), head="least normal force", form=force, text=True),
         Column("", of("lost"), head="contact lost", form=_lost, text=True),
     ]

@@ -51,7 +51,8 @@ def blocks(
     watched : Watched, optional
         Points and ties: with them, further columns are displacements, elongations and forces in each history.
     base_shear : mapping of str to ndarray, optional
-        The horizontal force of the ground at each sample of some histories [N], as last columns; NaN at rest.
+        The horizontal force of the ground at each sample of some histories [N], without the impulses of impacts, as
+        last columns; NaN at rest.
 
     Yields
     ------

@@ -18,6 +18,7 @@ from rocking_cli.dynamics.verdict import SENSE
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
+from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.pulse_on_structure import KAPPAS, Answer, outcome, scaled
 from rocking_cli.studies.sampled_pulse import SampledHistory
 from rocking_cli.views.pulse import YES_NO, after_impacts, closed_data, how_far_off, impacts_before
@@ -68,7 +69,7 @@ def view(
     parts: list[Table | str] = [Table(f"{heading(mechanism)}, {pulse}", columns, rows, numbers=range(1, 5))]
     for sign, found in answers.items():
         title = f"Polarity {sign}: {'as given' if sign > 0 else 'reversed'}"
-        parts += ["", _answer_table(title, found), _verdict(found)]
+        parts += ["", _answer_table(title, found), _verdict(found, mechanism)]
     unfit = uplift_error(equivalence)
     if grade(unfit) is Grade.DISREGARD:
         parts.append(f"Disregard linear1: its uplift acceleration is {uplift_in_words(unfit)}.")
@@ -141,11 +142,13 @@ def _ends(found: OneOutcome) -> str:
     return f"{said}\n{after_impacts(found)}" if found.overturned else said
 
 
-def _verdict(answers: Mapping[str, Answer]) -> str:
+def _verdict(answers: Mapping[str, Answer], mechanism: Mechanism) -> str:
     """Return sentences on the nonlinear history, and on how the linear models compare."""
-    nonlinear = outcome(answers["nonlinear"])
-    assert isinstance(nonlinear, History)
-    joints = joints_in_words(nonlinear) if nonlinear.check is not None or nonlinear.unknown else ""
+    sampled = answers["nonlinear"]
+    assert isinstance(sampled, SampledHistory)
+    nonlinear, joints = sampled.history, ""
+    if nonlinear.check is not None or nonlinear.unknown:
+        joints = joints_in_words(nonlinear, Contacts(mechanism).check(nonlinear, sampled.motion).assumed_friction)
     if nonlinear.unknown:
         return f"The structure has an {names.UNKNOWN} outcome. {joints} {NO_JOINTS}"
     if not nonlinear.lifted:

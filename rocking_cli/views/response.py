@@ -58,6 +58,10 @@ class HistoryDetails(NamedTuple):
             return None
         return contact_data(self.contacts[polarity], self.mechanism)
 
+    def assumed_friction(self, polarity: int) -> float | None:
+        """Return the friction that the result assumes in a polarity, see `ContactDemand`."""
+        return self.contacts[polarity].assumed_friction if polarity in self.contacts else None
+
     def contact_words(self, polarity: int) -> list[str]:
         """Return the contact demands as sentences, if there are any."""
         if polarity not in self.contacts or self.mechanism is None:
@@ -123,7 +127,7 @@ def runs_data(runs: Runs, near: Mapping[int, Neighbours], shown: HistoryDetails 
             "responses": histories_data(histories, shown, polarity),
             "agreement": agreement_data(histories),
             "neighbours": neighbours_data(near[polarity]) if polarity in near else None,
-            "verdict": verdict(histories),
+            "verdict": verdict(histories, shown.assumed_friction(polarity)),
         }
         for polarity, histories in runs.items()
     }
@@ -336,7 +340,7 @@ def _tables(
     parts: list[Table | str] = []
     for polarity, histories in runs.items():
         heading = f"{title}, polarity {polarity}" if len(runs) > 1 else title
-        parts += [_table(heading, histories, shown, polarity), verdict(histories)]
+        parts += [_table(heading, histories, shown, polarity), verdict(histories, shown.assumed_friction(polarity))]
         parts += [str(near[polarity])] if polarity in near else []
         parts += shown.contact_words(polarity)
         if shown.etas is not None:
@@ -367,7 +371,9 @@ def _table(title: str, histories: Histories, shown: HistoryDetails, polarity: in
     if polarity in shown.contacts and shown.mechanism is not None:
         per, unit = (1000, "kN") if shown.mechanism.has_mass else (1, "N/kg")
         shear = number(shown.contacts[polarity].base_shear / per, 4)
-        rows.append(["base shear", *(shear if run.model == "nonlinear" else ABSENT for run in runs), unit])
+        rows.append(
+            ["base shear, without impacts", *(shear if run.model == "nonlinear" else ABSENT for run in runs), unit]
+        )
     return Table(title, ["", *(run.model for run in runs), "unit"], rows, numbers=range(1, len(runs) + 1))
 
 
