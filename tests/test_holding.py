@@ -11,9 +11,9 @@ import pytest
 
 import rocking_cli as rk
 from rocking_cli.core import Direction
-from rocking_cli.core.resting import FEET
 from rocking_cli.dynamics.checked import checked_joints
 from rocking_cli.dynamics.holding import joints_in_words
+from rocking_cli.dynamics.resting import FEET
 from rocking_cli.structure import build_models
 from rocking_cli.studies.contact import Contacts
 from tests.conftest import EXAMPLES
