@@ -396,10 +396,12 @@ class Linkage(LinkedBodies):
         if found is None:
             return None
         ground = self._anchored[self.directions[0]]
-        joined = {frozenset(each.pieces) for each in found}
         for pair in combinations([name for name in self._members if name not in ground], 2):
-            if frozenset(pair) not in joined:
-                found = [*found, *self._closed_faces(pair)]
+            for k, face in enumerate(self._closed_faces(pair), 1):
+                if not any(
+                    (each.held == "fixed" and set(each.pieces) == set(pair)) or _is_on(each, face) for each in found
+                ):
+                    found = [*found, replace(face, name=f"{face.pieces[0]} and {face.pieces[1]}, face {k}")]
         return found if self.rocks_both_ways else [self._whole_face(each) for each in found]
 
     def _whole_face(self, contact: Contact) -> Contact:
@@ -413,12 +415,11 @@ class Linkage(LinkedBodies):
 
     @property
     def propped(self) -> bool:
-        """Whether two bodies that stand on the ground touch, in a structure that rocks one way."""
+        """Whether two bodies press sideways on one another, in a structure that rocks one way."""
         if self.rocks_both_ways:
             return False
-        held = self._held[self.directions[0]].joints
-        stands = {name for each in held if isinstance(each, Pin) and len(each.bodies) == 1 for name in each.bodies}
-        return any(len(each.bodies) == 2 and stands.issuperset(each.bodies) for each in held)
+        faces = [each.normal for each in self.contacts_at_rest() or () if None not in each.pieces]
+        return any(abs(normal.real) > abs(normal.imag) for normal in faces)
 
     def asserted(self) -> Sequence[str]:
         bonds = [pair for closed in self._closed.values() for pair, faces in closed.items() if not faces]
@@ -458,6 +459,14 @@ def _on_ground(contact: Contact, ground: Collection[str]) -> Contact:
     """Return a joint in which bodies that are as the ground are the ground."""
     one, other = (None if name in ground else name for name in contact.pieces)
     return replace(contact, pieces=(one, other), face=None if contact.face in ground else contact.face)
+
+
+def _is_on(contact: Contact, face: Contact) -> bool:
+    """Return whether a joint bears on a face between the same two bodies."""
+    start, end = face.points
+    along = (end - start) / abs(end - start)
+    off = max(abs(((at - start) * along.conjugate()).imag) for at in contact.points)
+    return set(contact.pieces) == set(face.pieces) and off <= ALIKE * abs(end - start)
 
 
 def _on_pieces(tie: Tie, found: Cracked) -> Tie:
