@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from math import atan2, pi
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
+from pydantic import model_validator
 
 from mechanisms.block import Block
 from rocking_cli.core import (
@@ -17,18 +19,22 @@ from rocking_cli.core import (
     Joint,
     Length,
     Mechanism,
+    Piece,
     Reals,
     RigidMotion,
     Sketch,
     box,
+    geometry_error,
     length,
     of_joints,
     quantity,
     rectangle,
     rotation,
 )
+from rocking_cli.core.reactions import at_uplift
 
-DRAWN = 6  # columns of a picture, at most
+DRAWN = 6  # columns of a picture that is not to scale, at most
+MOST = 20  # columns whose joints are checked, which takes seconds
 
 
 class SymmetricFrame(Mechanism):
@@ -38,6 +44,8 @@ class SymmetricFrame(Mechanism):
     title: ClassVar[str] = "equal columns under a freely supported beam"
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Table I; Makris and Vassiliou (2013)"
     verified: ClassVar[str] = "closed forms p^2 = 3g/(4R) (1+2 gamma)/(1+3 gamma), lambda = tan(alpha), eta"
+
+    starter: ClassVar[tuple[str, ...]] = ("spacing", "beam_depth")
 
     column_width: float = length("width of a column", symbol="2b", example=1.0)
     column_height: float = length("height of a column", symbol="2h", example=6.0)
@@ -51,15 +59,39 @@ class SymmetricFrame(Mechanism):
     )
     mass_ratio: float = quantity("mass of the beam over that of all columns", symbol="gamma", example=2.0, ge=0, le=1e6)
 
+    spacing: float | None = length(
+        "distance between the column axes; with beam_depth, the joints are checked",
+        symbol="L", example=5.0, default=None,
+    )  # fmt: skip
+    beam_depth: float | None = length(
+        "depth of the beam, flush with the outer columns; required with spacing", example=1.0, default=None
+    )
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        if (self.spacing is None) != (self.beam_depth is None):
+            missing = "spacing" if self.spacing is None else "beam_depth"
+            raise geometry_error(missing, "is missing: give spacing and beam_depth, or neither")
+        if self.spacing is not None and not 1 < self.columns <= MOST:
+            raise geometry_error("spacing", f"has no effect, as {self.unchecked}: leave out spacing and beam_depth")
+        if self.spacing is not None and self.spacing <= self.column_width:
+            raise geometry_error(
+                "spacing",
+                f"the columns overlap: the distance between their axes ({self.spacing:g} m) must be more than "
+                f"their width ({self.column_width:g} m)",
+            )
+        return self
+
     def bodies(self) -> Sequence[Body]:
         # All columns move alike: one body with the mass of all of them stands for them. The beam only moves
-        # sideways and up: where in it the centroid is changes nothing.
+        # sideways and up: its shape has an effect on its joints alone.
         of_columns = 1 / (1 + self.mass_ratio)
-        h = self.column_height / 2
-        return (
-            box("columns", of_columns, self.column_width, self.column_height, 1j * h),
-            Body("beam", 1 - of_columns, 0.0, self._axes[-1] / 2 + 2j * h + 0.5j * self.column_width),
-        )
+        h, last = self.column_height / 2, self._axes[-1]
+        columns = box("columns", of_columns, self.column_width, self.column_height, 1j * h)
+        if self.beam_depth is None:
+            return columns, Body("beam", 1 - of_columns, 0.0, last / 2 + 2j * h + 0.5j * self.column_width)
+        middle = last / 2 + 1j * (2 * h + self.beam_depth / 2)
+        return columns, box("beam", 1 - of_columns, last.real + self.column_width, self.beam_depth, middle)
 
     def own_caution(self) -> str:
         if self.columns < 3:
@@ -105,15 +137,59 @@ class SymmetricFrame(Mechanism):
             Joint("B" + direction.prime, -b + 1j * self.column_height, (columns, beam), face=beam, level=True),
         )
 
-    def contacts(self, direction: Direction) -> Sequence[Contact]:
-        return of_joints(self.joints(direction), self.friction)
+    def pieces(self, direction: Direction) -> Sequence[Piece]:
+        if self.spacing is None:
+            return super().pieces(direction)
+        columns, beam = self.weighed()
+        mass, inertia = columns.mass / self.columns, columns.inertia / self.columns
+        return [
+            *(
+                Piece(Body(_column(k), mass, inertia, columns.centroid + shift), columns.name, shift)
+                for k, shift in enumerate(self._axes)
+            ),
+            Piece(beam, beam.name),
+        ]
+
+    def piece_at(self, body: str, at: complex, direction: Direction) -> str:
+        return _column(0) if self.spacing is not None and body == "columns" else body
+
+    def contacts(self, direction: Direction) -> Sequence[Contact] | None:
+        foot, top = self.joints(direction)
+        if self.spacing is None:
+            return of_joints([foot, top], self.friction) if self._slides_first else None
+        outer = self._axes[0 if direction > 0 else -1]  # its corner bears on the corner of the beam, as in a linkage
+        joints = []
+        for k, shift in enumerate(self._axes):
+            column = _column(k)
+            joints.append(Joint("", foot.point + shift, (column,)))
+            face = column if shift == outer else "beam"
+            joints.append(Joint("", top.point + shift, (column, "beam"), face=face))
+        return of_joints(joints, self.friction)
+
+    @cached_property
+    def _slides_first(self) -> bool:
+        """Whether the feet slide before the frame rocks either way, which the sum of their forces decides."""
+        if self.friction is None:
+            return False
+        feet = [at_uplift(self, direction) for direction in self.directions]
+        return all(abs(each.shear[0, 0]) > self.friction * each.normal[0, 0] for each in feet)
+
+    @property
+    def unchecked(self) -> str:
+        if self.columns == 1:
+            return "the file does not say what keeps the beam on a single column level"
+        if self.columns > MOST:
+            return f"it has more than {MOST} columns"
+        return "give spacing and beam_depth"
 
     def critical_rotation(self, direction: Direction) -> float:
         return atan2(self.column_width, self.column_height)  # Eq. 37
 
     @property
     def _axes(self) -> list[complex]:
-        """Positions of the columns in drawings [m]; their spacing is not given, and has no effect."""
+        """Positions of the columns, those of the drawing if their spacing is not given [m]."""
+        if self.spacing is not None:
+            return [complex(k * self.spacing) for k in range(self.columns)]
         spacing = max(3 * self.column_width, 0.6 * self.column_height)
         return [complex(k * spacing) for k in range(min(self.columns, DRAWN))]
 
@@ -121,20 +197,30 @@ class SymmetricFrame(Mechanism):
         columns, beam = self.bodies()
         b, top = self.column_width / 2, 1j * self.column_height
         right = complex(b)
-        few = f", {DRAWN} of {self.columns} columns" if self.columns > DRAWN else ""
+        lengths = [
+            Length("2b", complex(-b), right),
+            Length("2h", complex(-b), -b + top),
+            Length("R", right, columns.centroid, Direction.POSITIVE),
+        ]
+        outlines = {columns.name: [columns.outline], beam.name: [beam.outline]}
+        notes = []
+        if self.spacing is not None:
+            lengths.append(Length("L", 0j, complex(self.spacing)))
+        else:
+            outlines[beam.name] = [rectangle(beam.centroid, self._axes[-1].real + 2 * b, 2 * b)]
+            few = f", {DRAWN} of {self.columns} columns" if self.columns > DRAWN else ""
+            notes.append(f"spacing and depth of the beam are not to scale: they are not given{few}")
         return Sketch(
-            outlines={
-                columns.name: [rectangle(columns.centroid, 2 * b, self.column_height)],
-                beam.name: [rectangle(beam.centroid, self._axes[-1].real + 2 * b, 2 * b)],
-            },
+            outlines=outlines,
+            uniform=self.spacing is not None,
             copies={columns.name: self._axes},
             hinges={direction: self.joints(direction) for direction in Direction},
-            lengths=[
-                Length("2b", complex(-b), right),
-                Length("2h", complex(-b), -b + top),
-                Length("R", right, columns.centroid, Direction.POSITIVE),
-            ],
+            lengths=lengths,
             angles=[Angle("α", right, right + 1j, columns.centroid, Direction.POSITIVE)],
-            at_will=[beam.name],
-            notes=[f"spacing and depth of the beam are not to scale: they are not given and change nothing{few}"],
+            at_will=[beam.name] if notes else [],
+            notes=notes,
         )
+
+
+def _column(k: int) -> str:
+    return f"column {k + 1}"

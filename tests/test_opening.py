@@ -133,7 +133,7 @@ def test_forces_balance_every_piece_and_uplift_opens_nothing(file):
     made = load_structure(file)
     for direction in made.directions:
         rotations = np.linspace(0.0, 0.5 * made.limit(direction), 5)
-        if file.stem in ("portico", "wall_with_openings"):  # three columns, many bricks: joints too many
+        if file.stem in ("portico", "symmetric_frame", "wall_with_openings"):  # columns, bricks: joints too many
             with pytest.raises(Undetermined):
                 released(made, direction, rotations)
             continue
@@ -334,11 +334,11 @@ def test_the_reach_is_that_of_the_direction_in_which_it_moves_less():
 
 
 def test_columns_alike_bear_together():
-    """Of three columns the joints bear three times 2 MPa x .3 m x 1 m; each joint is one of all columns."""
+    """Of three columns that slide before they rock each joint is one of all: three times 2 MPa x .3 m x 1 m."""
     fields = {"column_width": 1.0, "column_height": 6.0, "mass_ratio": 1.0, "density": 2000.0, "depth": 1.0}
-    made = Registry()["symmetric_frame"](**fields, columns=3, strength={"stress": 2e6, "width": 0.3})
-    joints = build_models(made, ("nonlinear",))[0].joints
-    assert len(joints.labels) == 2 and joints.bearing[:, 1] == pytest.approx(3 * 2e6 * 0.3)
+    fields |= {"columns": 3, "friction": 0.1, "strength": {"stress": 2e6, "width": 0.3}}
+    joints = build_models(Registry()["symmetric_frame"](**fields), ("nonlinear",))[0].joints
+    assert len(joints.labels) == 3 and joints.bearing[:2, 1] == pytest.approx(3 * 2e6 * 0.3)
 
 
 def test_which_joints_bear_elsewhere_in_the_other_direction():

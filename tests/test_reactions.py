@@ -70,7 +70,7 @@ STRUCTURES = {
              "stiffness": 1e6, "prestress": 2e4}
         ],
     ),
-    "symmetric frame": SymmetricFrame(column_width=1.0, column_height=6.0, mass_ratio=1.5, mass=5e4),
+    "symmetric frame": SymmetricFrame(column_width=1.0, column_height=6.0, mass_ratio=1.5, mass=5e4, friction=0.1),
     "block": Block(width=1.0, height=5.0),
 }  # fmt: skip
 

@@ -196,7 +196,8 @@ STRUCTURES = {
     "stocky": "mechanism: block\nwidth: 1.5\nheight: 2.5\n",
     "pedestal": "mechanism: block\nwidth: 0.7\nheight: 2.8\n",
     "wall": "mechanism: wall\nthickness: 0.45\nheight: 4.1\n",
-    "frame": "mechanism: symmetric_frame\ncolumn_width: 1.1\ncolumn_height: 4.6\nmass_ratio: 0.8\n",
+    "frame": "mechanism: symmetric_frame\ncolumn_width: 1.1\ncolumn_height: 4.6\nmass_ratio: 0.8\n"
+    "spacing: 4\nbeam_depth: 1\n",
     "valley": (EXAMPLES / "frame.yaml").read_text(encoding="utf-8"),
     "arch": "mechanism: arch\nradius: 6.3\nthickness: 0.819\ninclusion_angle_deg: 150\nvoussoirs: 9\n",
 }

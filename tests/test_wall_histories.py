@@ -60,14 +60,16 @@ def test_velocities_at_joints_are_those_of_their_points(name, direction):
     there = Pieces(made, direction, phi)
     rates, rows = there.rates(contacts)
     motions = dict(zip([each.name for each in made.bodies()], made.motion(phi, direction), strict=True))
-    of = {each.body.name: each.of for each in made.pieces(direction)}
+    of = {each.body.name: each for each in made.pieces(direction)}
     dense = rates.dense()
     assert dense.shape[1] == sum(contact.forces for contact in contacts)
     assert rates.at(there.dq) == pytest.approx(np.einsum("nrq,nq->nr", dense, there.dq), abs=1e-12)
 
     def at(name, point):
-        motion = None if name is None or of[name] is None else motions[of[name]]
-        return np.full(3, point) if motion is None else motion.carry(point)[0]
+        piece = of.get(name)
+        if piece is None or piece.of is None:
+            return np.full(3, point)
+        return motions[piece.of].carry(point - piece.shift)[0] + piece.shift
 
     speeds = rates.at(there.dq)[0]
     size = np.abs(there.dq).max()

@@ -20,10 +20,13 @@ class Piece:
         Mass, inertia and centroid of the piece, with the name of the piece.
     of : str or None
         The body of the mechanism with which the piece moves; None if it stays at rest.
+    shift : complex
+        How far beside that body the piece stands, if it is one of several that the body represents [m].
     """
 
     body: Body
     of: str | None
+    shift: complex = 0j
 
 
 MASONRY = 0.6

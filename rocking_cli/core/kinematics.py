@@ -7,7 +7,7 @@ A prime is a derivative with respect to phi.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from functools import cached_property
 
@@ -70,6 +70,10 @@ class RigidMotion:
             self.dq + 1j * self.dpsi * arm,
             self.ddq + (1j * self.ddpsi - self.dpsi**2) * arm,
         )
+
+    def shifted(self, by: complex) -> RigidMotion:
+        """Return the same motion of an equal link that is `by` beside this one [m]."""
+        return replace(self, rest=self.rest + by, q=self.q + by)
 
     @cached_property
     def _turned(self) -> Points:

@@ -164,6 +164,11 @@ class Mechanism(Given, ABC):
         """Return each column by itself, one of those that are equal, if three or more carry one beam; else none."""
         return ()
 
+    @property
+    def unchecked(self) -> str:
+        """Why `contacts` are not known, or what to give so that they are, in words."""
+        return "it does not say which of them stay closed"
+
     def alike(self) -> Mapping[str, int]:
         """Return the number of identical bodies that a body represents, by name, if more than one; by default none."""
         return {}

@@ -209,13 +209,16 @@ class Pieces:
         self._parts = mechanism.pieces(direction)
         self._still = rotation(phi, 0j, 0.0)
         self._motions: Mapping[str, RigidMotion] = {
-            each.body.name: self._still if each.of is None else motions[each.of] for each in self._parts
+            each.body.name: self._still if each.of is None else motions[each.of].shifted(each.shift)
+            for each in self._parts
         }
         self._column = {each.body.name: 3 * k for k, each in enumerate(self._parts)}
         self._centres = {
             each.body.name: self._motions[each.body.name].carry(each.body.centroid) for each in self._parts
         }
         self.dq, self.ddq = (self._coordinates(k) for k in (1, 2))
+        given = (*(mechanism.loads or ()), *(mechanism.ties or ()))
+        self._each = {thing.name for thing in given if thing.each}
         masses = (thing for thing in mechanism.attached if isinstance(thing, PointMass))
         self._masses = [thing for thing in masses if self._moves(thing.spot)]
         self.mass = self._mass()
@@ -247,12 +250,22 @@ class Pieces:
         """Return whether a point lies on a piece: not on the ground, nor on a body at rest in this direction."""
         return spot.body is not None and self._piece(spot) in self._column
 
-    def _spread(self, spot: Spot, way: Points) -> Reals:
-        """Return the derivative of a point's velocity along a unit vector by all coordinates, shape (n, 3 pieces)."""
-        name = self._piece(spot)
+    def _shifts(self, name: str, *spots: Spot) -> Sequence[complex]:
+        """Return how far beside its points a load or tie acts [m]: at every one of equal bodies if `each` has one."""
+        several = name in self._each and any(spot.body in self._mechanism.alike() for spot in spots)
+        return list(dict.fromkeys(each.shift for each in self._parts)) if several else [0j]
+
+    def _spread(self, spot: Spot, way: Points, shifts: Sequence[complex]) -> Reals:
+        """Return the derivative of a point's velocity along a unit vector by all coordinates, shape (n, 3 pieces).
+
+        With several `shifts`, this is the mean over the points so far beside it.
+        """
         found = np.zeros((self.phi.size, 3 * len(self._parts)))
-        k = self._column[name]
-        found[:, k : k + 3] = self._factors(name, self._carried(name, spot.at), way)
+        for shift in shifts:
+            copies = (each.body.name for each in self._parts if (each.of, each.shift) == (spot.body, shift))
+            name = next(copies, self._piece(spot)) if shift else self._piece(spot)
+            k = self._column[name]
+            found[:, k : k + 3] += self._factors(name, self._carried(name, spot.at + shift), way) / len(shifts)
         return found
 
     def _factors(self, name: str, at: Points, way: Points) -> Reals:
@@ -265,10 +278,12 @@ class Pieces:
         whole = np.array([np.diag([each.body.mass, each.body.mass, each.body.inertia]) for each in self._parts])
         matrix = np.tile(whole, (self.phi.size, 1, 1, 1))
         for thing in self._masses:
-            k = self._column[self._piece(thing.spot)]
+            shifts = self._shifts(thing.name, thing.spot)
             for share, way in ((thing.horizontal, 1 + 0j), (thing.vertical, 1j)):
-                rate = self._spread(thing.spot, np.full(self.phi.size, way))[:, k : k + 3]
-                matrix[:, k // 3] += thing.mass * share * rate[:, :, None] * rate[:, None, :]
+                for shift in shifts:
+                    rate = self._spread(thing.spot, np.full(self.phi.size, way), [shift])
+                    rate = rate.reshape(self.phi.size, -1, 3)
+                    matrix += thing.mass / len(shifts) * share * rate[..., None] * rate[:, :, None, :]
         # A beam without mass moves all the same: what it weighs is nothing beside the rest.
         least = MASSLESS * np.abs(matrix).max()
         light = np.diagonal(matrix, axis1=2, axis2=3) < least
@@ -298,7 +313,8 @@ class Pieces:
         forces[..., RATE] += self.momentum(self.ddq)
         for thing in self._masses:
             # The point of a body has an acceleration of its own beside those of the coordinates: -psi.^2 times its arm.
-            across, up = (self._spread(thing.spot, np.full(n, way)) for way in (1 + 0j, 1j))
+            shifts = self._shifts(thing.name, thing.spot)
+            across, up = (self._spread(thing.spot, np.full(n, way), shifts) for way in (1 + 0j, 1j))
             name = self._piece(thing.spot)
             arm = self._carried(name, thing.spot.at) - self._centres[name][0]
             inwards = -(self._motions[name].dpsi ** 2) * arm
@@ -344,7 +360,8 @@ class Pieces:
             forces[:, k + 1, ONE] += part.body.mass * g
             forces[:, k + 1, WEIGHT] += part.body.mass
         for thing in self._masses:
-            across, up = (self._spread(thing.spot, np.full(n, way)) for way in (1 + 0j, 1j))
+            shifts = self._shifts(thing.name, thing.spot)
+            across, up = (self._spread(thing.spot, np.full(n, way), shifts) for way in (1 + 0j, 1j))
             forces[..., PUSH] += thing.mass * thing.horizontal * across
             forces[..., ONE] += thing.mass * thing.weight * g * up
             forces[..., WEIGHT] += thing.mass * thing.weight * up
@@ -353,10 +370,12 @@ class Pieces:
             return self._path(spot)
 
         for other in mechanism.attached:
-            for push in other.forces(direction, follow):  # type: ignore[arg-type]
+            pushes = other.forces(direction, follow)  # type: ignore[arg-type]
+            shifts = self._shifts(other.name, *(push.spot for push in pushes))
+            for push in pushes:
                 if self._moves(push.spot):
                     way = np.exp(1j * np.angle(push.force))  # of any size, also of none
-                    forces[..., ONE] -= np.abs(push.force)[:, None] * self._spread(push.spot, way)
+                    forces[..., ONE] -= np.abs(push.force)[:, None] * self._spread(push.spot, way, shifts)
         return forces
 
     def _path(self, spot: Spot) -> object:

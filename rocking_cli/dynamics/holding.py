@@ -11,7 +11,6 @@ from rocking_cli.dynamics.joints import JointCheck
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.names import percent
 
-NOT_CHECKED = "The joints of this mechanism are not checked: it does not say which of them stay closed."
 ASSUMED = (
     "The friction required, {:.3g}, is more than the {:g} usual for masonry: the result assumes that nothing slides."
 )
@@ -25,14 +24,22 @@ OVERTURNS = "assume that it overturns"
 HINGES = f"describe the structure as a linkage that hinges at the joint that opens, or {OVERTURNS}"
 
 
-def unchecked(name: str = "") -> str:
-    """Return the caution that the joints of a structure are not checked; `name` is that of one of several."""
+def unchecked(name: str = "", why: str = "it does not say which of them stay closed") -> str:
+    """Return the caution that the joints of a structure are not checked.
+
+    Parameters
+    ----------
+    name : str
+        The name of the structure, if it is one of several.
+    why : str
+        The reason, or what to give, see `Mechanism.unchecked`.
+    """
     of = f"{name}: " if name else ""
-    return f"Caution: {of}{NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}"
+    return f"Caution: {of}the joints of this mechanism are not checked: {why}."
 
 
 def joints_in_words(history: History, assumed_friction: float | None = None) -> str:
-    """Return whether the joints hold in a nonlinear history, in words; empty if no joint could open.
+    """Return whether the joints hold in a nonlinear history, in words; empty if none could open, or none is checked.
 
     Parameters
     ----------
@@ -54,7 +61,7 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
         alone = check is not None and check.alone
         return " ".join([_until(history), *slides, NEXT.format(OVERTURNS if alone or history.apart else HINGES)])
     if check is None:
-        return NOT_CHECKED
+        return " ".join(slides)
     if isnan(check.warned) and check.alone:
         return " ".join(slides)
     taken = [f"Not checked, but assumed to hold: {', '.join(check.asserted)}."] if check.asserted else []

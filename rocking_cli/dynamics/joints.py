@@ -492,7 +492,7 @@ def _reach(mechanism: Mechanism, statics: Sequence[Statics]) -> float:
         bodies = {body.name: k for k, body in enumerate(mechanism.bodies())}
         motions = mechanism.motion(np.array([side.reference]), direction)
         moved = [
-            abs(motions[bodies[each.of]].carry(each.body.centroid)[0][0] - each.body.centroid)
+            abs(motions[bodies[each.of]].shifted(each.shift).carry(each.body.centroid)[0][0] - each.body.centroid)
             for each in mechanism.pieces(direction)
             if each.of is not None
         ]

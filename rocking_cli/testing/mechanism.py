@@ -414,10 +414,10 @@ def _pieces(structure: Mechanism, direction: Direction) -> Sequence[Piece]:
     for each in pieces:
         _demand(each.of is None or each.of in names, f"the piece {each.body.name} is of {each.of}, which is no body")
     for body, motion in zip(bodies, structure.motion(np.zeros(1), direction), strict=True):
-        parts = [each.body for each in pieces if each.of == body.name]
+        parts = [each for each in pieces if each.of == body.name]
         if parts:
-            mass = sum(part.mass for part in parts)
-            moment = sum(part.mass * part.centroid for part in parts) - mass * body.centroid
+            mass = sum(part.body.mass for part in parts)
+            moment = sum(part.body.mass * (part.body.centroid - part.shift) for part in parts) - mass * body.centroid
             _demand(
                 abs(mass - body.mass) <= BORNE * body.mass and abs(moment) <= DRAWN * body.mass * _size(structure),
                 f"the pieces of {body.name} have {mass:.6g} kg of its {body.mass:.6g} kg, or another centroid",

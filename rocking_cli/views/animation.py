@@ -39,7 +39,7 @@ def view(
         **file,
     }
     said = [film.verdict, film.ending, *([str(near)] if near is not None else []), restitution_used(structure)]
-    return View(data, [*filter(None, said), *not_checked([history])])
+    return View(data, [*filter(None, said), *not_checked(structure.mechanism, [history])])
 
 
 def row(film: Film, near: Neighbours | None) -> list[str]:
@@ -55,4 +55,4 @@ def several(structure: Structure, film: Film, rows: Sequence[Sequence[str]]) -> 
     if all(each[-1] in (ABSENT, percent(0)) for each in rows):
         heads, rows = heads[:-1], [each[:-1] for each in rows]
     table = Table(heading(structure.mechanism), heads, rows, numbers=range(2, len(heads)))
-    return View({}, [table, restitution_used(structure), *not_checked([film.history])])
+    return View({}, [table, restitution_used(structure), *not_checked(structure.mechanism, [film.history])])

@@ -13,7 +13,7 @@ from rocking_cli.core.equivalence import AGREEMENT
 from rocking_cli.core.restitution import why_none
 from rocking_cli.core.size import doubts as doubts_about_size
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.holding import NOT_CHECKED, joints_in_words, why_unknown
+from rocking_cli.dynamics.holding import joints_in_words, why_unknown
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import SENSE, agreements, bearing, disagree
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -216,7 +216,7 @@ def doubts(content: Assessment) -> list[str]:
             f"{1000 * content.mechanism.interlock.overlap:.0f} mm come apart; no result is valid beyond that."
         )
     if any(each.histories["nonlinear"].check is None for each in content.results):
-        said.append(NOT_CHECKED)
+        said.append(f"The joints of this mechanism are not checked: {content.mechanism.unchecked}.")
     return said
 
 

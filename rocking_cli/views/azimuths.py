@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli import names
-from rocking_cli.dynamics.holding import NOT_CHECKED
+from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import percent
@@ -38,7 +38,7 @@ def view(structure: Structure, found: AzimuthResponses, doubts: Iterable[str] = 
         Table("", heads, rows, numbers=range(1, len(heads))),
     ]
     parts += [f"{name}: {in_words(found, each)}" for name, each in found.outcomes.items()]
-    parts += [] if found.checked else [f"Caution: {NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}"]
+    parts += [] if found.checked else [unchecked(why=structure.mechanism.unchecked)]
     return View(_data(structure, found), [*parts, *doubts])
 
 

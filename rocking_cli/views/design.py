@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rocking_cli import names
-from rocking_cli.dynamics.holding import NOT_CHECKED
+from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import percent
 from rocking_cli.studies.design import Design
@@ -151,7 +151,7 @@ def _not_known(found: Design) -> Iterator[str]:
             f"have an unknown outcome, as a joint opens or slides that the model keeps closed: {count}."
         )
     if None in shares:
-        yield f"Caution: {NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}"
+        yield unchecked()
 
 
 def _nearest(found: Design) -> str:

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any, NamedTuple
 
 from rocking_cli.core import Mechanism
-from rocking_cli.dynamics.holding import NOT_CHECKED
+from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.names import percent
 from rocking_cli.studies.margin import LEVELS, Margin, in_words
 from rocking_cli.studies.neighbours import Neighbourhood
@@ -49,7 +49,7 @@ def view(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around:
     parts += [f"{row.name}: {in_words(row.margin, row.pga)}" for row in rows] if len(rows) <= FEW else []
     parts += [f"Caution: {text}" for text in mechanism.cautions()]
     if not all(row.margin.checked for row in rows):
-        parts.append(f"Caution: {NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}")
+        parts.append(unchecked(why=mechanism.unchecked))
     return View(_data(mechanism, rows, polarity, around), parts)
 
 

@@ -263,7 +263,11 @@ def _joints(structures: Sequence[PulsedModel], mechanisms: Sequence[Mechanism]) 
     left_out = linear and any(len(each.bodies()) > 1 for each in mechanisms)
     return [
         *([NO_JOINTS] if left_out else []),
-        *(unchecked(each.name if several else "") for each in structures if not each.checked),
+        *(
+            unchecked(each.name if several else "", mechanism.unchecked)
+            for each, mechanism in zip(structures, mechanisms, strict=True)
+            if not each.checked
+        ),
         *(f"Caution: {each.name}: {text}" for each in mechanisms if (text := each.own_caution())),
     ]
 

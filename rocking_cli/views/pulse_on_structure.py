@@ -81,7 +81,7 @@ def view(
     else:
         parts.append(f"No closed form: by the equivalent blocks, the structure {names.NO_UPLIFT} (a <= 1).")
     runs = [found for each in answers.values() for found in map(outcome, each.values()) if isinstance(found, History)]
-    return View(data, [*parts, restitution_used(structure), *not_checked(runs)])
+    return View(data, [*parts, restitution_used(structure), *not_checked(mechanism, runs)])
 
 
 def _data(answer: Answer, answers: Mapping[str, Answer]) -> dict[str, Any]:

@@ -205,11 +205,11 @@ def known_data(outcome: OneOutcome) -> dict[str, Any]:
     }
 
 
-def not_checked(histories: Iterable[History]) -> list[str]:
+def not_checked(mechanism: Mechanism, histories: Iterable[History]) -> list[str]:
     """A caution if the joints of a nonlinear history are not checked; else nothing."""
     if all(each.model != "nonlinear" or each.check is not None for each in histories):
         return []
-    return [unchecked()]
+    return [unchecked(why=mechanism.unchecked)]
 
 
 def _history_data(history: History, shown: HistoryDetails) -> dict[str, Any]:
@@ -309,7 +309,7 @@ def view(
     if structure.misleading and any(name != "nonlinear" for name in first):
         caution.append(f"Caution: {structure.misleading}.")
     caution += [f"Caution: {text}" for text in _apart(shown, found.runs)]
-    caution += not_checked(first.values())
+    caution += not_checked(mechanism, first.values())
     joints = ["Joints are named as in `rocking draw`."] if any(each.joint for each in found.contacts.values()) else []
     said = [*parts, *joints, *models_used(first), restitution_used(structure), *notes, *caution]
     return View({**data, "notes": [*doubts, *notes, *caution]}, said)

@@ -7,7 +7,7 @@ from math import isinf
 
 from rocking_cli import names
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.holding import NOT_CHECKED, why_unknown
+from rocking_cli.dynamics.holding import unchecked, why_unknown
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import peaks_over, percent
@@ -98,7 +98,7 @@ class Several:
         yield from models_used(self._models)
         yield self._restitution
         if not self._checked:
-            yield f"Caution: {NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}"
+            yield unchecked(why=self._mechanism.unchecked)
 
     def _outcomes(self) -> str:
         """Return a sentence on how many motions overturn the structure, and how many are unknown."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from rocking_cli.codes.italian.results import Dynamic, ItalianVerified
 from rocking_cli.codes.italian.rules import OF_STATE
-from rocking_cli.dynamics.holding import NOT_CHECKED
+from rocking_cli.dynamics.holding import unchecked
 
 SAME = 0.005  # of an a_g: methods that differ by less agree
 ORDINAL = {True: "With FC", False: "Without FC, as in `rocking respond`"}
@@ -104,7 +104,7 @@ def of_histories(found: Dynamic, FC: float) -> Iterator[str]:
         if changed:
             yield f"The confidence factor FC changes the verdict at {' and '.join(changed)}."
     if not found.checked:
-        yield f"Caution: {NOT_CHECKED[0].lower()}{NOT_CHECKED[1:]}"
+        yield unchecked()
     count = len(found.records)
     if count < found.enough:
         yield (
