@@ -115,8 +115,9 @@ def resting(mechanism: Mechanism) -> Rest:
         return Rest(Released(closed, rows, inverse.swapaxes(1, 2) @ there.held_still(), compliance))
     whole = _as_one(mechanism, there, closed)
     if mechanism.rocks_both_ways or mechanism.propped:
-        found = [_first(mechanism, there, closed, direction) for direction in Direction]
-        return Rest(whole if mechanism.rocks_both_ways else None, [mode for mode in found if mode is not None])
+        known = Rest(whole if mechanism.rocks_both_ways else None)
+        found = [_first(mechanism, there, closed, direction, known) for direction in Direction]
+        return known._replace(modes=[mode for mode in found if mode is not None])
     return Rest(None, [] if whole is None else [_slides_out(whole, there, mechanism.directions[0])])
 
 
@@ -162,19 +163,19 @@ def _slides_out(whole: Released, there: Pieces, direction: Direction) -> EarlyMe
 
 
 def _first(
-    mechanism: Mechanism, there: Pieces, closed: Sequence[Contact], direction: Direction
+    mechanism: Mechanism, there: Pieces, closed: Sequence[Contact], direction: Direction, known: Rest
 ) -> EarlyMechanism | None:
-    """Return the mechanism that starts first as the ground pushes a structure one way; None if it rocks first."""
-    if direction not in mechanism.directions and not mechanism.propped:
+    """Return the mechanism that starts first as the ground pushes a structure one way; None if it rocks or slides."""
+    rocks = direction in mechanism.directions
+    if not rocks and not mechanism.propped:
         return None
-    uplift = mechanism.uplift(direction) if direction in mechanism.directions else FAR
-    if direction in mechanism.directions and _bears_at_uplift(mechanism, direction, uplift):
+    uplift = mechanism.uplift(direction) if rocks else FAR
+    if rocks and _bears_at_uplift(mechanism, direction, uplift):
         return None
     mode = _weakest(there, closed, -int(direction), mechanism.gravity)
-    if mode is None:
-        return None
-    push = mode.force[ONE] / abs(mode.force[PUSH])
-    return mode if push < (1 - SAME) * uplift * mechanism.gravity else None
+    slides = first_failure(known, direction)
+    push = min(uplift * mechanism.gravity, np.inf if slides is None else slides.push)
+    return mode if mode is not None and mode.force[ONE] < (1 - SAME) * push * abs(mode.force[PUSH]) else None
 
 
 def _bears_at_uplift(mechanism: Mechanism, direction: Direction, uplift: float) -> bool:
