@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from math import isclose, nan
+from math import isclose, isfinite, nan
 from typing import Annotated, ClassVar, Self
 
 import numpy as np
@@ -268,7 +268,9 @@ class Assembly(LinkedBodies):
     @cached_property
     def _blocks(self) -> Sequence[analysis.AssemblyBlock]:
         return [
-            analysis.AssemblyBlock(body.name, tuple(self.blocks[body.name].corners), body.mass, body.centroid)
+            analysis.AssemblyBlock(
+                body.name, tuple(self.blocks[body.name].corners), body.mass, body.centroid, body.inertia
+            )
             for body in self.weighed()
         ]
 
@@ -353,7 +355,8 @@ class Assembly(LinkedBodies):
             where = in_short([self._joint(k) for k in mechanism.slides])
             raise StructureError(
                 f"in the {direction.label} direction the mechanism slides between {where} at "
-                f"{self._collapse(direction).multiplier:.4g} g: no rocking model exists for sliding. `rocking "
+                f"{self._collapse(direction).multiplier:.4g} g{self._beside(direction)}: no rocking model exists for "
+                "sliding. `rocking "
                 "collapse` shows the mechanism and the friction required"
             )
         pins = [
@@ -368,7 +371,10 @@ class Assembly(LinkedBodies):
             linkage = LinkageMotion(centres, [*pins, *mechanism.guides], lead, direction, fixed, rest)
         except NoMotion as error:
             why = error.reason
-            if mechanism.lifted:
+            if mechanism.lifted and self._collapse(direction).associated is not None:
+                joints = [self._joint(k) for k in mechanism.lifted]
+                why = f"{in_short(joints, ' and ')} slip or open without pressing: no rocking model exists for that"
+            elif mechanism.lifted:
                 joints = [self._joint(k) for k in mechanism.lifted]
                 why = (
                     f"{in_short(joints, ' and ')} open at both ends but still carry shear, because joints without "
@@ -464,19 +470,49 @@ class Assembly(LinkedBodies):
     # What is said of it
 
     def own_caution(self) -> str:
-        """Return cautions: by how much joints that never slide raise lambda, if above 1 %; and blocks too light."""
+        """Return cautions: on confined and light blocks, and by how much joints that never slide raise lambda."""
         raised = []
         for direction in self.directions:
             lambda_, usual = self._collapse(direction).multiplier, self._with_usual(direction)
             if usual is not None and usual < (1 - GLUE) * lambda_:
                 raised.append(f"{usual:.4g} g instead of {lambda_:.4g} g in the {direction.label} direction")
-        said = [self._of_grains()]
+        said = [self._of_grains(), self._of_confined()]
         if raised:
             said.append(
                 "Joints without `friction` never slide and may carry shear without a normal force, which raises "
                 f"lambda. With a friction of {MASONRY:g} it would be {' and '.join(raised)}: give `friction`."
             )
         return " ".join(filter(None, said))
+
+    def _beside(self, direction: Direction) -> str:
+        """Return what associated flow gives, in brackets, if the mechanism is one without dilation; else nothing."""
+        associated = self._collapse(direction).associated
+        if associated is None:
+            return ""
+        gives = f"gives {associated:.4g} g" if isfinite(associated) else "would lock it"
+        return f" without dilation (associated flow {gives})"
+
+    def _of_confined(self) -> str:
+        """Return sentences on mechanisms without dilation of confined blocks."""
+        lower, early = [], []
+        for direction in self.directions:
+            found, where = self._collapse(direction), f"in the {direction.label} direction"
+            if found.associated is not None:
+                lower.append(f"{found.multiplier:.4g} g {where}{self._beside(direction)}")
+            if not found.complete:
+                early.append(where)
+        said = []
+        if lower:
+            said.append(
+                f"Fixed sides confine blocks, and joints slide without opening: lambda is {' and '.join(lower)}."
+            )
+        if early:
+            said.append(
+                "Fixed sides confine blocks, where associated flow may overestimate lambda by any amount. The search "
+                f"for mechanisms that slide without opening is not complete {' and '.join(early)}: lambda may be "
+                "lower. Analyse fewer blocks."
+            )
+        return " ".join(said)
 
     def _of_grains(self) -> str:
         """Return a sentence on blocks that are too light for the analysis."""
@@ -539,6 +575,9 @@ class Assembly(LinkedBodies):
             thrust=[(self._joint(passage.contact), passage.point, passage.force) for passage in thrust.passages],
             velocities=[(complex(vx, vy), float(turn)) for vx, vy, turn in mechanism.velocity],
             idle=state.idle,
+            confined=state.confined,
+            associated=state.associated,
+            complete=state.complete,
         )
 
     def _held(self, direction: Direction, phi: Reals) -> list[tuple[analysis.DisplacedAssembly, Reals, float]]:

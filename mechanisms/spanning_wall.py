@@ -33,6 +33,7 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.contacts import MASONRY
 
+LOWER = 0.01  # of lambda: by more than that the weakest hinge lowers it, and it is said
 TOP = 1e-9  # of the height: a hinge so near the top is at it, and a load of so small a share of the weight is none
 
 
@@ -125,10 +126,42 @@ class SpanningWall(Mechanism):
         """xi, the height of the hinge over that of the wall, for each direction."""
         if isinstance(self.hinge, float):
             return dict.fromkeys(Direction, self.hinge)
+        return {direction: self._weakest(side) for direction, side in zip(Direction, self.sides, strict=True)}
+
+    def _weakest(self, direction: Direction) -> float:
+        """Return xi where lambda is least, of a wall with nothing but its overburden; 1 if it falls up to the top."""
         rho = self._load_ratio
-        levers = [self._lever(direction) for direction in self.sides]
-        xi = [1 / (1 + sqrt(max(rho * lever, 0.0) / (1 + rho))) for lever in levers]  # where lambda is least
-        return dict(zip(Direction, xi, strict=True))
+        return 1 / (1 + sqrt(max(rho * self._lever(direction), 0.0) / (1 + rho)))
+
+    def own_caution(self) -> str:
+        """Return by how much the weakest hinge lowers lambda, if the height of the hinge is given, and above 1 %."""
+        if self.hinge == "weakest":
+            return ""
+        if self.is_laden or self.crushing is not None:
+            return (
+                "The weakest hinge is not searched with loads, ties, crossing walls or crushing: compute lambda with "
+                "the hinge higher and lower as well."
+            )
+        inside: list[str] = []
+        above: list[str] = []
+        for direction in self.directions:
+            rho, lever = self._load_ratio, self._lever(direction)
+            xi, given = self._weakest(direction), self.uplift(direction)
+            at_top = 1 - xi < TOP
+            opens = 0.0 if at_top else lever * xi / (1 - xi)
+            least = 0.0 if rho * lever < -TOP else 2 * self.thickness / (xi * self.height) * (1 + rho * (1 + opens))
+            if least < (1 - LOWER) * given:
+                lowers = f"lambda is {least:.4g} g instead of {given:.4g} g in the {direction.label} direction"
+                (above if at_top else inside).append(lowers if at_top else f"at {xi:.3g} of the height {lowers}")
+        said = [f"The hinge is not the weakest: {' and '.join(inside)}."] if inside else []
+        if inside and all(1 - self._weakest(direction) >= TOP for direction in self.directions):
+            said.append("Give `hinge: weakest`, unless something fixes its height.")
+        if above:
+            said.append(
+                f"The higher the hinge, the lower lambda: with the hinge near the top {' and '.join(above)}. Check at "
+                "which height the wall hinges."
+            )
+        return " ".join(said)
 
     @cached_property
     def _cuts(self) -> list[float]:

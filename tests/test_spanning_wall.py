@@ -121,6 +121,33 @@ def test_the_equation_of_motion_is_that_of_lagrange(direction):
     agrees(got, (phi, upper), pieces, [head[0] - load], at)
 
 
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [  # lambda h/t = 2 [1 + rho (1 + k xi/(1 - xi))]/xi, at .5 and at xi = 1/(1 + sqrt(rho k/(1 + rho)))
+        ({"rho": 0.315}, ["at 0.743 of the height lambda is 0.4765 g instead of 0.589 g in the positive", "weakest`"]),
+        ({"k": 0.8}, ["at 0.613 of the height lambda is 1.066 g instead of 1.12 g", "at 0.76 of the height", "Give `"]),
+        ({"rho": 0.0}, ["near the top lambda is 0.2 g instead of 0.4 g in the positive", "Check at which"]),
+        ({"k": 1.0}, ["at 0.586 of the height", "near the top lambda is 0.4 g instead of 0.8 g in the negative"]),
+        ({"k": 1.3, "rho": 0.3}, ["near the top lambda is 0 g instead of"]),
+        ({"hinge": 0.667}, []),
+        ({"hinge": 0.69}, []),  # less than 1 % above the weakest
+        ({"hinge": "weakest"}, []),
+        ({"loads": [{"name": "a", "mass": 5.0, "at": [0, 1], "body": "lower block"}]}, ["is not searched with loads"]),
+        ({"crushing": {"strength": 2e6}}, ["is not searched"]),
+    ],
+)
+def test_a_hinge_that_is_not_the_weakest_has_a_caution(fields, said):
+    found = wall(**fields).own_caution()
+    assert all(each in found for each in said) and bool(found) == bool(said)
+    # What it advises is not refused.
+    if "Give `hinge: weakest`" in found:
+        least = wall(**{**fields, "hinge": "weakest"})
+        assert all(f"{least.uplift(direction):.4g} g instead" in found for direction in Direction)
+    elif said:
+        with pytest.raises(ValueError, match="weakest"):
+            wall(**{**fields, "hinge": "weakest"})
+
+
 def test_an_eccentric_load_cuts_it_into_three():
     found = wall(1.0, 0.8, "weakest")
     assert [body.name for body in found.bodies()] == ["lower block", "middle block", "upper block"]

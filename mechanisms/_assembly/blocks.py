@@ -23,12 +23,15 @@ class AssemblyBlock:
         Mass [kg]; not used for a part of the ground.
     centroid : complex
         Position of the centroid [m].
+    inertia : float
+        Moment of inertia about the centroid [kg m2]; it only decides whether confined blocks fall.
     """
 
     name: str
     corners: tuple[complex, ...]
     mass: float = 0.0
     centroid: complex = 0j
+    inertia: float = 0.0
 
     @property
     def outline(self) -> Points:

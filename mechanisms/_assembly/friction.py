@@ -7,11 +7,12 @@ force. Joints that do so are reported, because no coefficient of friction would 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mechanisms._assembly.blocks import AssemblyContact
+from mechanisms._assembly.confined import undilated
 from mechanisms._assembly.limit import Collapse
 from mechanisms._assembly.mechanism import STILL
 from mechanisms._assembly.problem import AssemblyProblem
@@ -56,6 +57,10 @@ def friction(found: Collapse) -> Friction:
     """
     problem, multiplier = found.problem, found.multiplier * found.problem.strength
     search = _FrictionSearch(problem, multiplier)
+    if found.associated is not None:  # without dilation: the friction that the state shown uses
+        state = np.concatenate([np.column_stack([found.normal, found.shear]).ravel(), found.guide]) / problem.weight
+        used = search.uses(state)
+        return Friction(used if used <= MOST else None, (), found.normal, found.shear, found.guide)
     most = float(np.nan_to_num(problem.bearings.friction, nan=MOST).clip(max=MOST).max(initial=0.0))
     shown = np.concatenate([np.column_stack([found.normal, found.shear]).ravel(), found.guide]) / problem.weight
     limit = search.uses(shown)
@@ -169,7 +174,12 @@ def with_usual(found: Collapse) -> float | None:
     problem = found.problem
     if not np.isnan(problem.bearings.friction).any():
         return None
-    reached, _, _ = problem.greatest(problem.bearings.rays(usual=MASONRY))
+    mu = problem.bearings.friction
+    usual = replace(problem, bearings=replace(problem.bearings, friction=np.where(np.isnan(mu), MASONRY, mu)))
+    reached, _, _ = usual.greatest(usual.bearings.rays())
+    confined = undilated(usual, reached)
+    if confined is not None and confined.multiplier is not None:
+        reached = confined.multiplier
     return max(reached, 0.0) / problem.strength
 
 

@@ -4,7 +4,7 @@ The multiplier lambda is the greatest for which forces in the joints balance eve
 variables (prices) of that linear programme are the velocities of a mechanism of the same multiplier (kinematic
 theorem). Joints carry no
 tension. Friction is associated: a joint that slides also opens, which overestimates lambda. Even a small friction can
-thus lock a joint between parts that cannot move apart; `friction` then requires more than any joint has.
+thus lock a joint between parts that cannot move apart: `confined` searches those for mechanisms without dilation.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
-from mechanisms._assembly.faults import DoesNotStand, NothingMoves, listed
+from mechanisms._assembly.confined import Undilated, undilated
+from mechanisms._assembly.faults import DoesNotStand, NoAnswer, NothingMoves, listed
 from mechanisms._assembly.problem import NOTHING, STRONGEST, AssemblyProblem
 from mechanisms._assembly.rays import moving
 from mechanisms._assembly.smallest import smallest
@@ -51,7 +52,8 @@ class Collapse:
     Parameters
     ----------
     multiplier : float
-        The greatest multiplier that forces in the joints carry.
+        The greatest multiplier that forces in the joints carry, or the least one that starts a mechanism without
+        dilation.
     kinematic : float
         The same multiplier, from the work of the forces on the velocities.
     velocity : ndarray, shape (blocks, 3)
@@ -75,6 +77,11 @@ class Collapse:
         Blocks at rest that may also move at the same multiplier, see `smallest`.
     problem : AssemblyProblem
         The linear programme that was solved.
+    associated : float or None
+        Multiplier by associated flow, if the mechanism is one without dilation; infinite if nothing moves. Else None.
+    confined, complete : bool
+        Whether blocks are confined, so that mechanisms without dilation were searched; whether this search was
+        complete.
     """
 
     multiplier: float
@@ -89,6 +96,9 @@ class Collapse:
     several: tuple[Shared, ...]
     idle: tuple[str, ...]
     problem: AssemblyProblem
+    associated: float | None = None
+    confined: bool = False
+    complete: bool = True
 
 
 def collapse(
@@ -127,11 +137,12 @@ def collapse(
     Raises
     ------
     DoesNotStand
-        If the joints cannot balance the dead forces alone, or cannot balance any multiplier above zero.
+        If the joints cannot balance the dead forces alone, or cannot balance any multiplier above zero, or if confined
+        blocks may fall because only a squeeze holds them.
     NothingMoves
         If the joints can balance any multiplier.
     NoAnswer
-        If the solver fails.
+        If the solver fails, or if associated flow locks confined blocks that are too many to search.
     """
     problem = AssemblyProblem.of(blocks, contacts, guides, direction, dead=dead, live=live, gravity=gravity)
     rays = problem.bearings.rays()
@@ -139,7 +150,23 @@ def collapse(
     if falls:
         raise DoesNotStand(f"it does not stand by itself: nothing holds {listed(falls)}", falls)
     multiplier, forces, raw = problem.greatest(rays, exact=True)
-    if multiplier >= STRONGEST * (1 - NOTHING):
+    locked = multiplier >= STRONGEST * (1 - NOTHING)
+    confined = undilated(problem, multiplier)
+    if confined is not None:
+        if confined.falls:
+            raise DoesNotStand(
+                "it does not stand by its weight alone: only a squeeze by the sides could hold "
+                f"{listed(confined.falls)}. Add what supports it from below",
+                confined.falls,
+            )
+        if confined.multiplier is not None:
+            return _without_dilation(problem, confined, np.inf if locked else multiplier / problem.strength)
+        if locked and not confined.complete:
+            raise NoAnswer(
+                "friction by associated flow locks its confined blocks, and they are too many to search for all "
+                "mechanisms without dilation. Analyse fewer blocks, or leave out what confines them"
+            )
+    if locked:
         raise NothingMoves("no acceleration sets it in motion", problem.frame.names)
     if multiplier <= NOTHING:
         falls = moving(problem.frame.names, raw, 1e-6) or problem.unheld(rays)[1]  # none if not even that is carried
@@ -169,6 +196,31 @@ def collapse(
         several,
         idle,
         problem,
+        None,
+        confined is not None,
+        confined is None or confined.complete,
+    )
+
+
+def _without_dilation(problem: AssemblyProblem, found: Undilated, associated: float) -> Collapse:
+    """Return the mechanism without dilation of confined blocks."""
+    assert found.multiplier is not None
+    velocity = _sized(problem, found.field)
+    # Its joints dissipate work, which no joint does by associated flow.
+    resisted = float((problem.dead + problem.bearings.rates.T @ found.state) @ found.field)
+    return Collapse(
+        found.multiplier / problem.strength,
+        -resisted / float(problem.live @ found.field) / problem.strength,
+        velocity,
+        *problem.by_contact(_rates(problem, velocity))[:2],
+        *problem.by_contact(problem.weight * found.state),
+        True,
+        (),
+        (),
+        problem,
+        associated,
+        True,
+        found.complete,
     )
 
 

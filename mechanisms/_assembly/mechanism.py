@@ -16,6 +16,7 @@ from mechanisms._assembly.unique import velocity_space
 from rocking_cli.core import Guide, Reals
 
 STILL = 1e-8  # of the fastest velocity: a rate that is none
+PRESSES = 1e-9  # of the largest normal force: less is none
 SAME_PLACE = 1e-6  # of the size of the whole: hinges that are one
 
 
@@ -118,6 +119,13 @@ def linkage(
         _state(abs(o[0]), abs(o[1]), abs(s), c, still)
         for o, s, c in zip(found.opening, found.sliding, contacts, strict=True)
     )
+    if found.associated is not None:  # without dilation the forces show whether what slides also presses
+        normal = found.normal.sum(axis=1)
+        press = normal > PRESSES * normal.max(initial=0.0)
+        states = tuple(
+            (Opening.SLIDES if presses else Opening.LIFTED) if abs(slide) > still else state
+            for state, slide, presses in zip(states, found.sliding, press, strict=True)
+        )
     moves = {block.name: bool(v > still) for block, v in zip(blocks, speed, strict=True)}
     parts = JoinedNames([name for name, does in moves.items() if does])
     for state, contact in zip(states, contacts, strict=True):

@@ -22,7 +22,8 @@ NOTHING = 1e-9  # of the weight: a force that is none; of the multiplier: what i
 class AssemblyProblem:
     """An assembly and its loads without units: moments over the size, forces over the weight.
 
-    The live forces are divided by the sum of their sizes, `strength`, so that their unit does not matter.
+    The live forces are divided by the sum of their sizes, `strength`, so that their unit does not matter. `inertia` is
+    that of the blocks alone, as forces and moments per unit of their accelerations over gravity.
     """
 
     frame: Frame
@@ -31,6 +32,7 @@ class AssemblyProblem:
     live: Reals
     weight: float
     strength: float
+    inertia: Reals
 
     @classmethod
     def of(
@@ -58,7 +60,9 @@ class AssemblyProblem:
         if strength == 0:
             raise NothingMoves("nothing acts on the blocks but what is always there", frame.names)
         bearings = Bearings.of(frame, contacts, guides)
-        return cls(frame, bearings, scaled(dead, frame, weight), pull / strength, weight, strength)
+        turns = np.array([block.inertia for block in blocks]) * gravity / frame.size
+        inertia = scaled(np.column_stack([weights, weights, turns]), frame, weight)
+        return cls(frame, bearings, scaled(dead, frame, weight), pull / strength, weight, strength, inertia)
 
     def greatest(self, rays: Rays, *, exact: bool = False) -> tuple[float, Reals, Reals]:
         """Return the greatest multiplier of `live`, the forces of the rays that carry it, and the velocities."""

@@ -56,6 +56,14 @@ class CollapseMechanism:
         rotation rate, anticlockwise [rad/s]. Without them a mechanism that has no rocking model is not drawn.
     idle : sequence of str
         Blocks at rest that may also move at the same lambda: then the mechanism is not the only one with this lambda.
+    confined : bool
+        Whether blocks are confined between fixed sides, so that mechanisms in which joints slide without opening were
+        searched too.
+    associated : float or None
+        Lambda by associated flow, if a mechanism without dilation has a lower one and is shown; infinite if nothing
+        moves by associated flow.
+    complete : bool
+        Whether the search for mechanisms without dilation was complete; if not, lambda may be even lower.
     """
 
     lambda_: float
@@ -75,3 +83,6 @@ class CollapseMechanism:
     thrust: Sequence[tuple[str, complex, complex]]
     velocities: Sequence[tuple[complex, float]] = ()
     idle: Sequence[str] = ()
+    confined: bool = False
+    associated: float | None = None
+    complete: bool = True

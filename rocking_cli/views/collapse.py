@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import isfinite
 from typing import Any
 
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
@@ -22,10 +23,14 @@ def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> 
         parts += [_hinges(direction, each), *_sentences(mechanism, each)]
         parts += _thrust(direction, each)
     parts += [f"Caution: {own}"] if (own := mechanism.own_caution()) else []
+    theorems = (
+        " lambda is both the greatest acceleration that can be carried without tension (static theorem) and the "
+        "acceleration at which this mechanism starts (kinematic theorem)."
+    )
     parts.append(
         "The forces shown are one equilibrium state with the least friction; where parts remain at rest, or bear on "
-        "more joints than hold them, other states exist. lambda is both the greatest acceleration that can be carried "
-        "without tension (static theorem) and the acceleration at which this mechanism starts (kinematic theorem)."
+        "more joints than hold them, other states exist."
+        + (theorems if all(each.associated is None for each in found.values()) else "")
     )
     return View(lambda: {"directions": {d.label: data(each) for d, each in found.items()}}, parts)
 
@@ -64,10 +69,14 @@ def _sentences(mechanism: Mechanism, found: CollapseMechanism) -> list[str]:
     if found.lifted:
         said.append(f"Joints that open over their whole length, or slip off: {in_short(found.lifted)}.")
     if found.slides:
+        flow = (
+            "The flow rule is associated, which overestimates lambda where sliding joints also open."
+            if found.associated is None
+            else "It slides without dilation, with the least squeeze by the sides that confine it."
+        )
         said.append(
             f"The mechanism slides between {in_short(found.slides)}. lambda is the acceleration at which sliding "
-            "starts; no rocking model is available for it. The flow rule is associated, which overestimates lambda "
-            "where sliding joints also open."
+            f"starts; no rocking model is available for it. {flow}"
         )
     if found.no_model:
         said.append(f"It has no rocking model: {found.no_model}.")
@@ -151,6 +160,9 @@ def data(found: CollapseMechanism) -> dict[str, Any]:
         "slides": list(found.slides),
         "glued": list(found.glued),
         "lambda_with_usual": found.with_usual,
+        "confined": found.confined,
+        "lambda_associated": found.associated if found.associated is not None and isfinite(found.associated) else None,
+        "search_complete": found.complete,
         "no_model": found.no_model or None,
         "lead": found.lead or None,
         "friction_needed": found.friction_needed,
