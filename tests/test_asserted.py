@@ -169,7 +169,7 @@ def test_a_leaning_block_slides_away_from_what_it_leans_on_and_not_into_it():
 
 
 def run_json_of(mechanism):
-    from rocking_cli.views.equivalent_block import before_rocking
+    from rocking_cli.views.cautions import before_rocking
 
     return before_rocking(mechanism)
 

@@ -20,6 +20,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.assessment import Assessment, MotionResult
 from rocking_cli.studies.margin import in_words
 from rocking_cli.studies.neighbours import governing, severity
+from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.contact import contact_words
 from rocking_cli.views.restitution import restitution_source, restitution_used
 from rocking_cli.views.several import neighbours_cells
@@ -175,7 +176,7 @@ def doubts(content: Assessment) -> list[str]:
         said.append(
             f"The mechanism {content.mechanism.mechanism} has not been verified: check its results independently."
         )
-    said += content.mechanism.cautions()
+    said += cautions_of(content.mechanism)
     said += [
         f"Check the sizes and their units: {doubt}{'' if doubt.endswith('?') else '.'}"
         for doubt in doubts_about_size(content.mechanism)

@@ -10,9 +10,9 @@ from rocking_cli.core import Direction, EquivalentBlock, Mechanism, Statics, one
 from rocking_cli.core.advice import preferred_kappa
 from rocking_cli.core.equivalence import AGREEMENT, alike
 from rocking_cli.core.restitution import why_none
-from rocking_cli.dynamics.resting import first_failure, resting
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.structure import Structure
+from rocking_cli.views.cautions import before_rocking
 from rocking_cli.views.column import data_of
 from rocking_cli.views.hung import hung_data, hung_in_words
 from rocking_cli.views.parameters import PARAMETERS
@@ -23,7 +23,7 @@ from rocking_cli.views.view import Table, View, heading, number
 def view(structure: Structure) -> View:
     """Show the parameters of both directions, in one column if they agree, and which kappa to prefer."""
     mechanism, sides = structure.mechanism, sides_of(structure)
-    cautions = [*mechanism.cautions(), *before_rocking(mechanism)]
+    early = before_rocking(mechanism)
     data = {
         "mechanism": mechanism.mechanism,
         "name": mechanism.name,
@@ -33,7 +33,7 @@ def view(structure: Structure) -> View:
         "hung": hung_data(mechanism),
         "per_unit_mass": not mechanism.has_mass,
         "restitution": restitution_source(mechanism),
-        "caution": " ".join(cautions) or None,
+        "caution": " ".join([*early, *mechanism.cautions()]) or None,
         "misleading": structure.misleading,
         "directions": {side.direction.label: _data(side) | _extras(mechanism, side) for side in sides},
     }
@@ -53,7 +53,8 @@ def view(structure: Structure) -> View:
     heads = ["", *(("value",) if len(shown) == 1 else (side.direction.label for side in shown)), "unit", "meaning"]
     table = Table(heading(mechanism), heads, rows, numbers=range(1, len(shown) + 1))
     where = [""] if len(shown) == 1 else [f"{side.direction.label}: " for side in shown]
-    said = [f"{prefix}{sentence(side)}" for prefix, side in zip(where, shown, strict=True)]
+    said = [f"Caution: {text}" for text in early]
+    said += [f"{prefix}{sentence(side)}" for prefix, side in zip(where, shown, strict=True)]
     if structure.why_no_block is None:
         said.append(
             "The rotation phi of the structure is kappa times the rotation theta of its equivalent block; both "
@@ -64,27 +65,8 @@ def view(structure: Structure) -> View:
     said += [f"Caution: {structure.misleading}."] if structure.misleading else []
     said += [*hung_in_words(mechanism), *([] if mechanism.rocks_both_ways else [restitution_used(structure)])]
     said += [f"P{mechanism.crushing.words[1:]}."] if mechanism.crushing else []
-    said += [f"Caution: {text}" for text in cautions]
+    said += [f"Caution: {text}" for text in mechanism.cautions()]
     return View(data, [table, *said])
-
-
-def before_rocking(mechanism: Mechanism) -> list[str]:
-    """Return which joint slides or opens at rest before the structure rocks, in words, a sentence a direction."""
-    found: list[str] = []
-    still, g = resting(mechanism), mechanism.gravity
-    for direction in Direction if mechanism.propped else mechanism.directions:
-        failure = first_failure(still, direction)
-        if failure is None:
-            continue
-        does = (
-            f"the joint between {failure.joint} {'slides' if failure.slides else 'opens'} from {failure.push / g:.4g} g"
-        )
-        if direction not in mechanism.directions:
-            found.append(f"What props the structure is pushed back in the {direction.label} direction: {does}.")
-        elif failure.push < (1 - AGREEMENT) * (lambda_ := mechanism.uplift(direction)) * g:
-            first = "Another mechanism starts first" if failure.opens else "The structure slides before it rocks"
-            found.append(f"{first}: at rest {does}, below lambda = {lambda_:.4g}.")
-    return list(dict.fromkeys(found))
 
 
 def _found(mechanism: Mechanism, directions: Sequence[Direction]) -> list[list[str]]:

@@ -11,6 +11,7 @@ from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.names import percent
 from rocking_cli.studies.margin import LEVELS, Margin, in_words
 from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.view import FEW, Table, View, heading, number
 
 
@@ -47,7 +48,7 @@ def view(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around:
         *_doubtful(rows),
     ]
     parts += [f"{row.name}: {in_words(row.margin, row.pga)}" for row in rows] if len(rows) <= FEW else []
-    parts += [f"Caution: {text}" for text in mechanism.cautions()]
+    parts += [f"Caution: {text}" for text in cautions_of(mechanism)]
     if not all(row.margin.checked for row in rows):
         parts.append(unchecked(why=mechanism.unchecked))
     return View(_data(mechanism, rows, polarity, around), parts)

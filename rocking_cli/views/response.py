@@ -25,6 +25,7 @@ from rocking_cli.studies.movements import Movements, Watched
 from rocking_cli.studies.neighbours import FRACTILES, Neighbours
 from rocking_cli.studies.response import Histories, Question, Response, Runs
 from rocking_cli.views import processing
+from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.contact import contact_data, contact_words
 from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.view import ABSENT, Table, View, in_degrees, number
@@ -305,7 +306,7 @@ def view(
         parts += ["", *_tables(alone, {1: found.to_pulse}, {}, of_pulse)]
         parts.append(share_of_pulse(next(iter(found.runs.values())), found.to_pulse, found.fit.pulse.title))
     first = next(iter(found.runs.values()))
-    caution = [f"Caution: {text}" for text in mechanism.cautions()]
+    caution = [f"Caution: {text}" for text in cautions_of(mechanism)]
     if structure.misleading and any(name != "nonlinear" for name in first):
         caution.append(f"Caution: {structure.misleading}.")
     caution += [f"Caution: {text}" for text in _apart(shown, found.runs)]

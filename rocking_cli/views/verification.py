@@ -11,6 +11,7 @@ from rocking_cli.plugins.errors import guard
 from rocking_cli.studies.verification.installed import codes
 from rocking_cli.studies.verification.results import Verification, Verified
 from rocking_cli.studies.verification.working import Working
+from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.view import ABSENT, Table, View, heading, number
 
 if TYPE_CHECKING:
@@ -127,7 +128,7 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
             parts += steps(each.workings, where)
     every = [*found.workings, *(line for each in sides.values() for line in each.workings)]
     parts.append(standing(every, own.notation))
-    parts += [f"Caution: {text}" for text in found.mechanism.cautions()]
+    parts += [f"Caution: {text}" for text in cautions_of(found.mechanism)]
     return View(lambda: data(found), [part for part in parts if part])
 
 
