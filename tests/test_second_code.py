@@ -376,7 +376,7 @@ class TestOtherCommands:
         assert [(each["name"], each["ratio"]) for each in found["rows"]] == [("stout", 0.5), ("slender", None)]
         lines = run("survey", "t.csv", *demo, "--out", "o.csv").stdout.splitlines()
         (slender,) = [line.split() for line in lines if "slender" in line]
-        assert slender[3:5] == ["-", "0.1"]
+        assert slender[3:6] == ["-", "not", "checked"]
         assert len(Path("o.csv").read_text(encoding="utf-8").splitlines()) == 3
         Path("slender.yaml").write_text("mechanism: block\nwidth: 0.28\nheight: 2.8\n", encoding="utf-8")
         assert "the site does not give what the code asks" in run("verify", "slender.yaml", *demo).stdout

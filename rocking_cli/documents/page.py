@@ -29,6 +29,7 @@ from rocking_cli.plotting.moving import as_script, asset, ground_chart, moving, 
 from rocking_cli.plotting.overturning import draw_map
 from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.studies.assessment import Assessment, MotionResult, PulseMap, amplitude_in_g, share
+from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.linearisation import Linearisation
 from rocking_cli.studies.movements import Watched
@@ -47,6 +48,13 @@ SUBSCRIPT = re.compile(r"([φθλωψ]|\b[A-Za-z])_([A-Za-z]+(?:,\d)?)")
 GREEK = {"lambda": "λ", "kappa1": "κ₁", "kappa2": "κ₂", "phi": "φ"}
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 Rows = list[list[str]]
+
+
+BAD = frozenset({Concluded.OVERTURNS, Concluded.UNKNOWN, Concluded.NOT_SATISFIED, Concluded.NOT_CHECKED})
+
+
+def _is_bad(end: Conclusion | None) -> bool:
+    return end is not None and end.concluded in BAD
 
 
 def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
@@ -71,8 +79,8 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         content=content,
         verified=verified,
         verification=parts(verified.within, content.mechanism, level=3) if verified is not None else "",
-        answer=words.in_a_sentence(content),
-        falls=any(each.histories["nonlinear"].overturned or each.unknown for each in content.results),
+        answer=words.in_a_sentence(content, verified.found if verified is not None else None),
+        falls=_is_bad(content.conclusion) or (verified is not None and _is_bad(verified.found.conclusion)),
         verdicts=words.verdicts(content),
         overview=words.overview(content),
         overview_columns=words.overview_columns(content, _over(content)),

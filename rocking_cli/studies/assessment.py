@@ -27,12 +27,14 @@ from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.excitation.records.opening import name_of, original
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import Conclusion, worst
 from rocking_cli.studies.contact import ContactDemand, Contacts
 from rocking_cli.studies.linearisation import Linearisation, compare
 from rocking_cli.studies.margin import LEVELS, Margin, margin
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 from rocking_cli.studies.overturning import OverturningMap, Region, overturning_map
 from rocking_cli.studies.picture import Picture, picture
+from rocking_cli.studies.response import concluded
 from rocking_cli.studies.trust import trust
 from rocking_cli.studies.under_pulses import outcomes, parse_shape, pulsed_model
 
@@ -177,6 +179,11 @@ class MotionResult:
         return self.histories["nonlinear"].unknown
 
     @property
+    def conclusion(self) -> Conclusion:
+        """What is concluded under this motion, and what governs."""
+        return concluded(self.runs, self.neighbours, self.given.motion.name)
+
+    @property
     def histories(self) -> Mapping[ModelName, History]:
         """The histories of the polarity that governs."""
         return self.runs[self.polarity]
@@ -234,6 +241,14 @@ class Assessment:
     maps: tuple[PulseMap, ...]
     title: TitleBlock
     versions: Mapping[str, str]
+
+    @property
+    def conclusion(self) -> Conclusion | None:
+        """The worst conclusion of all motions; None without a motion."""
+        if not self.results:
+            return None
+        each = [result.conclusion for result in self.results]
+        return replace(worst(each), motions=[one.motion for one in each])
 
     @property
     def mechanism(self) -> Mechanism:

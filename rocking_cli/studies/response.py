@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
+from math import isclose
 
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.verdict import ALIKE
 from rocking_cli.engines import respond
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import Concluded, Conclusion, Share, worst
 from rocking_cli.studies.contact import ContactDemand, Contacts
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 
@@ -22,6 +25,49 @@ Runs = Mapping[int, Histories]
 
 # The word for the pulse that fits best.
 BEST = "best"
+
+
+def concluded(runs: Runs, near: Mapping[int, Neighbours], motion: str = "") -> Conclusion:
+    """Return the conclusion on a structure under one motion: that of the worse polarity, by the best model.
+
+    Parameters
+    ----------
+    runs : mapping of int to mapping of str to History
+        Histories under each polarity.
+    near : mapping of int to Neighbours
+        Outcomes of the neighbours of the motion, under each polarity; may be empty.
+    motion : str
+        Name of the motion; empty for a release.
+    """
+    best: ModelName = "nonlinear" if "nonlinear" in next(iter(runs.values())) else next(iter(next(iter(runs.values()))))
+    each = [_of_run(run[best], near.get(sign), motion, sign) for sign, run in runs.items()]
+    governs = worst(each)
+    alike = len(each) > 1 and all(
+        (one.concluded, one.share) == (governs.concluded, governs.share)
+        and (one.ratio is None or governs.ratio is None or isclose(one.ratio, governs.ratio, rel_tol=ALIKE))
+        for one in each
+    )
+    return replace(governs, polarity=None if alike else governs.polarity, polarities=list(runs))
+
+
+def _of_run(run: History, near: Neighbours | None, motion: str, sign: int) -> Conclusion:
+    if run.unknown:
+        what = Concluded.UNKNOWN
+    elif run.overturned:
+        what = Concluded.OVERTURNS
+    else:
+        what = Concluded.ROCKS if run.lifted else Concluded.NO_UPLIFT
+    known = what in (Concluded.ROCKS, Concluded.NO_UPLIFT)
+    return Conclusion(
+        concluded=what,
+        motion=motion,
+        polarity=sign,
+        ratio=run.peak_ratio if known else None,
+        known_until=run.known_to if run.unknown else None,
+        joint=run.check.joint if run.unknown and run.check is not None else "",
+        share=Share(near.overturned, near.at_most, near.around.count) if near is not None else None,
+        motions=[motion] if motion else [],
+    )
 
 
 @dataclass(frozen=True)
@@ -85,6 +131,11 @@ class Response(Mapping[ModelName, History]):
     to_pulse: Histories | None = None
     contacts: Mapping[int, ContactDemand] = field(default_factory=dict)
     to_pulse_contact: ContactDemand | None = None
+
+    @property
+    def conclusion(self) -> Conclusion:
+        """What is concluded, and what governs."""
+        return concluded(self.runs, self.neighbours, self.given.motion.name if self.given is not None else "")
 
     def __getitem__(self, model: ModelName) -> History:
         return next(iter(self.runs.values()))[model]

@@ -20,6 +20,7 @@ from rocking_cli.dynamics.processes import in_processes
 from rocking_cli.errors import InputError, Problem, RockingError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import Conclusion
 from rocking_cli.studies.verification.check import of_each, verify
 from rocking_cli.studies.verification.site_file import SiteFile
 
@@ -104,6 +105,8 @@ class Surveyed:
     ratio : float, optional
         Capacity over demand by the code of the site, in the direction where it is smaller; 1 or more passes. NaN if the
         site file lacks values that the code needs; None without a site.
+    verified : Conclusion, optional
+        The conclusion of the verification by the code of the site.
     """
 
     row: int
@@ -123,6 +126,7 @@ class Surveyed:
     caution: str | None = None
     under: Under | None = None
     ratio: float | None = None
+    verified: Conclusion | None = None
 
 
 @dataclass(frozen=True)
@@ -317,6 +321,7 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile 
     direction, side = mechanism.sides[k], sides[k]
     why = structure.why_no_block
     block = structure.equivalence[direction] if why is None else None
+    found = verify(structure, site) if site is not None else None
     return Surveyed(
         place + 1,
         entry.line,
@@ -333,7 +338,8 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile 
         why.removeprefix(f"{structure.name}: ") if why is not None else None,
         "; ".join(doubts(mechanism)) or None,
         mechanism.own_caution() or None,
-        ratio=verify(structure, site).ratio if site is not None else None,
+        ratio=found.ratio if found is not None else None,
+        verified=found.conclusion if found is not None else None,
     )
 
 

@@ -7,6 +7,7 @@ from rocking_cli.studies.movements import Watched
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.views import assessment_words as words
 from rocking_cli.views import processing, verification
+from rocking_cli.views.conclusion import conclusion_data
 from rocking_cli.views.equivalent_block import sides_of
 from rocking_cli.views.margin import margin_data
 from rocking_cli.views.response import HistoryDetails, fit_data, runs_data
@@ -23,7 +24,8 @@ def view(content: Assessment, verified: Verification | None = None) -> View:
             "file": content.file.name,
             "sha256": content.file.checksum,
         },
-        "answer": words.in_a_sentence(content),
+        "answer": words.in_a_sentence(content, verified),
+        "conclusion": conclusion_data(content.conclusion) if content.conclusion is not None else None,
         "doubts": words.doubts(content),
         "parameters": {side.direction.label: side.parameters for side in sides_of(content.structure)},
         "no_block": content.structure.why_no_block,
@@ -57,4 +59,4 @@ def view(content: Assessment, verified: Verification | None = None) -> View:
         "date": content.title.date,
         "versions": dict(content.versions),
     }
-    return View(data, [words.in_a_sentence(content)])
+    return View(data, [words.in_a_sentence(content, verified)])

@@ -20,7 +20,9 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.assessment import Assessment, MotionResult
 from rocking_cli.studies.margin import in_words
 from rocking_cli.studies.neighbours import governing, severity
+from rocking_cli.studies.verification.results import Verification
 from rocking_cli.views.cautions import cautions_of
+from rocking_cli.views.conclusion import of_verification
 from rocking_cli.views.contact import contact_words
 from rocking_cli.views.restitution import restitution_source, restitution_used
 from rocking_cli.views.several import neighbours_cells
@@ -67,14 +69,19 @@ def verdicts(content: Assessment) -> tuple[MotionAnswers, ...]:
     return tuple(_verdict(content, each) for each in content.results)
 
 
-def in_a_sentence(content: Assessment) -> str:
-    """Return the answer of the whole report in a sentence."""
+def in_a_sentence(content: Assessment, verified: Verification | None = None) -> str:
+    """Return the answer of the whole report: of its verification, if any, and of its ground motions."""
+    return " ".join([*(of_verification(verified) if verified is not None else []), _under_motions(content, verified)])
+
+
+def _under_motions(content: Assessment, verified: Verification | None) -> str:
     name = content.name
     if not content.results:
-        least = _ground(content, _least(content))
+        starts = f"{name} starts to rock at a horizontal ground acceleration of {_ground(content, _least(content))}."
+        if verified is not None:
+            return starts
         return (
-            f"{name} starts to rock at a horizontal ground acceleration of {least}. No ground motion was given, so "
-            "this report does not say whether an earthquake would overturn it."
+            f"{starts} No ground motion was given, so this report does not say whether an earthquake would overturn it."
         )
     falls = [each for each in content.results if _overturns(each)]
     unknown = [each for each in content.results if each.unknown]

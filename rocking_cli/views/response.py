@@ -23,9 +23,10 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.contact import ContactDemand
 from rocking_cli.studies.movements import Movements, Watched
 from rocking_cli.studies.neighbours import FRACTILES, Neighbours
-from rocking_cli.studies.response import Histories, Question, Response, Runs
+from rocking_cli.studies.response import Histories, Question, Response, Runs, concluded
 from rocking_cli.views import processing
 from rocking_cli.views.cautions import cautions_of
+from rocking_cli.views.conclusion import conclusion_data
 from rocking_cli.views.contact import contact_data, contact_words
 from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.view import ABSENT, Table, View, in_degrees, number
@@ -132,7 +133,8 @@ def runs_data(runs: Runs, near: Mapping[int, Neighbours], shown: HistoryDetails 
         }
         for polarity, histories in runs.items()
     }
-    return each.popitem()[1] if len(each) == 1 else {"polarities": each, "governs": governs(runs)[0]}
+    end = {"conclusion": conclusion_data(concluded(runs, near))}
+    return end | (each.popitem()[1] if len(each) == 1 else {"polarities": each, "governs": governs(runs)[0]})
 
 
 def histories_data(histories: Histories, shown: HistoryDetails = NOTHING_MORE, polarity: int = 1) -> dict[str, Any]:

@@ -36,6 +36,15 @@ class RankedStructure(NamedTuple):
     found: Surveyed
 
 
+def spaced(key: str) -> str:
+    """Return a keyword of a conclusion as words."""
+    return key.replace("_", " ")
+
+
+def _limit_state(row: RankedStructure) -> str | None:
+    return (row.found.verified.limit_state or None) if row.found.verified is not None else None
+
+
 def _peak(peak: float) -> str:
     return "no uplift" if peak == 0 else number(peak, 3)
 
@@ -47,7 +56,11 @@ STRUCTURE: tuple[Column[RankedStructure], ...] = (
     Column("row", of("found.row")),
     Column("line", of("found.line")),
 )
-OF_SITE: Column[RankedStructure] = Column("ratio", of("found.ratio"), head="ratio")
+OF_SITE: tuple[Column[RankedStructure], ...] = (
+    Column("ratio", of("found.ratio"), head="ratio"),
+    Column("concluded", of("found.verified.concluded.value"), head="verified", form=spaced, text=True),
+    Column("limit_state", _limit_state, head="governs", text=True),
+)
 UNDER_MOTIONS: tuple[Column[RankedStructure], ...] = (
     Column("overturned", of("found.under.overturned"), head="overturn\nit", form=percent),
     Column("unknown", of("found.under.unknown"), head="unknown", form=percent),
@@ -94,8 +107,12 @@ def data(found: Survey) -> dict[str, Any]:
 
 def _columns(found: Survey) -> list[Column[RankedStructure]]:
     """Return the columns that apply to a survey."""
-    ratio = [OF_SITE] if found.by == "ratio" else []
-    return [*STRUCTURE, *ratio, *(UNDER_MOTIONS if found.motions else ()), *PARAMETERS]
+    return [
+        *STRUCTURE,
+        *(OF_SITE if found.by == "ratio" else ()),
+        *(UNDER_MOTIONS if found.motions else ()),
+        *PARAMETERS,
+    ]
 
 
 def _ranked(found: Survey, start: int = 0, stop: int | None = None) -> list[RankedStructure]:

@@ -12,6 +12,7 @@ from rocking_cli.studies.verification.installed import codes
 from rocking_cli.studies.verification.results import Verification, Verified
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.cautions import cautions_of
+from rocking_cli.views.conclusion import conclusion_data, of_verification
 from rocking_cli.views.view import ABSENT, Table, View, heading, number
 
 if TYPE_CHECKING:
@@ -112,9 +113,8 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
         Whether to show also every line of the calculation: symbol, formula, numbers, result and clause.
     """
     sides, own = shown(found), showing(found)
-    parts: list[Table | str] = [
-        f"{heading(found.mechanism)}, by the {found.name} ({found.edition}){f', at {site}' if site else ''}"
-    ]
+    by = f"{heading(found.mechanism)}, by the {found.name} ({found.edition}){f', at {site}' if site else ''}"
+    parts: list[Table | str] = [f"{by}. {' '.join(of_verification(found))}"]
     if found.workings:
         parts.append(_site(found, own.of_site))
     for where, each in sides.items():
@@ -214,6 +214,7 @@ def data(found: Verification) -> dict[str, Any]:
     return {
         "code": found.code,
         "edition": found.edition,
+        "conclusion": conclusion_data(found.conclusion),
         "directions": {direction.label: own.data(found, each) for direction, each in found.directions.items()},
         "governs": found.governs.label,
         **own.data_of_all(found),

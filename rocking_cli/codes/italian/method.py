@@ -21,6 +21,7 @@ from rocking_cli.codes.italian.sheet.steps import workings_of_direction, working
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.codes.italian.ties import elastic, lasting
 from rocking_cli.core import Direction, Mechanism
+from rocking_cli.studies.conclusion import LeftOut
 from rocking_cli.studies.verification.control import Control
 from rocking_cli.studies.verification.working import Later
 
@@ -124,6 +125,7 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     return ItalianVerification(
         taken, KEY, NAME, EDITION, found,
         workings=Later(partial(workings_of_site, ground)), remarks=remarks, taken_otherwise=otherwise,
+        left_out=[LeftOut("tie", tie.name, "elastic") for tie in elastic(mechanism)] if otherwise else [],
     )  # fmt: skip
 
 

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from math import isclose
+from dataclasses import dataclass, field, replace
+from math import inf, isclose
 
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
+from rocking_cli.codes.italian.rules import OF_STATE
 from rocking_cli.core import Direction
+from rocking_cli.studies.conclusion import ORDER, Concluded, Conclusion, LeftOut
 from rocking_cli.studies.verification import results as frame
 from rocking_cli.studies.verification.motions import MotionPlace
-from rocking_cli.studies.verification.results import CLOSE
+from rocking_cli.studies.verification.results import CLOSE, Check
 
+HISTORIES = "histories"
+"""The key of the method by time histories in a conclusion."""
 AGREE = 1e-9  # relative: directions that differ by less are shown once
 
 
@@ -155,6 +159,27 @@ class Dynamic:
         """Return the names of the records of unknown outcome."""
         return [each.name for each in self.records if each.known_to(confident=confident) is not None]
 
+    @property
+    def too_few(self) -> bool:
+        """Whether the code requires more records before their mean may be used."""
+        return len(self.records) < self.enough
+
+    def checks(self) -> list[Check]:
+        """Return what the histories with FC prove; none of too few that would pass."""
+        names, found = [each.name for each in self.records], []
+        for state, allowed in self.allowed.items():
+            mean = self.mean(confident=True)
+            if self.passed(confident=True) or (mean is not None and not self.holds(state, confident=True)):
+                concluded = Concluded.NOT_SATISFIED
+            elif mean is None:
+                concluded = Concluded.UNKNOWN
+            else:
+                concluded = Concluded.SATISFIED
+            if concluded is not Concluded.SATISFIED or not self.too_few:
+                ratio = None if mean is None else allowed / mean if mean else inf
+                found.append(Check(state, HISTORIES, ratio, concluded, names))
+        return found
+
     def holds(self, state: str, *, confident: bool) -> bool:
         """Return whether the mean passes at a limit state; with an unknown outcome it does not."""
         mean = self.mean(confident=confident)
@@ -206,6 +231,12 @@ class ItalianVerified(frame.Verified):
         """The method that governs at the first limit state."""
         return self.methods[self.governs]
 
+    def stands_back(self, method: str) -> bool:
+        """Return whether a method is the onset of rocking at a further limit state, at which displacement governs."""
+        return any(
+            method == OF_STATE[state][0] != self.governing[state] for state in self.states if state != self.first
+        )
+
     def passes(self, state: str) -> bool | None:
         """Return whether the direction passes at a limit state; None if the site does not give it."""
         held = self.methods[self.governing[state]].passed
@@ -213,14 +244,33 @@ class ItalianVerified(frame.Verified):
 
     @property
     def passed(self) -> bool | None:
-        """Whether the direction passes at the first limit state."""
-        return self.passes(self.first)
+        """Whether the direction passes at all limit states that the site gives, by the static methods."""
+        worst = max((check.concluded for check in self._static), key=ORDER.index)
+        return None if worst is Concluded.NOT_CHECKED else worst is Concluded.SATISFIED
 
     @property
     def ratio(self) -> float | None:
-        """Ratio of displacements at the first limit state; zeta_E if the onset of rocking governs."""
-        displaced, zeta = self.states[self.first].ratio, self.counts.zeta
-        return zeta if self.governs == "damage" and zeta is not None else displaced
+        """The smallest ratio of all limit states: of displacements; zeta_E if the onset of rocking governs."""
+        known = [check.ratio for check in self._static]
+        return None if None in known else min(ratio for ratio in known if ratio is not None)
+
+    @property
+    def checks(self) -> Sequence[Check]:
+        """The limit states that the site gives, and the time histories if there are enough of them, or they fail."""
+        return [*self._static, *([] if self.dynamic is None else self.dynamic.checks())]
+
+    @property
+    def _static(self) -> list[Check]:
+        found = []
+        for state, at in self.states.items():
+            if at.demand is None and state != self.first:
+                continue
+            by = self.governing[state]
+            zeta = self.methods[by].zeta
+            ratio = zeta if by == OF_STATE[state][0] and zeta is not None else at.ratio
+            found.append(Check.of(state, by, ratio, self.passes(state)))
+        damage = self.methods["SLD"]
+        return found if damage.passed is None else [*found, Check.of("SLD", "SLD", damage.ratio, damage.passed)]
 
     def is_like(self, other: frame.Verified) -> bool:
         """Return whether another direction has the same curve; False with histories, as motions are not symmetric."""
@@ -242,5 +292,15 @@ class ItalianVerification(frame.Verification):
         return next(iter(self.directions.values())).first
 
     def compared(self, direction: Direction) -> float | None:
-        """Return the ratio of displacement capacity to demand at the first limit state; None if unknown."""
-        return self.directions[direction].states[self.first].ratio
+        """Return the smallest ratio of a direction at all limit states; None if unknown."""
+        return self.directions[direction].ratio
+
+    @property
+    def conclusion(self) -> Conclusion:
+        """The worst check of all; records that are too few to count are left out, which it lists."""
+        found = super().conclusion
+        few = dict.fromkeys(
+            name for each in self.directions.values() if (on := each.dynamic) is not None and on.too_few
+            for name in (record.name for record in on.records) if name not in found.motions
+        )  # fmt: skip
+        return replace(found, left_out=[*found.left_out, *(LeftOut("motion", name, "too_few") for name in few)])

@@ -123,7 +123,7 @@ def _methods(each: ItalianVerified) -> Table:
     known = any(method.return_period is not None for method in each.methods.values())
     rows = []
     for key, method in each.methods.items():
-        if method.a_g is None:
+        if method.a_g is None or each.stands_back(key):
             continue
         line = each.straight_methods[key]
         years = [method.lasts or ABSENT] if known else []

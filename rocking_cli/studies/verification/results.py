@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf, isclose, isfinite, isnan, nan
-from typing import Any
+from typing import Any, NamedTuple
 
 from rocking_cli.core import Direction, Mechanism
+from rocking_cli.studies.conclusion import Concluded, Conclusion, LeftOut, worst
 from rocking_cli.studies.verification.working import Working
 
 CLOSE = 1e-12  # of a demand: what rounding may take from a capacity that equals it
@@ -54,6 +55,36 @@ def governing(methods: Mapping[str, Method]) -> str:
     return min(methods, key=lambda key: inf if (ratio := methods[key].ratio) is None or isnan(ratio) else ratio)
 
 
+class Check(NamedTuple):
+    """What a code requires of a direction at one limit state.
+
+    Parameters
+    ----------
+    state : str
+        Name of the limit state; empty if the code has only one.
+    method : str
+        Key of the method that governs there.
+    ratio : float or None
+        Capacity over demand; None if it is not known.
+    concluded : Concluded
+        Whether it is satisfied.
+    motions : sequence of str
+        Names of the ground motions by which it was verified, if any.
+    """
+
+    state: str
+    method: str
+    ratio: float | None
+    concluded: Concluded
+    motions: Sequence[str] = ()
+
+    @classmethod
+    def of(cls, state: str, method: str, ratio: float | None, passed: bool | None) -> Check:
+        """Return the check of a method that passes, fails, or lacks values of the site (None)."""
+        known = {True: Concluded.SATISFIED, False: Concluded.NOT_SATISFIED, None: Concluded.NOT_CHECKED}
+        return cls(state, method, ratio, known[passed])
+
+
 @dataclass(frozen=True, eq=False)
 class Verified:
     """Result of a verification in one direction of rocking.
@@ -95,6 +126,11 @@ class Verified:
         """Whether the code is satisfied; None if the site lacks values for it."""
         return self.counts.passed
 
+    @property
+    def checks(self) -> Sequence[Check]:
+        """All that the code requires; by default what `passed` says of the method that governs."""
+        return (Check.of("", self.governs, self.ratio, self.passed),)
+
     def is_like(self, other: Verified) -> bool:
         """Return whether another direction has the same numbers, so that only one needs to be shown."""
         if self.methods.keys() != other.methods.keys() or self.governs != other.governs:
@@ -125,6 +161,8 @@ class Verification:
         Remarks on the verification, as sentences.
     taken_otherwise : sequence of str
         Those remarks that name values for which the code used others than the structure gives.
+    left_out : sequence of LeftOut
+        What was given and does not count.
     """
 
     mechanism: Mechanism
@@ -135,6 +173,32 @@ class Verification:
     workings: Sequence[Working] = field(default=(), kw_only=True)
     remarks: Sequence[str] = field(default=(), kw_only=True)
     taken_otherwise: Sequence[str] = field(default=(), kw_only=True)
+    left_out: Sequence[LeftOut] = field(default=(), kw_only=True)
+
+    @property
+    def conclusion(self) -> Conclusion:
+        """The worst check of all directions and limit states: "satisfied" needs all of them."""
+        found = [
+            Conclusion(
+                concluded=check.concluded, limit_state=check.state, method=check.method, direction=direction.label,
+                ratio=check.ratio, motions=check.motions,
+            )
+            for direction, each in self.directions.items() for check in each.checks
+        ]  # fmt: skip
+        governs = worst(found)
+        alike = [
+            each for each in found if each.ratio is not None and governs.ratio is not None
+            and (each.concluded, each.limit_state, each.method)
+            == (governs.concluded, governs.limit_state, governs.method) and _are_close(each.ratio, governs.ratio)
+        ]  # fmt: skip
+        return replace(
+            governs,
+            direction="" if len(alike) == len(self.directions) else governs.direction,
+            limit_states=list(dict.fromkeys(each.limit_state for each in found if each.limit_state)),
+            directions=[direction.label for direction in self.directions],
+            motions=list(dict.fromkeys(name for each in found for name in each.motions)),
+            left_out=self.left_out,
+        )
 
     @property
     def governs(self) -> Direction:

@@ -7,13 +7,20 @@ from collections.abc import Iterator, Mapping
 from rocking_cli.codes.italian.results import ItalianVerification, ItalianVerified
 from rocking_cli.codes.italian.rules import OF_STATE
 from rocking_cli.codes.italian.sheet.methods import title
+from rocking_cli.studies.conclusion import Concluded
+from rocking_cli.views.conclusion import of_verification
 from rocking_cli.views.sheet.document import Grid, Item, Sentence, SheetPart
 from rocking_cli.views.sheet.language import Language, plain
 
 
 def part(say: Language, found: ItalianVerification, shown: Mapping[str, ItalianVerified]) -> SheetPart:
     """Return the part with the summary."""
-    items: list[Item] = [verdict(say, found.first, where, each) for where, each in shown.items()]
+    end = found.conclusion
+    method = say.say(f"short_{end.method.split('_')[0]}")
+    said = [say.remark(each) for each in of_verification(found, method)]
+    fails = end.concluded is not Concluded.SATISFIED
+    items: list[Item] = [Sentence(" ".join(said), answers=True, fails=fails)]
+    items += [verdict(say, found.first, where, each) for where, each in shown.items()]
     for where, each in shown.items():
         items += _starts_later(say, found.first, where, each)
     if len(shown) > 1:  # which direction governs
@@ -39,7 +46,7 @@ def verdict(say: Language, first: str, where: str, each: ItalianVerified) -> Sen
     """Return the sentence with the verdict on a direction."""
     at, counts, passes = each.states[first], each.counts, each.passes(first)
     if passes is None or at.demand is None or at.ratio is None or counts.a_g is None or counts.demand is None:
-        return Sentence(say.say("no_state", where=where, state=first), answers=True)
+        return Sentence(say.say("no_state", where=where, state=first))
     if each.governs == "damage":
         other = each.methods["nonlinear"].a_g or 0.0
         why = say.say("why_damage", a_g=counts.a_g, other=other, asked=counts.demand)
@@ -49,7 +56,7 @@ def verdict(say: Language, first: str, where: str, each: ItalianVerified) -> Sen
         )
     key = "verdict_passes" if passes else "verdict_fails"
     text = say.say(key, where=where, state=first, zeta=counts.zeta, why="@").replace("@", why)
-    return Sentence(text, answers=True, fails=not passes)
+    return Sentence(text)
 
 
 def _starts_later(say: Language, first: str, where: str, each: ItalianVerified) -> Iterator[Item]:
@@ -82,7 +89,7 @@ def _methods(say: Language, where: str, each: ItalianVerified) -> Grid:
     known = any(method.return_period is not None for method in each.methods.values())
     rows = []
     for key, method in each.methods.items():
-        if method.a_g is None:
+        if method.a_g is None or each.stands_back(key):
             continue
         line = each.straight_methods[key]
         numbers = [say.number(v, 4) for v in (method.a_g, line.a_g, method.demand, method.zeta)]

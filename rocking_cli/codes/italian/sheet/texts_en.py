@@ -21,6 +21,11 @@ TEXTS = {
     # summary
     "summary": "Summary",
     "verdict": "Verdict",
+    "short_SLD": "onset of rocking",
+    "short_damage": "onset of rocking",
+    "short_linear": "linear method",
+    "short_nonlinear": "nonlinear method",
+    "short_histories": "time histories",
     "verdict_passes": "{where}, {state}: the verification is satisfied. ζ_[E] = {zeta:.4g}; {why}",
     "verdict_fails": "{where}, {state}: the verification is not satisfied. ζ_[E] = {zeta:.4g}; {why}",
     "no_state": "{where}: the site does not give {state}.",

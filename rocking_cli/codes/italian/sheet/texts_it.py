@@ -24,6 +24,11 @@ TEXTS = {
     # summary
     "summary": "Sintesi",
     "verdict": "Esito",
+    "short_SLD": "attivazione del meccanismo",
+    "short_damage": "attivazione del meccanismo",
+    "short_linear": "metodo lineare",
+    "short_nonlinear": "metodo non lineare",
+    "short_histories": "analisi dinamica",
     "verdict_passes": "{where}, {state}: la verifica è soddisfatta. ζ_[E] = {zeta:.4g}; {why}",
     "verdict_fails": "{where}, {state}: la verifica non è soddisfatta. ζ_[E] = {zeta:.4g}; {why}",
     "no_state": "{where}: il sito non assegna {state}.",
