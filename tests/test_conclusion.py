@@ -17,7 +17,7 @@ from rocking_cli.studies.conclusion import ORDER, Concluded, Conclusion, Share, 
 from rocking_cli.studies.verification.results import Check
 from rocking_cli.views.conclusion import conclusion_data, digits_beside_one, of_verification
 from tests.conftest import EXAMPLES
-from tests.test_cli import run, run_json
+from tests.test_cli import run, run_json, some
 
 PILLAR = {"mechanism": "block", "width": 0.5, "height": 2.2, "density": 1800, "depth": 0.5}
 SITE = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2, "soil": "B"}
@@ -69,12 +69,10 @@ def test_a_verification_concludes_the_same_everywhere(pillar, tmp_path, case):
     italian = "è soddisfatta" if passes else "non è soddisfatta"
     said = run("verify", *asked, "--sheet", "en.html").stdout
     run("verify", *asked, "--sheet", "it.html", "--language", "it")
-    run("report", "pillar.yaml", "--verify", "s.site.yaml", "-o", "r.html")
-    report = run_json("report", "pillar.yaml", "--verify", "s.site.yaml", "-o", "r.html")
     (row,) = run_json("survey", "rows.csv", "--site", "s.site.yaml")["rows"]
     for text in (
         said.split("Site")[0], text_of((tmp_path / "en.html").read_text(encoding="utf-8")),
-        text_of((tmp_path / "r.html").read_text(encoding="utf-8")), report["answer"],
+        *(_in_the_report(tmp_path, end) if case == "SLC fails" else ()),
     ):  # fmt: skip
         first = re.search(
             r"The verification (is not satisfied|is satisfied)[^.]*\. (\w+) governs", " ".join(text.split())
@@ -87,7 +85,12 @@ def test_a_verification_concludes_the_same_everywhere(pillar, tmp_path, case):
     answer = rk.verify("pillar.yaml", "s.site.yaml")
     assert conclusion_data(answer.conclusion) == end | {"left_out": []}
     assert english in repr(answer) or "..." in repr(answer)
+
+
+def _in_the_report(folder, end):
+    report = run_json("report", "pillar.yaml", "--verify", "s.site.yaml", "-o", "r.html")
     assert report["verification"]["conclusion"] == end
+    return text_of((folder / "r.html").read_text(encoding="utf-8")), report["answer"]
 
 
 def test_what_does_not_count_is_not_shown_as_if_it_failed(pillar):
@@ -179,3 +182,24 @@ def test_directions_that_differ_name_the_one_that_governs():
     assert found.conclusion.direction == least.label
     assert found.conclusion.ratio == found.directions[least].ratio
     assert set(found.conclusion.directions) == {each.label for each in Direction}
+
+
+def test_motions_that_could_not_be_used_are_not_counted_silently(tmp_path):
+    (tmp_path / "p.yaml").write_text(yaml.safe_dump(PILLAR), encoding="utf-8")
+    (tmp_path / "bad.csv").write_text("no numbers\n", encoding="utf-8")
+    how = ("respond", "p.yaml", "--pulse", "sine:0.1g:0.5s", "--pulse", "sine:0.2g:0.5s", "--neighbours", 0)
+    assert "Not counted" not in run(*how).stdout
+    record = EXAMPLES / "accel.csv"
+    said = some("respond", "p.yaml", "--record", record, "--record", "bad.csv", "--neighbours", 0).stdout
+    assert "Not counted: 1 of 2 motions, which could not be used." in " ".join(said.split())
+
+
+def test_a_report_does_not_call_a_constant_force_elastic_and_repeats_cautions_of_its_verification(tmp_path, pillar):
+    pillar("all pass")
+    bar = {"name": "bar", "path": [{"ground": [4.0, 2.0]}, {"at": [0.25, 2.0]}], "stiffness": 0, "prestress": 500.0}
+    (tmp_path / "pillar.yaml").write_text(yaml.safe_dump({**PILLAR, "ties": [bar]}), encoding="utf-8")
+    run("report", "pillar.yaml", "--verify", "s.site.yaml", "-o", "r.html")
+    page = text_of((tmp_path / "r.html").read_text(encoding="utf-8"))
+    assert "Ties are assumed elastic" not in page
+    cautions = [each for each in rk.verify("pillar.yaml", "s.site.yaml").sentences if each.startswith("Caution: at d_")]
+    assert all(page.count(each.split(":", 1)[1].strip()[:40]) >= 2 for each in cautions)

@@ -160,7 +160,7 @@ def _show_each(
     for place in places:
         place.keep_apart(structure.file, *motions.records)
     question["models"] = question["models"] or usual_models(structure, watch)
-    table = Several(structure, question["models"])
+    table = Several(structure, question["models"], motions.count)
     details: list[Table | str] = []
     with watch.progress(len(given), "motions") as advance:
         for motion, place in zip(given, places, strict=True):

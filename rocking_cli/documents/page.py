@@ -34,6 +34,7 @@ from rocking_cli.studies.film import Film
 from rocking_cli.studies.linearisation import Linearisation
 from rocking_cli.studies.movements import Watched
 from rocking_cli.studies.overturning import Region
+from rocking_cli.studies.verification.results import Verification
 from rocking_cli.text import printable
 from rocking_cli.views import assessment_words as words
 from rocking_cli.views.contact import contact_columns
@@ -51,6 +52,12 @@ Rows = list[list[str]]
 
 
 BAD = frozenset({Concluded.OVERTURNS, Concluded.UNKNOWN, Concluded.NOT_SATISFIED, Concluded.NOT_CHECKED})
+
+
+def cautioned(found: Verification) -> list[str]:
+    """Return the remarks of a verification that are cautions, such as on a tie that elongates too far."""
+    remarks = [*(remark for each in found.distinct for remark in each.remarks), *found.remarks]
+    return [str(each) for each in dict.fromkeys(remarks) if each.startswith("Caution")]
 
 
 def _is_bad(end: Conclusion | None) -> bool:
@@ -86,6 +93,7 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         overview_columns=words.overview_columns(content, _over(content)),
         governs=words.governs(content) if content.results else "",
         doubts=words.doubts(content),
+        cautioned=cautioned(verified.found) if verified is not None else [],
         restitution=words.restitution(content),
         drawing=_still(draw_structure(content.picture, content.name), "drawing"),
         measured=_dimensions(content),

@@ -21,7 +21,7 @@ ALIKE = 1e-6  # relative difference below which neither polarity governs
 # Of two motions, the rms of the difference over that of the nonlinear one, up to which the other agrees with it, and
 # serves a first estimate. Two motions of one size that have nothing to do with each other differ by 1.4 of it.
 FOLLOWS, STRAYS = 0.25, 0.5
-TOGETHER = 1e-3  # s within which two motions are at one time
+TOGETHER = 1e-2  # s within which two motions are at one time
 ANOTHER = 1.0  # p times the time between two peaks, or overturnings, beyond which they are not the same one
 PEAK = 0.999  # of its largest sample: when a motion first comes so far it has its peak, rounding apart
 WAYS = {1: "as given", -1: "reversed"}  # the polarities of a motion

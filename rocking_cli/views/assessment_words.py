@@ -85,7 +85,7 @@ def _under_motions(content: Assessment, verified: Verification | None) -> str:
         )
     falls = [each for each in content.results if _overturns(each)]
     unknown = [each for each in content.results if each.unknown]
-    doubtful = any(each.close for each in content.results)
+    doubtful = all(each.close for each in falls) if falls else any(each.close for each in content.results)
     close = " The result is close: see below what could change it." if doubtful else ""
     contacts = [contact for each in content.results for contact in each.contacts.values()]
     if any(not contact.holds and not contact.followed for contact in contacts):
@@ -205,7 +205,7 @@ def doubts(content: Assessment) -> list[str]:
             f"The coefficient of restitution (η = {min(etas):.3g}) was computed for rigid bodies that neither slide "
             "nor bounce. It was not measured, and the response depends on it."
         )
-    if content.mechanism.hung.ties:
+    if any(tie.is_elastic for tie in content.mechanism.ties or []):
         said.append(
             "Ties are assumed elastic: they do not yield, break or pull out of their anchorages. Check the largest "
             "tie forces in this report against the capacity of the ties and their anchorages."

@@ -30,9 +30,11 @@ class Several:
         The structure.
     models : tuple of str
         The models simulated.
+    asked : int
+        Number of motions that were given, with those that could not be used.
     """
 
-    def __init__(self, structure: Structure, models: Sequence[ModelName]) -> None:
+    def __init__(self, structure: Structure, models: Sequence[ModelName], asked: int) -> None:
         self._title = heading(structure.mechanism)
         self._free = [side.phi_cr is None for side in structure.statics]
         self._restitution = restitution_used(structure)
@@ -41,6 +43,7 @@ class Several:
         self._rows: list[list[str]] = []
         self._worst: dict[str, Severity] = {}
         self._fallen = self._unknown = 0
+        self._asked = asked
         self._checked, self._doubtful = True, False
         self._until: dict[str, str] = {}
         self._around: Neighbourhood | None = None
@@ -91,6 +94,8 @@ class Several:
             rows = [[*row[:-2], row[-1]] for row in rows]
         yield Table(self._title, heads, rows, numbers=range(1, len(heads)))
         yield f"By the {self._best} model, {self._outcomes()}."
+        if (lost := self._asked - len(self._worst)) > 0:
+            yield f"Not counted: {lost} of {self._asked} motions, which could not be used."
         if self._around is not None:
             yield f"Neighbours: {self._around.count} neighbouring motions for each motion, {self._around.words}."
         yield governing(self._worst, peaks_over(self._free))

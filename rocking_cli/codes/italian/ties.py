@@ -81,7 +81,7 @@ def furthest(curve: ExactCurve, d: float) -> tuple[float, float]:
 
 def elastic(mechanism: Mechanism) -> Sequence[Tie]:
     """Return the ties and beds of springs whose force increases with the elongation."""
-    return [tie for tie in mechanism.ties or [] if tie.bed is not None or tie.k > 0]
+    return [tie for tie in mechanism.ties or [] if tie.is_elastic]
 
 
 def carried(curve: ExactCurve, d: float) -> dict[str, float]:

@@ -179,6 +179,11 @@ class Tie(Described):
         assert self.area is not None and self.modulus is not None
         return self.area * self.modulus / (self.length or self.span)
 
+    @property
+    def is_elastic(self) -> bool:
+        """Whether the force increases with the elongation, as that of a constant force does not."""
+        return self.bed is not None or self.k > 0
+
     def element(self, spots: Sequence[Spot], count: float) -> Element:
         """Return the element of `count` such ties over these points; for a bed, the points are the ends of its face."""
         if self.bed is not None:
