@@ -202,4 +202,4 @@ def test_a_report_does_not_call_a_constant_force_elastic_and_repeats_cautions_of
     page = text_of((tmp_path / "r.html").read_text(encoding="utf-8"))
     assert "Ties are assumed elastic" not in page
     cautions = [each for each in rk.verify("pillar.yaml", "s.site.yaml").sentences if each.startswith("Caution: at d_")]
-    assert all(page.count(each.split(":", 1)[1].strip()[:40]) >= 2 for each in cautions)
+    assert cautions and page.count("the tie bar is") == 2 * len(cautions)
