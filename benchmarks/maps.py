@@ -78,7 +78,7 @@ def samples() -> None:
 
             def sampled(a: float, motion: object = motion) -> bool:
                 run = respond_many([model], [motion], Runs.of(0, 0, scale=a), threads=1, only_peaks=True)
-                return bool(run.overturned[0] and run.impact_count[0] == 0)
+                return bool(run.fell[0] and run.impact_count[0] == 0)
 
             row.append(f"{least(sampled) / least(exact) - 1:+.1e}")
         print(f"| {count} | {' | '.join(row)} |", flush=True)

@@ -249,7 +249,7 @@ def pulses() -> Iterator[Check]:
 
     def without_impact_falls(a: float) -> bool:
         exact = exact_pulse(a, 3.0, eta)
-        return exact.overturned and exact.impact_count == 0
+        return exact.fell and exact.impact_count == 0
 
     expected, low, up = high, 3.0, 5.0
     for _ in range(60):
@@ -260,7 +260,7 @@ def pulses() -> Iterator[Check]:
     low, high = 1e-3, 20.0
     for _ in range(60):  # the length of a rectangle that just overturns a block, as omega = 2 pi/(p T)
         middle = sqrt(low * high)
-        low, high = (middle, high) if exact_pulse(2.0, middle, eta, shape="rectangular").overturned else (low, middle)
+        low, high = (middle, high) if exact_pulse(2.0, middle, eta, shape="rectangular").fell else (low, middle)
     yield Check("rectangular pulse $a = 2$: $p T$ that just overturns", r"$\ln(a/(a - 1))$, without impact", log(2.0),
                 2 * pi / high, "test_exact_pulse.py")  # fmt: skip
 

@@ -181,7 +181,7 @@ def test_a_map_of_a_structure_is_that_of_the_command():
     answer = rk.overturning_map(EXAMPLES / "block.yaml", **pulses)
     said = run_json("overturning", EXAMPLES / "block.yaml", "--period", "0.3:2", "--ag", "0.1g:1g", "--points", 9)
     assert answer.to_dict() == said
-    assert np.isnan(answer.outcome.peak_ratio[answer.outcome.overturned]).all()
+    assert np.isnan(answer.outcome.peak_ratio[answer.outcome.fell]).all()
 
 
 def test_a_report_is_written_with_what_gives_the_structure_again(tmp_path):

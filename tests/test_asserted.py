@@ -236,7 +236,7 @@ def test_many_runs_of_columns_are_each_its_own_history():
     differs = (alone.overturned != in_step.overturned) & (in_step.impact_count > 0)
     assert 0 < differs.sum() < 12
     assert (many.unknown == differs).all()
-    assert (many.overturned == in_step.overturned & ~differs).all()
+    assert (many.fell == in_step.fell & ~differs).all()
     one = nonlinear(frames[0], motion.scaled(0.9))
     again = respond_many(models, [motion], Runs.of(0, 0, scale=[0.9]))
     assert one.unknown and again.unknown[0] and again.known_to[0] == one.known_to

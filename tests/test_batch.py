@@ -96,7 +96,7 @@ def test_every_run_is_the_history_that_respond_gives_to_the_last_bit(name, eta):
                     (k,) = np.flatnonzero(
                         (runs.model == m) & (runs.record == r) & (runs.scale == scale) & (runs.polarity == polarity)
                     )
-                    fallen += history.overturned
+                    fallen += history.fell
                     assert not got.failed[k]
                     for column in COLUMNS:
                         if column != "opening" or not history.unknown:
@@ -116,7 +116,7 @@ def test_a_size_is_the_structure_with_every_length_so_much_larger(name, k):
     runs = Runs.every(3, len(motions()), scales=(0.8, 1.6), sizes=(k,))
     got = respond_many(models(name), motions(), runs)
     expected = respond_many(models(name, k), motions(), Runs.every(3, len(motions()), scales=(0.8, 1.6)))
-    np.testing.assert_array_equal(got.overturned, expected.overturned)
+    np.testing.assert_array_equal(got.fell, expected.fell)
     np.testing.assert_array_equal(got.fell_to, expected.fell_to)
     assert not (got.failed | expected.failed).any()
     np.testing.assert_array_equal(got.unknown, expected.unknown)
@@ -151,7 +151,7 @@ def test_what_is_more_slender_feels_less_of_the_horizontal_acceleration_alone(na
         np.testing.assert_array_equal(getattr(got, column), getattr(expected, column), err_msg=column)
     for column in ("peak_positive", "peak_negative"):
         np.testing.assert_array_equal(getattr(got, column), k * getattr(expected, column), err_msg=column)
-    assert 0 < got.overturned.sum() < len(runs)
+    assert 0 < got.fell.sum() < len(runs)
     plain = respond_many(every, motions(), runs)
     assert (plain.peak_ratio != got.peak_ratio).any()
 
@@ -191,7 +191,7 @@ def test_results_do_not_depend_on_the_order_of_the_runs():
 def test_progress_counts_every_run_once(count):
     every, runs = mixed(count)
     seen = []
-    assert respond_many(every, motions(), runs, progress=seen.append).overturned.size == count
+    assert respond_many(every, motions(), runs, progress=seen.append).fell.size == count
     assert sum(seen) == count
     assert all(0 < part <= batch.UNIT for part in seen)
 
@@ -251,8 +251,8 @@ def test_numbers_hold_for_all_runs():
 
 def test_no_runs_are_no_responses():
     nothing = Runs.every(0, 0)
-    assert respond_many(models("block"), motions(), nothing).overturned.size == 0
-    assert respond_many([], [], nothing, progress=lambda done: None).overturned.size == 0
+    assert respond_many(models("block"), motions(), nothing).fell.size == 0
+    assert respond_many([], [], nothing, progress=lambda done: None).fell.size == 0
 
 
 @pytest.mark.parametrize(
@@ -322,8 +322,8 @@ def test_a_release_is_that_of_respond(release):
         found = respond_many(models("frame"), [motion], Runs.every(3, 1), release=release)
         for k, name in enumerate(MODELS):
             assert found.impact_count[k] == alone[name].impact_count
-            assert found.overturned[k] == alone[name].overturned
-            assert alone[name].overturned or found.peak_ratio[k] == alone[name].peak_ratio
+            assert found.fell[k] == alone[name].fell
+            assert alone[name].fell or found.peak_ratio[k] == alone[name].peak_ratio
 
 
 def test_a_model_or_a_record_that_is_not_there_is_refused():
@@ -357,5 +357,5 @@ def test_a_run_that_cannot_be_followed_is_said_to_have_failed_and_stops_no_other
     runs = Runs.of(0, 2, scale=[1.0, 1e308, 1.0])
     got = respond_many(models("block"), motions(), runs)
     assert got.failed.tolist() == [False, True, False]
-    assert not got.overturned[1]
+    assert not got.fell[1]
     assert got.peak_ratio[0] == got.peak_ratio[2]

@@ -136,9 +136,9 @@ class TestReported:
 
         def some_fail(*arguments, **options):
             found = whole(*arguments, **options)
-            failed = np.zeros(found.overturned.size, dtype=bool)
+            failed = np.zeros(found.failed.size, dtype=bool)
             failed[[0, 7]] = True  # of r0.csv and r1.csv
-            return replace(found, failed=failed, overturned=found.overturned & ~failed)
+            return replace(found, failed=failed, fell_to=found.fell_to * ~failed)
 
         asked = (BLOCK, "--record", records, *QUICK, "--json")
         full = json.loads(run(*asked).stdout)["spectra"][0]

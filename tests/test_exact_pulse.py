@@ -431,7 +431,7 @@ def test_between_the_two_modes_a_stronger_sine_may_be_safe():
     found = exact_many(
         Equivalence(one, one), SHAPE["sine"](1.0, 1.0), a * one.lambda_ * G, 2 * pi / (w * one.p), kappa=2, gravity=G
     )
-    before = np.where(found.overturned, found.impact_count, -1)
+    before = np.where(found.fell, found.impact_count, -1)
     runs = [before[0]]
     for each in before:
         if each != runs[-1]:

@@ -56,8 +56,8 @@ def share(mechanism, motion, factor, polarities, around=AROUND):
         for sign in polarities
     ]
     return (
-        max(np.mean([each.overturned for each in of]) for of in ends),
-        max(np.mean([each.overturned or each.unknown for each in of]) for of in ends),
+        max(np.mean([each.fell for each in of]) for of in ends),
+        max(np.mean([each.fell or each.unknown for each in of]) for of in ends),
     )
 
 

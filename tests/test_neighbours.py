@@ -51,7 +51,7 @@ def alone(mechanism, motion, amplitude, slender, etas):
 
 def fate(history):
     """Its peak ratio, infinite if it overturns or its outcome is unknown."""
-    return np.inf if history.overturned or history.unknown else history.peak_ratio
+    return np.inf if history.fell or history.unknown else history.peak_ratio
 
 
 def one_in_each(uniform):
@@ -137,7 +137,7 @@ def test_neighbours_are_what_each_would_be_alone(mechanism, scale, motion):
     assert found.unknown == 0
     ranks = np.sort(fates)[[int(np.ceil(share * 30)) - 1 for share in (0.16, 0.5, 0.84)]]
     np.testing.assert_allclose(found.peak_ratio, ranks, rtol=1e-6)
-    itself = respond(mechanism, motion, models=("nonlinear",))["nonlinear"].overturned
+    itself = respond(mechanism, motion, models=("nonlinear",))["nonlinear"].fell
     assert found.as_itself == (np.isinf(fates) == itself).mean()
     assert found.sensitive == (found.as_itself < 0.9)
 
@@ -154,7 +154,7 @@ def test_neighbours_of_unknown_outcome_are_what_each_would_be_alone(file, openin
     histories = [alone(structure, motion, *each) for each in zip(*around.drawn(model), strict=True)]
     found = neighbours(model, motion, around)
     assert found.unknown == np.mean([each.unknown for each in histories]) and some <= found.unknown < 1
-    assert found.overturned == np.mean([each.overturned for each in histories]) >= fell
+    assert found.overturned == np.mean([each.fell for each in histories]) >= fell
     assert found.at_most == pytest.approx(np.mean([np.isinf(fate(each)) for each in histories]), abs=1e-12)
     ranks = np.sort([fate(each) for each in histories])[[int(np.ceil(share * 20)) - 1 for share in (0.16, 0.5, 0.84)]]
     np.testing.assert_allclose(found.peak_ratio, ranks, rtol=1e-6)
@@ -197,7 +197,7 @@ def test_the_share_of_a_linear_block_is_that_of_its_islands(varied):
     block = equivalent_block(BLOCK)
     model = build_model(BLOCK, "linear2")
     fine = np.linspace(2.0, 9.0, 70_001)
-    falls = exact_many(block, Sine(1.0, period), fine, period, kappa=2, gravity=BLOCK.gravity).overturned
+    falls = exact_many(block, Sine(1.0, period), fine, period, kappa=2, gravity=BLOCK.gravity).fell
     edges = fine[1:][np.diff(falls.astype(np.int8)) != 0]
     assert len(edges) >= 1
     checked = 0
@@ -259,7 +259,7 @@ class TestWithoutShaking:
         push = GroundMotion("push", 0.01, np.append(-0.11 * STANDARD_GRAVITY * np.ones(60), np.zeros(5)))
         found = neighbours(model, push, around, release=tilt, release_is_angle=True)
         alone = [
-            follow(model, push, Draws(*(each[k : k + 1] for each in drawn)), release=tilt / k_e).overturned[0]
+            follow(model, push, Draws(*(each[k : k + 1] for each in drawn)), release=tilt / k_e).fell[0]
             for k, k_e in enumerate(drawn.slender)
         ]
         assert 0.1 < np.mean(alone) < 0.9 and found.overturned == np.mean(alone)
@@ -391,7 +391,7 @@ class TestWords:
         model, motion, around = build_model(BLOCK, "nonlinear"), ACCEL.scaled(scale), Neighbourhood(400, 0.05)
         amplitude, slender, eta = around.drawn(model)
         runs = Runs.of(0, 0, scale=amplitude, slender=slender, eta=eta)
-        fallen = respond_many([model], [motion], runs).overturned.mean()
+        fallen = respond_many([model], [motion], runs).fell.mean()
         said = str(neighbours(model, motion, around))
         words = around.of(model).words
         if not can_lift(model, motion, (amplitude / slender).max()):
@@ -409,5 +409,5 @@ def test_what_no_slenderness_leaves_standing_overturns_for_certain():
     model = build_model(block, "nonlinear")
     draws = Draws(np.ones(2), np.array([-0.1, 1.0]), np.full((2, 2), np.nan))
     found = follow(model, ACCEL, draws)
-    assert found.overturned.tolist() == [True, False] and found.unknown.tolist() == [False, True]
+    assert found.fell.tolist() == [True, False] and found.unknown.tolist() == [False, True]
     assert np.isnan(found.peak_ratio[0])

@@ -76,7 +76,7 @@ class TestMap:
         assert plane.shares[Region.WITHOUT_IMPACT] == np.mean(impacts_before(plane.outcome) == 0)
 
     def test_the_curves_are_those_of_the_columns(self, plane):
-        falls = plane.outcome.overturned
+        falls = plane.outcome.fell
         for k, (least, safe) in enumerate(
             zip(plane.least(Region.AFTER_IMPACT, Region.WITHOUT_IMPACT), plane.safe_again, strict=True)
         ):
@@ -101,12 +101,12 @@ class TestMap:
             for column, period in enumerate(found.periods):
                 motion = replace(SINE, amplitude=float(ag), period=float(period)).sampled(COARSE)
                 alone = respond(mechanism, motion, models=("nonlinear",))["nonlinear"]
-                assert found.outcome.overturned[row, column] == alone.overturned
+                assert found.outcome.fell[row, column] == alone.fell
                 assert found.outcome.unknown[row, column] == alone.unknown
                 for name in ("known_to", "lower_bound"):
                     each = getattr(found.outcome, name)[row, column]
                     assert each == pytest.approx(getattr(alone, name), rel=1e-9, nan_ok=True)
-                if alone.overturned:
+                if alone.fell:
                     assert found.outcome.impact_count[row, column] == alone.impact_count
                 else:
                     assert found.outcome.peak_ratio[row, column] == pytest.approx(alone.peak_ratio, rel=1e-9)
@@ -130,10 +130,10 @@ class TestMap:
             overturning_map(structure, ricker, omega, a, polarities=each).outcome for each in ((1,), (-1,), (1, -1))
         )
         assert (one.peak_ratio != other.peak_ratio).any()
-        falls = one.overturned | other.overturned
-        np.testing.assert_array_equal(both.overturned, falls)
+        falls = one.fell | other.fell
+        np.testing.assert_array_equal(both.fell, falls)
         np.testing.assert_array_equal(both.peak_ratio[~falls], np.fmax(one.peak_ratio, other.peak_ratio)[~falls])
-        fewer, more = np.sort([np.where(each.overturned, each.impact_count, 99) for each in (one, other)], axis=0)
+        fewer, more = np.sort([np.where(each.fell, each.impact_count, 99) for each in (one, other)], axis=0)
         assert ((fewer < more) & (more < 99)).any()
         np.testing.assert_array_equal(both.impact_count[falls], fewer[falls])
 
@@ -173,9 +173,9 @@ class TestOnlyPeaks:
         motions = [replace(SINE, period=period).sampled(50) for period in (0.4, 0.9, 2.0)]
         runs = Runs.every(3, 3, scales=np.linspace(1, 12, 12), polarities=(1, -1), etas=(0.7, 0.95))
         whole, left = (respond_many(models, motions, runs, only_peaks=only) for only in (False, True))
-        for column in ("overturned", "fell_to", "peak_positive", "peak_negative", "peak_ratio", "overturning_time"):
+        for column in ("fell_to", "peak_positive", "peak_negative", "peak_ratio", "overturning_time"):
             np.testing.assert_array_equal(getattr(whole, column), getattr(left, column), err_msg=column)
-        fell = whole.overturned
+        fell = whole.fell
         np.testing.assert_array_equal(whole.impact_count[fell], left.impact_count[fell])
         assert left.still_rocking.any() and left.impact_count.sum() < whole.impact_count.sum() / 3
 
@@ -262,7 +262,7 @@ class TestBoundaries:
 
 def impacts_before(outcome):
     """Impacts before it overturns; -1 where it does not."""
-    return np.where(outcome.overturned, outcome.impact_count, -1)
+    return np.where(outcome.fell, outcome.impact_count, -1)
 
 
 def _happens(name, found):
@@ -281,10 +281,10 @@ class TestCompare:
                 top = curves.top if np.isnan(ag) else ag * (1 - 1e-6)
                 scan = 1 + (top * STANDARD_GRAVITY / structure.unit - 1) * np.geomspace(0.01, 1, SCAN)
                 found = outcomes(structure, SINE, np.full(SCAN, period), scan * structure.unit)
-                assert not found.overturned.any()
+                assert not found.fell.any()
                 if np.isfinite(ag):
                     above = np.array([ag * (1 + 1e-6) * STANDARD_GRAVITY])
-                    assert outcomes(structure, SINE, np.array([period]), above).overturned[0]
+                    assert outcomes(structure, SINE, np.array([period]), above).fell[0]
 
     def test_the_first_is_the_one_with_the_least(self, curves):
         for goes, column in zip(curves.firsts.T, curves.least.T, strict=True):

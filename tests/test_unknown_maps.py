@@ -11,6 +11,7 @@ import pytest
 from matplotlib.colors import to_hex
 from matplotlib.patches import Rectangle
 
+import rocking_cli as rk
 from mechanisms.block import Block
 from rocking_cli.dynamics.outcome import OUTCOME, Outcome
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -55,9 +56,34 @@ def nonlinear(mechanism, motion):
 def made(**fields):
     """Outcomes of which all is known, but for what is given."""
     many = len(next(iter(fields.values())))
-    flags = {"overturned", "still_rocking", "failed", "unknown"}
+    flags = {"still_rocking", "failed", "unknown"}
     usual = {name: name not in flags and (0 if name in ("fell_to", "impact_count") else np.nan) for name in OUTCOME}
     return Outcome(**{name: np.array(fields.get(name, [value] * many)) for name, value in usual.items()})
+
+
+class TestArrays:
+    """No sum and no mean of `overturned` drops the unknown."""
+
+    def test_overturned_is_nan_where_it_is_not_known_and_the_share_is_a_range(self):
+        found = made(fell_to=[1, 0, -1, 0, 0], unknown=[False, True, False, False, False], failed=[False] * 4 + [True])
+        np.testing.assert_array_equal(found.overturned, [1.0, np.nan, 1.0, 0.0, np.nan])
+        assert found.fell.tolist() == [True, False, True, False, False]
+        assert np.isnan(found.overturned.sum()) and np.isnan(found.overturned.mean())
+        assert found.share() == (0.5, 0.75)  # of the four that ran
+        assert np.isnan(made(failed=[True]).share()).all()
+
+    def test_of_one_motion_it_is_yes_no_or_none(self):
+        found = made(fell_to=[-1, 0, 0, 0], unknown=[False, False, True, False], failed=[False] * 3 + [True])
+        single = [found.by_field(lambda each, k=k: each[k]).overturned for k in range(4)]
+        assert single == [True, False, None, None]
+        assert nonlinear(PORTAL, RECORD).overturned is None
+
+    def test_arrays_frames_and_json_agree(self):
+        answer = rk.respond_each(FILE, ACCEL, models="nonlinear", scales=[0.1, 2.0])
+        assert answer["nonlinear"].share() == (0.0, 0.5)
+        np.testing.assert_array_equal(answer["nonlinear"].overturned.ravel(), [0.0, np.nan])
+        np.testing.assert_array_equal(answer.to_frame()["nonlinear overturned"], [0.0, np.nan])
+        assert np.ravel(answer.to_dict()["nonlinear"]["overturned"]).tolist() == [False, None]
 
 
 @pytest.fixture(scope="module")
@@ -113,7 +139,7 @@ class TestMap:
             unknown=[True, True, False, True], lower_bound=[0.1, 0.5, np.nan, 0.2], peak_ratio=[0.3, 0.6, 0.9, 0.3]
         )
         other = made(
-            overturned=[False, True, False, False], unknown=[False, False, False, True],
+            fell_to=[0, 1, 0, 0], unknown=[False, False, False, True],
             lower_bound=[np.nan, np.nan, np.nan, 0.3], peak_ratio=[0.8, np.nan, 0.2, 0.4],
         )  # fmt: skip
         answers = {1: one, -1: other}
@@ -122,7 +148,7 @@ class TestMap:
         for signs in ((1, -1), (-1, 1)):
             found = outcomes(lopsided, SINE, np.ones(4), np.ones(4), polarities=signs)
             assert found.unknown.tolist() == [True, False, False, True]
-            assert found.overturned.tolist() == [False, True, False, False]
+            assert found.fell.tolist() == [False, True, False, False]
             assert found.lower_bound[[0, 3]].tolist() == [0.8, 0.3]
             assert found.peak_ratio[2] == 0.9
 
@@ -184,7 +210,7 @@ class TestCurves:
         for k in (0, 1):
             around = curves.possible[portal, k] * STANDARD_GRAVITY * np.array([0.9999, 1.0001])
             found = outcomes(SHAKEN, SINE, np.full(2, curves.periods[k]), around)
-            assert not found.overturned.any() and found.unknown.tolist() == [False, True]
+            assert not found.fell.any() and found.unknown.tolist() == [False, True]
 
     def test_who_overturns_first_is_said_only_where_it_is_known(self):
         least = np.array([[1.0, np.nan, 2.0, 1.0, np.nan], [2.0, 1.0, 1.0, 1.0, np.nan]])
@@ -223,7 +249,7 @@ class TestSpectrum:
             "rocks": ((False, False, False, 0.3, np.nan), (False, False, False, 0.5, 2.0)),  # a bound of what is known
         }
         columns = [np.array(each) for each in zip(*[side for pair in pairs.values() for side in pair], strict=True)]
-        fields = dict(zip(("overturned", "unknown", "failed", "peak_ratio", "lower_bound"), columns, strict=True))
+        fields = dict(zip(("fell_to", "unknown", "failed", "peak_ratio", "lower_bound"), columns, strict=True))
         peak, bound = _worst(made(**fields).by_field(lambda each: each.reshape(4, 2, 1)))
         np.testing.assert_array_equal(peak[:, 0], [np.inf, np.inf, np.nan, 0.5])
         np.testing.assert_array_equal(bound[:, 0], [0.5, np.nan, np.nan, np.nan])

@@ -119,12 +119,12 @@ def test_of_unknown_outcomes_none_is_the_worse():
 
 def ended(**fields):
     """What of a history counts where two polarities are compared."""
-    usual = {"overturned": False, "unknown": False, "peak_ratio": 0.2, "overturning_time": nan}
+    usual = {"fell": False, "unknown": False, "peak_ratio": 0.2, "overturning_time": nan}
     return {"nonlinear": SimpleNamespace(**{**usual, **fields})}
 
 
 def test_a_polarity_that_overturns_governs_over_one_that_is_unknown():
-    falls, open_ = ended(overturned=True, peak_ratio=nan, overturning_time=3.0), ended(unknown=True)
+    falls, open_ = ended(fell=True, peak_ratio=nan, overturning_time=3.0), ended(unknown=True)
     worse, said = governs({1: open_, -1: falls})
     assert worse == -1
     assert said.endswith(": with the motion reversed it overturns, as given its outcome is unknown.")
@@ -211,9 +211,9 @@ class TestAzimuths:
     def found(self):
         azimuths, no, none = np.arange(0.0, 360.0, 60.0), np.zeros(6, dtype=bool), np.full(6, nan)
         many = Outcome(
-            still_rocking=no, failed=no, fell_to=np.zeros(6), peak_positive=none, peak_negative=none, opening=none,
+            still_rocking=no, failed=no, fell_to=np.eye(6)[0], peak_positive=none, peak_negative=none, opening=none,
             overturning_time=none, impact_count=np.zeros(6), end_time=none, warned=none,
-            unknown=np.array([0, 1, 1, 0, 0, 0], dtype=bool), overturned=np.array([1, 0, 0, 0, 0, 0], dtype=bool),
+            unknown=np.array([0, 1, 1, 0, 0, 0], dtype=bool),
             peak_ratio=np.array([nan, 0.9, 0.1, 0.4, 0.3, 0.2]), known_to=np.array([nan, 1.0, 2.0, nan, nan, nan]),
             lower_bound=np.array([nan, 0.5, 0.1, nan, 0.2, nan]), uplift_time=np.ones(6),
         )  # fmt: skip
@@ -295,10 +295,8 @@ class TestVerification:
         assert any(item.text.startswith(caution) for item in said)
 
     def test_a_direction_that_a_polarity_overturns_is_known(self):
-        falls = SimpleNamespace(overturned=True, fell_to=1, unknown=False, peak_positive=nan, peak_negative=0.01)
-        open_ = SimpleNamespace(
-            overturned=False, fell_to=0, unknown=True, known_to=2.0, peak_positive=0.0, peak_negative=0.1
-        )
+        falls = SimpleNamespace(fell=True, fell_to=1, unknown=False, peak_positive=nan, peak_negative=0.01)
+        open_ = SimpleNamespace(fell=False, fell_to=0, unknown=True, known_to=2.0, peak_positive=0.0, peak_negative=0.1)
         curve = SimpleNamespace(displacement_at=lambda phi: 2 * phi, end=1.0, d0=1.5)
         assert dynamic._largest(curve, Direction.POSITIVE, [falls, open_]) == (None, None)
         assert dynamic._largest(curve, Direction.NEGATIVE, [falls, open_]) == (None, 2.0)
@@ -348,9 +346,9 @@ class TestOneOfASurvey:
     MODEL = SimpleNamespace(structure="s", ends_at_limit=(False, False), joints=object())
 
     def under(self, ends=ENDS, model=MODEL):
-        which = {end: np.array([each == end for each in ends]) for end in ("overturned", "unknown")}
+        fell, unknown = (np.array([each == end for each in ends]) for end in ("overturned", "unknown"))
         peaks = np.array([nan if each == "overturned" else 0.9 if each == "unknown" else each for each in ends])
-        runs = SimpleNamespace(**which, failed=np.zeros(len(ends), bool), peak_ratio=peaks)
+        runs = SimpleNamespace(fell=fell, unknown=unknown, failed=np.zeros(len(ends), bool), peak_ratio=peaks)
         return survey_studies._of_one(model, np.ones(len(ends), bool), np.repeat(range(4), 2), runs, self.MOTIONS)
 
     def test_each_motion_counts_once(self):

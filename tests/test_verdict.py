@@ -33,9 +33,7 @@ def peak(ratio, **more):
 
 def fell(direction, at=2.0, **more):
     gone = np.where(RESTED.time < at, RESTED.ratio, np.nan)
-    return replace(
-        RESTED, overturned=True, peak_ratio=np.nan, fell_to=int(direction), overturning_time=at, ratio=gone, **more
-    )
+    return replace(RESTED, peak_ratio=np.nan, fell_to=int(direction), overturning_time=at, ratio=gone, **more)
 
 
 def unknown(after=2.0):

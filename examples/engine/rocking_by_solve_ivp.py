@@ -104,7 +104,6 @@ class BySolveIvp(Engine):
 
         return History(
             model=model,
-            overturned=fell != 0,
             still_rocking=t == last,
             failed=False,
             fell_to=fell,

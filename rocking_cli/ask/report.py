@@ -176,7 +176,7 @@ def _columns(found: Assessment) -> Columns:
     return {
         "motion": [name for name, _ in runs],
         "peak_ratio": [run.peak_ratio for _, run in runs],
-        "overturned": [None if run.unknown else run.overturned for _, run in runs],
+        "overturned": [run.overturned for _, run in runs],
         "unknown": [run.unknown for _, run in runs],
     }
 

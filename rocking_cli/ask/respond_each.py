@@ -48,7 +48,8 @@ def respond_each(
     -------
     MappingAnswer of str to Outcome
         Arrays of shape (structures, motions, scales), by model; `failed` marks motions that could not be simulated, and
-        `unknown` those whose outcome is unknown from `known_to` on.
+        `unknown` those whose outcome is unknown from `known_to` on: their `overturned` is NaN, and `share()` gives the
+        lowest and the highest share of the motions that overturn.
 
     Raises
     ------
@@ -66,9 +67,11 @@ def respond_each(
     --------
     >>> import rocking_cli as rk
     >>> blocks = [rk.Block(width=0.7, height=2.8), rk.Block(width=0.5, height=2.8)]
-    >>> answer = rk.respond_each(blocks, "sine:0.4g:0.8s", models="nonlinear", scales=[0.5, 1.0, 2.0])
-    >>> answer["nonlinear"].overturned.shape
-    (2, 1, 3)
+    >>> answer = rk.respond_each(blocks, "sine:0.4g:0.8s", models="nonlinear", scales=[0.5, 1.0])
+    >>> answer["nonlinear"].overturned.tolist()
+    [[[0.0, 1.0]], [[0.0, 1.0]]]
+    >>> answer["nonlinear"].share()
+    (0.5, 0.5)
     """
     ready = [structure_of(each) for each in each_of(structures)]
     shaking = [motion_of(each) for each in each_of(motions)]
@@ -98,7 +101,6 @@ def respond_each(
             for column in ("overturned", "peak_ratio", "uplift_time", "overturning_time", "impact_count"):
                 table[f"{name} {column}"] = getattr(outcome, column).ravel()
             if outcome.unknown.any():
-                table[f"{name} overturned"] = _known(outcome).ravel()
                 table |= {f"{name} {column}": getattr(outcome, column).ravel() for column in ("unknown", "known_to")}
         return table
 
@@ -106,20 +108,15 @@ def respond_each(
         raise InputError("many responses have no plot of their own: plot a spectrum, a map or a margin")
 
     first = found[chosen[0]]
-    said = f"By the {chosen[0]} model {int(first.overturned.sum())} of {first.overturned.size} motions overturn"
+    said = f"By the {chosen[0]} model {int(first.fell.sum())} of {first.fell.size} motions overturn"
     said += f", and the outcome of {int(first.unknown.sum())} is unknown." if first.unknown.any() else "."
-    data: dict[str, Any] = {name: {column: getattr(each, column) for column in OUTCOME} for name, each in found.items()}
+    data: dict[str, Any] = {}
     for name, each in found.items():
-        if each.unknown.any():
-            data[name]["overturned"] = _with_gaps(each.overturned, each.unknown)
+        data[name] = {"overturned": _with_gaps(each.fell, each.unknown | each.failed)}
+        data[name] |= {column: getattr(each, column) for column in OUTCOME}
         if name == "nonlinear" and np.isnan(each.opening).any():
             data[name]["unknown"] = _with_gaps(each.unknown, np.isnan(each.opening) & ~each.unknown)
     return MappingAnswer("responses", found, View(data, [said]), columns, figure)
-
-
-def _known(outcome: Outcomes) -> NDArray[np.float64]:
-    """Return whether motions overturn a structure, as 1 or 0; NaN if the outcome is unknown."""
-    return np.where(outcome.unknown, np.nan, outcome.overturned)
 
 
 def _with_gaps(values: NDArray[np.bool_], missing: NDArray[np.bool_]) -> Any:

@@ -268,7 +268,7 @@ def _response(content: Assessment, result: MotionResult, k: int, bins: int) -> d
 
 def _peak_time(run: History, film: Film) -> float:
     """Return the time of the peak rotation, or of passing the critical one if the structure overturns [s]."""
-    if run.overturned:
+    if run.fell:
         return min(float(run.time[int(np.searchsorted(run.time, run.overturning_time))]), film.end)
     return float(run.time[int(np.nanargmax(np.abs(run.ratio)))]) if run.peak_ratio else film.start
 

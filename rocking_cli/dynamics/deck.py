@@ -86,7 +86,6 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
     bound = (marks[:, kernels.WARNED_PEAK : kernels.WARNED_PEAK + 2] / phi_cr).max(axis=1)
     uplift = marks[:, kernels.FIRST_UPLIFT]
     return Outcome(
-        overturned=overturned,
         still_rocking=(status == kernels.STILL_ROCKING) & ~unknown,
         failed=failed,
         fell_to=fell_to,

@@ -143,7 +143,6 @@ def solve(sides: tuple[Side, Side], segments: pulse_motion.Rows, polarity: int =
     fell_to = (1, -1)[motion.side] if overturned else 0
     kept = [log[k : k + COLUMNS] for k in range(0, COLUMNS * min(motion.impacts, KEPT), COLUMNS)]
     return ExactResponse(
-        overturned=overturned,
         still_rocking=False,
         failed=False,
         fell_to=fell_to,

@@ -85,7 +85,6 @@ def exact_many(
         for direction, ratio in zip(Direction, ratios, strict=True)
     )
     return Outcome(
-        overturned=overturned,
         still_rocking=np.zeros(n, dtype=bool),
         failed=status == pulse_motion.SPENT,
         fell_to=fell_to,

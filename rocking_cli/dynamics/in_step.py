@@ -69,5 +69,5 @@ def out_of_step(
                 read_marks(each, np.array([of.phi_cr]), np.array([of.reach]))
                 for each, of in ((found, column), (marks[mine], model))
             )
-            differs[mine] |= alone.unknown | (alone.overturned != whole.overturned)
+            differs[mine] |= alone.unknown | (alone.fell != whole.fell)
     return differs

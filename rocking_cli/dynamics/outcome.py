@@ -26,11 +26,12 @@ class Outcome(Generic[Flags, Counts, Numbers]):
 
     Parameters
     ----------
-    overturned, still_rocking, failed : bool
-        How the motion ended, if not at rest: the structure passed its critical rotation for good; it still rocks, and
-        will not overturn; the solver failed, and the other fields have no meaning.
+    still_rocking, failed : bool
+        How the motion ended, if neither at rest nor by overturning: the structure still rocks, and will not overturn;
+        the solver failed, and the other fields have no meaning.
     fell_to : int
-        Sign of the direction in which the structure overturned, 0 if it did not.
+        Sign of the direction in which the structure is known to overturn, which is to pass its critical rotation for
+        good; 0 if it does not, or if that is not known.
     peak_positive, peak_negative : float
         Largest rotation in either direction [rad], >= 0; NaN in the direction of overturning.
     peak_ratio : float
@@ -60,7 +61,6 @@ class Outcome(Generic[Flags, Counts, Numbers]):
         joints are not known, so that nothing was checked.
     """
 
-    overturned: Flags
     still_rocking: Flags
     failed: Flags
     fell_to: Counts
@@ -78,15 +78,51 @@ class Outcome(Generic[Flags, Counts, Numbers]):
     opening: Numbers
 
     @property
+    def fell(self) -> Flags:
+        """Whether the structure is known to overturn; False if it does not, and if that is not known."""
+        return self.fell_to != 0  # type: ignore[return-value]
+
+    @property
+    def overturned(self) -> Numbers | bool | None:
+        """Whether the structure overturns: of one motion True or False, and None if unknown or if the solver failed.
+
+        Of many motions an ndarray of 1.0, 0.0, and NaN if unknown or if the solver failed: its sum and its mean are
+        NaN as soon as one outcome is not known. Use `share` for the share that overturns.
+        """
+        hidden: Any = self.unknown | self.failed  # type: ignore[operator]
+        if not getattr(hidden, "shape", ()):
+            return None if hidden else bool(self.fell)
+        import numpy as np
+
+        return np.where(hidden, np.nan, self.fell)  # type: ignore[call-overload, no-any-return]
+
+    def share(self: Outcomes) -> tuple[float, float]:
+        """Return the lowest and the highest share of many motions that overturn the structure.
+
+        In the lowest no motion of unknown outcome overturns the structure, in the highest all of them do. Motions that
+        could not be simulated are left out. Both are NaN if no motion is left.
+
+        Examples
+        --------
+        >>> import rocking_cli as rk
+        >>> rk.respond_each("examples/block.yaml", "examples/accel.csv", scales=[1, 2, 3, 4])["nonlinear"].share()
+        (0.25, 0.25)
+        """
+        ran = ~self.failed
+        many = int(ran.sum())
+        low, high = (int((of & ran).sum()) for of in (self.fell, self.fell | self.unknown))
+        return (low / many, high / many) if many else (nan, nan)
+
+    @property
     def at_rest(self) -> Flags:
         """Whether the structure came to rest in the end, or never uplifted."""
-        left: Any = self.overturned | self.still_rocking | self.failed | self.unknown  # type: ignore[operator]
+        left: Any = self.fell | self.still_rocking | self.failed | self.unknown  # type: ignore[operator]
         return left ^ True  # type: ignore[no-any-return]
 
     @property
     def lifted(self) -> Flags:
         """Whether the structure moved at all, by uplift or by a release from a tilt."""
-        return (self.uplift_time >= 0) | self.overturned | (self.peak_ratio > 0)  # type: ignore[operator, no-any-return]
+        return (self.uplift_time >= 0) | self.fell | (self.peak_ratio > 0)  # type: ignore[operator, no-any-return]
 
     def by_field(self: Outcomes, change: Callable[..., Any], *others: Outcomes) -> Outcomes:
         """Return an outcome whose fields are `change` of the same field of this outcome and of `others`.
@@ -105,7 +141,7 @@ class Outcome(Generic[Flags, Counts, Numbers]):
         """Outcome of one motion, in the words of `rocking_cli.names`."""
         return names.outcome(
             uplifts=bool(self.lifted),
-            overturned=bool(self.overturned),
+            overturned=bool(self.fell),
             still_rocking=bool(self.still_rocking),
             unknown=bool(self.unknown),
         )

@@ -83,7 +83,7 @@ def _compare(run: History, best: History) -> Agreement:
     peak = delay = apart = None
     if not same:
         found = Grade.DISREGARD
-    elif best.overturned:
+    elif best.fell:
         delay = run.overturning_time - best.overturning_time
         alike = run.fell_to == best.fell_to and abs(delay) * best.p <= ANOTHER
         found = Grade.AGREES if alike else Grade.ESTIMATE
@@ -102,7 +102,7 @@ def _compare(run: History, best: History) -> Agreement:
 
 
 def _fate(run: History) -> str:
-    return names.OVERTURNS if run.overturned else names.ROCKS if run.peak_ratio else names.NO_UPLIFT
+    return names.OVERTURNS if run.fell else names.ROCKS if run.peak_ratio else names.NO_UPLIFT
 
 
 def _peak_time(run: History) -> float:
@@ -120,7 +120,7 @@ def _difference(run: History, best: History) -> float:
 def disagree(histories: Mapping[ModelName, History]) -> bool:
     """Return whether the models that are fit for the structure differ in whether it overturns."""
     fit = [run for run in histories.values() if grade(run.uplift_error) is not Grade.DISREGARD and not run.unknown]
-    return len({run.overturned for run in fit}) > 1
+    return len({run.fell for run in fit}) > 1
 
 
 def verdict(histories: Mapping[ModelName, History], assumed_friction: float | None = None) -> str:
@@ -150,7 +150,7 @@ def verdict(histories: Mapping[ModelName, History], assumed_friction: float | No
         said += bearing(histories, {name: name for name in histories})
     if disagree(histories):
         said.append("Do not trust any of them alone: run weaker and stronger motions as well.")
-    elif not run.overturned and not run.unknown and run.peak_ratio > CLOSE and not any(run.ends_at_limit):
+    elif not run.fell and not run.unknown and run.peak_ratio > CLOSE and not any(run.ends_at_limit):
         said.append("This is close to overturning: run weaker and stronger motions before relying on it.")
     still = [name for name, each in histories.items() if each.still_rocking]
     if still:
@@ -164,7 +164,7 @@ def _ends(run: History) -> str:
     """Return the outcome of the structure in words, which follow "it" or its name."""
     if run.unknown:
         return f"has an {names.UNKNOWN} outcome"
-    if run.overturned:
+    if run.fell:
         return f"{names.OVERTURNS} {SENSE[Direction(run.fell_to)]}"
     if not run.peak_ratio:
         return names.NO_UPLIFT
@@ -218,7 +218,7 @@ def _beside(found: Agreement, run: History, best: History) -> str:
     """Return in words how the motion of a block differs from that of the nonlinear model."""
     if not found.same_fate:
         return f"it {_ends(run)}"
-    if best.overturned:
+    if best.fell:
         way = " too" if run.fell_to == best.fell_to else " the other way"
         return f"it {names.OVERTURNS}{way}, {_later(found.peak_delay or 0.0)}"
     if found.peak_error is None:
@@ -260,21 +260,21 @@ def governs(runs: Mapping[int, Mapping[ModelName, History]]) -> tuple[int | None
     model: ModelName = "nonlinear" if "nonlinear" in runs[1] else next(iter(runs[1]))
     by_model = f"by the {model} model"
     one, other = runs[1][model], runs[-1][model]
-    falls = next((sign for sign, run in ((1, one), (-1, other)) if run.overturned), None)
+    falls = next((sign for sign, run in ((1, one), (-1, other)) if run.fell), None)
     if falls is not None and runs[-falls][model].unknown:
         said = f"with the motion {WAYS[falls]} it overturns, {WAYS[-falls]} its outcome is {names.UNKNOWN}"
         return falls, f"Polarity {falls} governs {by_model}: {said}."
     if one.unknown or other.unknown:
         doubtful = " and ".join(WAYS[sign] for sign, run in ((1, one), (-1, other)) if run.unknown)
         return None, f"Which polarity governs is not known: the outcome under the motion {doubtful} is {names.UNKNOWN}."
-    if one.overturned != other.overturned:
-        worse = 1 if one.overturned else -1
+    if one.fell != other.fell:
+        worse = 1 if one.fell else -1
         said = f"with the motion {WAYS[worse]} it overturns, {WAYS[-worse]} it does not"
         return worse, f"Polarity {worse} governs {by_model}: {said}."
     sizes = {1: _size(one), -1: _size(other)}
     if isclose(sizes[1], sizes[-1], rel_tol=ALIKE):
         return None, f"Neither polarity governs {by_model}: the motion has the same effect as given and reversed."
-    if one.overturned:
+    if one.fell:
         worse = min(sizes, key=sizes.__getitem__)
         said = (
             f"it overturns at {sizes[worse]:.4g} s with the motion {WAYS[worse]}, "
@@ -291,4 +291,4 @@ def governs(runs: Mapping[int, Mapping[ModelName, History]]) -> tuple[int | None
 
 def _size(history: History) -> float:
     """Return the number by which two polarities are compared: the overturning time [s], or else the peak ratio."""
-    return history.overturning_time if history.overturned else history.peak_ratio
+    return history.overturning_time if history.fell else history.peak_ratio

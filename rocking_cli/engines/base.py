@@ -160,8 +160,8 @@ def _fault(found: object, model: ModelName, *, checks_joints: bool) -> str:
         return f"impacts must have the shape (k, 3), got {found.impacts.shape}"
     if not (np.diff(found.time) > 0).all():
         return "the times of its history do not increase"
-    if (found.fell_to != 0) != found.overturned:
-        return f"fell_to of its history is {found.fell_to}, but overturned is {found.overturned}"
+    if found.fell_to not in (-1, 0, 1):
+        return f"fell_to of its history must be 1, -1 or 0, got {found.fell_to}"
     for side, peak in ((1, found.peak_positive), (-1, found.peak_negative)):
         if not peak >= 0 and side != found.fell_to:
             return f"a peak of its history must be at least 0, got {peak:g}"

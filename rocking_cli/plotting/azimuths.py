@@ -40,7 +40,7 @@ def draw_azimuths(found: AzimuthResponses, title: str, over: str) -> Figure:
     angles = np.radians(np.append(found.azimuths, found.azimuths[0]))
     peaks = {name: np.where(each.unknown, np.nan, each.peak_ratio) for name, each in found.outcomes.items()}
     reach = max((float(np.nanmax(each)) for each in peaks.values() if np.isfinite(each).any()), default=0.0)
-    falls = any(each.overturned.any() for each in found.outcomes.values())
+    falls = any(each.fell.any() for each in found.outcomes.values())
     doubtful = any(each.unknown.any() for each in found.outcomes.values())
     marked = falls or doubtful
     outside = max(OUTSIDE, reach * OUTSIDE)
@@ -48,7 +48,7 @@ def draw_azimuths(found: AzimuthResponses, title: str, over: str) -> Figure:
         look: Any = style.LINES[name]
         axes.plot(angles, np.append(peaks[name], peaks[name][0]), label=style.LABELS[name], **look)
         ring = outside * (1 + 0.07 * k)
-        for flags, marker in ((each.overturned, "x"), (each.unknown, "o")):
+        for flags, marker in ((each.fell, "x"), (each.unknown, "o")):
             at = np.radians(found.azimuths[flags])
             axes.plot(
                 at, np.full(at.size, ring), linestyle="none", marker=marker, markersize=5, color=look["color"],

@@ -40,9 +40,9 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
         tau = found.tau[: ratio.size]
         known_to = each.history.known_to
         unknown = f", unknown after {known_to:.3g} s (open circle)" if each.history.unknown else ""
-        fate = ", overturns" if each.history.overturned else unknown
+        fate = ", overturns" if each.history.fell else unknown
         below.plot(tau, ratio, label=style.plain(f"{each.name}{fate}"), markevery=_spaced(tau, k), **style.distinct(k))
-        if each.history.overturned and ratio.size:
+        if each.history.fell and ratio.size:
             below.plot(tau[-1], ratio[-1], marker="x", markersize=7, color=style.distinct(k)["color"])
         if unknown and ratio.size:
             colour = style.distinct(k)["color"]
@@ -78,7 +78,7 @@ def _draw_linear(axes: Any, found: EquivalentResponses) -> None:
     ratio = ratio[np.isfinite(ratio)]
     beyond = np.flatnonzero(np.abs(ratio) > FALLING)
     ratio = ratio[: beyond[0]] if beyond.size else ratio
-    fate = ", overturns" if found.alone.overturned else ""
+    fate = ", overturns" if found.alone.fell else ""
     axes.plot(
         found.tau[: ratio.size], ratio, color=style.FAINT, linewidth=3.5, alpha=0.6, zorder=1,
         label=f"linear block of all{fate}",

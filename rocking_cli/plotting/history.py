@@ -88,7 +88,7 @@ def draw_history(
     panels = list(figure.subplots(len(ratios), 1, sharex=True, squeeze=False, height_ratios=ratios)[:, 0])
     style.heading(panels[0], title)
     runs = [run for each in responses.values() for run in each.values()]
-    end = max(SHORTEST, *(1.1 * run.end_time if run.overturned else float(run.time[-1]) for run in runs))
+    end = max(SHORTEST, *(1.1 * run.end_time if run.fell else float(run.time[-1]) for run in runs))
     if motion is not None:
         _draw_motion(panels[0], motion, end, pulse[0] if pulse is not None else None)
         if uplift is not None and motion.vertical is None and not any(run.lifted for run in runs):
@@ -249,7 +249,7 @@ def _draw_forces(axes: Axes, histories: Mapping[ModelName, History], watched: Wa
 
 def _draw_run(axes: Axes, name: str, run: History, height: float, until: float) -> None:
     look = style.LINES[name]
-    falls = run.overturned and run.overturning_time <= until
+    falls = run.fell and run.overturning_time <= until
     fate = f", {names.OVERTURNS}" if falls else f", {names.UNKNOWN} after {run.known_to:.4g} s" if run.unknown else ""
     followed = run.ratio[np.isfinite(run.ratio) & (run.time <= until)]  # all, or all before overturning
     if falls:

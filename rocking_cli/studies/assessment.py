@@ -171,7 +171,7 @@ class MotionResult:
             return True
         near = (self.margin.factors > 1 / NEAR) & (self.margin.factors < NEAR)
         falls, may_fall = self.margin.overturned[near], self.margin.at_most[near]
-        return bool((falls < LEVELS[-1]).any() if best.overturned else (may_fall >= LEVELS[0]).any())
+        return bool((falls < LEVELS[-1]).any() if best.fell else (may_fall >= LEVELS[0]).any())
 
     @property
     def unknown(self) -> bool:
@@ -407,7 +407,7 @@ def _alone(structure: Structure, fit: PulseFit, polarities: Sequence[int]) -> tu
     if structure.why_no_block or structure.refuses("sizes"):  # nothing measures a pulse here
         alone, engine = fit.pulse.sampled(), engine_of(structure)
         runs = [engine.follow(structure, alone.scaled(polarity * fit.sign)) for polarity in polarities]
-        if any(run.overturned for run in runs):
+        if any(run.fell for run in runs):
             return nan, False
         return max(run.peak_ratio for run in runs), any(run.unknown for run in runs)
     shape = _shape(fit.pulse)

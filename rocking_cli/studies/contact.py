@@ -381,7 +381,7 @@ class _States(NamedTuple):
 
 def _samples(mechanism: Mechanism, history: History, motion: GroundMotion | None) -> _States:
     """Return the samples of a history until it overturns."""
-    end = history.overturning_time if history.overturned else np.inf
+    end = history.overturning_time if history.fell else np.inf
     kept = np.isfinite(history.phi) & (history.time <= end)
     time, phi, rate = history.time[kept], history.phi[kept], history.rate[kept]
     sign = np.where(phi != 0, np.sign(phi), np.sign(rate))
@@ -393,7 +393,7 @@ def _samples(mechanism: Mechanism, history: History, motion: GroundMotion | None
 
 def _states(mechanism: Mechanism, history: History, motion: GroundMotion | None) -> _States:
     """Return the samples of a history until it overturns, its first uplift, and both sides of its impacts."""
-    end = history.overturning_time if history.overturned else np.inf
+    end = history.overturning_time if history.fell else np.inf
     samples = _samples(mechanism, history, motion)
     impact = history.impacts[history.impacts[:, 0] <= end]
     after = -impact[:, 1] if mechanism.rocks_both_ways else impact[:, 1]

@@ -261,11 +261,11 @@ def judge(found: EquivalentResponses) -> list[str]:
             return [*said, "Whether the structures are equivalently vulnerable to these pulses is not known."]
         return [*said, f"What follows is about the other {len(known)}.", *judge(replace(found, members=known))]
     said = []
-    fallen = [each for each in found.members if each.history.overturned]
-    peaks = {each.name: each.history.peak_ratio for each in found.members if not each.history.overturned}
+    fallen = [each for each in found.members if each.history.fell]
+    peaks = {each.name: each.history.peak_ratio for each in found.members if not each.history.fell}
     linear = (
         names.OVERTURNS
-        if found.alone.overturned
+        if found.alone.fell
         else f"{names.ROCKS} to {found.alone.peak_ratio:.4g} of phi_cr"
         if found.alone.peak_ratio
         else names.NO_UPLIFT
@@ -287,7 +287,7 @@ def judge(found: EquivalentResponses) -> list[str]:
             f"{part}."
         )
         if isnan(found.relative_spread):
-            what = f"{names.OVERTURNS} and none of the structures does" if found.alone.overturned else (
+            what = f"{names.OVERTURNS} and none of the structures does" if found.alone.fell else (
                 f"{names.NO_UPLIFT} and a structure does"
             )  # fmt: skip
             said.append(f"The linear block {what}: here the equivalence breaks.")

@@ -52,7 +52,7 @@ class Film:
     def end(self) -> float:
         """Time at which the animation ends [s]."""
         last = float(self.history.time[self._moving - 1])
-        if self.history.overturned or self.history.unknown or isnan(self.history.uplift_time):
+        if self.history.fell or self.history.unknown or isnan(self.history.uplift_time):
             return last
         return min(last, self.history.end_time + AFTER)
 

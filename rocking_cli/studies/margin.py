@@ -152,9 +152,7 @@ def margin(
         outcomes = follow(
             model, motion, repeated, scale=some.repeat(around.count), polarity=sign, threads=threads, progress=progress
         )
-        fell, doubtful = (
-            of.reshape(some.size, around.count).mean(axis=1) for of in (outcomes.overturned, outcomes.unknown)
-        )
+        fell, doubtful = (of.reshape(some.size, around.count).mean(axis=1) for of in (outcomes.fell, outcomes.unknown))
         overturned[left] = np.maximum(overturned[left], fell)
         at_most[left] = np.maximum(at_most[left], fell + doubtful)
     at_most = np.maximum(at_most, overturned)

@@ -103,7 +103,7 @@ class Watched:
             direction: history.peak_positive if direction > 0 else history.peak_negative
             for direction in self.mechanism.directions
         }
-        if history.overturned or any(not phi < self._limits[side] for side, phi in reached.items()):
+        if history.fell or any(not phi < self._limits[side] for side, phi in reached.items()):
             before = {direction: self._before(history, direction) for direction in self.mechanism.directions}
             return Movements(
                 [PointPeak(name, spot.at, nan, nan) for name, spot in self.points.items()],
@@ -142,7 +142,7 @@ class Watched:
 
     def _before(self, history: History, direction: Direction) -> float:
         """Return the largest sampled rotation of a history in a direction before it overturns [rad]."""
-        end = history.overturning_time if history.overturned else np.inf
+        end = history.overturning_time if history.fell else np.inf
         turned = direction * history.phi[np.isfinite(history.phi) & (history.time <= end)]
         return float(np.clip(turned, 0.0, np.nextafter(self._limits[direction], 0.0)).max(initial=0.0))
 

@@ -262,14 +262,14 @@ def neighbours(
     if release is not None:
         tilts = release / np.where(all_draws.slender > 0, all_draws.slender, 1.0) if release_is_angle else release
     found = follow(model, motion, all_draws, release=tilts, rtol=rtol, threads=threads)
-    outcome = np.where(found.unknown, 2, found.overturned)
+    outcome = np.where(found.unknown, 2, found.fell)
     peaks = np.where(outcome[1:] > 0, np.inf, found.peak_ratio[1:])
     # A value that was reached, never one between two: half of infinity is no rotation.
     low, middle, high = (float(peak) for peak in np.quantile(peaks, FRACTILES, method="inverted_cdf"))
     return Neighbours(
         around,
         model.name,
-        float(found.overturned[1:].mean()),
+        float(found.fell[1:].mean()),
         (low, middle, high),
         float((outcome[1:] == outcome[0]).mean()),
         over=peaks_over(model.ends_at_limit),
@@ -288,9 +288,9 @@ class Severity(NamedTuple):
 
 def severity(history: History, near: Neighbours | None = None) -> Severity:
     """Return the severity of a motion, for comparison with other motions."""
-    itself = np.inf if history.overturned or history.unknown else history.peak_ratio
+    itself = np.inf if history.fell or history.unknown else history.peak_ratio
     if near is None:
-        return Severity(0.0, 0.0, itself, float(history.overturned))
+        return Severity(0.0, 0.0, itself, float(history.fell))
     return Severity(near.at_most, near.peak_ratio[1], itself, near.overturned)
 
 
@@ -376,7 +376,7 @@ def follow(
         return found
     return replace(
         found,
-        overturned=found.overturned | ~stands,
+        fell_to=np.where(stands | found.fell, found.fell_to, 1),  # which direction is not used of neighbours
         unknown=found.unknown & stands,
         peak_ratio=np.where(stands, found.peak_ratio, np.nan),
     )

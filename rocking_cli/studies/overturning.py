@@ -96,7 +96,7 @@ class OverturningMap:
         """The `Region` of each point, as integers, shape (m, n)."""
         stays = np.where(self.outcome.peak_ratio > 0, Region.ROCKS, Region.NO_UPLIFT)
         falls = np.where(self.outcome.impact_count == 0, Region.WITHOUT_IMPACT, Region.AFTER_IMPACT)
-        return np.where(self.outcome.overturned, falls, np.where(self.outcome.unknown, Region.UNKNOWN, stays))
+        return np.where(self.outcome.fell, falls, np.where(self.outcome.unknown, Region.UNKNOWN, stays))
 
     @property
     def shares(self) -> dict[Region, float]:
@@ -112,7 +112,7 @@ class OverturningMap:
     @property
     def safe_again(self) -> Reals:
         """The largest a that is known not to overturn above one that does, for each column; NaN if there is none."""
-        falls = self.outcome.overturned
+        falls = self.outcome.fell
         above = np.maximum.accumulate(falls, axis=0) & ~falls & ~self.outcome.unknown
         last = len(self.a) - 1 - above[::-1].argmax(axis=0)
         return np.where(above.any(axis=0), self.a[last], np.nan)
@@ -311,11 +311,11 @@ def _least(
 
 
 def _overturns(found: Outcomes) -> NDArray[np.bool_]:
-    return found.overturned
+    return found.fell
 
 
 def _may_overturn(found: Outcomes) -> NDArray[np.bool_]:
-    return found.overturned | found.unknown
+    return found.fell | found.unknown
 
 
 @dataclass(frozen=True, eq=False)

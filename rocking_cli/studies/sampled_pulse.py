@@ -73,6 +73,6 @@ def sampled_history(structure: Structure, model: ModelName, pulse: Pulse, polari
 def _alike(one: History, other: History) -> bool:
     if one.unknown or other.unknown:
         return one.unknown and other.unknown
-    if one.overturned or other.overturned:
+    if one.fell or other.fell:
         return (one.fell_to, one.impact_count) == (other.fell_to, other.impact_count)
     return abs(one.peak_ratio - other.peak_ratio) <= WITHIN * other.peak_ratio

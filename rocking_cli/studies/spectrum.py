@@ -305,11 +305,11 @@ def spectra(
 
 def _worst(found: Outcomes) -> tuple[Reals, Reals]:
     """Return the peak ratios by the worse polarity, those of axis 1, and their lower bounds where they are unknown."""
-    peak = np.where(found.overturned, inf, np.where(found.unknown, 0.0, found.peak_ratio))
+    peak = np.where(found.fell, inf, np.where(found.unknown, 0.0, found.peak_ratio))
     peak = np.where(found.failed, nan, peak).max(axis=1)
     unknown = found.unknown.any(axis=1) & np.isfinite(peak)
     least = np.where(found.unknown, found.lower_bound, found.peak_ratio)
-    bound = np.max(least, axis=1, initial=0.0, where=~(found.overturned | found.failed))
+    bound = np.max(least, axis=1, initial=0.0, where=~(found.fell | found.failed))
     return np.where(unknown, inf, peak), np.where(unknown, bound, nan)
 
 

@@ -374,7 +374,7 @@ def _of_one(
     if (outcomes.failed & own).any():
         name = motions[int(record[int((outcomes.failed & own).argmax())])].name
         return SolverError(f"{model.structure}: its motion under {name} could not be simulated")
-    fell = np.unique(record[own & outcomes.overturned])
+    fell = np.unique(record[own & outcomes.fell])
     doubtful = np.setdiff1d(record[own & outcomes.unknown], fell)
     stays = own & ~np.isin(record, fell) & ~np.isin(record, doubtful)
     peaks = np.where(stays, outcomes.peak_ratio, -1.0)

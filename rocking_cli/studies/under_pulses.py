@@ -266,7 +266,7 @@ def _check(structure: PulsedModel, failed: NDArray[np.bool_], periods: Reals, am
 def _badness(each: Outcomes) -> Reals:
     """Return a number that increases from small peaks to unknown outcomes to overturning without impact."""
     stands = np.where(each.unknown, 1e6 + np.nan_to_num(each.lower_bound), np.nan_to_num(each.peak_ratio))
-    return np.where(each.overturned, 1e9 - each.impact_count, stands)
+    return np.where(each.fell, 1e9 - each.impact_count, stands)
 
 
 def _known_peak(each: Outcomes) -> Reals:

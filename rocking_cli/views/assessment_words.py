@@ -149,7 +149,7 @@ def overview(content: Assessment) -> list[list[str]]:
     rows = []
     for each in content.results:
         near, run = each.neighbours[each.polarity], each.histories["nonlinear"]
-        itself = run.words if run.overturned or run.unknown else f"{run.peak_ratio:.3g}"
+        itself = run.words if run.fell or run.unknown else f"{run.peak_ratio:.3g}"
         share, unknown, median = neighbours_cells(near)
         shares = [share, unknown] if _neighbours_unknown(content) else [share]
         rows.append([each.given.motion.name, f"{each.pga_of_ground:.3g}", itself, *shares, median])
@@ -230,7 +230,7 @@ def doubts(content: Assessment) -> list[str]:
 
 def _verdict(content: Assessment, result: MotionResult) -> MotionAnswers:
     best = result.histories["nonlinear"]
-    headline = best.words if best.overturned or best.unknown else names.ROCKS if best.peak_ratio else names.NO_UPLIFT
+    headline = best.words if best.fell or best.unknown else names.ROCKS if best.peak_ratio else names.NO_UPLIFT
     return MotionAnswers(
         result.given.motion.name,
         f"{headline}{' (close)' if result.close else ''}",
@@ -285,7 +285,7 @@ def _overturning(result: MotionResult) -> str:
 def _fate(run: History, *, capital: bool = False) -> str:
     if run.unknown:
         said = f"unknown beyond {run.known_to:.4g} s, when {why_unknown(run)}"
-    elif run.overturned:
+    elif run.fell:
         said = f"yes, it overturns, {SENSE[Direction(run.fell_to)]} at {run.overturning_time:.2f} s"
     elif run.lifted:
         said = f"no, it rocks to {_share(run.peak_ratio)} the {run.reference}"
@@ -358,7 +358,7 @@ def _trusted(content: Assessment, result: MotionResult) -> str:
     grades = {each.grade for each in agreements(runs).values()}
     if disagree(runs):
         first = "No single one: the models disagree on whether it overturns."
-    elif len({run.overturned for run in runs.values()}) == 1 and best.overturned:
+    elif len({run.fell for run in runs.values()}) == 1 and best.fell:
         first = "By all three models, it overturns."
     elif grades == {Grade.AGREES}:
         lifted = "the three models agree closely" if best.peak_ratio else f"by all three models it {names.NO_UPLIFT}"
@@ -404,12 +404,12 @@ def _doubts(result: MotionResult) -> list[str]:
 
 
 def _overturns(result: MotionResult) -> bool:
-    return result.histories["nonlinear"].overturned
+    return result.histories["nonlinear"].fell
 
 
 def _worst_ratio(result: MotionResult) -> float:
     best = result.histories["nonlinear"]
-    return 0.0 if best.overturned or best.unknown else best.peak_ratio
+    return 0.0 if best.fell or best.unknown else best.peak_ratio
 
 
 def alone(result: MotionResult) -> str:

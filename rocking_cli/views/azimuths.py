@@ -44,7 +44,7 @@ def view(structure: Structure, found: AzimuthResponses, doubts: Iterable[str] = 
 
 def in_words(found: AzimuthResponses, outcomes: Outcomes) -> str:
     """Return in a sentence or two the directions in which the structure overturns or has an unknown outcome."""
-    falls, unknown = outcomes.overturned, outcomes.unknown
+    falls, unknown = outcomes.fell, outcomes.unknown
     if not unknown.any():
         return f"it overturns in {_where(found, falls)}."
     doubt = f"its outcome is {names.UNKNOWN} in {_where(found, unknown)}, as joints open or slide there"
@@ -65,18 +65,18 @@ def columns(found: AzimuthResponses) -> Columns:
     """Return a table with a row for each direction. Overturning has no peak; an unknown outcome has its peak so far."""
     table: dict[str, Any] = {"azimuth [deg]": found.azimuths, "PGA [g]": found.pga}
     for name, each in found.outcomes.items():
-        table |= {f"peak phi/phi_cr {name}": each.peak_ratio, f"overturns {name}": each.overturned.astype(int)}
+        table |= {f"peak phi/phi_cr {name}": each.peak_ratio, f"overturns {name}": each.fell.astype(int)}
         if each.unknown.any():
-            table[f"overturns {name}"] = np.where(each.unknown, np.nan, each.overturned)
+            table[f"overturns {name}"] = each.overturned
             table |= {f"unknown {name}": each.unknown.astype(int), f"known to {name} [s]": each.known_to}
     return table
 
 
 def _cells(found: AzimuthResponses, each: Outcomes, *, unknown: bool) -> list[str]:
-    standing = np.where(each.overturned | each.unknown, -1.0, each.peak_ratio)
+    standing = np.where(each.fell | each.unknown, -1.0, each.peak_ratio)
     k = int(standing.argmax())
     peak = [f"{standing[k]:.4g}", f"{found.azimuths[k]:g}"] if standing[k] > 0 else [ABSENT, ABSENT]
-    flags = [each.overturned, *([each.unknown] if unknown else []), ~each.lifted]
+    flags = [each.fell, *([each.unknown] if unknown else []), ~each.lifted]
     return [*(percent(float(flag.mean())) for flag in flags), *peak]
 
 
@@ -93,13 +93,13 @@ def _data(structure: Structure, found: AzimuthResponses) -> dict[str, Any]:
                 "peak_ratio": [None if np.isnan(peak) else peak for peak in each.peak_ratio.tolist()],
                 "overturned": [
                     None if unknown else fell
-                    for unknown, fell in zip(each.unknown.tolist(), each.overturned.tolist(), strict=True)
+                    for unknown, fell in zip(each.unknown.tolist(), each.fell.tolist(), strict=True)
                 ],
                 "unknown": each.unknown.tolist() if found.checked or name != "nonlinear" else None,
                 "known_to": each.known_to.tolist(),
                 "peak_lower_bound": np.where(each.unknown, each.lower_bound, np.nan).tolist(),
                 "uplifts": each.lifted.tolist(),
-                "sectors_that_overturn": [list(pair) for pair in sectors(found.azimuths, each.overturned)],
+                "sectors_that_overturn": [list(pair) for pair in sectors(found.azimuths, each.fell)],
                 "sectors_unknown": [list(pair) for pair in sectors(found.azimuths, each.unknown)],
                 "said": in_words(found, each),
             }

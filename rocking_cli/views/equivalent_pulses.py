@@ -32,7 +32,7 @@ COLUMNS: tuple[Column[PulsedStructure], ...] = (
     Column("own_eta", of("own_eta")),
     Column("peak_ratio", of("history.peak_ratio")),
     Column("", of("history"), head="peak / phi_cr", form=_peak),
-    Column("overturned", lambda each: None if each.history.unknown else each.history.overturned),
+    Column("overturned", of("history.overturned")),
 )
 
 

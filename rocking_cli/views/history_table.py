@@ -87,7 +87,7 @@ def _at(time: Reals, motion: GroundMotion) -> Reals:
 
 def _after(run: History) -> float:
     """Return the value that follows the end of a history: 0 if it has come to rest, otherwise NaN."""
-    return np.nan if run.overturned or run.unknown else 0.0
+    return np.nan if run.fell or run.unknown else 0.0
 
 
 def _padded(values: Reals, part: slice, after: float) -> Reals:

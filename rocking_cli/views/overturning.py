@@ -102,7 +102,7 @@ def map_table(found: OverturningMap, mechanism: Mechanism | None) -> dict[str, S
             "acceleration [g]": found.accelerations[row].tolist(),
         }
     outcome = found.outcome
-    before = zip(outcome.overturned.ravel().tolist(), outcome.impact_count.ravel().tolist(), strict=True)
+    before = zip(outcome.fell.ravel().tolist(), outcome.impact_count.ravel().tolist(), strict=True)
     result |= {
         "outcome": [Region(region).label for region in found.regions.ravel().tolist()],
         "peak phi/phi_cr": np.where(outcome.unknown, np.nan, outcome.peak_ratio).ravel().tolist(),

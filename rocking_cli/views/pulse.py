@@ -52,7 +52,7 @@ def closed_data(closed: ClosedForm, exact: ExactResponse) -> dict[str, Any]:
 
 def how_far_off(closed: ClosedForm, exact: ExactResponse) -> str:
     """Compare Eq. 41 with the exact solution, as the end of a sentence; empty if they agree."""
-    printed, overturns, peak = closed.printed_ratio, exact.overturned, exact.peak_ratio
+    printed, overturns, peak = closed.printed_ratio, exact.fell, exact.peak_ratio
     if closed.valid and closed.overturns != overturns:
         return f"; by Eq. 41 it {_fate(closed.overturns)}, but by the exact solution it {_fate(overturns)}"
     if overturns:
@@ -90,7 +90,7 @@ def exact_data(exact: ExactResponse) -> dict[str, Any]:
         "max_ratio": exact.peak_ratio,
         "first_excursion": exact.first_excursion,
         "first_rebound": exact.first_rebound,
-        "overturns": exact.overturned,
+        "overturns": exact.fell,
         "impacts_before_overturning": impacts_before(exact),
         "first_impact": exact.first_impact - exact.uplift_time,
         "impact_during_pulse": exact.first_impact < exact.pulse_end,
@@ -104,7 +104,7 @@ def _exact_rows(exact: ExactResponse) -> list[list[str]]:
         ["exact max ratio", number(exact.peak_ratio), "largest rotation over phi_cr"],
         ["  first excursion", number(exact.first_excursion), "peak before the first impact"],
         ["  first rebound", number(exact.first_rebound), "peak after the first impact"],
-        ["  overturns", YES_NO[exact.overturned], after_impacts(exact)],
+        ["  overturns", YES_NO[exact.fell], after_impacts(exact)],
         ["  uplift", number(exact.uplift_time), "tau = p t from the start of the pulse"],
         ["  end of pulse", number(exact.pulse_end - exact.uplift_time), "tau from uplift"],
         ["  first impact", number(exact.first_impact - exact.uplift_time), "tau from uplift"],
@@ -113,7 +113,7 @@ def _exact_rows(exact: ExactResponse) -> list[list[str]]:
 
 def impacts_before(outcome: OneOutcome) -> int | None:
     """Return the number of impacts before the block overturns; None if it does not."""
-    return outcome.impact_count if outcome.overturned else None
+    return outcome.impact_count if outcome.fell else None
 
 
 def after_impacts(outcome: OneOutcome) -> str:
@@ -129,7 +129,7 @@ def _verdict(a: float, closed: ClosedForm | None, exact: ExactResponse) -> str:
         return f"The linear block {names.NO_UPLIFT}: a <= 1."
     fate = (
         f"{names.OVERTURNS} {after_impacts(exact)}"
-        if exact.overturned
+        if exact.fell
         else f"{names.ROCKS} to {exact.peak_ratio:.4g} of its critical rotation"
     )
     if closed is None:

@@ -88,8 +88,8 @@ def _data(answer: Answer, answers: Mapping[str, Answer]) -> dict[str, Any]:
     found = outcome(answer)
     return {
         "exact": isinstance(answer, ExactResponse),
-        "overturned": None if found.unknown else found.overturned,
-        "overturning_direction": Direction(found.fell_to).label if found.overturned else None,
+        "overturned": found.overturned,
+        "overturning_direction": Direction(found.fell_to).label if found.fell else None,
         "overturning_time": found.overturning_time,
         "impacts_before_overturning": impacts_before(found),
         "peak_positive": found.peak_positive,
@@ -138,8 +138,8 @@ def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
 
 def _ends(found: OneOutcome) -> str:
     """Return the outcome in words; a motion that is still rocking counts as rocking."""
-    said = names.outcome(uplifts=found.lifted, overturned=found.overturned, unknown=found.unknown)
-    return f"{said}\n{after_impacts(found)}" if found.overturned else said
+    said = names.outcome(uplifts=found.lifted, overturned=found.fell, unknown=found.unknown)
+    return f"{said}\n{after_impacts(found)}" if found.fell else said
 
 
 def _verdict(answers: Mapping[str, Answer], mechanism: Mechanism) -> str:
@@ -153,7 +153,7 @@ def _verdict(answers: Mapping[str, Answer], mechanism: Mechanism) -> str:
         return f"The structure has an {names.UNKNOWN} outcome. {joints} {NO_JOINTS}"
     if not nonlinear.lifted:
         return f"The structure {names.NO_UPLIFT}."
-    if nonlinear.overturned:
+    if nonlinear.fell:
         sense = SENSE[Direction(nonlinear.fell_to)]
         said = f"The structure {names.OVERTURNS} {sense}, {after_impacts(nonlinear)}."
     else:
@@ -164,8 +164,8 @@ def _verdict(answers: Mapping[str, Answer], mechanism: Mechanism) -> str:
         if over >= 0:
             off = over - 1
             said += f" By {name} its peak is {percent(abs(off))} {'higher' if off > 0 else 'lower'}."
-        elif linear.overturned != nonlinear.overturned:
-            said += f" By {name} it {names.outcome(uplifts=linear.lifted, overturned=linear.overturned)}."
+        elif linear.fell != nonlinear.fell:
+            said += f" By {name} it {names.outcome(uplifts=linear.lifted, overturned=linear.fell)}."
     return said
 
 

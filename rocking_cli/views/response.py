@@ -192,7 +192,7 @@ def ending(outcome: OneOutcome) -> str:
     """Return the keyword for how a motion ended, for JSON."""
     if outcome.unknown:
         return names.UNKNOWN
-    return "overturned" if outcome.overturned else "still_rocking" if outcome.still_rocking else "at_rest"
+    return "overturned" if outcome.fell else "still_rocking" if outcome.still_rocking else "at_rest"
 
 
 def known_data(outcome: OneOutcome) -> dict[str, Any]:
@@ -220,9 +220,9 @@ def _history_data(history: History, shown: HistoryDetails) -> dict[str, Any]:
         "peak_positive": history.peak_positive,
         "peak_negative": history.peak_negative,
         "peak_ratio": history.peak_ratio,
-        "overturned": None if history.unknown else history.overturned,
+        "overturned": history.overturned,
         "overturning_time": history.overturning_time,
-        "overturning_direction": Direction(history.fell_to).label if history.overturned else None,
+        "overturning_direction": Direction(history.fell_to).label if history.fell else None,
         "uplift_time": history.uplift_time,
         "impacts": history.impact_count,
         "outcome": ending(history),
@@ -419,7 +419,7 @@ def share_of_pulse(histories: Histories, to_pulse: Histories, called: str) -> st
         return (
             f"By the {model} model, how much the {called} causes is not known: the outcome under the {what} is unknown."
         )
-    if whole.overturned or alone.overturned or (whole.peak_ratio and not alone.peak_ratio):
+    if whole.fell or alone.fell or (whole.peak_ratio and not alone.peak_ratio):
         return f"By the {model} model, it {whole.words} under the record; under the {called} alone it {alone.words}."
     if not whole.peak_ratio:
         return f"By the {model} model, it {whole.words} under the record."

@@ -74,7 +74,7 @@ class Several:
             self._row(f"  its {own.name} pulse alone", f"{own.amplitude / STANDARD_GRAVITY:.4g}", found.to_pulse, None)
         self._worst[found.given.motion.name] = max(severities)
         runs = [histories[self._best] for histories in found.runs.values()]
-        fallen = any(run.overturned for run in runs)
+        fallen = any(run.fell for run in runs)
         self._fallen += fallen
         self._unknown += not fallen and any(run.unknown for run in runs)
 
@@ -145,6 +145,6 @@ def _fate(history: History) -> str:
     """Return a table cell: the peak, or that the structure overturns, does not uplift, or is of unknown outcome."""
     if history.unknown:
         return names.UNKNOWN
-    if history.overturned:
+    if history.fell:
         return "overturns"
     return f"{history.peak_ratio:.4g}" if history.lifted else "no uplift"

@@ -123,7 +123,7 @@ def _largest(
 
     There is no d if a history overturned in this direction, or has an unknown outcome.
     """
-    if any(history.overturned and history.fell_to == direction for history in histories):
+    if any(history.fell and history.fell_to == direction for history in histories):
         return None, None
     unknown = [history.known_to for history in histories if history.unknown]
     if unknown:

@@ -225,7 +225,7 @@ def state(test: ObservedTest, structure: Structure, motion: GroundMotion, around
         rank = float(((peaks < test.peak).sum() + 0.5 * (peaks == test.peak).sum()) / peaks.size)
     return Stated(
         test,
-        sum(int(each.overturned.sum()) for each in found),
+        sum(int(each.fell.sum()) for each in found),
         sum(int(each.unknown.sum()) for each in found),
         len(signs) * around.count,
         float(shaking.pga_g > min(structure.uplift)),
@@ -243,7 +243,7 @@ def in_time(motion: GroundMotion, factor: float) -> GroundMotion:
 def _peaks(found: Outcomes) -> Reals:
     """Return the peak rotation of each neighbour [rad]; infinite if it overturns or its outcome is unknown."""
     peaks = np.fmax(found.peak_positive, found.peak_negative)
-    return np.where(found.overturned | found.unknown, inf, peaks)
+    return np.where(found.fell | found.unknown, inf, peaks)
 
 
 def _by_velocity(test: ObservedTest, structure: Structure, motion: GroundMotion) -> float:

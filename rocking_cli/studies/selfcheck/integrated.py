@@ -30,7 +30,7 @@ def deviation(quick: bool) -> float:
 def _deviation(block: FreeBlock, motion: GroundMotion, name: ModelName) -> float:
     history = follow(block.structure().model(name), motion)
     found = [history.uplift_time, *history.impacts[:IMPACTS, 0]]
-    if history.overturned:
+    if history.fell:
         found.append(history.overturning_time)
     return largest_difference(found, event_times(block, motion, linear=name != "nonlinear"))
 

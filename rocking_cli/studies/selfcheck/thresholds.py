@@ -39,7 +39,7 @@ def _deviation(eta: float, omegas: tuple[float, ...]) -> float:
 
     def computed(a: Reals) -> NDArray[np.bool_]:
         found = exact_many(equivalence, Sine(1.0, 1.0), a * unit, periods, kappa=2, gravity=STANDARD_GRAVITY, threads=1)
-        return found.overturned
+        return found.fell
 
     def in_closed_form(a: Reals) -> NDArray[np.bool_]:
         return np.array([_overturns(*each, eta) is True for each in zip(a, omega, strict=True)])
