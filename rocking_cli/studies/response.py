@@ -53,7 +53,7 @@ def concluded(runs: Runs, near: Mapping[int, Neighbours], motion: str = "") -> C
 def _of_run(run: History, near: Neighbours | None, motion: str, sign: int) -> Conclusion:
     if run.unknown:
         what = Concluded.UNKNOWN
-    elif run.overturned:
+    elif run.fell:
         what = Concluded.OVERTURNS
     else:
         what = Concluded.ROCKS if run.lifted else Concluded.NO_UPLIFT

@@ -20,7 +20,7 @@ from rocking_cli.dynamics.processes import in_processes
 from rocking_cli.errors import InputError, Problem, RockingError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conclusion import Conclusion
+from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.studies.verification.check import of_each, verify
 from rocking_cli.studies.verification.site_file import SiteFile
 
@@ -67,6 +67,15 @@ class Under:
     worst: str
     over: str = "phi_cr"
     unknown: float | None = 0.0
+
+    @property
+    def concluded(self) -> Concluded:
+        """What is concluded over all motions: the worst of them."""
+        if self.overturned:
+            return Concluded.OVERTURNS
+        if self.unknown:
+            return Concluded.UNKNOWN
+        return Concluded.ROCKS if self.peak_ratio else Concluded.NO_UPLIFT
 
     @property
     def at_most(self) -> float:

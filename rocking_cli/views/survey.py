@@ -66,6 +66,7 @@ UNDER_MOTIONS: tuple[Column[RankedStructure], ...] = (
     Column("unknown", of("found.under.unknown"), head="unknown", form=percent),
     Column("peak_ratio", of("found.under.peak_ratio"), head="largest\npeak", form=_peak),
     Column("peak_over", of("found.under.over"), text=True),
+    Column("outcome", of("found.under.concluded.value"), text=True),
     Column("worst", of("found.under.worst"), text=True),
 )
 PARAMETERS: tuple[Column[RankedStructure], ...] = (
