@@ -43,7 +43,7 @@ class Screens:
 
     def __init__(self, patch):
         self.out, self.err = ({width: StringIO() for width in (0, *WIDTHS)} for _ in range(2))
-        self.inside = False
+        self.inside, self.files = False, []
         for name in ("show", "sentence", "_say"):
             patch.setattr(terminal, name, self.everywhere(getattr(terminal, name)))
 
@@ -115,6 +115,7 @@ def walked(line, **files):
         ElementTree.parse(picture)
     for file in made:
         text = file.read_text(encoding="utf-8") if file.suffix in (".csv", ".html", ".json") else ""
+        screens.files.append(text)
         assert not HARMFUL.search(text)
         assert "<b>" not in text or file.suffix == ".csv"
     return done, screens
@@ -210,6 +211,8 @@ WITHOUT = {
     "calibrate", "draw", "equiv", "collapse", "error", "record", "select", "figure", "mechanisms", "measures", "new",
     "info", "selfcheck", "warm", "completion",
 }  # fmt: skip
+BARE = re.compile(r"\bkN\b|\[N\]|\bN m\b|\d N[ ,.;<]")
+"""A force that is not per unit mass."""
 LINEAR = {"linear1", "linear2", "closed_form"}  # equivalent blocks have no joints: their outcomes are their own
 KNOWN = {"at_rest", "rocks", "still_rocking", "does not uplift", "overturned"}
 PASSED = re.compile(
@@ -254,6 +257,8 @@ def test_an_unknown_outcome_is_no_pass_and_names_harm_nothing(line, monkeypatch)
     done, screens = walked(line if line in AS_TEXT else f"{line} --json", A=A, R=R, N="n.yaml")
     assert done.exit_code == 0, done.stderr
     found = json.loads(done.stdout.splitlines()[0]) if line not in AS_TEXT else None
+    for text in (screens.text(), *screens.files):  # the arch has no masses
+        assert not BARE.search(text), BARE.search(text)
     if line in HISTORIES:
         assert HISTORIES[line](found)
         assert not list(offences(found))

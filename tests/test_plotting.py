@@ -36,6 +36,8 @@ def test_the_record_stands_above_and_the_responses_below_with_their_impacts():
     marked = [line.get_xdata() for line in below.get_lines() if line.get_marker() == "|"]
     assert len(marked) == 3
     assert marked[0][0] == histories["nonlinear"].impacts[0, 0]
+    assert [len(times) for times in marked] == [len(run.felt) for run in histories.values()]
+    assert 0 < len(marked[0]) < histories["nonlinear"].impact_count
     assert "time [s]" in below.get_xlabel() and "phi" in below.get_ylabel()
 
 

@@ -93,7 +93,7 @@ def respond(
     opening : float, optional
         Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
     impacts : bool
-        Whether the answer lists the impacts.
+        Whether the answer lists the impacts: the first in a table, without chatter, all in the data.
     contact : bool
         Whether the plot shows the friction required; it does if the structure gives `friction`.
     title : str, optional

@@ -308,7 +308,7 @@ def _outcomes(runs: Sequence[History], watched: Watched) -> Rows:
             *(_number(run.overturning_time) for run in runs),
             "s",
         ],
-        ["number of impacts", *(str(run.impact_count) for run in runs), "1"],
+        ["number of impacts", *(str(len(run.felt)) for run in runs), "1"],
         ["peak impact velocity", *(_number(each.impact_velocity) for each in moved), "m/s"],
         [
             "peak horizontal displacement of the top",

@@ -26,6 +26,8 @@ RTOL = 1e-9  # local error of a step, of the lower order of the pair: peaks are 
 TAIL = 10.0  # s of motion kept after the record
 MOST_SAMPLES = 20_000_000
 
+FELT = 0.02  # of the rate of rotation before the strongest impact: weaker ones are chatter
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class History(Outcome[bool, int, float]):
@@ -87,6 +89,15 @@ class History(Outcome[bool, int, float]):
         """Direction in which the ratio is largest: 0 for positive, 1 for negative."""
         known = self.ratio[np.isfinite(self.ratio)]
         return int(known[np.abs(known).argmax()] < 0)
+
+    @property
+    def felt(self) -> Reals:
+        """The impacts that are counted, listed and marked, as `impacts` has them: not the chatter before rest.
+
+        They are as fast as `FELT` of the fastest one or more.
+        """
+        rate = self.impacts[:, 2]
+        return self.impacts[rate >= FELT * rate.max(initial=0.0)]
 
     @property
     def first_impact(self) -> float:

@@ -42,7 +42,8 @@ class Outcome(Generic[Flags, Counts, Numbers]):
         Time of the first uplift from rest [s]; NaN if there is none.
     impact_count : int
         Number of impacts before overturning, or up to the end of the motion, or up to where the solver stopped because
-        the outcome could no longer change.
+        the outcome could no longer change. All are counted, including the chatter before rest; `History.felt` has those
+        of a history without it.
     end_time : float
         Time at which the structure came to rest for good, or was certain to overturn [s]; 0 if it never moved, the last
         time that was computed if it still rocks, and NaN if not computed.

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from rocking_cli import names
 from rocking_cli.core import Direction
-from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.history import FELT, History
 from rocking_cli.dynamics.holding import known_until
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
@@ -24,7 +24,6 @@ from rocking_cli.studies.movements import Watched
 
 TALLEST = 1.6  # phi/phi_cr shown at most
 FALLING = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a cross
-FELT = 0.02  # of the strongest impact: weaker ones, of a chatter to rest, are not marked
 SHORTEST = 0.1  # s of the time axis
 POINTS = 1000  # of a pulse
 MOST_NEEDED = 2.0  # friction shown at most: a joint with almost no normal force may need any
@@ -257,9 +256,9 @@ def _draw_run(axes: Axes, name: str, run: History, height: float, until: float) 
         axes.plot(run.time[followed.size - 1], followed[-1], marker="x", markersize=6, color=look["color"])
     shown = visible(followed)
     axes.plot(run.time[shown], followed[shown], label=style.LABELS[name] + fate, **look)  # type: ignore[arg-type]
-    impacts = run.impacts[run.impacts[:, 0] <= until]
-    if len(impacts):
-        felt = impacts[impacts[:, 2] >= FELT * impacts[:, 2].max(), 0]
+    felt = run.felt[:, 0]
+    felt = felt[felt <= until]
+    if felt.size:
         axes.plot(
             felt,
             np.full(felt.size, height),

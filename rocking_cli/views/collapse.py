@@ -9,7 +9,7 @@ from typing import Any
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
 from rocking_cli.core.contacts import MASONRY
 from rocking_cli.text import in_short
-from rocking_cli.views.view import Table, View, heading, number
+from rocking_cli.views.view import Table, View, force_unit, heading, number
 
 FEW = 6  # blocks of a part, all of which are named
 SOME = 3  # of one that has more
@@ -21,7 +21,7 @@ def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> 
     parts: list[Table | str] = [heading(mechanism)]
     for direction, each in found.items():
         parts += [_hinges(direction, each), *_sentences(mechanism, each)]
-        parts += _thrust(direction, each)
+        parts += _thrust(direction, each, *force_unit(mechanism))
     parts += [f"Caution: {own}"] if (own := mechanism.own_caution()) else []
     theorems = (
         " lambda is both the greatest acceleration that can be carried without tension (static theorem) and the "
@@ -32,7 +32,13 @@ def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> 
         "more joints than hold them, other states exist."
         + (theorems if all(each.associated is None for each in found.values()) else "")
     )
-    return View(lambda: {"directions": {d.label: data(each) for d, each in found.items()}}, parts)
+    return View(
+        lambda: {
+            "directions": {d.label: data(each) for d, each in found.items()},
+            "per_unit_mass": not mechanism.has_mass,
+        },
+        parts,
+    )
 
 
 def _hinges(direction: Direction, found: CollapseMechanism) -> Table | str:
@@ -109,7 +115,7 @@ def _sentences(mechanism: Mechanism, found: CollapseMechanism) -> list[str]:
     return said
 
 
-def _thrust(direction: Direction, found: CollapseMechanism) -> list[Table | str]:
+def _thrust(direction: Direction, found: CollapseMechanism, per: float, unit: str) -> list[Table | str]:
     """Return a table of the forces in the joints; of many joints only those that hinge or slide."""
     shown, rest = found.thrust, ""
     if len(shown) > ROWS:
@@ -119,10 +125,10 @@ def _thrust(direction: Direction, found: CollapseMechanism) -> list[Table | str]
     if not shown:
         return [rest] if rest else []
     rows = [
-        [where, number(at.real), number(at.imag), number(force.real / 1e3, 4), number(force.imag / 1e3, 4)]
+        [where, number(at.real), number(at.imag), number(force.real / per, 4), number(force.imag / per, 4)]
         for where, at, force in shown
     ]
-    heads = ["joint", "x [m]", "y [m]", "Fx [kN]", "Fy [kN]"]
+    heads = ["joint", "x [m]", "y [m]", f"Fx [{unit}]", f"Fy [{unit}]"]
     title = f"Joint forces at the onset of the mechanism, {direction.label}"
     return [Table(title, heads, rows, numbers=(1, 2, 3, 4)), *([rest] if rest else [])]
 

@@ -9,7 +9,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.contacts import MASONRY
 from rocking_cli.studies.contact import NEAR_PEAK, ContactDemand, SupportDemand
 from rocking_cli.views.column import Column, of, rounded
-from rocking_cli.views.view import ABSENT, number
+from rocking_cli.views.view import ABSENT, force_unit, number
 
 BEYOND = ": the result is not valid beyond that time"
 
@@ -45,7 +45,7 @@ def contact_data(found: ContactDemand, mechanism: Mechanism) -> dict[str, Any]:
 
 def contact_columns(mechanism: Mechanism) -> list[Column[ContactDemand]]:
     """Return the columns of the demands on a structure; forces are per unit mass if it has no masses."""
-    per, unit = (1000, "kN") if mechanism.has_mass else (1, "N/kg")
+    per, unit = force_unit(mechanism)
 
     def force(value: float) -> str:
         return ABSENT if isnan(value) else f"{number(value / per, 4)} {unit}"
@@ -140,7 +140,7 @@ def _friction(found: ContactDemand, beyond: str) -> str:
 
 
 def _support(found: SupportDemand, mechanism: Mechanism) -> str:
-    per, unit = (1000, "kN") if mechanism.has_mass else (1, "N/kg")
+    per, unit = force_unit(mechanism)
     level = abs(found.way.real) > abs(found.way.imag)
     senses = ("to the right", "to the left") if level else ("upwards", "downwards")
     parts = [

@@ -52,7 +52,7 @@ def blocks(
         Points and ties: with them, further columns are displacements, elongations and forces in each history.
     base_shear : mapping of str to ndarray, optional
         The horizontal force of the ground at each sample of some histories [N], without the impulses of impacts, as
-        last columns; NaN at rest.
+        last columns; NaN at rest. [N/kg] if the `watched` structure has no masses.
 
     Yields
     ------
@@ -60,6 +60,7 @@ def blocks(
         The columns; NaN after overturning, and after the time until which the motion is known.
     """
     names = _names(histories, motion)
+    sheared = "base shear [N]" if watched is None or watched.mechanism.has_mass else "base shear [N/kg]"
     runs = list(histories.values())
     longest = max(runs, key=lambda run: run.time.size)
     shaken = motion.kept.acceleration if motion is not None else np.zeros(0)
@@ -75,7 +76,7 @@ def blocks(
             for name, run in histories.items():
                 phi = _padded(run.phi, part, _after(run))
                 found |= {f"{name} {what}": values for what, values in watched.columns(phi)}
-        found |= {f"{name} base shear [N]": _padded(values, part, np.nan) for name, values in base_shear.items()}
+        found |= {f"{name} {sheared}": _padded(values, part, np.nan) for name, values in base_shear.items()}
         yield found
 
 

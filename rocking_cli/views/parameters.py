@@ -113,7 +113,7 @@ PARAMETERS = (
         "eta",
         of("eta"),
         "",
-        words="restitution of an impact ending this direction",
+        words="coefficient of restitution of the impacts that end motion in this direction",
         symbol="η",
         meaning="Coefficient of restitution: rate of rotation just after an impact that ends motion in this "
         "direction, over "

@@ -8,9 +8,12 @@ from math import isinf, nan
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rocking_cli import names
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.history import FELT, History
 from rocking_cli.dynamics.holding import unchecked, why_unknown
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import OneOutcome
@@ -29,8 +32,9 @@ from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.conclusion import conclusion_data
 from rocking_cli.views.contact import contact_data, contact_words
 from rocking_cli.views.restitution import restitution_data, restitution_used
-from rocking_cli.views.view import ABSENT, Table, View, in_degrees, number
+from rocking_cli.views.view import ABSENT, Table, View, force_unit, in_degrees, number
 
+Reals = NDArray[np.float64]
 FIRST = 12  # impacts of a model in its table; the data have all
 
 
@@ -224,7 +228,8 @@ def _history_data(history: History, shown: HistoryDetails) -> dict[str, Any]:
         "overturning_time": history.overturning_time,
         "overturning_direction": Direction(history.fell_to).label if history.fell else None,
         "uplift_time": history.uplift_time,
-        "impacts": history.impact_count,
+        "impacts": len(history.felt),
+        "impacts_all": history.impact_count,
         "outcome": ending(history),
         "contact_lost": history.contact_lost,
         "ratio_of": "limit" if any(history.ends_at_limit) else "phi_cr",
@@ -235,7 +240,7 @@ def _history_data(history: History, shown: HistoryDetails) -> dict[str, Any]:
     if shown.etas is not None:
         found["impact_list"] = [
             {"time": time, "direction": direction.label, "rate_before": before, "rate_after": after}
-            for time, direction, before, after in _impacts(history, shown.etas, len(history.impacts))
+            for time, direction, before, after in _impacts(history.impacts, shown.etas)
         ]
     return found
 
@@ -252,9 +257,9 @@ def _movements_data(moved: Movements) -> dict[str, Any]:
     }
 
 
-def _impacts(history: History, etas: tuple[float, float], most: int) -> list[tuple[float, Direction, float, float]]:
-    """Return time [s], direction that ends, and rates before and after [rad/s] of the first impacts."""
-    rows = ((time, Direction(int(sign)), rate) for time, sign, rate in history.impacts[:most].tolist())
+def _impacts(impacts: Reals, etas: tuple[float, float]) -> list[tuple[float, Direction, float, float]]:
+    """Return time [s], direction that ends, and rates before and after [rad/s] of impacts of a history."""
+    rows = ((time, Direction(int(sign)), rate) for time, sign, rate in impacts.tolist())
     return [(time, direction, rate, etas[0 if direction > 0 else 1] * rate) for time, direction, rate in rows]
 
 
@@ -285,7 +290,7 @@ def view(
     doubts : sequence of str
         Doubts about the structure, as sentences.
     impacts : bool
-        Whether to list the impacts: the first in a table, all in the data.
+        Whether to list the impacts: the first in a table, without chatter, all in the data.
     """
     mechanism, given = structure.mechanism, found.given
     shown = HistoryDetails(Watched(mechanism), structure.etas if impacts else None, found.contacts, mechanism)
@@ -364,7 +369,7 @@ def _table(title: str, histories: Histories, shown: HistoryDetails, polarity: in
         ["peak rotation, anticlockwise", *(in_degrees(run.peak_negative) for run in runs), "deg"],
         ["first uplift", *(number(run.uplift_time, 5) for run in runs), "s"],
         ["overturning time", *(number(run.overturning_time, 5) for run in runs), "s"],
-        ["impacts", *(str(run.impact_count) for run in runs), ""],
+        ["impacts", *(str(len(run.felt)) for run in runs), ""],
     ]
     if any(run.unknown for run in runs):
         rows.insert(1, ["known to", *(number(run.known_to, 5) for run in runs), "s"])
@@ -372,7 +377,7 @@ def _table(title: str, histories: Histories, shown: HistoryDetails, polarity: in
     if shown.watched is not None:
         rows += _movement_rows([shown.watched.peaks(run) for run in runs])
     if polarity in shown.contacts and shown.mechanism is not None:
-        per, unit = (1000, "kN") if shown.mechanism.has_mass else (1, "N/kg")
+        per, unit = force_unit(shown.mechanism)
         shear = number(shown.contacts[polarity].base_shear / per, 4)
         rows.append(
             ["base shear, without impacts", *(shear if run.model == "nonlinear" else ABSENT for run in runs), unit]
@@ -403,11 +408,13 @@ def _movement_rows(moved: Sequence[Movements]) -> list[list[str]]:
 def _impact_table(title: str, history: History, etas: tuple[float, float]) -> list[Table | str]:
     rows = [
         [f"{time:.4f}", SENSE[direction], number(before, 4), number(after, 4)]
-        for time, direction, before, after in _impacts(history, etas, FIRST)
+        for time, direction, before, after in _impacts(history.felt[:FIRST], etas)
     ]
     table = Table(title, ["time [s]", "ends motion", "before [rad/s]", "after [rad/s]"], rows, numbers=(0, 2, 3))
-    more = history.impact_count - FIRST
-    return [table, f"{more} more impacts follow: the JSON output lists them"] if more > 0 else [table]
+    felt, chatter = len(history.felt), history.impact_count - len(history.felt)
+    said = [f"{felt - FIRST} more impacts follow"] if felt > FIRST else []
+    said += [f"{chatter} weaker than {100 * FELT:g} % of the strongest are left out"] if chatter else []
+    return [table, f"{' and '.join(said)}: the JSON output lists them."] if said else [table]
 
 
 def share_of_pulse(histories: Histories, to_pulse: Histories, called: str) -> str:

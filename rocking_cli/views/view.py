@@ -57,6 +57,11 @@ def heading(mechanism: Mechanism) -> str:
     return f"{mechanism.name}: {mechanism.title}"
 
 
+def force_unit(mechanism: Mechanism) -> tuple[float, str]:
+    """Return the unit in which forces are shown, and its size [N]: per unit mass for a structure without masses."""
+    return (1e3, "kN") if mechanism.has_mass else (1.0, "N/kg")
+
+
 def number(value: float | None, digits: int = 6) -> str:
     """Format a number; a dash if it does not exist."""
     return ABSENT if value is None or isnan(value) else f"{value + 0.0:.{digits}g}"  # a sum that is never -0
