@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 from importlib import import_module
 from typing import get_type_hints
 
@@ -14,7 +15,9 @@ import rocking_cli as rk
 from rocking_cli.ask import watcher as rk_watcher
 from rocking_cli.ask.ground_motions import MotionArguments, ReadingArguments
 from rocking_cli.cli.main import COMMANDS
+from tests.conftest import EXAMPLES
 from tests.elsewhere import PROJECT
+from tests.test_cli import run, run_json
 
 WITHOUT = {
     "figure": "recomputes the figures of the paper into a folder",
@@ -30,6 +33,7 @@ OF_THE_TERMINAL = {"as_json", "as_csv", "plot", "out", "page", "curves", "nrml",
 """Options that say where an answer goes, and in which form."""
 NAMED = {"records": "motions", "pulses": "motions"}
 MOST = 40
+FLOOR = "T1=0.4,xi=0.05,z=0.67,gamma=1.29"
 
 
 def asked(name):
@@ -86,6 +90,89 @@ def test_an_argument_that_is_none_or_has_no_effect_is_refused():
         rk.respond(block, release=0.5, highpass=0.1)
     with pytest.raises(rk.InputError, match="`highpass` describes a record, and no record is given"):
         rk.respond(block, "sine:0.3g:0.8s", highpass=0.1)
+
+
+def numeric(verb):
+    """The arguments of a verb that are numbers, or several."""
+    loose = NUMBERS if "options" in verb.__annotations__ else {}
+    for name, given in (loose | verb.__annotations__).items():
+        types = set(re.findall(r"\w+", given))
+        if types & {"float", "int"} and not types & {"str", "Literal", "Callable"}:
+            yield name
+
+
+NUMBERS = dict.fromkeys(("dt", "azimuth", "scale", "target_pga", "target_pgv"), "float")
+
+
+@pytest.mark.parametrize("name", [*VERBS, "respond_each", "overturning_map", "overturning_curves", "response_spectrum"])
+def test_text_for_a_number_is_refused(name):
+    verb = getattr(rk, name)
+    for argument in numeric(verb):
+        needed = {
+            each.name: None
+            for each in inspect.signature(verb).parameters.values()
+            if each.default is each.empty and each.kind in (each.POSITIONAL_OR_KEYWORD, each.KEYWORD_ONLY)
+        }
+        for text in ("ten", ("1", "2")):
+            with pytest.raises(rk.InputError, match=f"^`{argument}` must be .*number.*, got the text '{text[0]}"):
+                verb(**needed | {argument: text})
+
+
+def test_the_refusal_of_a_text_says_what_to_give():
+    block, motion = rk.Block(width=0.7, height=2.8), "sine:0.3g:0.8s"
+    for given, said in (
+        ({"target_pga": "0.4g"}, "give 0.4, in g"),
+        ({"target_pgv": "40 cm/s"}, "give 0.4, in m/s"),
+        ({"tail": "500 ms"}, "give 0.5, in s"),
+        ({"dt": "10 kg"}, "give a number, in s"),
+        ({"rtol": "1e-8"}, "give 1e-08$"),
+    ):
+        with pytest.raises(rk.InputError, match=said):
+            rk.respond(block, motion, **given)
+    with pytest.raises(
+        rk.InputError, match=r"`sizes` must be two numbers, got the text '0\.2:2'\n  give \(low, high\)"
+    ):
+        rk.spectrum(block, motion, sizes="0.2:2")
+
+
+def test_of_a_trace_or_a_table_an_option_without_effect_is_refused(monkeypatch):
+    block, trace = EXAMPLES / "calibrate" / "block.yaml", EXAMPLES / "calibrate" / "trace.csv"
+    for given in ({"highpass": 0.1}, {"neighbours": 40}, {"points": 9}, {"slenderness": (0.8, 1.2)}, {"floor": FLOOR}):
+        (name,) = given
+        with pytest.raises(rk.InputError, match=f"`{name}` has no effect on a trace"):
+            rk.calibrate(block, free=trace, **given)
+    said = run("calibrate", block, "--free", trace, "--highpass", "0.1", "--neighbours", "7", code=2).stderr
+    assert "--neighbours, --highpass have no effect on a trace (--free): give --tests" in said
+    with monkeypatch.context() as patch:  # what a user sets for all commands is no error
+        patch.setenv("ROCKING_NEIGHBOURS", "7")
+        patch.setenv("ROCKING_DT", "0.1")
+        assert "10 impacts are seen" in run("calibrate", block, "--free", trace).stdout
+    with pytest.raises(rk.InputError, match="`bogus` is not an argument"):
+        rk.calibrate(block, free=trace, bogus=1)
+    for ask in (
+        lambda: rk.calibrate(block, tests=EXAMPLES / "tests.csv", scale=2),
+        lambda: rk.score(EXAMPLES / "tests.csv", scale=2),
+        lambda: rk.select("none.csv", EXAMPLES / "target.csv", band=(0.2, 2), count=1, scale=2),
+    ):
+        with pytest.raises(rk.InputError, match="`scale` is not an argument\n  the motions of this question are not"):
+            ask()
+
+
+def test_the_opening_is_that_of_scored_tests_too(tmp_path):
+    arch = "mechanism: arch\nradius: 6\nthickness: 0.8\ninclusion_angle_deg: 150\nvoussoirs: 7\n"
+    (tmp_path / "arch.yaml").write_text(arch)
+    (tmp_path / "tests.csv").write_text("structure,record,overturned\narch.yaml,sine:0.6g:0.4s,0\n")
+    table = tmp_path / "tests.csv"
+    for opening in (0.0, 1000.0):
+        typed = run_json("score", table, "--neighbours", "2", "--opening", opening)["tests"][0]["unknown"]
+        assert typed == rk.score(table, neighbours=2, opening=opening).tests[0].unknown_share == (opening == 0)
+
+
+def test_an_array_is_in_si_units():
+    for unit, said in (("g", r"multiply the samples by 9\.80665"), ("parsec", r"give the samples in m/s2")):
+        with pytest.raises(rk.InputError, match=rf"`unit` must be m/s2 for an array, got '{unit}'\n  {said}"):
+            rk.GroundMotion("mine", 0.01, [0.0, 0.3, 0.0], unit=unit)
+    assert rk.read_record(EXAMPLES / "accel.csv").scaled(2).unit == "g"
 
 
 def test_a_watcher_decides_whether_one_bad_record_ends_an_answer():

@@ -12,6 +12,7 @@ import numpy as np
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, models_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.studies.film import Film
@@ -45,6 +46,7 @@ class Animation:
     neighbours: Neighbours | None
 
 
+@takes_numbers
 def animate(
     structure: StructureLike,
     motion: Motion | Motions,

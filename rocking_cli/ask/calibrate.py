@@ -11,7 +11,8 @@ import numpy as np
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, structure_of
-from rocking_cli.ask.ground_motions import ReadingArguments
+from rocking_cli.ask.ground_motions import OF_FILES, ReadingArguments, check_known, reading_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.score import motions_of, tests_of
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
@@ -27,19 +28,21 @@ if TYPE_CHECKING:
     from rocking_cli.studies.experiments.trace import Trace
     from rocking_cli.studies.experiments.trace_fit import TraceFit
 
+SLENDERNESS, RESTITUTION, POINTS, NEIGHBOURS = (0.7, 1.3), (0.7, 0.99), 9, 40  # of the grid, by default
 LEAST_POINTS, MOST_POINTS = 3, 101
 
 
+@takes_numbers
 def calibrate(
     structure: StructureLike,
     *,
     free: str | Path | Trace | None = None,
     tests: str | Path | Mapping[str, Sequence[Any]] | TableOfTests | None = None,
     free_geometry: bool = False,
-    slenderness: tuple[float, float] = (0.7, 1.3),
-    restitution: tuple[float, float] = (0.7, 0.99),
-    points: int = 9,
-    neighbours: int = 40,
+    slenderness: tuple[float, float] | None = None,
+    restitution: tuple[float, float] | None = None,
+    points: int | None = None,
+    neighbours: int | None = None,
     out: str | Path | None = None,
     threads: int | None = None,
     readings: tuple[Reading, Reading | None] | None = None,
@@ -58,12 +61,13 @@ def calibrate(
         Shake-table tests as in `score`, of which those of this structure are used. Give `free` or `tests`.
     free_geometry : bool
         Whether the trace also determines p and alpha; only of a free-standing block with alpha of 0.07 rad or more.
-    slenderness, restitution : (float, float)
-        Ranges of the grid for `tests`: factors on the slenderness of the structure, and coefficients of restitution.
-    points : int
-        Number of values of each of them, 3 to 101.
-    neighbours : int
-        Number of neighbours of each test at each point of the grid, at least 1.
+    slenderness, restitution : (float, float), optional
+        Ranges of the grid for `tests`: factors on the slenderness of the structure, by default 0.7 to 1.3, and
+        coefficients of restitution, by default 0.7 to 0.99.
+    points : int, optional
+        Number of values of each of them, 3 to 101, by default 9; with `tests` only.
+    neighbours : int, optional
+        Number of neighbours of each test at each point of the grid, at least 1, by default 40; with `tests` only.
     out : str or Path, optional
         Write a copy of the file of the structure with the fitted `restitution` and its scatter (`uncertainty`) to this
         YAML file; with `free` only.
@@ -90,12 +94,22 @@ def calibrate(
     MechanismError
         If the structure has no critical rotation.
     """
+    check_known(options)
     if (free is None) == (tests is None):
         raise InputError("give either `free`, a trace of free rocking, or `tests`, a table of shake-table tests")
     source = Path(structure) if isinstance(structure, str | Path) else None
     ready = structure_of(structure)
     source = Path(ready.file) if source is None and ready.file is not None else source
     if free is not None:
+        reading = readings[0] if readings is not None else reading_of(options)
+        of_tests: dict[str, object] = {
+            "slenderness": slenderness, "restitution": restitution, "points": points, "neighbours": neighbours,
+            "threads": threads, **{name: getattr(reading, name) for name in (*OF_FILES, "floor")},
+            **{step.name: step for step in reading.steps},
+        }  # fmt: skip
+        if idle := [f"`{name}`" for name, value in of_tests.items() if value is not None]:
+            verb = "has" if len(idle) == 1 else "have"
+            raise InputError(f"{', '.join(idle)} {verb} no effect on a trace (`free`): give `tests`")
         return _of_trace(ready, source, free, free_geometry, out)
     assert tests is not None
     for name, given in (("free_geometry", free_geometry), ("out", out is not None)):
@@ -105,14 +119,16 @@ def calibrate(
             )
     table = tests_of(tests)
     kept = _of_structure(table, source)
-    grid = [_grid(name, ends, points) for name, ends in (("slenderness", slenderness), ("restitution", restitution))]
+    axes = (("slenderness", slenderness or SLENDERNESS), ("restitution", restitution or RESTITUTION))
+    grid = [_grid(name, ends, POINTS if points is None else points) for name, ends in axes]
+    around = Neighbourhood(NEIGHBOURS if neighbours is None else neighbours)
     from rocking_cli.studies.experiments.region import joint_region
     from rocking_cli.views.calibrate import region_columns, region_view
 
     watch.compile()
     with watch.progress(len(kept), "tests") as advance:
         found = joint_region(
-            kept, ready, motions_of(table, readings, options), Neighbourhood(neighbours), *grid,
+            kept, ready, motions_of(table, readings, options), around, *grid,
             threads=threads, progress=advance,
         )  # fmt: skip
     shown = region_view(found, ready.name, table.file, len(table.tests))

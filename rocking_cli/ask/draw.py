@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, structure_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.views.view import heading
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from rocking_cli.studies.picture import Picture
 
 
+@takes_numbers
 def draw(structure: StructureLike, *, at: float | None = None) -> Answer[Picture]:
     """Draw a structure at rest with its dimensions, and displaced in both directions.
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, sized_pulse, structure_of, structures_of, told_apart, warn_misleading
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.pulses import Pulse, parse_pulse
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from rocking_cli.studies.equivalent_pulses import EquivalentResponses
 
 
+@takes_numbers
 def equivalent(
     structures: Sequence[StructureLike],
     pulse: Pulse | str | None = None,

@@ -10,6 +10,7 @@ import numpy as np
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, structure_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.views.view import heading
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from rocking_cli.studies.linearisation import Linearisation
 
 
+@takes_numbers
 def error(
     structure: StructureLike, *, at: Sequence[float] = (0.5,), a: Sequence[float] = (2.0,)
 ) -> Answer[list[Linearisation]]:

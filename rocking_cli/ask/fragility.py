@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import warn_of, yaml_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 NAMED = 10  # bad records or samples named one by one
 
 
+@takes_numbers
 def fragility(
     study: str | Path | Mapping[str, Any],
     *,

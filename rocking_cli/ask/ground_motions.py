@@ -91,6 +91,15 @@ class MotionArguments(ReadingArguments, total=False):
     target_pgv: float | None
 
 
+def check_known(options: Mapping[str, Any], accepted: type = ReadingArguments) -> None:
+    """Refuse keyword arguments of a verb that are not among those it accepts. Raises `InputError`."""
+    known = list(get_type_hints(accepted))
+    for name in options:
+        if name not in known:
+            hint = "the motions of this question are not scaled" if name in SCALING else did_you_mean(name, known)
+            raise InputError(Problem("is not an argument", field=f"`{name}`", hint=hint))
+
+
 def reading_of(options: MotionArguments | ReadingArguments) -> Reading:
     """Return how to read a record, from the keyword arguments of a verb.
 
@@ -145,15 +154,18 @@ class Motions:
             raise InputError("`scale`, `target_pga` and `target_pgv` cannot be combined: give one of them")
 
     @classmethod
-    def of(cls, given: Motions | Motion | Sequence[Motion], options: MotionArguments | ReadingArguments) -> Motions:
+    def of(
+        cls,
+        given: Motions | Motion | Sequence[Motion],
+        options: MotionArguments | ReadingArguments,
+        accepted: type = MotionArguments,
+    ) -> Motions:
         """Return the motions of a verb, from what it is given and its keyword arguments. Raises `InputError`."""
+        check_known(options, accepted)
         if isinstance(given, Motions):
             return given
-        known = list(get_type_hints(MotionArguments))
         given = each_of(given)
         for name, value in options.items():
-            if name not in known:
-                raise InputError(Problem("is not an argument", field=f"`{name}`", hint=did_you_mean(name, known)))
             if value is not None and not given:
                 raise InputError(Problem("has no effect, as no ground motion is given", field=f"`{name}`"))
         scaling: dict[str, Any] = {name: options.get(name) for name in SCALING}

@@ -11,6 +11,7 @@ import numpy as np
 from rocking_cli.ask.answer import MappingAnswer
 from rocking_cli.ask.given import StructureLike, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.view import heading
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from rocking_cli.studies.margin import Margin
 
 
+@takes_numbers
 def margin(
     structure: StructureLike,
     motions: Motion | Motions | Sequence[Motion],

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, doubts_of, models_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, motion_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.dynamics.history import RTOL
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.floor import Floor
@@ -77,6 +78,7 @@ def on_floor(motion: Motion, floor: Floor | str | Mapping[str, Any]) -> GroundMo
     return (floor if isinstance(floor, Floor) else Floor.parse(floor)).of(motion_of(motion))
 
 
+@takes_numbers
 def respond_around(
     structure: StructureLike,
     one: Motion,

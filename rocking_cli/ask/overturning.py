@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, structure_of, structures_of, told_apart, warn_misleading
 from rocking_cli.ask.ground_motions import each_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.overturning_curves import overturning_curves
 from rocking_cli.ask.overturning_map import overturning_map
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -23,6 +24,7 @@ PLANE, CURVE = 256, 60  # points, of each side of a map and of a curve
 Range = tuple[float, float]
 
 
+@takes_numbers
 def overturning(
     structures: StructureLike | Sequence[StructureLike] = (),
     *,

@@ -11,6 +11,7 @@ import numpy as np
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, structure_of, structures_of, told_apart
 from rocking_cli.ask.ground_motions import signs_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.model import ModelName
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from rocking_cli.studies.overturning import Comparison
 
 
+@takes_numbers
 def overturning_curves(
     structures: Sequence[StructureLike],
     *,

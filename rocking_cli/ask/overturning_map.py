@@ -10,6 +10,7 @@ import numpy as np
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, structure_of
 from rocking_cli.ask.ground_motions import signs_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 ETA = 0.9  # of the linear block
 
 
+@takes_numbers
 def overturning_map(
     structure: StructureLike | None = None,
     *,

@@ -6,6 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import MappingAnswer
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 ETA = 0.9
 
 
+@takes_numbers
 def pulse(
     structure: StructureLike | None = None,
     *,

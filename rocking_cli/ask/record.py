@@ -12,6 +12,7 @@ import numpy as np
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, done, signs_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
@@ -48,6 +49,7 @@ class RecordAnswer(Answer[Measures]):
     motions: tuple[GroundMotion, ...] = field(kw_only=True)
 
 
+@takes_numbers
 def record(
     motion: Motion | Motions,
     *,

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from rocking_cli.ask.answer import MappingAnswer
 from rocking_cli.ask.given import StructureLike, doubts_of, models_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.history import FINEST_RTOL, RTOL, TAIL, History
 from rocking_cli.dynamics.model import MODELS, ModelName
@@ -38,6 +39,7 @@ class ResponseAnswer(MappingAnswer[ModelName, History]):
     result: Response
 
 
+@takes_numbers
 def respond(
     structure: StructureLike,
     motion: Motion | Motions | None = None,

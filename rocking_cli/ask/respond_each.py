@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking_cli.ask.answer import MappingAnswer
 from rocking_cli.ask.given import StructureLike, models_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, each_of, motion_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME, Outcomes
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from rocking_cli.io.tables import Columns
 
 
+@takes_numbers
 def respond_each(
     structures: StructureLike | Sequence[StructureLike],
     motions: Motion | Sequence[Motion],

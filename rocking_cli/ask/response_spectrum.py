@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.ground_motions import Motion, motion_of
+from rocking_cli.ask.numbers import takes_numbers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from rocking_cli.processing.oscillator import ResponseSpectrum
 
 
+@takes_numbers
 def response_spectrum(
     motion: Motion, periods: ArrayLike | None = None, *, damping: float = 0.05, scale: float = 1.0
 ) -> Answer[ResponseSpectrum]:

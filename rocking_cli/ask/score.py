@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import checked, structure_of
-from rocking_cli.ask.ground_motions import Motions, ReadingArguments, pulse_in, reading_of
+from rocking_cli.ask.ground_motions import Motions, ReadingArguments, check_known, pulse_in, reading_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import RockingError
 from rocking_cli.excitation.base import GroundMotion
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 KEPT = 16  # records in memory at a time; tests under one record are simulated together
 
 
+@takes_numbers
 def score(
     tests: str | Path | Mapping[str, Sequence[Any]] | TableOfTests,
     *,
@@ -118,6 +120,7 @@ def motions_of(
     table: TableOfTests, readings: tuple[Reading, Reading | None] | None, options: ReadingArguments
 ) -> Callable[[str], GroundMotion]:
     """Return the function that reads the record of a test, or samples its pulse; it keeps the last ones."""
+    check_known(options)
     motions = Motions((), *readings) if readings is not None else Motions((), reading_of(options))
     return lru_cache(KEPT)(partial(_motion, table.folder, motions))
 

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.ground_motions import Motion, Motions, ReadingArguments
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.studies.record_set import RecordSet
@@ -41,6 +42,7 @@ class SetAnswer(Answer[RecordSet]):
     readings: tuple[Reading | None, ...] = field(kw_only=True)
 
 
+@takes_numbers
 def select(
     records: Motions | Motion | Sequence[Motion],
     target: TargetSpectrum | str | Path | tuple[ArrayLike, ArrayLike],
@@ -107,7 +109,7 @@ def select(
     wanted = record_set.SetRequirements(count, band, within, damping, factors, one_per, same_factor, seed)
     spectrum = _target(target, watch)
     spectrum.check(wanted.band)
-    motions = _without(target, Motions.of(records, options), watch)
+    motions = _without(target, Motions.of(records, options, ReadingArguments), watch)
     chosen = motions.gather(0.0, watch)
     candidates = [each.motion for each in chosen]
     with watch.progress(len(candidates), "spectra") as advance:

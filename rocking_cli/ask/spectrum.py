@@ -12,6 +12,7 @@ import numpy as np
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, structure_of, structures_of, told_apart
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, each_of, signs_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.errors import InputError, Problem
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from rocking_cli.views.spectrum import ShownSpectra
 
 
+@takes_numbers
 def spectrum(
     structures: StructureLike | Sequence[StructureLike] = (),
     motions: Motion | Sequence[Motion] | Motions = (),

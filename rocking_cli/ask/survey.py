@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import SiteLike, StructureLike, checked, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.text import one_line
@@ -28,6 +29,7 @@ LONG, LONG_SHAKEN = 10_000, 1_000  # rows from which on processes are worth thei
 FEW = 3  # doubts about sizes that are told one by one
 
 
+@takes_numbers
 def survey(
     structures: Table | StructureTable | Sequence[StructureLike],
     motions: Motion | Motions | Sequence[Motion] = (),

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Unpack
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.studies.verification.results import Verification
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from rocking_cli.studies.verification.control import Control
 
 
+@takes_numbers
 def verify(
     structure: StructureLike,
     site: SiteLike,

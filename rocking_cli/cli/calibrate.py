@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rocking_cli.cli import complete, options
+from rocking_cli.cli.defaults import from_default
 from rocking_cli.cli.groups import Output, ReadingOptions
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import QuantityKind, Range
@@ -43,34 +44,26 @@ ETA = QuantityKind("restitution", "", "0.8", "0.8:0.99", 1e-3, 1.0)
 @click.option(
     "--slenderness",
     type=Range(FACTOR),
-    default="0.7:1.3",
-    show_default=True,
     metavar="LOW:HIGH",
-    help="With --tests: range of the factor on the slenderness.",
+    help="With --tests: range of the factor on the slenderness.  [default: 0.7:1.3]",
 )
 @click.option(
     "--restitution",
     type=Range(ETA),
-    default="0.7:0.99",
-    show_default=True,
     metavar="LOW:HIGH",
-    help="With --tests: range of the restitution.",
+    help="With --tests: range of the restitution.  [default: 0.7:0.99]",
 )
 @click.option(
     "--points",
     type=click.IntRange(3, 101),
-    default=9,
-    show_default=True,
     metavar="N",
-    help="With --tests: number of values along each axis of the grid.",
+    help="With --tests: number of values along each axis of the grid.  [default: 9]",
 )
 @click.option(
     "--neighbours",
     type=click.IntRange(1, 100_000),
-    default=40,
-    show_default=True,
     metavar="N",
-    help="With --tests: number of neighbours of each test at each point of the grid.",
+    help="With --tests: number of neighbours of each test at each point of the grid.  [default: 40]",
 )
 @options.reading
 @options.out(
@@ -109,6 +102,8 @@ def command(file: str, reading: ReadingOptions, output: Output, **question: Any)
     output.keep_apart(file, question["free"], question["tests"])
     watch = OnTerminal()
     readings = reading.readings
+    if question["free"] is not None:  # defaults of a user have no effect on a trace, and are no error
+        question |= {name: None for name in ("points", "neighbours") if from_default(name)}
     question["free"] = _trace(question["free"])
     answer = calibrate(structures.prepared([file]), out=output.out, watch=watch, readings=readings, **question)
     if output.out is not None:

@@ -25,8 +25,9 @@ NAMED = 20  # tests that cannot be simulated, named one by one
 @options.out(".csv", ".parquet", what="Write what is stated of each test (.csv or .parquet).")
 @options.plot("Plot observed against stated shares (a reliability diagram)")
 @options.as_json
+@click.pass_context
 @options.grouped(reading=ReadingOptions, output=Output)
-def command(file: str, reading: ReadingOptions, output: Output, **around: Any) -> None:
+def command(ctx: click.Context, file: str, reading: ReadingOptions, output: Output, **around: Any) -> None:
     """Score the stated shares of overturning against the outcomes of shake-table tests.
 
     Each row of the table is a test: the file of a `structure`, the file of a `record` or a pulse, and whether it
@@ -54,7 +55,9 @@ def command(file: str, reading: ReadingOptions, output: Output, **around: Any) -
 
     output.keep_apart(file)
     watch = OnTerminal()
-    answer = score(_table(file), watch=watch, readings=reading.readings, **around)
+    answer = score(
+        _table(file), opening=ctx.meta.get(options.OPENING), watch=watch, readings=reading.readings, **around
+    )
     failed = answer.failed
     for each in failed[:NAMED]:
         terminal.error(f"{name_of(file)}:{each.test.line}: {reason(each)}")

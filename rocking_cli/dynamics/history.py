@@ -97,7 +97,8 @@ class History(Outcome[bool, int, float]):
         They are as fast as `FELT` of the fastest one or more.
         """
         rate = self.impacts[:, 2]
-        return self.impacts[rate >= FELT * rate.max(initial=0.0)]
+        felt: Reals = self.impacts[rate >= FELT * rate.max(initial=0.0)]
+        return felt
 
     @property
     def first_impact(self) -> float:

@@ -9,10 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking_cli.errors import InputError
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.units import KINDS
 
 STANDARD_GRAVITY = 9.80665  # m/s2
 MOST_SAMPLES = 20_000_000  # of a record: more than a day at 200 samples a second
+ARRAY = "array"  # format of a motion that is not from a file
 
 
 class Doubt(NamedTuple):
@@ -79,7 +81,8 @@ class GroundMotion:
     acceleration : ndarray, shape (npts,)
         Ground acceleration [m/s2] at t = 0, dt, 2 dt, ...; the motion keeps a read-only copy.
     unit : str
-        Unit of the acceleration in the file, for information only.
+        Unit of the acceleration in the file of a record, for information only. Samples in another unit are not
+        converted: of an array, the unit can only be m/s2.
     format : str
         Source of the motion: a record format, or `"array"`.
     vertical : GroundMotion, optional
@@ -101,14 +104,15 @@ class GroundMotion:
     Raises
     ------
     InputError
-        If there are fewer than two samples, a sample or dt is not finite, dt is not positive, or `every` is below 1.
+        If there are fewer than two samples, a sample or dt is not finite, dt is not positive, or `every` is below 1; or
+        if an array has another unit than m/s2.
     """
 
     name: str
     dt: float
     acceleration: NDArray[np.float64]
     unit: str = "m/s2"
-    format: str = "array"
+    format: str = ARRAY
     vertical: GroundMotion | None = None
     points: NDArray[np.intp] | None = None
     every: int = 1
@@ -125,6 +129,11 @@ class GroundMotion:
             raise InputError(f"{self.name}: sample {int(np.flatnonzero(~np.isfinite(samples))[0]) + 1} is not a number")
         if not (np.isfinite(self.dt) and self.dt > 0):
             raise InputError(f"{self.name}: the sample interval must be positive, got {self.dt} s")
+        if self.format == ARRAY and self.unit != "m/s2":
+            size = KINDS["acceleration"].get(self.unit)
+            hint = f"multiply the samples by {size}" if size else "give the samples in m/s2"
+            message = f"must be m/s2 for an array, got {self.unit!r}"
+            raise InputError(Problem(message, self.name, field="`unit`", hint=f"{hint}, and leave `unit` out"))
         if self.every < 1:
             raise InputError(f"{self.name}: a history keeps one of at least 1 sample, got {self.every}")
         object.__setattr__(self, "acceleration", samples)

@@ -81,7 +81,7 @@ def read_measured(
 
     The arguments are those of `read_record`.
     """
-    if dt is not None and not (math.isfinite(dt) and dt > 0):
+    if dt is not None and (isinstance(dt, str) or not (math.isfinite(dt) and dt > 0)):
         raise InputError(Problem(f"the sample interval must be a positive number of seconds, got {dt}", field="`dt`"))
     gain = Gain.parse(gain) if isinstance(gain, str) else gain
     wanted = _wanted(quantity, gain, units, uneven=uneven)

@@ -1,0 +1,66 @@
+"""Text in place of a number: verbs take numbers, in the units of their docstrings; quantities as text are for files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import wraps
+from typing import ParamSpec, TypeVar
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.units import UnitError, read, split
+
+P = ParamSpec("P")
+R = TypeVar("R")
+UNITS = {
+    "dt": "s", "vertical_dt": "s", "tail": "s", "period": "s", "band": "s", "sizes": "s", "azimuth": "deg", "ag": "g",
+    "top": "g", "target_pga": "g", "target_pgv": "m/s",
+}  # fmt: skip
+"""Units of arguments that have one."""
+OF_OPTIONS = dict.fromkeys(("dt", "azimuth", "scale", "target_pga", "target_pgv"), "float | None")
+"""Arguments that are numbers among those of `MotionArguments`, with their types."""
+
+
+def takes_numbers(verb: Callable[P, R]) -> Callable[P, R]:
+    """Make a verb refuse text where the annotation of an argument says a number, or several."""
+    meant = {
+        name: given
+        for name, given in (OF_OPTIONS | verb.__annotations__).items()
+        if re.search(r"\b(float|int)\b", given) and not re.search(r"\b(str|Literal|Callable)\b", given)
+    }
+    names = verb.__code__.co_varnames
+
+    @wraps(verb)
+    def checked(*given: P.args, **options: P.kwargs) -> R:
+        for name, value in (*zip(names, given, strict=False), *options.items()):
+            if name in meant and (text := _text(value)) is not None:
+                raise InputError(_problem(name, meant[name], text))
+        return verb(*given, **options)
+
+    return checked
+
+
+def _text(value: object) -> str | None:
+    """Return the text among what is given for numbers, if there is any."""
+    if isinstance(value, list | tuple):
+        return next(filter(None, map(_text, value)), None)
+    return value if isinstance(value, str) else None
+
+
+def _problem(name: str, annotation: str, text: str) -> Problem:
+    single = "tuple" not in annotation and "Sequence" not in annotation
+    unit = UNITS.get(name, "")
+    example: object = "(low, high)" if "tuple" in annotation else "[0.1, 0.2]" if not single else "a number"
+    if single and (number := _number(text, unit)) is not None:
+        example = f"{number:g}"
+    what = "a number" if single else "two numbers" if "tuple" in annotation else "numbers"
+    hint = f"give {example}{f', in {unit}' if unit else ''}"
+    return Problem(f"must be {what}, got the text {text!r}", field=f"`{name}`", hint=hint)
+
+
+def _number(text: str, unit: str) -> float | None:
+    """Return the number of a text, in the unit of its argument; None if it is not one."""
+    try:
+        return float(text) if (parts := split(text)) and not parts[1] else read(text, unit)
+    except UnitError:
+        return None
