@@ -402,11 +402,14 @@ class Linkage(LinkedBodies):
                     (each.held == "fixed" and set(each.pieces) == set(pair)) or _is_on(each, face) for each in found
                 ):
                     found = [*found, replace(face, name=f"{face.pieces[0]} and {face.pieces[1]}, face {k}")]
-        return found if self.rocks_both_ways else [self._whole_face(each) for each in found]
+        touches: dict[str, set[complex]] = {}
+        for each in found:
+            touches.setdefault(each.label, set()).update(each.points)
+        return [each if len(touches[each.label]) > 1 else self._whole_face(each) for each in found]
 
     def _whole_face(self, contact: Contact) -> Contact:
-        """Return the hinge of a structure that rocks one way with the whole face that touches at rest."""
-        if contact.held is not None or len(contact.points) > 1:
+        """Return a joint that only hinges, at one point, with the whole face that touches at rest."""
+        if contact.held is not None:
             return contact
         (at,) = contact.points
         face = face_at(self._members, [name for name in contact.pieces if name is not None], at)

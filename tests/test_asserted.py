@@ -20,7 +20,7 @@ from rocking_cli.studies.contact import Contacts, _states
 from tests.conftest import EXAMPLES
 from tests.following import respond
 from tests.test_cli import run, run_json
-from tests.test_rest import CRACKS, G, of, pulse
+from tests.test_rest import CRACKS, STACKS, G, of, pulse
 
 SLAB = EXAMPLES / "linkages" / "leaning_slab.yaml"
 PORTICO = EXAMPLES / "linkages" / "portico.yaml"
@@ -191,6 +191,38 @@ def test_what_starts_first_at_rest_is_the_mechanism_of_the_same_free_blocks(fric
         failure = first_failure(resting(wall), direction)
         push = min(wall.uplift(direction) * G, failure.push if failure else np.inf)
         assert push / G == pytest.approx(blocks.collapse(direction).lambda_, rel=1e-8)
+
+
+def test_a_joint_that_hinges_at_the_same_corner_in_both_directions_touches_at_rest_on_its_whole_face():
+    data = yaml.safe_load(CRACKS)
+    data["positive"]["joints"]["B"] = {"hinge": ["lower", "middle"], "at": [-0.15, 1.6]}
+    data["positive"]["joints"]["closed"] = {"fixed": ["middle", "upper"]}
+    data["negative"] = {"lead": "middle", "joints": {
+        "A'": {"hinge": ["lower", "middle"], "at": [-0.15, 1.6]},
+        "B'": {"hinge": ["middle", "upper"], "at": [0.15, 2.1]},
+        "C'": {"slide": "upper", "at": [-0.15, 3.2], "along": [0, 1]}, "closed": {"fixed": ["lower", "ground"]},
+    }}  # fmt: skip
+    wall = of(yaml.safe_dump(data))
+    blocks = rk.Assembly(
+        blocks=data["bodies"], density=1800.0, depth=1.0, friction=0.8,
+        ground={"g": {"polygon": [[-2, -1], [2, -1], [2, 0], [-2, 0]]}},
+        joints={"top": {"slide": "upper", "at": [0.15, 3.2], "along": [0, 1]}},
+    )  # fmt: skip
+    for direction in Direction:
+        failure = first_failure(resting(wall), direction)
+        push = min(wall.uplift(direction) * G, failure.push if failure else np.inf)
+        assert push / G == pytest.approx(blocks.collapse(direction).lambda_, rel=1e-8)
+
+
+def test_what_a_leaning_structure_fixes_opens_at_its_own_lever_arm_away_from_what_it_leans_on():
+    stone = of(STACKS["stone"].replace("negative: mirror", "negative: none\none_sided: positive\nrebound: 0.4"))
+    failure = first_failure(resting(stone), Direction.POSITIVE)
+    assert (failure.push / G, failure.joint) == (pytest.approx(0.1, rel=1e-9), "base and top") and failure.opens
+    assert "opens from 0.1 g" in " ".join(run_json_of(stone))
+    time = np.arange(61) * 0.01
+    out = GroundMotion("out", 0.01, np.append(-0.3 * G * np.sin(np.pi * time / 0.6), 0.0))
+    assert nonlinear(stone, out).unknown
+    assert not nonlinear(stone, GroundMotion("in", 0.01, -out.acceleration)).unknown
 
 
 def test_faces_that_lie_on_one_another_without_a_joint_bear_at_rest():

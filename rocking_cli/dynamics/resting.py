@@ -118,7 +118,10 @@ def resting(mechanism: Mechanism) -> Rest:
         known = Rest(whole if mechanism.rocks_both_ways else None)
         found = [_first(mechanism, there, closed, direction, known) for direction in Direction]
         return known._replace(modes=[mode for mode in found if mode is not None])
-    return Rest(None, [] if whole is None else [_slides_out(whole, there, mechanism.directions[0])])
+    (direction,) = mechanism.directions
+    known = Rest(None, [] if whole is None else [_slides_out(whole, there, direction)])
+    mode = _first(mechanism, there, closed, direction, known, _leaning(mechanism, closed, direction))
+    return known if mode is None else known._replace(modes=[*known.modes, mode])
 
 
 def _closed(contacts: Sequence[Contact], near: float) -> list[Contact] | None:
@@ -162,8 +165,27 @@ def _slides_out(whole: Released, there: Pieces, direction: Direction) -> EarlyMe
     return EarlyMechanism(foot.label, True, False, force, float(whole.compliance[0, 1]), velocity)
 
 
+def _leaning(mechanism: Mechanism, closed: Sequence[Contact], direction: Direction) -> list[Contact]:
+    """Return smooth contacts of all pieces with what a structure leans on, which is not known: none moves into it."""
+    at = {piece.body.name: {piece.body.centroid} for piece in mechanism.pieces(direction)}
+    for contact in closed:
+        for name in contact.pieces:
+            if name is not None and contact.held is None:
+                at[name].update(contact.points)
+    return [
+        Contact((None, name), (point,), complex(direction), friction=0.0)
+        for name, points in at.items()
+        for point in points
+    ]
+
+
 def _first(
-    mechanism: Mechanism, there: Pieces, closed: Sequence[Contact], direction: Direction, known: Rest
+    mechanism: Mechanism,
+    there: Pieces,
+    closed: Sequence[Contact],
+    direction: Direction,
+    known: Rest,
+    leaning: Sequence[Contact] = (),
 ) -> EarlyMechanism | None:
     """Return the mechanism that starts first as the ground pushes a structure one way; None if it rocks or slides."""
     rocks = direction in mechanism.directions
@@ -172,7 +194,7 @@ def _first(
     uplift = mechanism.uplift(direction) if rocks else FAR
     if rocks and _bears_at_uplift(mechanism, direction, uplift):
         return None
-    mode = _weakest(there, closed, -int(direction), mechanism.gravity)
+    mode = _weakest(there, closed, leaning, -int(direction), mechanism.gravity)
     slides = first_failure(known, direction)
     push = min(uplift * mechanism.gravity, np.inf if slides is None else slides.push)
     return mode if mode is not None and mode.force[ONE] < (1 - SAME) * push * abs(mode.force[PUSH]) else None
@@ -206,7 +228,9 @@ def _conditions(found: Released) -> Iterator[tuple[Reals, str, bool]]:
                 yield total - sense * found.force[0, shear], contact.label, True
 
 
-def _weakest(there: Pieces, closed: Sequence[Contact], sense: int, gravity: float) -> EarlyMechanism | None:
+def _weakest(
+    there: Pieces, joints: Sequence[Contact], leaning: Sequence[Contact], sense: int, gravity: float
+) -> EarlyMechanism | None:
     """Return the mechanism of the largest ground acceleration of one sense that the joints can bear; None if none is.
 
     A linear programme: of forces that are in equilibrium with the loads, joints press and friction is not exceeded. Its
@@ -214,6 +238,7 @@ def _weakest(there: Pieces, closed: Sequence[Contact], sense: int, gravity: floa
     """
     from scipy.optimize import linprog  # slow to import, and only redundant joints need it
 
+    closed = [*joints, *leaning]
     rates, rows = there.rates(closed)
     jacobian, scale, demand = rates.dense()[0], there.scale, there.held_still()[0]
     count = len(jacobian)
@@ -250,11 +275,12 @@ def _weakest(there: Pieces, closed: Sequence[Contact], sense: int, gravity: floa
         velocity, speed, force = -velocity, -speed, -force
     for row, (friction, load) in borne.items():
         force = force + friction * abs(speed[row]) * load
-    fastest = np.abs(speed).max()
+    names = [contact.label for contact in joints for _ in range(contact.forces)]
+    speed = np.abs(speed[: len(names)])
+    fastest = speed.max()
     plain = _undilated(jacobian, closed, rows, velocity, scale)
-    presses = [row for normal, _ in rows for row in normal]
-    names = [contact.label for contact in closed for _ in range(contact.forces)]
-    most = int(np.argmax(np.abs(speed) >= (1 - SAME) * fastest))  # the first of several
+    presses = [row for normal, _ in rows for row in normal if row < len(names)]
+    most = int(np.argmax(speed >= (1 - SAME) * fastest))  # the first of several
     return EarlyMechanism(
         names[most],
         most not in presses,
