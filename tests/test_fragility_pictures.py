@@ -147,7 +147,10 @@ def test_the_records_of_an_ida_rise_into_the_band_of_overturning():
     peaks = np.array(
         [[0.1, 0.3, 0.7, np.nan], [0.1, 0.4, np.nan, np.nan], [0.0, 0.2, 0.4, 0.6], [0.2, 0.5, 1.1, np.nan]]
     )
-    figure = rendered(draw_ida(LEVELS, peaks, "PGA [g]", "a wall"))
+    for few, drawn in ((4, set()), (5, {"median"}), (20, {"16 %", "median", "84 %"})):
+        named = {line.get_label() for line in draw_ida(LEVELS, peaks, "PGA [g]", "", few).axes[0].get_lines()}
+        assert named & {"16 %", "median", "84 %"} == drawn
+    figure = rendered(draw_ida(LEVELS, peaks, "PGA [g]", "a wall", 20))
     (axes,) = figure.axes
     lines = {line.get_label(): line.get_ydata() for line in axes.get_lines()}
     height = axes.get_yticks()[-1]

@@ -10,8 +10,8 @@ import pytest
 import yaml
 
 from rocking_cli.plotting.quantiles import draw_quantiles
-from rocking_cli.studies.fragility import assess
-from rocking_cli.studies.fragility.quantiles import Group, Quantiles, all_quantiles, quantiles
+from rocking_cli.studies.fragility import assess, quantiles
+from rocking_cli.studies.fragility.quantiles import Group, Quantiles, all_quantiles
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
 from tests.conftest import EXAMPLES
@@ -25,6 +25,14 @@ BLOCK = {
 }
 PULSES = [{"pulse": f"{shape}:0.6g:{period}s"} for shape in ("sine", "ricker", "mavroeidis") for period in (0.7, 1.2)]
 MEASURES = ["PGA", "PGV", "PGA/(g lambda)"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def however_few():
+    """All quantiles of the six records: a test of its own has those that are too few."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(quantiles, "FEWEST", (1, 1, 1))
+        yield
 
 
 def study(folder, method, measures=MEASURES):
@@ -88,6 +96,18 @@ def test_each_group_has_the_runs_between_its_ends_and_their_quantiles(whole):
     assert kinds == {True, False}
 
 
+@pytest.mark.parametrize(("records", "told"), [(4, "---"), (5, "-m-"), (19, "-m-"), (20, "lmh")])
+def test_a_quantile_of_too_few_records_is_not_told(monkeypatch, records, told):
+    monkeypatch.setattr(quantiles, "FEWEST", (20, 5, 20))
+    peaks, record = np.linspace(0.1, 0.9, 40).reshape(40, 1, 1), np.arange(40) % records
+    found = quantiles._group(peaks, record, np.ones(40), 1.0, records)
+    for values in (found.rocking, found.every):
+        assert "".join("-" if np.isnan(value) else word for value, word in zip(values, "lmh", strict=True)) == told
+    half = np.where(record[:, None, None] < records // 2, 0.0, peaks)  # half of the records do not uplift
+    found = quantiles._group(half, record, np.ones(40), 1.0, records)
+    assert np.isnan(found.rocking[0]) and np.isnan(found.every[0]) == (records < 20)
+
+
 def test_groups_are_those_of_the_observed_parts(whole):
     plan, definition, place, found = whole
     if definition.method == "ida":  # there all runs above the first that exceeds count as exceeding
@@ -137,8 +157,8 @@ def test_runs_that_are_not_there_count_for_nothing(tmp_path):
         store._connection.execute("BEGIN")
         store._connection.execute("DELETE FROM run WHERE id < ?", (gone,))
         store._connection.execute("UPDATE run SET outcome = 2 WHERE id >= ? AND id % 2 = 1", (gone,))
-        assert not list(quantiles(store, prepared.plan, "valley bridge", ["PGA"]))
-        (found,) = quantiles(store, prepared.plan, "uncertain", ["PGA"])
+        assert not list(quantiles.quantiles(store, prepared.plan, "valley bridge", ["PGA"]))
+        (found,) = quantiles.quantiles(store, prepared.plan, "uncertain", ["PGA"])
         store._connection.execute("ROLLBACK")
     assert sum(each.runs for each in found.groups) == (prepared.plan.size - gone) / 2
 

@@ -97,4 +97,7 @@ def _increments(answer: StudyAnswer, structure: str) -> Figure:
     measure = answer.definition.levels.measure
     across = "factor on the records" if measure == SCALE else label(measure)
     with Store.reading(answer.store) as store:
-        return draw_ida(np.array(answer.plan.levels), peaks(store, answer.plan, structure), across, structure)
+        plan = answer.plan
+        usable = [k for k, each in enumerate(plan.records) if each.reason is None]
+        records = np.unique(plan.of_sets.one[usable]).size
+        return draw_ida(np.array(plan.levels), peaks(store, plan, structure), across, structure, records)

@@ -20,6 +20,7 @@ from rocking_cli import names
 from rocking_cli.plotting import style
 from rocking_cli.studies.fragility.assess import Bivariate, Fragility
 from rocking_cli.studies.fragility.curves import FragilityCurve, Observations, Surface
+from rocking_cli.studies.fragility.quantiles import FEWEST
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -147,7 +148,7 @@ def _remarks(drawn: Sequence[LabelledCurve]) -> list[str]:
     """Return the warnings about the curves of a plot, each once."""
     drawn = [edge for each in drawn for edge in each.edges]
     unbounded = dict.fromkeys(each.name for each in drawn if each.curve.unbounded)
-    steps = dict.fromkeys(each.name for each in drawn if each.curve.step is not None)
+    steps = dict.fromkeys(each.name for each in drawn if (at := each.curve.step) is not None and at.low < at.high)
     step = (
         f"shade of a step: the interval between two levels, not a confidence band: {', '.join(steps)}" if steps else ""
     )
@@ -195,10 +196,9 @@ def _draw_curve(axes: Axes, each: LabelledCurve, look: dict[str, Any], fine: Rea
     curve = each.curve
     if curve.kind == "none":
         return
+    fine = _with_steps(fine, [curve])
     if curve.step is not None:
         axes.axvspan(curve.step.low, curve.step.high, color=look["color"], alpha=SHADED, linewidth=0.0)
-        at = curve.step.value
-        fine = np.sort(np.concatenate([fine, [np.nextafter(at, 0), np.nextafter(at, np.inf)]]))
     elif filled and not curve.unbounded:
         axes.fill_between(fine, *curve.band(fine), color=look["color"], alpha=SHADED, linewidth=0.0)
     elif not curve.unbounded:
@@ -209,12 +209,17 @@ def _draw_curve(axes: Axes, each: LabelledCurve, look: dict[str, Any], fine: Rea
     )
 
 
+def _with_steps(fine: Reals, curves: Sequence[FragilityCurve]) -> Reals:
+    """Add both sides of every step of some curves to the intensities at which they are drawn."""
+    ends = [end for curve in curves for step in curve.steps for end in (step.low, step.value, step.high)]
+    return np.sort(np.concatenate([fine, *([np.nextafter(at, 0), np.nextafter(at, np.inf)] for at in ends)]))
+
+
 def _draw_band(
     axes: Axes, each: LabelledCurve, look: dict[str, Any], fine: Reals, hatch: str, *, filled: bool
 ) -> None:  # fmt: skip
     """Hatch the area between two curves, with the confidence limits of both; to 1 or 0 if one does not exist."""
-    steps = [edge.curve.step.value for edge in each.edges if edge.curve.step is not None]
-    fine = np.sort(np.concatenate([fine, *([np.nextafter(at, 0), np.nextafter(at, np.inf)] for at in steps)]))
+    fine = _with_steps(fine, [edge.curve for edge in each.edges])
     values: list[Reals] = []
     bands: list[Reals] = []
     for edge, without in zip(each.edges, (1.0, 0.0), strict=True):
@@ -254,7 +259,8 @@ def _key(each: LabelledCurve, look: dict[str, Any]) -> Line2D:
         look = look | {"linestyle": "none"}
         said = f"no curve: {curve.why}"
     elif curve.step is not None:
-        said += f", between {curve.step.low:.3g} and {curve.step.high:.3g}"
+        low, high = curve.step.low, curve.step.high
+        said += f", between {low:.3g} and {high:.3g}" if low < high else f" at {low:.4g}, exact"
     elif curve.median is not None:
         said += f", median {curve.median.value:.3g} ({curve.median.low:.3g} to {curve.median.high:.3g})"
         for name, spread in (("dispersion", curve.dispersion), ("scale", curve.scale)):
@@ -263,7 +269,7 @@ def _key(each: LabelledCurve, look: dict[str, Any]) -> Line2D:
     return Line2D([], [], label=_lines(f"{each.name}: {said}"), markerfacecolor="white", **look)
 
 
-def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
+def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str, records: int | None = None) -> Figure:
     """Plot the peak rotation of each record against the intensity, with quantiles over the records.
 
     Parameters
@@ -276,6 +282,8 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
         The measure of intensity, with its unit in brackets.
     title : str
         Heading.
+    records : int, optional
+        Number of distinct records, which decides which quantiles are drawn; by default that of the rows.
 
     Returns
     -------
@@ -304,7 +312,9 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str) -> Figure:
     ranked = np.sort(peaks, axis=0)
     name = "one record" if some.size == len(peaks) else f"one record, {some.size} drawn"
     handles = [Line2D([], [], color=style.FAINT, linewidth=style.THIN, label=name)]
-    for k, (fractile, name) in zip((1, 0, 2), FRACTILES, strict=True):
+    for k, (fractile, name), fewest in zip((1, 0, 2), FRACTILES, FEWEST, strict=True):
+        if (len(peaks) if records is None else records) < fewest:
+            continue
         place = int(np.ceil(fractile * len(ranked))) - 1  # the lowest peak that so many records do not exceed
         look = style.distinct(k) | {"marker": "none", "linewidth": 2.0}
         line = ranked[place].copy()

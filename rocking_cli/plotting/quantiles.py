@@ -68,15 +68,16 @@ def _peaks(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
     color = style.distinct(2)["color"]
     shade = axes.fill_between(x, rocking[0], rocking[2], color=color, alpha=SHADED, linewidth=0.0)
     shade.set_label("runs that rock, 16 to 84 %")
-    handles: list[Any] = [shade]
+    blank = Line2D([], [], linestyle="none", label="")  # so that each column is of one kind
+    handles: list[Any] = [shade if np.isfinite(rocking[0]).any() else blank]
     handles += axes.plot(x, rocking[1], color=color, linewidth=style.BOLD, marker="o", markersize=3.5,
                          label="runs that rock, median", zorder=4)  # fmt: skip
-    blank = Line2D([], [], linestyle="none", label="")  # so that each column is of one kind
     handles += [blank, blank] if found.unknown else [blank]
     for line, dash, name in zip(every, ("--", "-", "-."), ("16 %", "median", "84 %"), strict=True):
         end = np.where(np.isinf(line), floor + HIGHEST * (top - floor), line)
         end[1:][np.isinf(line[1:]) & np.isinf(line[:-1])] = np.nan
-        handles += axes.plot(x, end, color=style.INK, linestyle=dash, linewidth=style.MEDIUM, label=f"all runs, {name}")
+        (drawn,) = axes.plot(x, end, color=style.INK, linestyle=dash, linewidth=style.MEDIUM, label=f"all runs, {name}")
+        handles.append(blank if np.isnan(line).all() else drawn)  # of too few records there is none
     handles += [blank] if found.unknown else []
     ticks = np.arange(0.0, floor, 0.2 if floor > 0.5 else floor / 5).tolist()
     if falls:

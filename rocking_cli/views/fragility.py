@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from rocking_cli.names import UNKNOWN, percent
+from rocking_cli.studies.fragility.definition import LAMBDA
 from rocking_cli.studies.fragility.displacements import kept, metres
 from rocking_cli.studies.fragility.intensity import label
 from rocking_cli.views.view import ABSENT, Table, View, number
 
 if TYPE_CHECKING:  # fits need scipy, and what would be run needs no fit
     from rocking_cli.studies.fragility.assess import Bivariate, Fragility, UnknownRuns
-    from rocking_cli.studies.fragility.curves import Estimate, FragilityCurve, Surface
+    from rocking_cli.studies.fragility.curves import Cut, Estimate, FragilityCurve, Surface
     from rocking_cli.studies.fragility.definition import Definition, Limit
     from rocking_cli.studies.fragility.hazard_curve import Rate
     from rocking_cli.studies.fragility.plan import Plan
@@ -24,6 +25,7 @@ if TYPE_CHECKING:  # fits need scipy, and what would be run needs no fit
     from rocking_cli.studies.fragility.study import Study
 
 Fitted = TypeVar("Fitted", "Fragility", "Bivariate")
+FINE = 200  # intensities at which it is looked whether a curve is cut
 
 
 def planned(study: Study, plan: Plan) -> View:
@@ -209,7 +211,7 @@ def _curves(structure: str, measure: str, curves: Sequence[Fragility], definitio
     yield ""
     yield Table(f"{structure}, over {label(measure)}", columns, rows, numbers=range(2, len(columns)))
     for name, each in shown:
-        yield f"{name}: {each.curve.why}.{_in_years(each.rate)}"
+        yield f"{name}: {each.curve.why}.{_senseless(each.curve)}{_cut_in_words(each)}{_in_years(each.rate)}"
     yield from _undecided(curves, capacities=definition.method == "ida")
     yield from _left_out(measure, curves[0].left_out)
     yield from _warnings([each.curve for _, each in shown])
@@ -315,6 +317,32 @@ def _warnings(fitted: Sequence[FragilityCurve | Surface]) -> Iterator[str]:
         yield f"Warning: {warning}."
 
 
+def _senseless(curve: FragilityCurve) -> str:
+    """Say that a dispersion is not shown because it is too large; empty if it is not."""
+    from rocking_cli.studies.fragility.curves import WIDEST
+
+    if curve.kind != "lognormal" or curve.dispersion is not None:
+        return ""
+    return f" Its dispersion is above {WIDEST:g}: this limit state does not depend on the measure."
+
+
+def cut_of(found: Fragility) -> Cut | None:
+    """Return by how much a curve is cut, over the intensities of its runs."""
+    least, most = float(found.seen.x.min()), float(found.seen.x.max())
+    return found.curve.cut(np.geomspace(least, most, FINE))
+
+
+def _cut_in_words(found: Fragility) -> str:
+    """Say by which limit state a curve is cut; empty if it is not."""
+    cut = cut_of(found)
+    if cut is None:
+        return ""
+    by = (
+        "lambda, up to which nothing uplifts" if cut.by == LAMBDA else f"that of {limit_name(cut.by)}, which it implies"
+    )
+    return f" Curve and band are cut by {by}: by up to {cut.most:.2g} at {cut.at:.3g}."
+
+
 def _in_years(rate: Rate | None) -> str:
     if rate is None or rate.rate == 0:
         return ""
@@ -333,7 +361,10 @@ def limit_name(limit: Limit) -> str:
 
 def _estimate(estimate: Estimate | None) -> str:
     """Format a number above its confidence interval."""
-    return ABSENT if estimate is None else f"{estimate.value:.4g}\n{estimate.low:.3g} - {estimate.high:.3g}"
+    if estimate is None:
+        return ABSENT
+    exact = estimate.low == estimate.high
+    return f"{estimate.value:.4g}\n{'exact' if exact else f'{estimate.low:.3g} - {estimate.high:.3g}'}"
 
 
 def _curve_data(found: Fragility) -> dict[str, Any]:
@@ -367,6 +398,7 @@ def _fit_data(found: Fragility) -> dict[str, Any]:
         "exceedances": curve.exceedances,
         "distinct_records": curve.records,
         "warning": curve.warning or None,
+        "cut": None if (cut := cut_of(found)) is None else asdict(cut),
         "annual_rate": None if found.rate is None else asdict(found.rate),
     }
 

@@ -59,7 +59,5 @@ def _intensities(found: Fragility) -> NDArray[np.float64]:
     least, most = float(found.seen.x.min()), float(found.seen.x.max())
     between = np.geomspace if most > WIDEST * least else np.linspace
     x: NDArray[np.float64] = between(least, most, POINTS)
-    for curve in (found.curve, (found.lower or found).curve):
-        if curve.step is not None:
-            x = np.union1d(x, [curve.step.low, curve.step.value, curve.step.high])
-    return x
+    steps = [step for curve in (found.curve, (found.lower or found).curve) for step in curve.steps]
+    return np.union1d(x, [end for step in steps for end in (step.low, step.value, step.high)])

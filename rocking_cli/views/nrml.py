@@ -31,7 +31,7 @@ def nrml(model: OpenQuakeModel, name: str, description: str) -> bytes:
         kind = {"id": each.name, "format": "continuous", "shape": "logncdf"}
         function = ElementTree.SubElement(whole, "fragilityFunction", kind)
         least, most = map(repr, each.ends)
-        ends = {"imt": each.intensity_type, "noDamageLimit": least, "minIML": least, "maxIML": most}
+        ends = {"imt": each.intensity_type, "noDamageLimit": repr(each.without_damage), "minIML": least, "maxIML": most}
         ElementTree.SubElement(function, "imls", ends)
         for limit, (mean, deviation) in zip(model.limits, each.parameters, strict=True):
             parameters = {"ls": limit, "mean": repr(mean), "stddev": repr(deviation)}

@@ -9,7 +9,7 @@ from typing import Any
 from rocking_cli.names import OVERTURNS, UNKNOWN, percent
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.studies.fragility.intensity import label
-from rocking_cli.studies.fragility.quantiles import SHARES, Group, Quantiles
+from rocking_cli.studies.fragility.quantiles import FEWEST, SHARES, Group, Quantiles
 from rocking_cli.views.column import Column, data_of, of, rounded, table_of
 from rocking_cli.views.view import ABSENT, Table, View, number
 
@@ -21,7 +21,8 @@ def with_quantiles(shown: View, found: Sequence[Quantiles], *, in_words: bool) -
     tables = [part for each in found for part in _tables(each)] if in_words else []
     note = (
         "Quantiles of the peak phi/phi_cr. For all runs, a run without uplift counts as 0 and an overturning run "
-        f"ranks above every finite peak; '{OVERTURNS}' marks quantiles that are such runs."
+        f"ranks above every finite peak; '{OVERTURNS}' marks quantiles that are such runs. The median needs "
+        f"{min(FEWEST)} distinct records, the others {max(FEWEST)}; of fewer, they are '{ABSENT}'."
     )
     if any(each.unknown for each in found):
         note += (

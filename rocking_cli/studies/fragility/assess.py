@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,13 +12,15 @@ from rocking_cli.studies.fragility.curves import (
     FragilityCurve,
     Observations,
     Surface,
+    exact_step,
     fit_capacities,
     fit_curve,
     fit_surface,
 )
-from rocking_cli.studies.fragility.definition import Definition, Limit
+from rocking_cli.studies.fragility.definition import LAMBDA, UPLIFT, Definition, Limit, implies
 from rocking_cli.studies.fragility.hazard_curve import HazardCurve, Rate, annual_rate
 from rocking_cli.studies.fragility.likelihood import Bools, Integers, Reals
+from rocking_cli.studies.fragility.onset import Onset
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.tally import Cells, Counted, Tally, count, intensities
@@ -210,21 +212,66 @@ def curves(
         x = cells.intensities(measure)
         if not (x > 0).any():  # or not known, either
             continue
+        runs, found = tally.ladders is None, []
         for limit in definition.limit_states:
-            upper = _curve(cells, x, structure, measure, limit, definition, hazard)
-            runs = tally.ladders is None
+            upper = _curve(cells, x, structure, measure, limit, definition)
             unknown = _undecided_runs(cells, limit, x > 0) if runs else _undecided_ladders(tally, limit)
             if unknown:
                 assert tally.lower is not None
                 known = replace(cells, tally=tally.lower)
-                lower = _curve(known, x, structure, measure, limit, definition, hazard)
+                lower = _curve(known, x, structure, measure, limit, definition)
                 upper = replace(upper, unknown=unknown, lower=lower)
-            yield upper if tally.unknown_if_checked is not None else replace(upper, unknown=None)
+            found.append(upper if tally.unknown_if_checked is not None else replace(upper, unknown=None))
+        for each in _consistent(found, cells.onset(measure)):
+            yield _with_rate(each, hazard) if hazard is not None and definition.hazard_measure == measure else each
+
+
+def _consistent(found: Sequence[Fragility], onset: Onset | None) -> Iterator[Fragility]:
+    """Yield the curves of one structure over one measure with what is exact, and so that none is above an implied one.
+
+    Parameters
+    ----------
+    found : sequence of Fragility
+        The curves as fitted, one for each limit state.
+    onset : Onset, optional
+        The intensity at which the structure uplifts, if it is known.
+    """
+    floor: dict[Limit, FragilityCurve] = {}
+    if onset is not None and onset.exact and any(each.limit == UPLIFT for each in found):
+        found = [_exact(each, onset.at) if each.limit == UPLIFT else each for each in found]
+    elif onset is not None:
+        floor = {LAMBDA: exact_step(FragilityCurve("none", "", 1.0, 0, 0), onset.at, "")}
+
+    def below(curve: FragilityCurve, weaker: Mapping[Limit, FragilityCurve]) -> FragilityCurve:
+        known = floor | {limit: each for limit, each in weaker.items() if each.kind != "none"}
+        return curve if curve.kind == "none" else replace(curve, implied=known)
+
+    for each in found:
+        weaker = [other for other in found if implies(each.limit, other.limit)]
+        lower = each.lower
+        if lower is not None:
+            under = {other.limit: (other.lower or other).curve for other in weaker}
+            lower = replace(lower, curve=below(lower.curve, under))
+        curve = below(each.curve, {other.limit: other.curve for other in weaker})
+        yield replace(each, curve=curve, lower=lower)
+
+
+def _exact(found: Fragility, at: float) -> Fragility:
+    """Return the curve of uplift as the step that it is."""
+    place = f"{at:.4g} {parse_measure(found.measure).unit}".strip()
+    why = f"a motion uplifts the structure exactly if its {found.measure} exceeds {place}, so no curve is fitted"
+    return replace(found, curve=exact_step(found.curve, at, why))
+
+
+def _with_rate(found: Fragility, hazard: HazardCurve) -> Fragility:
+    """Return a result and its lower fit with their annual rates."""
+    lower = None if found.lower is None else _with_rate(found.lower, hazard)
+    rate = annual_rate(found.curve, hazard) if found.curve.kind != "none" else None
+    return replace(found, rate=rate, lower=lower)
 
 
 def _curve(
-    cells: Cells, x: Reals, structure: str, measure: str, limit: Limit, definition: Definition,
-    hazard: HazardCurve | None,
+    cells: Cells, x: Reals, structure: str, measure: str, limit: Limit, definition: Definition
 ) -> Fragility:  # fmt: skip
     """Fit the curve of one limit state over one measure; `x` holds the intensities of the cells."""
     tally, confidence, there = cells.tally, definition.confidence, x > 0
@@ -243,10 +290,7 @@ def _curve(
         curve = fit_capacities(
             lower, upper, tally.one(of), levels=tried, confidence=confidence, weight=tally.weight(of)
         )
-    rate = None
-    if hazard is not None and curve.kind != "none" and definition.hazard_measure == measure:
-        rate = annual_rate(curve, hazard)
-    return Fragility(structure, limit, measure, seen, curve, rate, int(cells.runs[~there].sum()))
+    return Fragility(structure, limit, measure, seen, curve, None, int(cells.runs[~there].sum()))
 
 
 def _undecided_runs(cells: Cells, limit: Limit, there: Bools) -> int:

@@ -21,6 +21,8 @@ from rocking_cli.studies.fragility.definition import SLIDING, Definition
 from rocking_cli.studies.fragility.displacements import FACT, asked_for
 from rocking_cli.studies.fragility.intensity import PGA, PGV
 from rocking_cli.studies.fragility.measuring import complete
+from rocking_cli.studies.fragility.onset import FACT as ONSET
+from rocking_cli.studies.fragility.onset import accelerations
 from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
 from rocking_cli.studies.fragility.reached import rotations
 from rocking_cli.studies.fragility.sources import KeptMotions
@@ -105,6 +107,7 @@ def prepare(
     every = [str(each) for each in all_measures()] if rank_measures else []
     told = examined if examined is not None and _measures(study, rank_measures=rank_measures) else lambda count: None
     plan = measured(study, plan, motions, [*given.asked_measures, *every], told, origins=rank_measures)
+    asked |= {ONSET: accelerations(study, plan)}
     if known is None:
         asked |= _displacements(study, plan, {})
         store.begin(plan, {**facts, **asked, "libraries": libraries()})

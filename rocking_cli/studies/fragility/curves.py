@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -28,12 +29,23 @@ __all__ = [
 Kind = Literal["lognormal", "logistic", "step", "none"]
 LINKS: dict[Kind, Link] = {"lognormal": "probit", "logistic": "logit"}
 REJECTED = 0.05  # p-value below which a curve is rejected
+WIDEST = 5.0  # dispersion beyond which the limit state does not depend on the measure: exp(5) is 150
 LIKELIER = 1e-6  # of a log-likelihood: less is rounding
 _DECREASING = (
     "no increasing curve exists: fewer runs count as exceeding the limit at higher intensities, so no curve fits this "
     "measure"
 )
 TINY = 1e-300  # stands for an intensity of zero, which has no logarithm
+NOTICEABLE = 0.001  # of a probability: a curve that is cut by less is not said to be
+
+
+@dataclass(frozen=True)
+class Cut:
+    """By which limit state a curve is cut, the largest difference of the curve or its band, and at which intensity."""
+
+    by: str | float
+    most: float
+    at: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +73,9 @@ class FragilityCurve:
         Akaike's criterion of the kinds that were fitted; it ignores the dependence between runs of one record.
     records : int
         Number of different records.
+    implied : mapping of limit state to FragilityCurve
+        Curves of limit states that are exceeded whenever this one is. Probability, band and median are cut by them: no
+        structure overturns that does not uplift.
     """
 
     kind: Kind
@@ -73,6 +88,17 @@ class FragilityCurve:
     goodness: Goodness | None = None
     aic: dict[Kind, float] | None = None
     records: int = 0
+    implied: Mapping[str | float, FragilityCurve] = field(default_factory=dict)
+
+    @property
+    def own(self) -> FragilityCurve:
+        """The curve as it was fitted, without its cuts."""
+        return replace(self, implied={})
+
+    @property
+    def steps(self) -> list[Estimate]:
+        """The step of this curve and those of the curves that cut it: below each, the probability is zero."""
+        return [each.step for each in (self, *self.implied.values()) if each.step is not None]
 
     @property
     def warning(self) -> str:
@@ -82,6 +108,16 @@ class FragilityCurve:
     @property
     def median(self) -> Estimate | None:
         """Intensity of probability one half, in the unit of x; its interval is where the band crosses one half."""
+        medians = [each._median for each in (self, *self.implied.values())]
+        found = [each for each in medians if each is not None]
+        if medians[0] is None:
+            return None
+        # The smallest of increasing curves crosses one half where the last of them does.
+        return Estimate(*(max(getattr(each, end) for each in found) for end in ("value", "low", "high")))
+
+    @property
+    def _median(self) -> Estimate | None:
+        """Median of the fit itself."""
         if self.fit is None:
             return self.step
         a, b = self.fit.coefficients
@@ -93,8 +129,9 @@ class FragilityCurve:
 
     @property
     def dispersion(self) -> Estimate | None:
-        """Standard deviation of the logarithm of the capacity; None unless the curve is lognormal."""
-        return self._inverse_slope() if self.kind == "lognormal" else None
+        """Standard deviation of the logarithm of the capacity; None unless the curve is lognormal, or above 5."""
+        found = self._inverse_slope() if self.kind == "lognormal" else None
+        return found if found is None or found.value <= WIDEST else None
 
     @property
     def scale(self) -> Estimate | None:
@@ -104,7 +141,7 @@ class FragilityCurve:
     @property
     def unbounded(self) -> bool:
         """Whether the upper confidence limit of the median is infinite: the band then covers nearly everything."""
-        return self.fit is not None and self.median is not None and not np.isfinite(self.median.high)
+        return self.fit is not None and self._median is not None and not np.isfinite(self._median.high)
 
     def _inverse_slope(self) -> Estimate:
         assert self.fit is not None
@@ -115,20 +152,42 @@ class FragilityCurve:
         """Return the probability of exceedance at intensities of any shape; NaN if there is no curve."""
         x = np.asarray(x, dtype=np.float64)
         if self.fit is not None:
-            return self.fit.probability(self._design(x)).reshape(x.shape)
-        if self.step is not None:
-            return np.heaviside(x - self.step.value, 0.5)
-        return np.full(x.shape, np.nan)
+            found = self.fit.probability(self._design(x)).reshape(x.shape)
+        elif self.step is not None:
+            found = np.heaviside(x - self.step.value, 0.5)
+        else:
+            return np.full(x.shape, np.nan)
+        return np.asarray(np.min([found, *(each.probability(x) for each in self.implied.values())], axis=0))
 
     def band(self, x: Reals) -> tuple[Reals, Reals]:
         """Return pointwise confidence limits of the probability at intensities; 0 and 1 within a step's interval."""
         x = np.asarray(x, dtype=np.float64)
         if self.fit is not None:
-            low, high = self.fit.band(self._design(x))
-            return low.reshape(x.shape), high.reshape(x.shape)
-        if self.step is not None:
-            return (x >= self.step.high).astype(np.float64), (x > self.step.low).astype(np.float64)
-        return np.full(x.shape, np.nan), np.full(x.shape, np.nan)
+            found = [each.reshape(x.shape) for each in self.fit.band(self._design(x))]
+        elif self.step is not None:
+            found = [(x >= self.step.high).astype(np.float64), (x > self.step.low).astype(np.float64)]
+        else:
+            return np.full(x.shape, np.nan), np.full(x.shape, np.nan)
+        low, high = np.min([found, *(each.band(x) for each in self.implied.values())], axis=0)
+        return low, high
+
+    def cut(self, x: Reals) -> Cut | None:
+        """Return the largest cut of the curve or its band at some intensities (n,); None if it is nowhere noticeable.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+            The intensities.
+        """
+        if not self.implied:
+            return None
+        own, others = self.own, list(self.implied)
+        lines = np.array([[each.probability(x), *each.band(x)] for each in (own, *self.implied.values())])
+        above = lines[0] - lines[1:]
+        if above.max() <= NOTICEABLE:
+            return None
+        k, line, place = (int(each) for each in np.unravel_index(above.argmax(), above.shape))
+        return Cut(others[k], float(above[k, line, place]), float(x[place]))
 
     def _design(self, x: Reals) -> Reals:
         return _design(self.kind, x.ravel())
@@ -353,3 +412,9 @@ def _root_interval(fit: Fit) -> tuple[float, float]:
         return -np.inf, np.inf
     root = np.sqrt(max(middle * middle - leading * constant, 0.0))
     return float((-middle - root) / leading), float((-middle + root) / leading)
+
+
+def exact_step(fitted: FragilityCurve, at: float, why: str) -> FragilityCurve:
+    """Return a curve as a step whose place is known exactly, whatever was fitted."""
+    step = Estimate(at, at, at)
+    return replace(fitted, kind="step", why=why, fit=None, step=step, goodness=None, aic=None)

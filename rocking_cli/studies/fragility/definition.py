@@ -21,7 +21,7 @@ from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import parse_steps
 from rocking_cli.studies.file_part import Part, Sound, problems_of
-from rocking_cli.studies.fragility.displacements import is_quantity, spelt
+from rocking_cli.studies.fragility.displacements import is_quantity, metres, spelt
 from rocking_cli.studies.fragility.distributions import Distribution, Positive
 from rocking_cli.studies.fragility.hazard_curve import wrong_points
 from rocking_cli.studies.fragility.intensity import PGA, no_levels, spelled
@@ -31,6 +31,7 @@ from rocking_cli.studies.fragility.sets import among
 from rocking_cli.studies.fragility.varied import in_units_of_fields
 
 UPLIFT, OVERTURNING, SLIDING = "uplift", "overturning", "sliding"
+LAMBDA = "lambda"  # what a motion reaches that uplifts a structure, though no limit state to be asked of
 MOST = 100_000  # levels or samples: more is a slip of the keyboard
 
 
@@ -104,6 +105,18 @@ Intensity = Annotated[float, Field(ge=1e-6, le=1e6)]
 Measure = Annotated[str, BeforeValidator(_measure)]
 LevelMeasure = Annotated[str, BeforeValidator(_level_measure)]
 Limit = Annotated[str | float, BeforeValidator(_limit)]
+
+
+def implies(limit: Limit, other: Limit) -> bool:
+    """Return whether every run that exceeds a limit state exceeds another one as well."""
+    if limit == other or other in (OVERTURNING, SLIDING):
+        return False
+    if other == UPLIFT or limit == OVERTURNING:
+        return True
+    if isinstance(limit, float) and isinstance(other, float):
+        return limit > other
+    moved, less = metres(limit), metres(other)
+    return moved is not None and less is not None and moved > less
 
 
 class StructureEntry(Part):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -176,19 +176,20 @@ def annual_rate(curve: FragilityCurve, hazard: HazardCurve) -> Rate:
     if curve.kind == "none":
         raise InputError(f"no fragility curve exists to convolve: {curve.why}")
     last = float(hazard.annual_rate[-1])
-    if curve.step is not None:
+    if curve.step is not None and not curve.implied:
         at, low, high = (_rate_at(hazard, x) for x in (curve.step.value, curve.step.high, curve.step.low))
         above = last if curve.step.value > hazard.intensity[-1] * (1 + SAME) else 0.0
         return Rate(at, low, high, above, _beyond(hazard, curve.step.value))
     end = hazard.intensity[-1:]
+    jumps = [x for step in curve.steps for x in (step.low, step.value, step.high)]
     low, rate, high = (
-        _integral(hazard, probability) + float(probability(end)[0]) * last
+        _integral(hazard, probability, jumps) + float(probability(end)[0]) * last
         for probability in (lambda x: curve.band(x)[0], curve.probability, lambda x: curve.band(x)[1])
     )
     return Rate(rate, low, high, (1 - float(curve.probability(end)[0])) * last, _below(curve, hazard))
 
 
-def _integral(hazard: HazardCurve, probability: Callable[[Reals], Reals]) -> float:
+def _integral(hazard: HazardCurve, probability: Callable[[Reals], Reals], jumps: Sequence[float]) -> float:
     """Return the integral of P |d rate| between the first and the last point of the hazard curve [1/year]."""
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     logs = np.log(hazard.intensity)
@@ -199,6 +200,7 @@ def _integral(hazard: HazardCurve, probability: Callable[[Reals], Reals]) -> flo
         ]
         + [logs[-1:]]
     )
+    ends = np.union1d(ends, [x for x in np.log(jumps) if logs[0] < x < logs[-1]])  # P is smooth between them
     half, middle = np.diff(ends)[:, None] / 2, (ends[:-1, None] + ends[1:, None]) / 2
     at = middle + half * nodes
     slope = -np.diff(np.log(hazard.annual_rate)) / np.diff(logs)  # k of each power law
@@ -230,7 +232,17 @@ def _beyond(hazard: HazardCurve, at: float) -> float:
 
 
 def _below(curve: FragilityCurve, hazard: HazardCurve) -> float:
-    """Return the rate that intensities below the first point add, if the first power law continues [1/year]."""
+    """Return the rate that intensities below the first point add, if the first power law continues [1/year].
+
+    Of curves that cut each other, it is that of the smallest.
+    """
+    return min(_below_alone(each, hazard) for each in (curve.own, *curve.implied.values()))
+
+
+def _below_alone(curve: FragilityCurve, hazard: HazardCurve) -> float:
+    """Return this rate of a single curve."""
+    if curve.step is not None:
+        return _beyond(hazard, curve.step.value)
     from scipy.special import log_ndtr, ndtr
 
     k = _first_slope(hazard)

@@ -19,7 +19,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.studies.fragility.assess import Fragility
-from rocking_cli.studies.fragility.curves import REJECTED
+from rocking_cli.studies.fragility.curves import REJECTED, WIDEST
 from rocking_cli.studies.fragility.definition import OVERTURNING, SLIDING, UPLIFT, Limit
 from rocking_cli.studies.fragility.displacements import metres
 
@@ -75,6 +75,15 @@ class Function:
         x = np.concatenate([each.seen.x for each in self.curves])
         return float(self.factor * min(low, x.min())), float(self.factor * x.max())
 
+    @property
+    def without_damage(self) -> float:
+        """Intensity below which no limit state is exceeded, in OpenQuake's unit: a step that cuts every curve, if any.
+
+        Otherwise the lowest intensity.
+        """
+        steps = [max((step.value for step in each.curve.steps), default=0.0) for each in self.curves]
+        return max(self.ends[0], float(self.factor * min(steps)))
+
 
 @dataclass(frozen=True)
 class OpenQuakeModel:
@@ -107,7 +116,7 @@ def moments(found: Fragility) -> tuple[float, float]:
 
 
 def _median_and_spread(found: Fragility) -> tuple[float, float]:
-    median, dispersion = found.curve.median, found.curve.dispersion
+    median, dispersion = found.curve.own.median, found.curve.dispersion
     assert median is not None and dispersion is not None
     return median.value, dispersion.value
 
@@ -165,6 +174,8 @@ def _why_not(found: Fragility) -> str:
         return f"{of}: no curve exists: {found.curve.why}"
     if found.curve.kind != "lognormal":
         return f"{of}: its curve is a {found.curve.kind} one, and OpenQuake accepts only lognormal curves"
+    if found.curve.dispersion is None:
+        return f"{of}: its dispersion is above {WIDEST:g}: it does not depend on this measure"
     if not np.isfinite(moments(found)).all():
         return f"{of}: its dispersion is so large that its mean is not a finite number"
     return ""
@@ -249,9 +260,9 @@ def _doubts(functions: Sequence[Function]) -> Iterable[str]:
                 yield f"{_name(each)}: the data do not bound its median"
             if goodness is not None and goodness.p_value is not None and goodness.p_value < REJECTED:
                 yield f"{_name(each)}: the data reject a lognormal curve (p = {goodness.p_value:.2g})"
-        x = np.geomspace(*function.ends, FINE) / function.factor
+        x = np.geomspace(function.without_damage, function.ends[1], FINE) / function.factor
         for milder, graver in pairwise(function.curves):
-            above = graver.curve.probability(x) - milder.curve.probability(x)
+            above = graver.curve.own.probability(x) - milder.curve.own.probability(x)
             k = int(above.argmax())
             if above[k] > NOTICEABLE:
                 yield (

@@ -21,6 +21,8 @@ from rocking_cli.studies.fragility.tally import UNSEEN, Tally, endings_of, sampl
 
 Reals = NDArray[np.float64]
 SHARES = (0.16, 0.5, 0.84)
+FEWEST = (20, 5, 20)
+"""Records from which on each quantile is told: of fewer, a single motion decides it."""
 ROUNDING = 1e-9  # of a number of runs
 
 
@@ -39,10 +41,11 @@ class Group:
     no_uplift, overturned : int
         Number of runs that do not uplift, and of runs that overturn.
     rocking : tuple of float
-        Peak phi/phi_cr not exceeded by 16, 50 and 84 % of the runs that rock without overturning; NaN without any.
+        Peak phi/phi_cr not exceeded by 16, 50 and 84 % of the runs that rock without overturning; NaN without any, or
+        if too few records rock (`FEWEST`).
     every : tuple of float
         Peak phi/phi_cr not exceeded by these shares of all runs: 0 without uplift, infinite if a run overturns or its
-        outcome is unknown.
+        outcome is unknown, NaN if there are too few records.
     unknown : int
         Number of runs of unknown outcome.
     doubtful : tuple of bool
@@ -130,15 +133,18 @@ def quantiles(store: Store, plan: Plan, structure: str, measures: Sequence[str])
         whole = np.broadcast_to(groups, runs.shape)
         parts = seen.parts(0.95)
         yield Quantiles(structure, measure, seen.stripes, [
-            _group(table[whole == k], x[of_cell == k], float(parts.x[k]), int(parts.records[k]))
+            _group(
+                table[whole == k], np.nonzero(whole == k)[1], x[of_cell == k], float(parts.x[k]), int(parts.records[k])
+            )
             for k in range(parts.x.size)
         ])  # fmt: skip
 
 
-def _group(peaks: Reals, x: Reals, mean: float, records: int) -> Group:
+def _group(peaks: Reals, record: NDArray[np.int64], x: Reals, mean: float, records: int) -> Group:
     ranked = np.sort(peaks[~np.isnan(peaks)])
-    rocking = ranked[(ranked > 0) & (ranked < UNSEEN)]
-    every = _not_exceeded(ranked)
+    rocks = (peaks > 0) & (peaks < UNSEEN)
+    rocking = np.sort(peaks[rocks])
+    every = _not_exceeded(ranked, records)
     low, high = float(x.min()), float(x.max())
     return Group(
         min(max(mean, low), high),  # rounding aside it is between them
@@ -148,15 +154,16 @@ def _group(peaks: Reals, x: Reals, mean: float, records: int) -> Group:
         records,
         int((ranked == 0).sum()),
         int(np.isinf(ranked).sum()),
-        _not_exceeded(rocking),
+        _not_exceeded(rocking, np.unique(record[rocks.any(axis=(1, 2))]).size),
         tuple(np.inf if value == UNSEEN else value for value in every),
         int((ranked == UNSEEN).sum()),
         tuple(value == UNSEEN for value in every),
     )
 
 
-def _not_exceeded(ranked: Reals) -> tuple[float, ...]:
-    """Return the lowest of increasing observed values that each share of them does not exceed."""
-    if not ranked.size:
-        return (np.nan,) * len(SHARES)
-    return tuple(float(ranked[int(np.ceil(share * ranked.size - ROUNDING)) - 1]) for share in SHARES)
+def _not_exceeded(ranked: Reals, records: int) -> tuple[float, ...]:
+    """Return the lowest of increasing observed values that each share of them does not exceed; NaN of too few."""
+    return tuple(
+        float(ranked[int(np.ceil(share * ranked.size - ROUNDING)) - 1]) if ranked.size and records >= fewest else np.nan
+        for share, fewest in zip(SHARES, FEWEST, strict=True)
+    )

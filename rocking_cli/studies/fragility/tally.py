@@ -9,10 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.studies.fragility.definition import OVERTURNING, SLIDING, Limit
+from rocking_cli.studies.fragility.definition import OVERTURNING, SLIDING, UPLIFT, Limit
 from rocking_cli.studies.fragility.displacements import kept
 from rocking_cli.studies.fragility.intensity import of_the_motion, proportional
 from rocking_cli.studies.fragility.likelihood import Bools, Integers, Reals
+from rocking_cli.studies.fragility.observed import SAME
+from rocking_cli.studies.fragility.onset import FACT as ONSET
+from rocking_cli.studies.fragility.onset import Onset, Pair, onset
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.store import FAILED, STANDS, Endings, Store
 from rocking_cli.studies.fragility.study import RESTITUTION
@@ -48,6 +51,8 @@ class Tally:
         Whether the joints of all runs are known; if not, no outcome is unknown because of a joint.
     lower : Tally or None
         The counts with undecided runs as not exceeding; None if no outcome is unknown.
+    uplift : (float or None, float or None), optional
+        Uplift accelerations over g of both directions, if the PGA of the motions decides whether they uplift.
     """
 
     plan: Plan
@@ -58,6 +63,7 @@ class Tally:
     unknown: int = 0
     checked: bool = True
     lower: Tally | None = None
+    uplift: Pair | None = None
 
     @property
     def unknown_if_checked(self) -> int | None:
@@ -158,6 +164,16 @@ class Cells:
         """Return the intensity of each cell in a measure."""
         return intensities(self.tally.plan, measure, self.place[0] + self.tally.samples.start, self.record, self.level)
 
+    def onset(self, measure: str) -> Onset | None:
+        """Return the intensity at which the structure uplifts; None if it is not known, or runs contradict it."""
+        known = onset(self.tally.plan, self.tally.samples, self.tally.uplift, measure)
+        if known is None or UPLIFT not in self.tally.exceeding:
+            return known
+        x, uplifted = self.intensities(measure), self.exceeding(UPLIFT)
+        early = (x < known.at * (1 - SAME)) & (uplifted > 0)
+        late = (x > known.at * (1 + SAME)) & (uplifted < self.runs)
+        return None if early.any() or (known.exact and late.any()) else known
+
 
 def intensities(plan: Plan, measure: str, sample: Integers, record: Integers, level: Integers) -> Reals:
     """Return the intensity of runs; exactly the level if the levels are of this measure."""
@@ -238,9 +254,10 @@ def count(
 
     def tally(counts: _Counts, of_known: Tally | None) -> Tally:
         found = Ladders(counts.first, there) if ladders else None
-        return Tally(plan, samples, runs, counts.exceeding, found, unknown, checked, of_known)
+        return Tally(plan, samples, runs, counts.exceeding, found, unknown, checked, of_known, accelerations)
 
     checked |= store.fact("description")["model"] != "nonlinear"  # of an equivalent block there are no joints
+    accelerations = store.facts().get(ONSET, {}).get(structure)
     return tally(upper, tally(lower, None) if lower is not None else None)
 
 
