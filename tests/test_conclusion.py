@@ -159,6 +159,7 @@ def test_a_response_concludes_the_same_in_text_json_and_report(tmp_path, pulse, 
     assert report["conclusion"]["concluded"] == expected and words in report["answer"]
     assert report["motions"][0]["headline"].startswith(words)
     answer = rk.respond("p.yaml", pulse, neighbours=20)
+    assert words in answer.plot().axes[0].get_title(loc="left")
     assert answer.conclusion.concluded.value == expected
     near = answer.neighbours[1]
     assert answer.conclusion.share == Share(near.overturned, near.at_most, 20)
@@ -214,3 +215,18 @@ def test_a_row_of_a_survey_has_the_outcome_that_the_structure_has_alone(tmp_path
         block = rk.Block(width=float(line[2]), height=float(line[3]))
         alone = rk.respond(block, "sine:0.35g:0.7s", polarity="both", neighbours=0)
         assert row["outcome"] == alone.conclusion.concluded.value
+
+
+@pytest.mark.every(4)
+@pytest.mark.parametrize("pulse", ["sine:0.15g:0.5s", "sine:0.5g:0.7s"])
+@pytest.mark.parametrize("file", sorted(EXAMPLES.glob("**/*.yaml")), ids=lambda file: file.stem)
+def test_every_surface_of_a_response_has_one_conclusion(file, pulse):
+    """Text, data and Python of all shipped structures."""
+    if not yaml.safe_load(file.read_text(encoding="utf-8")).get("mechanism"):
+        return
+    answer = rk.respond(file, pulse, models="nonlinear", neighbours=0)
+    end, history = answer.conclusion, answer["nonlinear"]
+    words = end.concluded.value.replace("_", " ")
+    said = " ".join(answer.sentences)
+    assert re.search(rf"\b{words}\b", said) and answer.to_dict()["conclusion"] == conclusion_data(end)
+    assert history.words == words and history.overturned == {"overturns": True, "unknown": None}.get(words, False)

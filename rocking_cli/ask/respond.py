@@ -223,11 +223,13 @@ def _columns(response: Response, structure: Structure) -> Columns:
 def _figure(response: Response, structure: Structure, title: str, *, contact: bool) -> Figure:
     from rocking_cli.plotting.history import draw_history
     from rocking_cli.studies.movements import Watched
+    from rocking_cli.views.conclusion import headline
 
     first, *others = response.runs.values()
     fit, alone = response.fit, response.to_pulse
     pulse = (fit, alone) if fit is not None and alone is not None else None
     checked = list(response.contacts.values()) if contact else []
+    title = f"{title} ({headline(response.conclusion)})"
     return draw_history(
         first, response.first, title, others[0] if others else None, pulse, structure.uplift, checked,
         Watched(structure.mechanism),

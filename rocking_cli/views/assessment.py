@@ -45,6 +45,7 @@ def view(content: Assessment, verified: Verification | None = None) -> View:
                     each.runs,
                     each.neighbours,
                     HistoryDetails(watched, mechanism=content.mechanism, contacts=each.contacts),
+                    each.given.motion.name,
                 ),
                 "polarity": each.polarity,
                 "margin": margin_data(each.margin),

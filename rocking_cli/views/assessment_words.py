@@ -22,7 +22,7 @@ from rocking_cli.studies.margin import in_words
 from rocking_cli.studies.neighbours import governing, severity
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.views.cautions import cautions_of
-from rocking_cli.views.conclusion import of_verification
+from rocking_cli.views.conclusion import headline, of_verification
 from rocking_cli.views.contact import contact_words
 from rocking_cli.views.restitution import restitution_source, restitution_used
 from rocking_cli.views.several import neighbours_cells
@@ -229,11 +229,9 @@ def doubts(content: Assessment) -> list[str]:
 
 
 def _verdict(content: Assessment, result: MotionResult) -> MotionAnswers:
-    best = result.histories["nonlinear"]
-    headline = best.words if best.fell or best.unknown else names.ROCKS if best.peak_ratio else names.NO_UPLIFT
     return MotionAnswers(
         result.given.motion.name,
-        f"{headline}{' (close)' if result.close else ''}",
+        f"{headline(result.conclusion)}{' (close)' if result.close else ''}",
         (
             ReaderAnswer("Will it uplift?", _uplift(content, result)),
             ReaderAnswer("Will it overturn?", _overturning(result)),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from rocking_cli import names
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.studies.verification.told import Told
@@ -93,6 +94,16 @@ def _told(key: str, **values: Any) -> Told:
 def digits_beside_one(ratio: float) -> int:
     """Return how many digits of a ratio show on which side of 1 it is, at least three."""
     return next((n for n in range(3, MOST_DIGITS) if (float(f"{ratio:.{n}g}") < 1) == (ratio < 1)), MOST_DIGITS)
+
+
+def headline(end: Conclusion) -> str:
+    """Return what is concluded in a few words, for a heading: with the peak, the limit state, or until when known."""
+    if end.known_until is not None:
+        return f"{names.UNKNOWN} after {end.known_until:.3g} s"
+    if end.concluded is Concluded.ROCKS and end.ratio is not None:
+        return f"{names.ROCKS} to {end.ratio:.3g}"
+    said = end.concluded.value.replace("_", " ")
+    return f"{end.limit_state} {said}" if end.limit_state and end.concluded is not Concluded.SATISFIED else said
 
 
 def conclusion_data(end: Conclusion) -> dict[str, Any]:

@@ -126,8 +126,10 @@ def _motion_data(motion: GroundMotion) -> dict[str, Any]:
     }
 
 
-def runs_data(runs: Runs, near: Mapping[int, Neighbours], shown: HistoryDetails = NOTHING_MORE) -> dict[str, Any]:
-    """Return responses and neighbours as plain data, by polarity if there are two."""
+def runs_data(
+    runs: Runs, near: Mapping[int, Neighbours], shown: HistoryDetails = NOTHING_MORE, motion: str = ""
+) -> dict[str, Any]:
+    """Return responses, neighbours and the conclusion as plain data, by polarity if there are two."""
     each = {
         str(polarity): {
             "responses": histories_data(histories, shown, polarity),
@@ -137,7 +139,7 @@ def runs_data(runs: Runs, near: Mapping[int, Neighbours], shown: HistoryDetails 
         }
         for polarity, histories in runs.items()
     }
-    end = {"conclusion": conclusion_data(concluded(runs, near))}
+    end = {"conclusion": conclusion_data(concluded(runs, near, motion))}
     return end | (each.popitem()[1] if len(each) == 1 else {"polarities": each, "governs": governs(runs)[0]})
 
 
@@ -300,7 +302,7 @@ def view(
         "record": record_data(given.motion, given.factor, polarity, given.pulse) if given else None,
         "release": asked.release,
         "restitution": restitution_data(structure),
-        **runs_data(found.runs, found.neighbours, shown),
+        **runs_data(found.runs, found.neighbours, shown, found.conclusion.motion),
     }
     if found.fit is None or found.to_pulse is None:
         parts = _tables(title, found.runs, found.neighbours, shown)

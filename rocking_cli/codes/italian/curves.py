@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from rocking_cli.codes.italian.results import ItalianVerification, ItalianVerified
 from rocking_cli.plotting import style
+from rocking_cli.views.conclusion import headline
 from rocking_cli.views.verification import shown
 from rocking_cli.views.view import heading
 
@@ -24,7 +25,8 @@ def draw_verification(found: ItalianVerification) -> Figure:
     axes = figure.subplots(len(sides), 1, squeeze=False)[:, 0]
     for each, (where, side) in zip(axes, sides.items(), strict=True):
         _draw(each, side)
-        style.heading(each, f"{heading(found.mechanism)}: {where.lower()}, FC = {side.exact.confidence:g}")
+        what = f"{where.lower()}, FC = {side.exact.confidence:g}"
+        style.heading(each, f"{heading(found.mechanism)}, {what} ({headline(found.conclusion)})")
         style.tidy(each)
     axes[-1].set_xlabel("displacement d of the single-degree-of-freedom system [m]", fontsize=style.LABEL)
     return figure
