@@ -138,7 +138,7 @@ class TestDirection:
 class TestVerdict:
     def test_where_some_overturn_and_others_do_not_it_breaks(self):
         found = equivalent([load_structure(file) for file in (BLOCK, WALL, ARCH)], parse_pulse("sine:0.5g:0.65s"))
-        assert {each.history.overturned for each in found.members} == {True, False}
+        assert {each.history.fell for each in found.members} == {True, False}
         assert np.isnan(found.spread)
         text = " ".join(judge(found))
         assert "the equivalence breaks" in text and "overturn" in text

@@ -18,7 +18,7 @@ from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.structure import Structure, build_models
 from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.studies import margin as margins
-from rocking_cli.studies.margin import FACTORS, LEVELS, Margin, in_words, margin
+from rocking_cli.studies.margin import FACTORS, LEVELS, Margin, governing_in_words, in_words, margin
 from rocking_cli.studies.neighbours import Neighbourhood
 from tests.conftest import EXAMPLES
 from tests.following import build_model
@@ -155,6 +155,8 @@ class TestLevels:
         assert [found.first(level) for level in LEVELS] == [2.0, 3.0, 5.0]
         assert [found.last_possible_below(level) for level in LEVELS] == [None, 1.0, 4.0]
         assert [found.last_below(level) for level in LEVELS] == [1.0, 4.0, 4.0]
+        assert [found.always(level) for level in LEVELS] == [2.0, 5.0, 5.0]
+        assert [found.always_possible(level) for level in LEVELS] == [1.0, 2.0, 5.0]
         assert (found.itself, found.itself_at_most) == (0.0, 0.1)
 
 
@@ -179,21 +181,39 @@ class TestWords:
         assert in_words(made(0, 0.6, 1.0, 0.7, 0.8), 0.5).endswith("always worse: at a factor of 4 (2 g) only 70 % do.")
         assert "always worse" not in in_words(made(0, 0.2, 0.6, 1.0), 0.5)
 
-    def test_unknown_outcomes_are_told_from_the_first_factor_on(self):
+    def test_the_first_sentence_counts_unknown_outcomes_as_overturning(self):
         doubt = (
-            "From a factor of 2 (PGA 1 g) on, the outcome of some neighbours is unknown, as joints open or slide that "
-            "the model keeps closed: there, the structure may overturn"
+            "From a factor of 2 (1 g) on, some outcomes are unknown, as joints open or slide that the model keeps "
+            "closed: there, the structure may overturn."
         )
+        few = "At no factor tried are 10 % or more known to overturn it; this does not prove that it stands."
         assert in_words(made(0, 0, 0, unknown=(0, 0.3, 0.6)), 0.5) == (
-            "At no scale factor from 1 to 3 (PGA from 0.5 g to 1.5 g) do 10 % or more of the neighbouring motions "
-            f"certainly overturn the structure. {doubt}. Counted as overturning, they make the shares reach 10 % from "
-            "2 (1 g), 50 % from 3 (1.5 g)."
+            "At least 10 % of the neighbouring motions first overturn the structure, or have an unknown outcome, at a "
+            "factor of 2 (PGA 1 g), 50 % at 3 (1.5 g) and 90 % at none up to 3; the factors tried are 75 % apart. "
+            f"{doubt} {few}"
         )
-        assert in_words(made(0, 0, 0, unknown=(0, 0.05, 0.05)), 0.5).endswith(f"the structure. {doubt}.")
-        assert in_words(made(0, 0.2, 0.0, 1.0, unknown=(0, 0.4, 0.5, 0)), 0.5).endswith(
-            "A stronger motion is not always worse: at a factor of 3 (1.5 g) none does for certain. "
-            f"{doubt}. Counted as overturning, they make the shares reach 10 % from 2 (1 g), 50 % from 2 (1 g), "
-            "90 % from 4 (2 g)."
+        assert in_words(made(0, 0, 0, unknown=(0, 0.05, 0.05)), 0.5) == (
+            "At no scale factor from 1 to 3 (PGA from 0.5 g to 1.5 g) do 10 % or more of the neighbouring motions "
+            f"overturn the structure, or have an unknown outcome. {doubt} {few}"
+        )
+        assert in_words(made(0, 0.2, 0.0, 1.0, unknown=(0, 0.4, 0.3, 0)), 0.5).endswith(
+            "A stronger motion is not always worse: at a factor of 3 (1.5 g) only 30 % do. "
+            f"{doubt} Shares known to overturn it: 10 % from 2 (1 g), 50 % from 4 (2 g), 90 % from 4 (2 g)."
+        )
+
+    def test_the_motion_of_the_least_factor_governs_with_unknown_outcomes(self):
+        strong, open_, weak = made(0, 0.2, 0.6), made(0, 0, 0, unknown=(0, 0.5, 1)), made(0, 0.1, 0.2)
+        assert governing_in_words({"a": strong, "b": weak}) == (
+            "Of the 2 motions, a governs: at least 50 % of the neighbours overturn the structure from a factor of 3, "
+            "the smallest of all motions."
+        )
+        assert governing_in_words({"a": strong, "b": open_, "c": open_}) == (
+            "Of the 3 motions, b, c govern: at least 50 % of the neighbours overturn the structure, or have an unknown "
+            "outcome, from a factor of 2, the smallest of all motions."
+        )
+        assert "b governs: at least 10 %" in governing_in_words({"a": made(0, 0, 0.1), "b": weak})
+        assert governing_in_words({"a": made(0, 0, 0), "b": made(0, 0, 0)}) == (
+            "No motion governs: under none of the 2 do 10 % or more of the neighbours overturn the structure."
         )
 
     def test_the_numbers_are_those_of_the_shares(self):
@@ -277,8 +297,10 @@ class TestCommand:
         assert ours["unknown"] == found.unknown.tolist() and max(ours["unknown"]) > 0.5
         assert ours["levels"]["50"]["first_or_unknown"] == found.possible(0.5) is not None
         assert ours["levels"]["10"]["last_below_or_unknown"] == found.last_possible_below(0.1) is not None
-        text = run(*words).stdout
-        assert "or unknown" in text and "of some neighbours is unknown" in " ".join(text.split())
+        rows = [" ".join(line.split()) for line in run(*words).stdout.splitlines()]
+        first = next(k for k, row in enumerate(rows) if row.startswith("accel.csv: overturn or unknown"))
+        assert f" {found.possible(0.5):.3g} " in rows[first] and rows[first + 1].startswith("known to overturn")
+        assert any(row.startswith("accel.csv: At least 10 %") and "an unknown outcome" in row for row in rows)
         (known,) = run_json(*words, "--opening", "100%")["motions"]
         wider, less = np.array(known["unknown"]), np.array(ours["unknown"])
         assert (wider <= less).all() and wider.sum() < less.sum() - 1
@@ -299,7 +321,7 @@ class TestCommand:
     def test_the_table_has_a_row_each(self, width, monkeypatch):
         monkeypatch.setenv("COLUMNS", width)
         text = " ".join(run("margin", self.BLOCK, "--record", self.ACCEL, "--neighbours", 5).stdout.split())
-        assert "accel.csv" in text and "At each factor, 5 neighbouring motions are simulated" in text
+        assert "accel.csv" in text and "; at each, 5 neighbouring motions, " in text
 
     def test_a_picture(self, tmp_path):
         run("margin", self.BLOCK, "--record", self.ACCEL, "--neighbours", 5, "--plot", tmp_path / "m.png")

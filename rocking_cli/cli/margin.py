@@ -28,9 +28,9 @@ def command(file: str | None, asked: GroundMotions, plot: Path | None, as_json: 
     A structure may overturn at one scale factor and survive a larger one, so there is no single critical factor. At
     each of 60 factors from 0.2 to 5, neighbouring motions with slightly different amplitude, slenderness and
     restitution are simulated, and the share of them that overturn is computed. The output gives the factors at which
-    this share first reaches 10, 50 and 90 %, and the last factors at which it is below them. If the outcome of some is
-    unknown, because a joint opens or slides that the model keeps closed, a second row counts them as overturning. With
-    --polarity both, the worse of the two polarities governs.
+    this share first reaches 10, 50 and 90 %, and those from which on it is never below them. If the outcome of some is
+    unknown, because a joint opens or slides that the model keeps closed, the first row counts them as overturning and
+    governs; a second row has those known to overturn. With --polarity both, the worse of the two polarities governs.
 
     Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m. A motion that
     cannot be used is reported and skipped, and the exit code is 5.

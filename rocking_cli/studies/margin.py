@@ -6,8 +6,9 @@ computations. Instead, the share of neighbouring motions that overturn is comput
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,6 +90,18 @@ class Margin:
     def _last(self, below: NDArray[np.bool_]) -> float | None:
         return float(self.factors[np.flatnonzero(below)[-1]]) if below.any() else None
 
+    def always(self, level: float) -> float | None:
+        """Return the least factor from which on a share of `level` or more overturns at all factors, or None."""
+        return self._always(self.overturned < level)
+
+    def always_possible(self, level: float) -> float | None:
+        """Return the least factor from which on a share of `level` or more overturns or is unknown, or None."""
+        return self._always(self.at_most < level)
+
+    def _always(self, below: NDArray[np.bool_]) -> float | None:
+        start = int(np.flatnonzero(below)[-1]) + 1 if below.any() else 0
+        return float(self.factors[start]) if start < self.factors.size else None
+
     def islands(self, level: float) -> list[tuple[float, float]]:
         """Return the first and last factor of each range in which at least a share `level` overturns."""
         edges = np.diff(np.concatenate([[False], self.overturned >= level, [False]]).astype(np.int8))
@@ -162,7 +175,7 @@ def margin(
 
 
 def in_words(found: Margin, pga: float) -> str:
-    """Describe a margin in a sentence or two.
+    """Describe a margin in a few sentences, of which the first one governs: unknown outcomes count as overturning.
 
     Parameters
     ----------
@@ -171,25 +184,36 @@ def in_words(found: Margin, pga: float) -> str:
     pga : float
         Peak ground acceleration at a factor of 1 [standard gravity].
     """
+    doubt = bool(found.unknown.any())
+    at = partial(_at, pga)
+    does = "overturn the structure, or have an unknown outcome," if doubt else "overturn the structure"
+    said = _reached(found, found.at_most, does, pga)
+    if not doubt:
+        return said
+    first = float(found.factors[(found.unknown > 0).argmax()])
+    said += (
+        f" From a factor of {at(first)} on, some outcomes are unknown, as joints open or slide that the model keeps "
+        "closed: there, the structure may overturn."
+    )
+    known = [f"{percent(level)} from {at(least)}" for level in LEVELS if (least := found.first(level)) is not None]
+    if known:
+        return f"{said} Shares known to overturn it: {', '.join(known)}."
+    few = f"At no factor tried are {percent(LEVELS[0])} or more known to overturn it"
+    return f"{said} {few}; this does not prove that it stands."
 
-    def at(factor: float, what: str = "") -> str:
-        return f"{factor:.3g} ({what}{factor * pga:.3g} g)"
 
+def _reached(found: Margin, shares: Reals, does: str, pga: float) -> str:
+    """Return in words at which factors the shares of neighbours that do something first reach each level."""
+    at = partial(_at, pga)
     low, high = found.factors[[0, -1]]
-    doubt = _doubt(found, at)
-    reached = [(level, first) for level in LEVELS if (first := found.first(level)) is not None]
+    reached = [(level, float(found.factors[(shares >= level).argmax()])) for level in LEVELS if (shares >= level).any()]
     if not reached:
-        pgas = f"PGA from {low * pga:.3g} g to {high * pga:.3g} g"
-        none = "certainly overturn" if doubt else "overturn"
-        said = (
-            f"At no scale factor from {low:.2g} to {high:.2g} ({pgas}) do {percent(LEVELS[0])} or more of the "
-            f"neighbouring motions {none} the structure."
+        return (
+            f"At no scale factor from {low:.2g} to {high:.2g} (PGA from {low * pga:.3g} g to {high * pga:.3g} g) do "
+            f"{percent(LEVELS[0])} or more of the neighbouring motions {does.removesuffix(',')}."
         )
-        return f"{said} {doubt}" if doubt else said
     (level, first), *others = reached
-    parts = [
-        f"{percent(level)} of the neighbouring motions first overturn the structure at a factor of {at(first, 'PGA ')}"
-    ]
+    parts = [f"{percent(level)} of the neighbouring motions first {does} at a factor of {at(first, 'PGA ')}"]
     parts += [f"{percent(level)} at {at(first)}" for level, first in others]
     parts += [f"{percent(level)} at none up to {high:.2g}" for level in LEVELS[len(reached) :]]
     said = f"At least {', '.join(parts[:-1])} and {parts[-1]}"
@@ -197,27 +221,36 @@ def in_words(found: Margin, pga: float) -> str:
         said += f"; the factors tried are {percent(float(np.median(found.factors[1:] / found.factors[:-1])) - 1)} apart"
     for level, first in reached:
         above = found.factors > first
-        least = float(found.overturned[above].min(initial=1.0))
+        least = float(shares[above].min(initial=1.0))
         if least < level:
-            factor = float(found.factors[above][found.overturned[above].argmin()])
+            factor = float(found.factors[above][shares[above].argmin()])
             again = f"only {percent(least)} do" if least else "none does"
-            known = " for certain" if doubt else ""
-            said += f". A stronger motion is not always worse: at a factor of {at(factor)} {again}{known}"
+            said += f". A stronger motion is not always worse: at a factor of {at(factor)} {again}"
             break
-    return f"{said}. {doubt}".rstrip()
+    return f"{said}."
 
 
-def _doubt(found: Margin, at: Callable[..., str]) -> str:
-    """Return a sentence on the factors from which outcomes are unknown; empty if all are known."""
-    if not found.unknown.any():
-        return ""
-    first = float(found.factors[(found.unknown > 0).argmax()])
-    levels = [(level, least) for level in LEVELS if (least := found.possible(level)) is not None]
-    said = (
-        f"From a factor of {at(first, 'PGA ')} on, the outcome of some neighbours is unknown, as joints open or slide "
-        "that the model keeps closed"
-    )
-    if not levels:
-        return f"{said}: there, the structure may overturn."
-    reach = ", ".join(f"{percent(level)} from {at(least)}" for level, least in levels)
-    return f"{said}: there, the structure may overturn. Counted as overturning, they make the shares reach {reach}."
+def _at(pga: float, factor: float, what: str = "") -> str:
+    return f"{factor:.3g} ({what}{factor * pga:.3g} g)"
+
+
+def governing_in_words(margins: Mapping[str, Margin]) -> str:
+    """Return which of several motions governs: the one that overturns half of the neighbours at the least factor.
+
+    If no motion overturns half of them, a tenth is used; unknown outcomes count as overturning.
+    """
+    does = "overturn the structure"
+    if any(found.unknown.any() for found in margins.values()):
+        does += ", or have an unknown outcome,"
+    for level in (0.5, LEVELS[0]):
+        factors = {name: least for name, found in margins.items() if (least := found.possible(level)) is not None}
+        if factors:
+            least = min(factors.values())
+            names = [name for name, factor in factors.items() if factor == least]
+            who = f"{', '.join(names)} {'govern' if len(names) > 1 else 'governs'}"
+            return (
+                f"Of the {len(margins)} motions, {who}: at least {percent(level)} of the neighbours {does} from a "
+                f"factor of {least:.3g}, the smallest of all motions."
+            )
+    few = f"do {percent(LEVELS[0])} or more of the neighbours {does.removesuffix(',')}"
+    return f"No motion governs: under none of the {len(margins)} {few}."

@@ -9,10 +9,12 @@ from typing import Any, NamedTuple
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.names import percent
-from rocking_cli.studies.margin import LEVELS, Margin, in_words
+from rocking_cli.studies.margin import LEVELS, Margin, governing_in_words, in_words
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.view import FEW, Table, View, heading, number
+
+MAY = "overturn or unknown"  # name of the row that governs
 
 
 class MarginRow(NamedTuple):
@@ -28,26 +30,23 @@ def view(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around:
     """Show the margins of a structure under some motions."""
     around = rows[0].margin.around if rows else around  # with the deviations of the structure
     heads = ["motion", "PGA\n[g]", "uplift\nat", "overturn\nat 1"]
-    heads += [f"{percent(level)}\nfrom" for level in LEVELS] + [f"below\n{percent(level)} to" for level in LEVELS]
+    heads += [f"{percent(level)}\n{when}" for when in ("first\nat", "always\nfrom") for level in LEVELS]
     cells = [cell for row in rows for cell in _cells(row)]
     either = {
-        "1": "the motion as given",
-        "-1": "the motion reversed",
-        "both": "the motion as given and reversed (the worse of the two counts)",
+        "1": "motions as given",
+        "-1": "motions reversed",
+        "both": "motions as given and reversed (the worse of the two counts)",
     }[polarity]
-    *lower, top = (f"{100 * level:g}" for level in LEVELS)
-    levels = f"{', '.join(lower)} and {top}"
     parts: list[Table | str] = [
         heading(mechanism),
-        f"Scale factors on {either}. At each factor, {around.count} neighbouring motions are simulated, "
-        f"{around.words}. 'Uplift at' is the smallest factor that uplifts the structure, and 'overturn at 1' the share "
-        f"of these motions that overturn it at a factor of 1. 'From' is the smallest factor at which at least {levels} "
-        "% of them overturn it, and 'below ... to' the largest factor at which fewer do; a plus marks the largest "
-        "factor tried.",
+        f"Scale factors on {either}; at each, {around.count} neighbouring motions, {around.words}. 'First at' is the "
+        "smallest factor at which so many of them overturn the structure; 'always from' the smallest from which on no "
+        "factor tried (up to 5) has fewer.",
         Table("", heads, cells, numbers=range(1, len(heads))),
         *_doubtful(rows),
     ]
     parts += [f"{row.name}: {in_words(row.margin, row.pga)}" for row in rows] if len(rows) <= FEW else []
+    parts += [governing_in_words({row.name: row.margin for row in rows})] if len(rows) > 1 else []
     parts += [f"Caution: {text}" for text in cautions_of(mechanism)]
     if not all(row.margin.checked for row in rows):
         parts.append(unchecked(why=mechanism.unchecked))
@@ -55,40 +54,31 @@ def view(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around:
 
 
 def _cells(row: MarginRow) -> Iterator[list[str]]:
-    """Yield the row of a motion and, if outcomes are unknown, a second one that counts them as overturning."""
-    found = row.margin
+    """Yield the row that governs, and below it, if outcomes are unknown, what is known to overturn."""
+    found, doubt = row.margin, bool(row.margin.unknown.any())
     yield [
-        row.name,
+        f"{row.name}: {MAY}" if doubt else row.name,
         f"{row.pga:.3g}",
         number(found.uplift, 3),
-        percent(found.itself),
-        *(number(found.first(level), 3) for level in LEVELS),
-        *(_last(found, found.last_below(level)) for level in LEVELS),
+        percent(found.itself_at_most),
+        *(number(found.possible(level), 3) for level in LEVELS),
+        *(number(found.always_possible(level), 3) for level in LEVELS),
     ]
-    if found.unknown.any():
+    if doubt:
         yield [
-            "  or unknown",
+            "  known to overturn",
             "",
             "",
-            percent(found.itself_at_most),
-            *(number(found.possible(level), 3) for level in LEVELS),
-            *(_last(found, found.last_possible_below(level)) for level in LEVELS),
+            percent(found.itself),
+            *(number(found.first(level), 3) for level in LEVELS),
+            *(number(found.always(level), 3) for level in LEVELS),
         ]
 
 
-def _last(found: Margin, factor: float | None) -> str:
-    """Format the last factor at which fewer neighbours overturn; a plus marks the largest factor simulated."""
-    return f"{number(factor, 3)}{'+' if factor == found.factors[-1] else ''}"
-
-
 def _doubtful(rows: Sequence[MarginRow]) -> Iterator[str]:
-    """Yield a note on how to read the rows of unknown outcomes, if there are any."""
+    """Yield which of two rows governs, if outcomes are unknown."""
     if any(row.margin.unknown.any() for row in rows):
-        yield (
-            "Rows 'or unknown' count neighbours of unknown outcome as overturning: each factor and share lies between "
-            "the two rows. For a safe assessment, use the row 'or unknown'; the row above it alone is no proof that "
-            "the structure stands."
-        )
+        yield (f"The row '{MAY}' governs; the row below it alone does not prove that the structure stands.")
 
 
 def _data(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood) -> dict[str, Any]:
