@@ -18,6 +18,8 @@ from rocking_cli import errors
 from rocking_cli.core.reactions import impulses
 from rocking_cli.dynamics.holding import joints_in_words
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records import read_record
+from rocking_cli.structure_file import load_structure
 from rocking_cli.studies import contact
 from rocking_cli.studies.contact import Contacts, _stretches
 from rocking_cli.views.contact import contact_columns, contact_words
@@ -135,6 +137,21 @@ def test_less_friction_than_lambda_slides_before_it_rocks():
     _, enough = checked(BLOCK.model_copy(update={"friction": 0.9}), shaking())
     assert np.isnan(enough.slides) and enough.duration == 0 and enough.holds
     assert "; 0.9 is available" in contact_words(enough, BLOCK)
+
+
+def test_what_to_do_about_the_friction_of_impacts_is_said():
+    block = BLOCK.model_copy(update={"restitution": 0.5, "friction": 0.3})
+    history, found = checked(block, shaking())
+    assert found.impact_friction > 1.6 and history.opening == 0  # the check leaves out a restitution that is given
+    left_out = "joints with less slide at impacts, which is not simulated; prevent this, for instance by dowels."
+    assert f"and much more with a lower restitution: {left_out}" in contact_words(found, block)
+    arch = load_structure(EXAMPLES / "arch.yaml")
+    _, found = checked(arch, read_record(EXAMPLES / "accel.csv"))
+    assert found.impact_friction > found.friction_needed > 0
+    counts = "the check of the joints counts how far they slide at impacts."
+    assert f": give `friction` in the file, and {counts}" in contact_words(found, arch)
+    assert f"lower restitution: {counts}" in contact_words(replace(found, friction=0.6), arch)
+    assert left_out in contact_words(replace(found, followed=False), arch)
 
 
 def test_of_a_structure_that_stays_at_rest_there_is_nothing_to_say():

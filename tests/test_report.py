@@ -130,7 +130,7 @@ class TestContent:
             (LOOSE, "sine:0.8g:0.8s", "The nonlinear model. It simulates the structure without linearisation"),
             (LOOSE, "sine:0.9g:1.2s", "No single one: the models disagree"),
             (BLOCK, "sine:1g:2s", "By all three models, it overturns."),
-            (ARCH, "sine:0.8g:0.8s", "The nonlinear model up to 0.1878 s, and none beyond"),
+            (ARCH, "sine:0.8g:0.8s", "The nonlinear model until 0.1878 s, and none beyond"),
         ],
     )
     def test_which_model_to_trust(self, structure, pulse, said, tmp_path):

@@ -86,8 +86,9 @@ class TestMargin:
     def test_the_table_has_a_second_row_and_the_plot_a_band(self):
         row = margin_views.MarginRow("a.csv", 1.0, 0.5, self.FOUND)
         table = margin_views.view(rk.Block(width=0.5, height=2.0), [row], "both", self.FOUND.around).parts[2]
-        assert [cells[0].strip() for cells in table.rows] == ["a.csv", "or unknown"]
-        assert [cells[3] for cells in table.rows] == ["5 %", "15 %"] and table.rows[1][4:7] == ["1", "2", "4"]
+        assert [cells[0].strip() for cells in table.rows] == ["a.csv: overturn or unknown", "known to overturn"]
+        assert [cells[3] for cells in table.rows] == ["15 %", "5 %"]
+        assert table.rows[0][4:] == ["1", "2", "4"] * 2 and table.rows[1][4:7] == ["2", "4", "-"]
         axes = draw_margins({"a.csv": self.FOUND}, "").axes[0]
         low, high = (f(axes.collections[0].get_paths()[0].vertices[:, 1]) for f in (np.min, np.max))
         assert low == 0 and high == 1  # the band goes from the one curve to the other
@@ -136,7 +137,7 @@ class TestSeveral:
         weak, strong = ("--pulse", "sine:0.1g:0.3s"), PULSE
         said = run("respond", folder / "arch.yaml", *weak, *strong, "--neighbours", 3, "--model", "nonlinear").stdout
         assert "the outcome under 1 of 2 motions is unknown, and none of the others overturns it." in said
-        assert "sine:2g:0.4s: the outcome is known up to 0.0617 s only: then the joint between voussoir" in said
+        assert "sine:2g:0.4s: the outcome is known until 0.0617 s: then the joint between voussoir" in said
         (row,) = (line.split() for line in said.splitlines() if line.startswith(" sine:2g"))
         assert row == ["sine:2g:0.4s", "2", "unknown", "0", "%", "100", "%", "unknown"]
 

@@ -275,7 +275,7 @@ def _peak_time(run: History, film: Film) -> float:
 
 def _known(run: History) -> str:
     """Return until when the outcome of a nonlinear history is known."""
-    return f"up to {run.known_to:.4g} s" if run.unknown else "not checked" if run.check is None else "throughout"
+    return f"until {run.known_to:.4g} s" if run.unknown else "not checked" if run.check is None else "throughout"
 
 
 def _outcomes(runs: Sequence[History], watched: Watched) -> Rows:
@@ -289,7 +289,7 @@ def _outcomes(runs: Sequence[History], watched: Watched) -> Rows:
     known: Rows = []
     if any(run.unknown for run in runs):
         until = [_number(run.known_to) for run in runs]
-        known.append(["known up to; peaks, impacts and displacements are those until then", *until, "s"])
+        known.append(["known until; peaks, impacts and displacements are those until then", *until, "s"])
         bounds = [_number(run.lower_bound) if run.unknown else ABSENT for run in runs]
         known.append(["lower bound of the peak rotation ratio, until the first joint opens", *bounds, "1"])
     return [

@@ -14,7 +14,7 @@ from rocking_cli.names import percent
 ASSUMED = (
     "The friction required, {:.3g}, is more than the {:g} usual for masonry: the result assumes that nothing slides."
 )
-NO_JOINTS = "The equivalent blocks have no joints, and cannot tell the outcome, whatever they give."
+NO_JOINTS = "The equivalent blocks have no joints, so their results are not those of the structure."
 INSTANT = 1e-6  # of D_cr: less of an opening is said to be none
 # By comparison with free blocks: a peak below this share of phi_cr is off by some 20 % if a joint opens by more than
 # that share of D_cr.
@@ -118,15 +118,15 @@ def why_unknown(history: History) -> str | None:
 
 def _until(history: History) -> str:
     """Return until when a history is valid and why not beyond, in words, with the lower bound of the peak."""
-    said = f"The motion is known up to {history.known_to:.4g} s only: then {why_unknown(history)}."
+    said = f"The motion is known until {history.known_to:.4g} s: then {why_unknown(history)}."
     over = "its kinematic limit" if any(history.ends_at_limit) else "its critical rotation"
     if not history.peak_ratio:
         return f"{said} Until then it does not uplift."
-    said += f" Until then the model rocks to {history.peak_ratio:.4g} of {over}"
+    least = f"The peak of the structure is at least {history.lower_bound:.4g}"
     if isfinite(history.warned) and history.lower_bound < history.peak_ratio:
-        first = f"{history.lower_bound:.4g}, the peak before the first joint opens or slides at {history.warned:.4g} s"
-        return f"{said}, with its joints kept closed. The real peak is certain only to be at least {first}."
-    return f"{said}, which is a lower bound of the real peak."
+        said += f" Until then, with its joints kept closed, the model rocks to {history.peak_ratio:.4g} of {over}."
+        return f"{said} {least}, reached before any joint opens or slides."
+    return f"{said} {least} of {over}."
 
 
 def _small(value: float, unit: str) -> str:

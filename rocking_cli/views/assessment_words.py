@@ -122,8 +122,8 @@ def _not_known(content: Assessment, unknown: Sequence[MotionResult]) -> str:
     if len(content.results) == 1:
         run = unknown[0].histories["nonlinear"]
         return (
-            f"The outcome of {content.name} under {_named(unknown)} is {names.UNKNOWN}: it is known up to "
-            f"{run.known_to:.4g} s only, then {why_unknown(run)}. The structure may overturn."
+            f"The outcome of {content.name} under {_named(unknown)} is {names.UNKNOWN}: it is known until "
+            f"{run.known_to:.4g} s: then {why_unknown(run)}. The structure may overturn."
         )
     others = len(content.results) - len(unknown)
     rest = f" It overturns under none of the {others} other{'s' if others > 1 else ''}." if others else ""
@@ -348,7 +348,7 @@ def _trusted(content: Assessment, result: MotionResult) -> str:
     best = runs["nonlinear"]
     if best.unknown:
         return (
-            f"The nonlinear model up to {best.known_to:.4g} s, and none beyond: the equivalent blocks have no joints, "
+            f"The nonlinear model until {best.known_to:.4g} s, and none beyond: the equivalent blocks have no joints, "
             "and cannot tell the outcome."
         )
     itself = "The nonlinear model simulates the structure without linearisation; its results are quoted here."

@@ -9,6 +9,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.contacts import MASONRY
 from rocking_cli.studies.contact import NEAR_PEAK, ContactDemand, SupportDemand
 from rocking_cli.views.column import Column, of, rounded
+from rocking_cli.views.restitution import restitution_source
 from rocking_cli.views.view import ABSENT, force_unit, number
 
 BEYOND = ": the result is not valid beyond that time"
@@ -78,7 +79,7 @@ def contact_words(found: ContactDemand, mechanism: Mechanism) -> str:
     if found.impact_friction > max(found.friction_needed, found.friction or 0.0):
         said.append(
             f"Impacts require a coefficient of friction of {number(found.impact_friction, 3)}, and much more with a "
-            "lower restitution."
+            f"lower restitution: {_at_impacts(found, mechanism)}."
         )
     if not isnan(found.lost):
         said.append(f"Contact is lost at {_where(found.lost_joint)} at {number(found.lost, 4)} s{beyond}.")
@@ -116,6 +117,16 @@ def contact_words(found: ContactDemand, mechanism: Mechanism) -> str:
     elif sums is not None:
         said.append(f"Forces are sums over all {sums}.")
     return " ".join(said)
+
+
+def _at_impacts(found: ContactDemand, mechanism: Mechanism) -> str:
+    """Return what to do about the friction that impacts require, as a clause."""
+    # The check has the impulses of the kinematic restitution: those of another one do not follow at each joint.
+    if not found.followed or restitution_source(mechanism) == "given":
+        return "joints with less slide at impacts, which is not simulated; prevent this, for instance by dowels"
+    if found.friction is None:
+        return "give `friction` in the file, and the check of the joints counts how far they slide at impacts"
+    return "the check of the joints counts how far they slide at impacts"
 
 
 def _friction(found: ContactDemand, beyond: str) -> str:

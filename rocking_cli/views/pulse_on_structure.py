@@ -22,9 +22,9 @@ from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.pulse_on_structure import KAPPAS, Answer, outcome, scaled
 from rocking_cli.studies.sampled_pulse import SampledHistory
 from rocking_cli.views.pulse import YES_NO, after_impacts, closed_data, how_far_off, impacts_before
-from rocking_cli.views.response import known_data, not_checked, pulse_data
+from rocking_cli.views.response import known_data, model_heads, not_checked, pulse_data
 from rocking_cli.views.restitution import restitution_data, restitution_used
-from rocking_cli.views.view import Table, View, heading, in_degrees, number
+from rocking_cli.views.view import ABSENT, Table, View, heading, in_degrees, number
 
 
 def view(
@@ -115,10 +115,11 @@ def _over_nonlinear(answer: Answer, answers: Mapping[str, Answer]) -> float:
 
 def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
     found = [outcome(each) for each in answers.values()]
+    unknown = any(each.unknown for each in found)
     exact = [isinstance(each, ExactResponse) for each in found]
     rows = [
         ["pulse", *("exact" if each else "sampled" for each in exact), ""],
-        ["outcome", *(_ends(each) for each in found), ""],
+        ["outcome", *(ABSENT if unknown and not each.unknown else _ends(each) for each in found), ""],
         ["peak rotation / phi_cr", *(number(each.peak_ratio, 5) for each in found), ""],
         ["  over that of nonlinear", *(number(_over_nonlinear(each, answers), 5) for each in answers.values()), ""],
         ["peak rotation, clockwise", *(in_degrees(each.peak_positive) for each in found), "deg"],
@@ -129,11 +130,11 @@ def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
         ["first impact", *(number(each.first_impact, 5) for each in found), "s"],
         ["overturning time", *(number(each.overturning_time, 5) for each in found), "s"],
     ]
-    if any(each.unknown for each in found):
-        rows.insert(2, ["known to", *(number(each.known_to, 5) for each in found), "s"])
+    if unknown:
+        rows.insert(2, ["known until", *(number(each.known_to, 5) for each in found), "s"])
         least = (each.lower_bound if each.unknown else nan for each in found)
         rows.insert(5, ["peak rotation / phi_cr, at least", *(number(each, 5) for each in least), ""])
-    return Table(title, ["", *answers, "unit"], rows, numbers=range(1, len(found) + 1))
+    return Table(title, ["", *model_heads(answers, unknown=unknown), "unit"], rows, numbers=range(1, len(found) + 1))
 
 
 def _ends(found: OneOutcome) -> str:

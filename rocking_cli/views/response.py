@@ -362,10 +362,11 @@ def _tables(
 
 def _table(title: str, histories: Histories, shown: HistoryDetails, polarity: int) -> Table:
     runs = list(histories.values())
+    unknown = any(run.unknown for run in runs)
     free = runs[0].ends_at_limit
     over = "limit" if all(free) else "phi_cr or limit" if any(free) else "phi_cr"
     rows = [
-        ["outcome", *(run.words for run in runs), ""],
+        ["outcome", *(ABSENT if unknown and not run.unknown else run.words for run in runs), ""],
         [f"peak rotation / {over}", *(number(run.peak_ratio, 5) for run in runs), ""],
         ["peak rotation, clockwise", *(in_degrees(run.peak_positive) for run in runs), "deg"],
         ["peak rotation, anticlockwise", *(in_degrees(run.peak_negative) for run in runs), "deg"],
@@ -373,8 +374,8 @@ def _table(title: str, histories: Histories, shown: HistoryDetails, polarity: in
         ["overturning time", *(number(run.overturning_time, 5) for run in runs), "s"],
         ["impacts", *(str(len(run.felt)) for run in runs), ""],
     ]
-    if any(run.unknown for run in runs):
-        rows.insert(1, ["known to", *(number(run.known_to, 5) for run in runs), "s"])
+    if unknown:
+        rows.insert(1, ["known until", *(number(run.known_to, 5) for run in runs), "s"])
         rows.insert(3, [f"peak / {over}, at least", *(number(_bound(run), 5) for run in runs), ""])
     if shown.watched is not None:
         rows += _movement_rows([shown.watched.peaks(run) for run in runs])
@@ -384,7 +385,12 @@ def _table(title: str, histories: Histories, shown: HistoryDetails, polarity: in
         rows.append(
             ["base shear, without impacts", *(shear if run.model == "nonlinear" else ABSENT for run in runs), unit]
         )
-    return Table(title, ["", *(run.model for run in runs), "unit"], rows, numbers=range(1, len(runs) + 1))
+    return Table(title, ["", *model_heads(histories, unknown=unknown), "unit"], rows, numbers=range(1, len(runs) + 1))
+
+
+def model_heads(models: Iterable[str], *, unknown: bool) -> list[str]:
+    """Return headings of models; if the outcome of the structure is unknown, those of its block state that."""
+    return [f"block,\n{model}" if unknown and model != "nonlinear" else model for model in models]
 
 
 def _bound(run: History) -> float:

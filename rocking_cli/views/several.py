@@ -16,7 +16,7 @@ from rocking_cli.studies.contact import ContactDemand
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, Severity, governing, severity
 from rocking_cli.studies.response import Histories, Response
 from rocking_cli.views.contact import contact_words
-from rocking_cli.views.response import models_used
+from rocking_cli.views.response import model_heads, models_used
 from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.view import ABSENT, Table, heading
 
@@ -63,7 +63,7 @@ class Several:
             run = histories[self._best]
             self._doubtful |= near is not None and bool(near.unknown)
             if run.unknown:
-                self._until[name] = f"the outcome is known up to {run.known_to:.4g} s only: then {why_unknown(run)}."
+                self._until[name] = f"the outcome is known until {run.known_to:.4g} s: then {why_unknown(run)}."
             severities.append(severity(run, near))
             self._checked &= run.model != "nonlinear" or run.check is not None
             self._around = near.around if near is not None else None
@@ -83,7 +83,8 @@ class Several:
 
     def parts(self) -> Iterator[Table | str]:
         """Yield the table, how many motions overturn the structure, and which governs."""
-        heads = [f"peak phi/{'limit' if any(self._free) else 'phi_cr'}\nunder", "PGA\n[g]", *self._models]
+        heads = [f"peak phi/{'limit' if any(self._free) else 'phi_cr'}\nunder", "PGA\n[g]"]
+        heads += model_heads(self._models, unknown=bool(self._until))
         rows = self._rows
         if self._around is None:
             rows = [row[:-3] for row in rows]
