@@ -56,7 +56,8 @@ def run_json(*arguments):
 
 def shares(near):
     """What neighbours are said to be, as a sentence has it."""
-    share = f"{100 * near['overturned']:.3g} % overturn the structure"
+    number = round(near["count"] * near["overturned"])
+    share = f"{number} ({100 * near['overturned']:.3g} %) overturn{'s' * (number == 1)} the structure"
     return {0: "none overturns the structure", 1: "all overturn the structure"}.get(near["overturned"], share)
 
 

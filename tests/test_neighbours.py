@@ -300,6 +300,16 @@ def test_an_unknown_outcome_is_as_bad_as_overturning(worst, said):
     assert governing({"one": better, "other": worst}) == said
 
 
+def test_of_motions_that_all_overturn_none_is_worse():
+    falls, fallen, better = Severity(1.0, np.inf, np.inf, 1.0), Severity(0.0, 0.0, np.inf, 1.0), Severity(0, 0, 0.5, 0)
+    assert governing({"one": falls, "two": falls, "three": better, "four": falls}) == (
+        "No motion governs: all neighbours overturn under one, two and four, so none of these is worse than the others."
+    )
+    assert governing({"one": fallen, "two": fallen, "three": better}).startswith(
+        "No motion governs: the structure overturns under one and two,"
+    )
+
+
 def test_of_two_unknown_outcomes_none_is_said_to_be_the_same():
     doubt = Severity(0.6, np.inf, np.inf, 0.3)
     assert governing({"one": doubt, "other": doubt}) == (
@@ -337,23 +347,20 @@ class TestWords:
     def test_a_share(self):
         said = self.sentence(0.43, (0.31, 0.52, np.inf))
         assert said == (
-            f"Of 200 neighbouring motions {NEAR} 43 % overturn the structure; 16 % keep its peak rotation within 0.31 "
-            "phi_cr, half within 0.52."
+            f"Of 200 neighbouring motions {NEAR} 86 (43 %) overturn the structure; the median peak is 0.52 phi_cr."
         )
 
     def test_most(self):
         assert self.sentence(0.7, (0.81, np.inf, np.inf)).endswith(
-            " 70 % overturn the structure; 16 % keep its peak rotation within 0.81 phi_cr."
+            " 140 (70 %) overturn the structure; 16 % stay below 0.81 phi_cr."
         )
 
     @pytest.mark.parametrize(
         ("peaks", "said"),
         [
-            ((0.0, 0.0, 0.3), "; half do not uplift it, 84 % keep its peak rotation within 0.3 phi_cr."),
-            (
-                (0.0, 0.2, 0.3),
-                "; 16 % do not uplift it, half keep its peak rotation within 0.2 phi_cr, 84 % within 0.3.",
-            ),
+            ((0.0, 0.0, 0.3), "; half do not uplift it; 84 % stay below 0.3 phi_cr."),
+            ((0.0, 0.2, 0.3), "; 16 % do not uplift it; the median peak is 0.2 phi_cr; 84 % stay below 0.3 phi_cr."),
+            ((0.0, 0.2, np.inf), "; 16 % do not uplift it; the median peak is 0.2 phi_cr."),
             ((0.0, np.inf, np.inf), "; 16 % do not uplift it."),
         ],
     )
@@ -362,10 +369,7 @@ class TestWords:
 
     def test_all_and_none(self):
         assert self.sentence(1.0, (np.inf,) * 3) == f"Of 200 neighbouring motions {NEAR} all overturn the structure."
-        said = (
-            "none overturns the structure; 16 % keep its peak rotation within 0.1 phi_cr, half within 0.2, 84 % within "
-            "0.3."
-        )
+        said = "none overturns the structure; the median peak is 0.2 phi_cr; 84 % stay below 0.3 phi_cr."
         assert self.sentence(0.0, (0.1, 0.2, 0.3)).endswith(said)
         assert self.sentence(0.0, (0.0, 0.0, 0.0)).endswith(
             "none overturns the structure; at most one in six uplifts it."
@@ -374,16 +378,17 @@ class TestWords:
     @pytest.mark.parametrize(
         ("overturned", "unknown", "said"),
         [
-            (0.4, 0.1, "40 % overturn the structure, and the outcome under 10 % is unknown"),
-            (0.0, 0.25, "none is known to overturn the structure, and the outcome under 25 % is unknown"),
+            (0.4, 0.1, "80 (40 %) overturn the structure, and the outcome under 20 (10 %) is unknown"),
+            (0.005, 0.0, "1 (0.5 %) overturns the structure"),
+            (0.0, 0.25, "none is known to overturn the structure, and the outcome under 50 (25 %) is unknown"),
             (0.0, 1.0, "none is known to overturn the structure, and the outcome under all is unknown"),
-            (0.4, None, "40 % overturn the structure"),
+            (0.4, None, "80 (40 %) overturn the structure"),
         ],
     )
     def test_unknown_outcomes_are_a_share_of_their_own(self, overturned, unknown, said):
         peaks = (0.1, np.inf, np.inf)
         assert self.sentence(overturned, peaks, unknown) == (
-            f"Of 200 neighbouring motions {NEAR} {said}; 16 % keep its peak rotation within 0.1 phi_cr."
+            f"Of 200 neighbouring motions {NEAR} {said}; 16 % stay below 0.1 phi_cr."
         )
 
     @pytest.mark.parametrize("scale", [0.3, 0.7, 0.8, 0.9, 1.1])
@@ -398,7 +403,7 @@ class TestWords:
             assert said == f"None of 400 neighbouring motions ({words}) uplifts the structure." and fallen == 0
             return
         assert f"Of 400 neighbouring motions ({words})," in said
-        share = re.search(r"\), ([\d.]+) % overturn", said)
+        share = re.search(r"\), \d+ \(([\d.]+) %\) overturn", said)
         told = float(share[1]) / 100 if share else {"all": 1.0, "none": 0.0}[re.search(r"\), (all|none)", said)[1]]
         assert told == pytest.approx(fallen, abs=5e-3)
 

@@ -28,6 +28,7 @@ Reals = NDArray[np.float64]
 FRACTILES = (0.16, 0.50, 0.84)
 AGREEMENT = 0.9  # share that must end as the history itself, else its answer is sensitive
 ALIKE = 1e-6  # relative difference below which no motion is the worse
+ENOUGH = 20  # neighbours from which on the peaks of 16 and 84 % are told: of fewer, one or two decide them
 LEAST_ETA = 1e-3  # a restitution drawn below that is this: an impact leaves some motion
 MOST = 1_000_000  # neighbours; more take minutes
 SEED = 1963
@@ -200,16 +201,35 @@ class Neighbours:
         near = f"{self.around.count} neighbouring motions ({self.around.words})"
         if not self.lifted:
             return f"None of {near} uplifts the structure."
-        said = f"Of {near}, {_shares(self.overturned, self.unknown)}"
-        if self.peak_ratio[-1] == 0:
-            return f"{said}; at most one in six uplifts it."
-        peaks = list(zip(("16 %", "half", "84 %"), self.peak_ratio, strict=True))
-        still = [f"{who} do not uplift it" for who, peak in peaks if peak == 0][-1:]
-        within = [f"{who} within {peak:.2g}" for who, peak in peaks if 0 < peak < np.inf]
-        if within:
-            within[0] = f"{within[0].replace(' within', ' keep its peak rotation within')} {self.over}"
-        reached = ", ".join(still + within)
-        return f"{said}; {reached}." if reached else f"{said}."
+        said = [f"Of {near}, {self._shares()}"]
+        low, median, high = self.peak_ratio
+        if high == 0:
+            return f"{said[0]}; at most one in six uplifts it."
+        enough = self.around.count >= ENOUGH
+        if median == 0 or (low == 0 and enough):
+            said.append(f"{'half' if median == 0 else '16 %'} do not uplift it")
+        if 0 < median < np.inf:
+            said.append(f"the median peak is {median:.2g} {self.over}")
+        # The highest of these peaks that is known.
+        part, most = ("84 %", high) if high < np.inf else ("16 %", low if np.isinf(median) else 0.0)
+        if enough and 0 < most < np.inf:
+            said.append(f"{part} stay below {most:.2g} {self.over}")
+        return f"{'; '.join(said)}."
+
+    def _shares(self) -> str:
+        """Return how many neighbours overturn, and of how many the outcome is unknown, in words."""
+        if self.overturned in (0, 1):
+            none = "none is known to overturn the structure" if self.unknown else "none overturns the structure"
+            said = "all overturn the structure" if self.overturned else none
+        else:
+            many = f"{self._number(self.overturned)} overturn"
+            said = f"{many if round(self.overturned * self.around.count) != 1 else many + 's'} the structure"
+        if not self.unknown:
+            return said
+        return f"{said}, and the outcome under {'all' if self.unknown == 1 else self._number(self.unknown)} is unknown"
+
+    def _number(self, share: float) -> str:
+        return f"{round(share * self.around.count)} ({percent(share)})"
 
 
 def neighbours(
@@ -313,6 +333,10 @@ def governing(severities: Mapping[str, Severity], over: str = "phi_cr") -> str:
     if len(which) > 1:
         if doubtful:
             return f"Which motion governs is not known: the outcomes under {', '.join(which)} are unknown."
+        if certain == 1:
+            every = "all neighbours overturn" if share else "the structure overturns"
+            these = f"{', '.join(which[:-1])} and {which[-1]}"
+            return f"No motion governs: {every} under {these}, so none of these is worse than the others."
         return f"No motion governs: {', '.join(which)} have the same effect."
     if share:
         does = ["overturn"] if certain else []
@@ -396,15 +420,3 @@ def least_uplift(model: Model, motion: GroundMotion) -> float | None:
     )
     push = float(max(pushes))
     return 1 / push if push > 0 else None
-
-
-def _shares(overturned: float, unknown: float | None) -> str:
-    """Return the three shares of neighbours, in words."""
-    if overturned in (0, 1):
-        none = "none is known to overturn the structure" if unknown else "none overturns the structure"
-        said = "all overturn the structure" if overturned else none
-    else:
-        said = f"{percent(overturned)} overturn the structure"
-    if not unknown:
-        return said
-    return f"{said}, and the outcome under {'all' if unknown == 1 else percent(unknown)} is unknown"

@@ -128,7 +128,7 @@ class Several:
         asks = {name: found for name, found in self._contacts.items() if found.friction_needed >= 0}
         if not fail and asks:
             most = max(asks, key=lambda name: asks[name].friction_needed)
-            fail = {most: asks[most]}
+            fail = {f"The joints hold under all motions, of which {most} demands most of them": asks[most]}
         for name, found in fail.items():
             yield f"{name}: {contact_words(found, self._mechanism).removeprefix('Contact: ')}"
 
