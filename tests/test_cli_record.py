@@ -74,6 +74,14 @@ class TestWhatIsShown:
         assert text.count("PGV") == {60: 5, 80: 5, 200: 2}[width]
         assert all(file.name in text for file in files)  # in one piece
 
+    def test_several_files_in_a_pipe_are_a_row_each(self, monkeypatch):
+        monkeypatch.delenv("COLUMNS", raising=False)
+        one, other = run("record", ACCEL, "--scale", "2").stdout, run("record", ACCEL, ACCEL, "--scale", "2").stdout
+        first, second = [re.split("  +", line.strip()) for line in other.splitlines() if line.startswith(" accel.csv")]
+        lines = [re.split("  +", line.strip()) for line in one.splitlines()[3:] if line.strip(" ─-")]
+        assert first == second == ["accel.csv", *(value for _, value, *_ in lines)]
+        assert max(map(len, other.splitlines())) < 200 and "95 % of Arias at" in one
+
     def test_a_channel_is_named(self, tmp_path):
         rows = "".join(f"{value:8.1f}" for value in (0.0, 100.0, -100.0, 0.0))
         header = [
@@ -165,7 +173,7 @@ class TestScaling:
         lines = [json.loads(line) for line in run("record", ACCEL, "--polarity", "both", "--json").stdout.splitlines()]
         assert lines == [run_json("record", ACCEL), run_json("record", ACCEL, "--polarity", "-1")]
         text = " ".join(run("record", ACCEL, "--polarity", "both").stdout.split())
-        assert "accel.csv, accel.csv reversed" in text and "scaled by 1 -1" in text
+        assert " accel.csv text " in text and "accel.csv, reversed text" in text and "scaled by" in text
         assert "one polarity" in run("record", ACCEL, "--polarity", "both", "--plot", "r.png", code=2).stderr
         shutil.copy(ACCEL, tmp_path / "a.AT2")
         run("record", "a.AT2", "--polarity", "both", "--out", ".")

@@ -843,6 +843,16 @@ def test_check_says_what_would_be_run_and_runs_nothing(tmp_path):
     assert [each.name for each in tmp_path.iterdir()] == ["study.yaml"]
 
 
+def test_check_counts_what_is_left_out_apart(tmp_path):
+    (tmp_path / "still.csv").write_text("0,0\n0.01,0\n0.02,0\n", encoding="utf-8")
+    path = write(tmp_path, STUDY.replace("records:", "records:\n  - {file: still.csv, units: g}"), count=5)
+    result = CliRunner().invoke(main, ["fragility", str(path), "--check", "--json"])
+    data = json.loads(result.stdout)
+    assert (data["records"], len(data["left_out"]), data["runs"]) == (3, 1, 150) and result.exit_code == 5
+    words = CliRunner().invoke(main, ["fragility", str(path), "--check"]).stdout.split("\n")
+    assert [line.split() for line in words if "records" in line] == [["records", "3"], ["records", "left", "out", "1"]]
+
+
 def test_samples_that_differ_in_their_restitution_only(tmp_path):
     text = STUDY.replace("      width: {normal: {mean: 0.7, deviation: 0.05}}\n", "").replace("[1, -1]", "[1]")
     prepared = carry_out(write(tmp_path, text, count=3), tmp_path / "study.db")

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 import statsmodels.api as sm
+from pydantic import ValidationError
 
+from rocking_cli.processing.entry import Entry
 from rocking_cli.studies.fragility.curves import fit_capacities, fit_curve
 from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.studies.fragility.surfaces import fit_surface
@@ -196,6 +199,17 @@ class TestWeights:
         path.write_text(path.read_text().replace("a.csv, weight: 2", "a.csv, weight: 5"))
         run("fragility", path, "--jobs", 1)
         assert "Records have weights from 2 to 5." in run("results", folder / "study.db").stdout
+
+
+def test_a_channel_may_be_a_number_as_messages_list_it():
+    for given in (1, "1"):
+        entry = Entry.model_validate(
+            {"file": "a.V2", "channel": given, "with": "b.V2", "with_channel": given, "azimuth": 0}
+        )
+        assert (entry.channel, entry.other_channel) == ("1", "1") and entry.reading(Path()).channel == "1"
+    for given in (True, 1.5):
+        with pytest.raises(ValidationError):
+            Entry.model_validate({"file": "a.V2", "channel": given})
 
 
 def test_channels_and_directions_of_one_file_are_records_of_their_own(folder):

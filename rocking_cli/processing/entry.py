@@ -47,6 +47,12 @@ def _unit(value: object) -> object:
     return value
 
 
+def _numbered(value: object) -> object:
+    """Return a channel given as a whole number as text: messages list channels by number."""
+    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+Channel = Annotated[str, BeforeValidator(_numbered)]
 Steps = Annotated[list[dict[str, Any] | str], _parsed(parse_steps)]
 FloorText = Annotated[str | dict[str, Any], _parsed(Floor.parse)]
 
@@ -59,7 +65,7 @@ class Entry(BaseModel):
     file: str | None = Field(None, description="a file, or a pattern of file names")
     units: Annotated[str, BeforeValidator(_unit)] | None = Field(None, description="unit, where no file says")
     dt: Positive | None = Field(None, description="sample interval, where no file says")
-    channel: str | None = Field(None, description="which of several channels")
+    channel: Channel | None = Field(None, description="which of several channels")
     quantity: Literal["acceleration", "velocity", "displacement"] | None = Field(
         None, alias="from", description="what the file holds"
     )
@@ -67,7 +73,7 @@ class Entry(BaseModel):
         None, description="what one unit of the file stands for, such as 0.05 m/V"
     )
     other: str | None = Field(None, alias="with", description="the file of the component at right angles")
-    other_channel: str | None = Field(None, alias="with_channel", description="its channel")
+    other_channel: Channel | None = Field(None, alias="with_channel", description="its channel")
     azimuth: float | None = Field(
         None, description="of the structure's plane, from the first component to the second [deg]"
     )

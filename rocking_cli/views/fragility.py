@@ -30,16 +30,21 @@ FINE = 200  # intensities at which it is looked whether a curve is cut
 
 def planned(study: Study, plan: Plan) -> View:
     """Show the runs that a study would simulate."""
-    samples, records, etas, levels, polarities = plan.shape
+    _, _, etas, levels, polarities = plan.shape
+    samples, records = ([each.reason is None for each in those] for those in (plan.trials, plan.records))
     counts = {
         "structures": len(study.structures),
-        "samples": samples,
-        "records": records,
+        "samples": sum(samples),
+        "records": sum(records),
         "eta": etas,
         "levels": levels,
         "polarities": polarities,
     }
     rows = [[name, f"{count}"] for name, count in counts.items()]
+    for name, usable in (("records", records), ("samples", samples)):
+        if not all(usable):
+            place = list(counts).index(name) + 1
+            rows.insert(place, [f"{name} left out", f"{len(usable) - sum(usable)}"])
     table = Table(study.name, ["", "number"], [*rows, ["runs", f"{plan.total:,}"]], numbers=(1,))
     return View({"study": study.name, **counts, "runs": plan.total, "left_out": left_out(plan)}, [table])
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rocking_cli.processing.oscillator import ResponseSpectrum
 
 HEADING = 14  # characters of a line of a record's name above its column, where blanks in it allow
+SHORT = 9  # characters of a line of a heading above a quantity
 LEFT = 26  # characters that labels and units take of a table
 BESIDE = 3  # blanks between columns
 
@@ -48,9 +49,9 @@ def _channel(record: Examined) -> str | None:
     return record.motion.name.partition(f"{Path(record.file).name} channel ")[2] or None
 
 
-def _folded(name: str) -> str:
+def _folded(name: str, width: int = HEADING) -> str:
     """Break a name at blanks into lines of a column's width."""
-    return "\n".join(wrap(name, HEADING, break_long_words=False, break_on_hyphens=False))
+    return "\n".join(wrap(name, width, break_long_words=False, break_on_hyphens=False))
 
 
 AS_READ: tuple[Column[Examined], ...] = (
@@ -76,8 +77,8 @@ MEASURED: tuple[Column[Examined], ...] = (
     Column("pgd", of("measures.pgd"), "m", "PGD"),
     Column("arias_intensity", of("measures.arias"), "m/s", "Arias intensity"),
     Column("significant_duration", of("measures.significant_duration"), "s", "5-95 % duration"),
-    Column("t_5", of("measures.t_5"), "s", "from"),
-    Column("t_95", of("measures.t_95"), "s", "to"),
+    Column("t_5", of("measures.t_5"), "s", "5 % of Arias at"),
+    Column("t_95", of("measures.t_95"), "s", "95 % of Arias at"),
     Column("mean_acceleration", of("measures.mean"), "g", "mean acceleration", rounded(2)),
     Column("final_velocity", of("measures.final_velocity"), "m/s"),
     Column("final_displacement", of("measures.final_displacement"), "m"),
@@ -103,10 +104,25 @@ def data(record: Examined) -> dict[str, Any]:
 def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | str]:
     """Yield tables with a column for each record, as many as the width requires, then the pulses of each record.
 
-    Without a width there is one table. If a table has room for one record only, the name is its title.
+    If a table has room for one record only, the name is its title. Without a width, as in a pipe, several records are
+    one table with a row for each.
     """
-    names = [_folded(record.label) for record in records]
     rows = _rows(records)
+    if width is None and len(records) > 1:
+        yield _long(records, rows)
+    else:
+        yield from _columns(records, rows, width)
+    for record in records:
+        if record.pulses:
+            from rocking_cli.views import pulse_fits
+
+            yield from pulse_fits.parts(record.label, record.pulses)
+    yield from (spectra.peaks(each.label, each.spectrum) for each in records if each.spectrum is not None)
+
+
+def _columns(records: Sequence[Examined], rows: Sequence[Sequence[str]], width: int | None) -> Iterator[Table]:
+    """Yield tables with a column for each record."""
+    names = [_folded(record.label) for record in records]
     fitting = len(records)
     if width is not None:
         widest = max(HEADING, *(len(line) for name in names for line in name.split("\n")))
@@ -118,12 +134,16 @@ def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | st
         if len(headings) == 1:
             title, headings = records[start].label, ["value"]
         yield Table(title, ["", *headings, "unit"], cells, numbers=range(1, len(headings) + 1))
-    for record in records:
-        if record.pulses:
-            from rocking_cli.views import pulse_fits
 
-            yield from pulse_fits.parts(record.label, record.pulses)
-    yield from (spectra.peaks(each.label, each.spectrum) for each in records if each.spectrum is not None)
+
+def _long(records: Sequence[Examined], rows: Sequence[Sequence[str]]) -> Table:
+    """Return a table with a row for each record, none of which has a line break."""
+    heads = ["record", *(_folded(row[0], SHORT) + (f"\n[{row[-1]}]" if row[-1] else "") for row in rows)]
+    cells = zip(*(row[1:-1] for row in rows), strict=True)
+    lines = [
+        [record.label, *(cell.replace("\n", " ") for cell in own)] for record, own in zip(records, cells, strict=True)
+    ]
+    return Table("", heads, lines, numbers=range(1, len(heads)))
 
 
 def _rows(records: Sequence[Examined]) -> list[list[str]]:
