@@ -50,6 +50,11 @@ class Curve(Mechanism):
         "structure of several bodies give a measured one."
     )
 
+    jumps: ClassVar[str] = (
+        "its capacity curve, at phi times control_height, is as steep as a step there, and no history can follow it. "
+        "Let the ratio change over more displacement"
+    )
+
     starter: ClassVar[tuple[str, ...]] = ("points",)
 
     points: list[list[float]] | None = quantity(

@@ -28,6 +28,16 @@ RESPONSE = {
     "peak_positive", "peak_negative", "peak_ratio", "overturned", "overturning_time", "uplift_time", "impacts",
     "impacts_all", "outcome", "unknown", "known_to", "known_to_reason", "peak_lower_bound", "opening",
 }  # fmt: skip
+STACK = """\
+mechanism: assembly
+name: stack
+friction: 5
+blocks:
+  low: {polygon: [[0, 0], [1, 0], [1, 1], [0, 1]]}
+  up: {polygon: [[0.4, 1], [1, 1], [1, 3], [0.4, 3]]}
+ground:
+  floor: {polygon: [[-3, -1], [6, -1], [6, 0], [-3, 0]]}
+"""
 DRAWN = "count", "amplitude", "restitution", "slenderness"
 
 
@@ -246,10 +256,24 @@ class TestEquiv:
 
     def test_a_stocky_block_is_shown_with_a_warning(self, tmp_path):
         (tmp_path / "slab.yaml").write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")
-        result = run("equiv", "slab.yaml")
-        assert "slab: the kinematics give eta = -0.35: the mass inner product" in result.stderr
-        assert "eta" in result.stdout and "stocky" not in result.stderr
-        assert "slab: the kinematics give eta = -0.35" in run("equiv", "slab.yaml", "--json").stderr
+        said = "The kinematics give eta = -0.35 at impacts: the mass inner product"
+        site = EXAMPLES / "verify" / "site.yaml"
+        for asked in (("equiv", "slab.yaml"), ("verify", "slab.yaml", "--site", site)):
+            assert f"Caution: {said}" in " ".join(run(*asked).stdout.split())
+        assert run_json("equiv", "slab.yaml")["caution"].startswith(said)
+
+    def test_an_eta_above_one_is_said_with_the_energy_that_is_kept(self, tmp_path):
+        """A stack that turns as a whole in one direction, and with its upper block only in the other."""
+        (tmp_path / "stack.yaml").write_text(STACK, encoding="utf-8")
+        data = run_json("equiv", "stack.yaml")
+        etas = [data["directions"][way]["eta"] for way in ("positive", "negative")]
+        # Of two projections of one velocity on the other mechanism, there and back, both keep the same energy.
+        kept = 100 * etas[0] * etas[1]
+        said = f"The eta of {etas[0]:.4g} at impacts that end motion in the positive direction compares the rates"
+        for asked in (("equiv", "stack.yaml"), ("respond", "stack.yaml", "--pulse", "sine:0.5g:0.5s")):
+            text = " ".join(run(*asked).stdout.split())
+            assert etas[0] > 1 > etas[1] and f"Caution: {said}" in text and "less, about 0.95" not in text
+            assert f"keeps {kept:.3g} % of the kinetic energy" in text and text.count("compares the rates") == 1
 
     def test_without_a_file_it_takes_the_folder_s_or_the_default(self, tmp_path):
         assert "default block" in run("equiv").stderr

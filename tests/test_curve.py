@@ -13,7 +13,7 @@ from mechanisms._capacity import MonotoneCubic
 from mechanisms.block import Block
 from mechanisms.curve import Curve
 from rocking_cli.core import Direction, NoEquivalentBlock, equivalent_block
-from rocking_cli.errors import InputError
+from rocking_cli.errors import InputError, StructureError
 from rocking_cli.structure import Structure
 from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.testing import contract
@@ -201,3 +201,10 @@ def test_the_inertia_given_is_that_of_both_directions(swapped):
     for direction in Direction:
         found = made.coefficients(np.array([0.0, 0.02, made.critical_rotation(direction)]), direction)
         assert pytest.approx(50e3, rel=1e-12) == found.I
+
+
+def test_a_step_of_the_curve_is_the_file_s_and_not_the_plugin_s():
+    points = [[0.0, 0.2], [0.1, 0.15], [0.1001, 0.05], [0.5, 0.0]]
+    steep = Curve(points=points, mass=1e4, control_height=4.0, centroid_height=2.0, inertia=5e4, restitution=0.9)
+    with pytest.raises(StructureError, match=r"jumps at phi = 0\.02\d* rad .* its capacity curve, .* is as steep"):
+        _ = Structure(steep).statics

@@ -46,10 +46,11 @@ def test_the_page_of_a_report_has_it(tmp_path):
     assert f'src="{embedded(tmp_path / "logo.svg")}" alt="Logo of A &amp; B"' in page
 
 
-@pytest.mark.parametrize("content", [PNG[:-20], PNG[:8] + b"rest", JPEG[:30], SVG[:-9]])
+@pytest.mark.parametrize("content", [PNG[:-20], PNG[:8] + b"rest", PNG[:30], JPEG[:3], JPEG[:30], SVG[:-9]])
 def test_a_broken_picture_is_named(tmp_path, content):
     path = tmp_path / "logo.png"
     path.write_bytes(content)
     with pytest.raises(InputError, match="the logo is damaged") as caught:
         embedded(path)
     assert caught.value.problems[0].file == str(path)
+    assert "object at 0x" not in str(caught.value)

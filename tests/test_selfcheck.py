@@ -178,16 +178,29 @@ class TestEachCheck:
         found = checked("kernels")
         assert found.passed is False and found.found >= 1
 
-    def test_kernels_are_not_run_where_none_can_be_loaded(self, monkeypatch, tmp_path):
+    @pytest.mark.parametrize(
+        ("spoil", "passed", "why"),
+        [
+            (lambda: shipped.place().write_bytes(b"damaged"), False, "is damaged, reinstall rocking-cli"),
+            (lambda: shipped.place().unlink(), False, "is missing, reinstall rocking-cli"),
+            (lambda: (shipped.FOLDER / shipped.MANIFEST).unlink(), False, "cannot be read, reinstall rocking-cli"),
+            (lambda: None, None, "no kernels are shipped for"),
+        ],
+    )
+    def test_kernels_that_are_broken_fail_and_those_of_no_system_are_not_run(
+        self, spoil, passed, why, monkeypatch, tmp_path
+    ):
         folder = tmp_path / "ready"
         shutil.copytree(shipped.FOLDER, folder)
         monkeypatch.setattr(shipped, "FOLDER", folder)
-        shipped.place().write_bytes(b"damaged")
+        spoil()
+        if passed is None:
+            monkeypatch.setattr(shipped.platform, "machine", lambda: "abacus")
         shipped.forget()
         found = checked("kernels")
         monkeypatch.undo()
         shipped.forget()
-        assert found.passed is None and "is damaged, reinstall rocking-cli" in found.why
+        assert found.passed is passed and why in found.why
 
 
 class TestCommand:

@@ -18,7 +18,7 @@ def equiv(structure: StructureLike, *, watch: Watcher = SILENT) -> Answer[Equiva
     structure : Mechanism, str or Path
         The structure, or its YAML file.
     watch : Watcher
-        Told how to read the parameters, and of a restitution that is missing.
+        Told how to read the parameters.
 
     Returns
     -------
@@ -51,8 +51,6 @@ def equiv(structure: StructureLike, *, watch: Watcher = SILENT) -> Answer[Equiva
     ready = structure_of(structure)
     found = ready.equivalence if ready.why_no_block is None else None
     shown = views.view(ready)
-    for text in views.warnings(ready):
-        watch.warn(text)
     for text in views.notes(ready.mechanism):
         watch.note(text)
     columns, figure = partial(views.table, [ready]), partial(structure_figure, ready.mechanism)

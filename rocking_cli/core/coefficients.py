@@ -14,7 +14,7 @@ import numpy as np
 
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
-from rocking_cli.errors import MechanismError
+from rocking_cli.errors import MechanismError, StructureError
 from rocking_cli.median import median
 
 JUMP = 1e-5  # of the size of a coefficient: what its derivative may miss of its change from one rotation to the next
@@ -110,7 +110,7 @@ def coefficients(
     return total
 
 
-def check_continuous(mechanism: str, direction: Direction, at: Coefficients) -> None:
+def check_continuous(mechanism: str, direction: Direction, at: Coefficients, in_file: str = "") -> None:
     """Raise `MechanismError` if the positions or velocities of the bodies jump between two rotations.
 
     Parameters
@@ -121,21 +121,27 @@ def check_continuous(mechanism: str, direction: Direction, at: Coefficients) -> 
         The direction of rocking.
     at : Coefficients
         Coefficients at increasing rotations, so close that slopes change evenly between them.
+    in_file : str
+        `jumps` of the mechanism.
 
     Raises
     ------
     MechanismError
-        If V, G, B or I changes between two rotations by what its derivative there does not explain.
+        If V, G, B or I changes between two rotations by what its derivative there does not explain; a `StructureError`
+        if the file of the structure gives its motion.
     """
     moment = median(np.abs(at.G) + np.abs(at.B))  # its size: m R, and V has the same unit
     pairs = {"V": (at.V, at.G, moment), "G": (at.G, at.dG, moment), "B": (at.B, at.dB, moment)}
     pairs["I"] = (at.I, 2 * at.J, median(at.I))
     found = {name: jump(at.phi, *pair) for name, pair in pairs.items()}
     first = min((phi, name) for name, phi in found.items())
+    where = f"jumps at phi = {first[0]:.4g} rad in the {direction.label} direction"
+    if first[0] < np.inf and in_file:
+        raise StructureError(f"it {where}: {in_file}")
     if first[0] < np.inf:
         raise MechanismError(
-            f"the mechanism {mechanism} jumps at phi = {first[0]:.4g} rad in the {direction.label} direction: "
-            f"its {first[1]} changes there as its derivative does not. Its bodies must move without jumps"
+            f"the mechanism {mechanism} {where}: its {first[1]} changes there as its derivative does not. "
+            "Its bodies must move without jumps"
         )
 
 

@@ -79,7 +79,7 @@ def statics(mechanism: Mechanism, direction: Direction) -> Statics:
         phi_cr, why = None, f"its restoring moment does not vanish before the kinematic limit of {limit:.4g} rad"
     way = np.linspace(0.0, limit if phi_cr is None else phi_cr, STEPS + 1)
     here = mechanism.coefficients(way if phi_cr is not None else way[:-1], direction)
-    check_continuous(mechanism.mechanism, direction, here)
+    check_continuous(mechanism.mechanism, direction, here, mechanism.jumps)
     moment, slope = here.restoring(mechanism.gravity), here.stiffness(mechanism.gravity)
     departure = float("nan")
     if phi_cr is not None:

@@ -18,7 +18,7 @@ def _check_whole(data: bytes, kind: str, path: Path) -> None:
     """Raise `InputError` if a picture is damaged, so that no browser can show it."""
     from xml.etree.ElementTree import fromstring
 
-    from PIL import Image
+    from PIL import Image, UnidentifiedImageError
 
     try:
         if kind in KINDS:
@@ -27,7 +27,8 @@ def _check_whole(data: bytes, kind: str, path: Path) -> None:
         else:
             fromstring(data)
     except Exception as error:  # of many kinds, without a base of their own
-        reason = " ".join(str(error).split()) or type(error).__name__
+        unread = isinstance(error, UnidentifiedImageError)  # its text names an object of Python
+        reason = "no picture can be read from it" if unread else " ".join(str(error).split()) or type(error).__name__
         what = f"the logo is damaged: {printable(cut(reason))}"
         raise InputError(Problem(what, str(path), hint="save the picture again")) from None
 

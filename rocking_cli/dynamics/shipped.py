@@ -39,6 +39,10 @@ class Unusable(ImportError):
     """Error: a shipped kernel cannot be used, with the reason."""
 
 
+class Broken(Unusable):
+    """Error: a file of the shipped kernels is damaged or missing, though one for this system belongs to the package."""
+
+
 def source_hash() -> str:
     """Return the hash of the sources of the shipped kernels, independent of their line endings."""
     digest = hashlib.sha256(repr(sorted(MADE_BY.items())).encode())
@@ -53,7 +57,7 @@ def manifest() -> dict[str, Any]:
         found = json.loads((FOLDER / MANIFEST).read_text(encoding="utf-8"))
         return {"source": str(found["source"]), "made_by": dict(found["made_by"]), "files": dict(found["files"])}
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise Unusable(f"{FOLDER / MANIFEST} cannot be read, reinstall rocking-cli: {error}") from error
+        raise Broken(f"{FOLDER / MANIFEST} cannot be read, reinstall rocking-cli: {error}") from error
 
 
 def place() -> Path:
@@ -91,11 +95,14 @@ def forget() -> None:
 def _library() -> ctypes.CDLL:
     """Load the library for this system, and give it the C functions that it calls."""
     at = place()
-    if struct.calcsize("P") != 8 or not is_there():
+    listed = manifest()["files"].get(at.name)
+    if struct.calcsize("P") != 8 or (listed is None and not is_there()):
         raise Unusable(f"no kernels are shipped for {at.stem}")
+    if not is_there():
+        raise Broken(f"{at} is missing, reinstall rocking-cli")
     # The system would load half a file as well, and end the process in the missing half.
-    if hashlib.sha256(at.read_bytes()).hexdigest() != manifest()["files"].get(at.name):
-        raise Unusable(f"{at} is damaged, reinstall rocking-cli")
+    if hashlib.sha256(at.read_bytes()).hexdigest() != listed:
+        raise Broken(f"{at} is damaged, reinstall rocking-cli")
     library = ctypes.CDLL(str(at))
     c = ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None)
     for name in FUNCTIONS:

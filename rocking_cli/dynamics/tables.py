@@ -202,7 +202,7 @@ def _even_steps(mechanism: Mechanism, direction: Direction, cells: int) -> tuple
     phi = end * x * (2 - x)
     dphi = 2 * end * (1 - x)
     at = mechanism.coefficients(phi, direction)
-    check_continuous(mechanism.mechanism, direction, at)
+    check_continuous(mechanism.mechanism, direction, at, mechanism.jumps)
     root = np.sqrt(at.I)
     dq, ddq = root * dphi, at.J / root * dphi**2 - 2 * end * root
     # Euler and Maclaurin's rule with the first correction: right to 1e-12.

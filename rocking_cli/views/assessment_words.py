@@ -10,7 +10,6 @@ from rocking_cli import names
 from rocking_cli.core import Direction, Statics
 from rocking_cli.core.advice import Grade
 from rocking_cli.core.equivalence import AGREEMENT
-from rocking_cli.core.restitution import why_none
 from rocking_cli.core.size import doubts as doubts_about_size
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.holding import joints_in_words, why_unknown
@@ -197,8 +196,7 @@ def doubts(content: Assessment) -> list[str]:
         )
     elif min(etas) <= 0:
         said.append(
-            f"Kinematics give a coefficient of restitution of {min(etas):.3g}: {why_none(min(etas))}. Time histories "
-            "and the overturning map are left out; they need a measured restitution in the file."
+            "Time histories and the overturning map are left out: they need a measured restitution in the file."
         )
     elif not given:
         said.append(

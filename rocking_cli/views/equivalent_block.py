@@ -9,10 +9,9 @@ from typing import Any, NamedTuple
 from rocking_cli.core import Direction, EquivalentBlock, Mechanism, Statics, one_block
 from rocking_cli.core.advice import preferred_kappa
 from rocking_cli.core.equivalence import AGREEMENT, alike
-from rocking_cli.core.restitution import why_none
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.structure import Structure
-from rocking_cli.views.cautions import before_rocking
+from rocking_cli.views.cautions import before_rocking, cautions_of, of_restitution
 from rocking_cli.views.column import data_of
 from rocking_cli.views.hung import hung_data, hung_in_words
 from rocking_cli.views.parameters import PARAMETERS
@@ -33,7 +32,7 @@ def view(structure: Structure) -> View:
         "hung": hung_data(mechanism),
         "per_unit_mass": not mechanism.has_mass,
         "restitution": restitution_source(mechanism),
-        "caution": " ".join([*early, *mechanism.cautions()]) or None,
+        "caution": " ".join(cautions_of(mechanism)) or None,
         "misleading": structure.misleading,
         "directions": {side.direction.label: _data(side) | _extras(mechanism, side) for side in sides},
     }
@@ -65,7 +64,7 @@ def view(structure: Structure) -> View:
     said += [f"Caution: {structure.misleading}."] if structure.misleading else []
     said += [*hung_in_words(mechanism), *([] if mechanism.rocks_both_ways else [restitution_used(structure)])]
     said += [f"P{mechanism.crushing.words[1:]}."] if mechanism.crushing else []
-    said += [f"Caution: {text}" for text in mechanism.cautions()]
+    said += [f"Caution: {text}" for text in (*of_restitution(mechanism), *mechanism.cautions())]
     return View(data, [table, *said])
 
 
@@ -168,20 +167,6 @@ def table(found: Sequence[Structure]) -> dict[str, list[Any]]:
         **{each.heading: [parameters[each.key] for _, _, parameters in rows] for each in PARAMETERS},
         "per unit mass": ["no" if mechanism.has_mass else "yes" for mechanism, _, _ in rows],
     }
-
-
-def warnings(structure: Structure) -> Iterator[str]:
-    """Yield warnings about the parameters."""
-    mechanism, one = structure.mechanism, is_symmetric(structure)
-    if not mechanism.rocks_both_ways:
-        return
-    for side in sides_of(structure)[: 1 if one else 2]:
-        if side.eta <= 0:
-            way = "" if one else f" ending {side.direction.label} motion"
-            yield (
-                f"{mechanism.name}: the kinematics give eta = {side.eta:.4g}{way}: {why_none(side.eta)}; "
-                "time histories need a measured restitution in the file"
-            )
 
 
 def notes(mechanism: Mechanism) -> Iterator[str]:

@@ -9,6 +9,7 @@ from rocking_cli.core.restitution import restitution_in_words
 from rocking_cli.dynamics.verdict import SENSE
 from rocking_cli.structure import Structure
 
+ROUNDING = 1e-9
 ELASTIC = 0.97  # a restitution from kinematics above which tests found less
 
 
@@ -47,6 +48,6 @@ def restitution_used(structure: Structure) -> str:
             f"velocity is {structure.etas[0]:.4g} of that before (the rebound, {how})."
         )
     said = restitution_in_words(structure.etas, given=source == "given")
-    if source == "kinematics" and max(structure.etas) > ELASTIC:
+    if source == "kinematics" and ELASTIC < max(structure.etas) < 1 + ROUNDING:
         said += " Tests of such bodies found less, about 0.95."
     return said

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core.registry import Registry
-from rocking_cli.dynamics import kernels, pulse_motion, ways
+from rocking_cli.dynamics import kernels, pulse_motion, shipped, ways
 from rocking_cli.dynamics.calling import PULSES, SETS, KernelSet
 from rocking_cli.dynamics.deck import lay_out, run_deck
 from rocking_cli.dynamics.exact import segments_of, sides_of
 from rocking_cli.dynamics.model import Model
+from rocking_cli.errors import RockingError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses.shapes import Sine
 from rocking_cli.structure import Structure
@@ -30,10 +31,20 @@ SAMPLES = 2000
 
 
 def deviation(quick: bool) -> float:
-    """Return how many of the computed values differ in any bit. Raises `NotRun` if the kernels cannot be loaded."""
+    """Return how many of the computed values differ in any bit.
+
+    Raises
+    ------
+    NotRun
+        If there are no kernels for this system, or it does not load them.
+    RockingError
+        If the library for this system is damaged or missing.
+    """
     try:
         for of in SETS.values():
             ways.MAKE[ways.READY](of)
+    except shipped.Broken as error:
+        raise RockingError(str(error)) from error
     except ImportError as error:
         raise NotRun(f"{error}; histories are computed by numba if it is installed, or by Python") from error
     arrays = (_computed(kernel_of, quick) for kernel_of in (ways.MAKE[ways.READY], ways.MAKE[ways.PYTHON]))
