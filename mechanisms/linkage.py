@@ -398,23 +398,29 @@ class Linkage(LinkedBodies):
         ground = self._anchored[self.directions[0]]
         for pair in combinations([name for name in self._members if name not in ground], 2):
             for k, face in enumerate(self._closed_faces(pair), 1):
-                if not any(
-                    (each.held == "fixed" and set(each.pieces) == set(pair)) or _is_on(each, face) for each in found
-                ):
+                joined = [each for each in found if set(each.pieces) == set(pair)]
+                if not any(each.held == "fixed" or _is_on(each, face) for each in joined):
                     found = [*found, replace(face, name=f"{face.pieces[0]} and {face.pieces[1]}, face {k}")]
-        touches: dict[str, set[complex]] = {}
-        for each in found:
-            touches.setdefault(each.label, set()).update(each.points)
-        return [each if len(touches[each.label]) > 1 else self._whole_face(each) for each in found]
+        return [
+            self._whole_face(each)
+            if all(other.points == each.points for other in found if _is_of_one_face(each, other))
+            else each
+            for each in found
+        ]
 
     def _whole_face(self, contact: Contact) -> Contact:
         """Return a joint that only hinges, at one point, with the whole face that touches at rest."""
-        if contact.held is not None:
+        if contact.held is not None or len(contact.points) > 1:
             return contact
-        (at,) = contact.points
-        face = face_at(self._members, [name for name in contact.pieces if name is not None], at)
-        far = [] if face is None or face.far == at else [face.far]
-        return replace(contact, points=(at, *far), face=None)
+        (at,), moves = contact.points, [name for name in contact.pieces if name is not None]
+        still = [name for name in self._anchored[self.directions[0]] if name != GROUND]
+        pairs = [moves] if len(moves) == 2 else [[name, *moves] for name in still]
+        closed = [face for one, other in pairs for face in self._closed_faces((one, other)) if _is_on(contact, face)]
+        ends = [end for face in closed for end in face.points]
+        if not ends and (face := face_at(self._members, moves, at)) is not None:
+            ends = [face.far]
+        far = max(ends, key=lambda end: abs(end - at), default=at)
+        return contact if far == at else replace(contact, points=(at, far), face=None)
 
     @property
     def propped(self) -> bool:
@@ -464,12 +470,17 @@ def _on_ground(contact: Contact, ground: Collection[str]) -> Contact:
     return replace(contact, pieces=(one, other), face=None if contact.face in ground else contact.face)
 
 
+def _is_of_one_face(one: Contact, other: Contact) -> bool:
+    """Return whether two contacts are one joint, in either direction of rocking."""
+    return one.label == other.label and abs(one.normal - other.normal) <= ALIKE
+
+
 def _is_on(contact: Contact, face: Contact) -> bool:
     """Return whether a joint bears on a face between the same two bodies."""
     start, end = face.points
     along = (end - start) / abs(end - start)
     off = max(abs(((at - start) * along.conjugate()).imag) for at in contact.points)
-    return set(contact.pieces) == set(face.pieces) and off <= ALIKE * abs(end - start)
+    return off <= ALIKE * abs(end - start) and abs((along.conjugate() * contact.normal).real) <= faces.PARALLEL
 
 
 def _on_pieces(tie: Tie, found: Cracked) -> Tie:

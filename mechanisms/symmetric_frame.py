@@ -35,6 +35,7 @@ from rocking_cli.core.reactions import at_uplift
 
 DRAWN = 6  # columns of a picture that is not to scale, at most
 MOST = 20  # columns whose joints are checked, which takes seconds
+LIGHT = 1e-8  # of the mass of the columns: with less, a beam loads no column
 
 
 class SymmetricFrame(Mechanism):
@@ -72,7 +73,7 @@ class SymmetricFrame(Mechanism):
         if (self.spacing is None) != (self.beam_depth is None):
             missing = "spacing" if self.spacing is None else "beam_depth"
             raise geometry_error(missing, "is missing: give spacing and beam_depth, or neither")
-        if self.spacing is not None and not 1 < self.columns <= MOST:
+        if self.spacing is not None and (not 1 < self.columns <= MOST or self._is_unloaded):
             raise geometry_error("spacing", f"has no effect, as {self.unchecked}: leave out spacing and beam_depth")
         if self.spacing is not None and self.spacing <= self.column_width:
             raise geometry_error(
@@ -175,11 +176,17 @@ class SymmetricFrame(Mechanism):
         return all(abs(each.shear[0, 0]) > self.friction * each.normal[0, 0] for each in feet)
 
     @property
+    def _is_unloaded(self) -> bool:
+        return self.columns > 2 and self.mass_ratio < LIGHT
+
+    @property
     def unchecked(self) -> str:
         if self.columns == 1:
             return "the file does not say what keeps the beam on a single column level"
         if self.columns > MOST:
             return f"it has more than {MOST} columns"
+        if self._is_unloaded:
+            return "its beam has no mass and loads no column"
         return "give spacing and beam_depth"
 
     def critical_rotation(self, direction: Direction) -> float:

@@ -214,6 +214,42 @@ def test_a_joint_that_hinges_at_the_same_corner_in_both_directions_touches_at_re
         assert push / G == pytest.approx(blocks.collapse(direction).lambda_, rel=1e-8)
 
 
+def test_a_body_on_two_legs_bears_on_both_and_one_in_a_notch_on_its_side_too():
+    legs = [[-0.5, 1], [-0.3, 1], [-0.3, 1.5], [0.3, 1.5], [0.3, 1], [0.5, 1], [0.5, 3], [-0.5, 3]]
+    bodies = {"base": [[-0.5, 0], [0.5, 0], [0.5, 1], [-0.5, 1]], "top": legs,
+              "prop": [[-1.5, 0], [-0.5, 0], [-0.5, 2], [-1.5, 2]]}  # fmt: skip
+    shapes = {name: {"polygon": polygon} for name, polygon in bodies.items()}
+    fixed = {name: {"fixed": [name, "ground"]} for name in ("base", "prop")}
+    made = rk.Linkage(
+        bodies=shapes, density=2000.0, depth=1.0, friction=0.7, one_sided="positive", rebound=0.2, negative="none",
+        positive={"lead": "top", "joints": {**fixed, "H": {"hinge": ["base", "top"], "at": [0.5, 1]}}},
+    )  # fmt: skip
+    ground = {"g": {"polygon": [[-3, -1], [3, -1], [3, 0], [-3, 0]]}}
+    blocks = rk.Assembly(blocks=shapes, ground=ground, density=2000.0, depth=1.0, friction=0.7)
+    failure = first_failure(resting(made), Direction.NEGATIVE)
+    assert failure.push / G == pytest.approx(blocks.collapse(Direction.NEGATIVE).lambda_, rel=1e-8)
+    stepped = {"base": {"polygon": [[-1, 0], [1, 0], [1, 1.5], [0.5, 1.5], [0.5, 1], [-1, 1]]},
+               "top": {"polygon": [[-0.5, 1], [0.5, 1], [0.5, 2.2], [-0.5, 2.2]]}}  # fmt: skip
+    rest = {"fixed": ["base", "ground"], "bonded": True}
+    sides = {label: {"lead": "top", "joints": {"G": rest, "H": {"hinge": ["base", "top"], "at": at}}}
+             for label, at in (("positive", [0.5, 1.5]), ("negative", [-0.5, 1]))}  # fmt: skip
+    made = rk.Linkage(bodies=stepped, density=2000.0, depth=1.0, friction=0.2, **sides)
+    failure = first_failure(resting(made), Direction.NEGATIVE)
+    assert failure.push / G == pytest.approx(0.2, rel=1e-8)
+
+
+def test_a_block_on_a_narrow_pedestal_that_is_bonded_bears_on_the_pedestal_alone():
+    bodies = {"pedestal": {"polygon": [[-0.3, 0], [0.3, 0], [0.3, 1], [-0.3, 1]]},
+              "top": {"polygon": [[-0.9, 1], [0.9, 1], [0.9, 1.4], [-0.9, 1.4]]}}  # fmt: skip
+    rest = {"fixed": ["pedestal", "ground"], "bonded": True}
+    made = rk.Linkage(
+        bodies=bodies, density=2000.0, depth=1.0, one_sided="positive", rebound=0.2, negative="none",
+        positive={"lead": "top", "joints": {"G": rest, "H": {"hinge": ["pedestal", "top"], "at": [0.3, 1]}}},
+    )  # fmt: skip
+    (face,) = made.contacts_at_rest()
+    assert set(face.points) == {0.3 + 1j, -0.3 + 1j}
+
+
 def test_what_a_leaning_structure_fixes_opens_at_its_own_lever_arm_away_from_what_it_leans_on():
     stone = of(STACKS["stone"].replace("negative: mirror", "negative: none\none_sided: positive\nrebound: 0.4"))
     failure = first_failure(resting(stone), Direction.POSITIVE)
@@ -233,6 +269,27 @@ def test_faces_that_lie_on_one_another_without_a_joint_bear_at_rest():
 
 
 # Columns
+
+
+def test_joints_of_columns_of_any_size_are_checked_alike():
+    """A thousand times as large, with a pulse as much longer: the same but for lengths."""
+    found = []
+    for size in (1.0, 1e3):
+        sizes = {"column_width": 0.8, "column_height": 4.0, "spacing": 3.0, "beam_depth": 0.5, "depth": 1.0}
+        frame = rk.SymmetricFrame(
+            **{key: each * size for key, each in sizes.items()}, columns=3, mass_ratio=0.5, friction=0.6, density=2000.0
+        )
+        found.append(nonlinear(frame, rk.parse_pulse(f"sine:0.35g:{0.6 * size**0.5}s").sampled()))
+    small, large = found
+    assert small.lifted and small.check is not None and large.check is not None
+    assert large.peak_ratio == pytest.approx(small.peak_ratio, rel=1e-3)
+    assert large.opening == pytest.approx(small.opening, rel=0.02)
+
+
+def test_a_beam_without_mass_loads_no_column():
+    with pytest.raises(rk.RockingError, match="its beam has no mass and loads no column"):
+        rk.SymmetricFrame(**{**COLONNADE, "mass_ratio": 0.0}, columns=3, spacing=3.0, beam_depth=0.5)
+    assert "no mass" in rk.SymmetricFrame(**{**COLONNADE, "mass_ratio": 0.0}, columns=3).unchecked
 
 
 @pytest.mark.parametrize("a", [0.3, 0.8])

@@ -253,7 +253,7 @@ def joints_of(
             for (direction, table), side in zip(sides, statics, strict=True)
         ]
     found = [one for one, _ in answers if one is not None]
-    if len(found) < len(sides):
+    if len(found) < len(sides) or not all(one.contacts for one in found):
         return None
     still = resting(mechanism)
     back = still.modes if mechanism.propped else ()  # what is pushed back goes on as the structure rocks

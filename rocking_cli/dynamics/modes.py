@@ -37,6 +37,7 @@ ALONE = 1e-7  # of the largest singular value: a mode is the only one of its pat
 MOST_THROWN = 6  # modes of one impact
 CLOSED = 1e-5  # of the largest velocity at a joint: by so much one may seem to close
 ROUNDING = 1e-14  # of the largest factor: one that is none
+WIDE = 1e5  # the largest force in a linear programme, whose tolerances are absolute: forces of light pieces count too
 PARALLEL = 1e-12  # product of two lines that do not meet
 SAME = 1e-6  # of the set: corners that are one
 
@@ -395,8 +396,9 @@ def _corner(there: _Placed, k: int, way: Reals, unit: Reals) -> tuple[Reals, Rea
     from scipy.sparse import coo_array, hstack
 
     (rays, press), demand, scale = there.rays(k), there.turned(there.demand[k], k, 1), there.pieces.scale
-    count = rays.shape[0]
-    rays.data = rays.data / scale[rays.indices] * float(np.abs(demand[:, ONE]).max())
+    count, unit_force = rays.shape[0], float(np.abs(demand[:, ONE]).max()) / WIDE
+    rays.data = rays.data / scale[rays.indices] * WIDE
+    demand = demand / unit_force
     pushed = -demand[:, [PUSH, RATE]] * unit / scale[:, None]
     low = np.where(np.arange(count) < press, 0.0, -np.inf)
     solved = linprog(
@@ -411,7 +413,7 @@ def _corner(there: _Placed, k: int, way: Reals, unit: Reals) -> tuple[Reals, Rea
     own, *others = velocity @ demand[:, [ONE, PUSH, RATE]] * np.array([1.0, *unit])
     bounds_it = np.abs(others).max() > TIGHT  # of a direction of length 1; else it is rounding: how far is looked does
     at_edge = abs(own + others @ place) <= SAME * float(np.abs(velocity) @ np.abs(demand[:, ONE]) or 1.0)
-    return place, there.turned(velocity, k, -1) if bounds_it and at_edge else None
+    return place, there.turned(velocity / unit_force, k, -1) if bounds_it and at_edge else None
 
 
 def _thrown(there: _Placed, jump: Reals) -> Iterator[Reals]:

@@ -126,11 +126,12 @@ def resting(mechanism: Mechanism) -> Rest:
 
 def _closed(contacts: Sequence[Contact], near: float) -> list[Contact] | None:
     """Return the joints of both directions with all of their points; None if they are not those of one face."""
-    found: dict[tuple[str, str | None], Contact] = {}
+    found: dict[tuple[str, str | None, complex], Contact] = {}
     for each in contacts:
-        key = (each.label, each.held)
+        alike = (key for key in found if key[:2] == (each.label, each.held) and abs(key[2] - each.normal) <= SAME)
+        key = next(alike, (each.label, each.held, each.normal))
         known = found.setdefault(key, each)
-        if abs(known.normal - each.normal) > SAME or known.pieces != each.pieces:
+        if known.pieces != each.pieces:
             return None
         apart = (each.points[0] - known.points[0]) * known.normal.conjugate()
         if each.held == "slide" and abs(apart.imag) > near:  # two lines of action
