@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import rocking_cli as rk
-from rocking_cli.studies.fragility import tally
-from rocking_cli.studies.fragility.assess import curves
+from rocking_cli.studies.fragility import openquake, ranking, tally
+from rocking_cli.studies.fragility.assess import Fragility, curves
+from rocking_cli.studies.fragility.curves import FragilityCurve, Observations
 from rocking_cli.studies.fragility.definition import implies
+from rocking_cli.studies.fragility.fit import Fit
 from rocking_cli.studies.fragility.hazard_curve import HazardCurve, annual_rate
 from rocking_cli.studies.fragility.onset import accelerations
 from rocking_cli.studies.fragility.openquake import chosen
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
+from rocking_cli.views.fragility import _curve_data, _curves
 from tests.conftest import EXAMPLES
 
 LIMITS = ["uplift", 0.1, 0.5, "25 mm", "overturning"]
@@ -136,3 +140,22 @@ def test_what_is_not_exact_or_contradicted_is_from_the_runs(answer, tmp_path):
     assert set(accelerations(load_study(on_floor), answer.plan)) == {each.structure for each in answer.result}
     on_floor.write_text(text.replace('"method"', '"floor": "T1=0.3,z=1,n=3", "method"'), encoding="utf-8")
     assert accelerations(load_study(on_floor), answer.plan) == {}
+
+
+def test_a_dispersion_without_sense_is_not_shown():
+    cov = np.eye(2) * 1e-4
+    for slope, told in ((0.19, False), (0.21, True)):
+        fit = Fit("probit", np.array([0.0, slope]), cov, 0.0, 0.95)
+        curve = FragilityCurve("lognormal", "as it is", 0.95, 9, 4, fit=fit)
+        found = Fragility("a", "uplift", "PGV", Observations.of(X, X > 1, np.arange(X.size)), curve, None)
+        assert (curve.dispersion is not None) == told == (not np.isnan(ranking._dispersion(found)))
+        assert ("Its dispersion is above 5" in view_of(found)) == (not told)
+        assert (_curve_data(found)["dispersion"] is None) == (not told)
+    flat = replace(found, curve=replace(curve, fit=replace(fit, coefficients=np.array([0.0, 0.1]))))
+    assert "its dispersion is above 5" in openquake._why_not(flat)
+
+
+def view_of(found):
+    """Return the sentences on one curve."""
+    definition = SimpleNamespace(confidence=0.95, method="stripes")
+    return " ".join(part for part in _curves("a", "PGV", [found], definition) if isinstance(part, str))
