@@ -152,6 +152,9 @@ def test_what_to_do_about_the_friction_of_impacts_is_said():
     assert f": give `friction` in the file, and {counts}" in contact_words(found, arch)
     assert f"lower restitution: {counts}" in contact_words(replace(found, friction=0.6), arch)
     assert left_out in contact_words(replace(found, followed=False), arch)
+    assert "with a lower restitution. " in contact_words(
+        replace(found, friction_needed=0.5, impact_friction=0.59), arch
+    )
 
 
 def test_of_a_structure_that_stays_at_rest_there_is_nothing_to_say():

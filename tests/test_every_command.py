@@ -277,7 +277,7 @@ def check_page(place):
     assert "opens or slides by less than 0.5 %" in page
     assert not re.search(r"does not overturn\b|agree closely|no, it rocks", page)
     assert re.search(r"known until; peaks, impacts and displacements are those until then 0\.0\d+", page)
-    assert re.search(r"outcome known .* up to 0\.0\d+ s", page)
+    assert re.search(r"outcome known .* until 0\.0\d+ s", page)
 
 
 @pytest.mark.usefixtures("hostile")

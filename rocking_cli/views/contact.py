@@ -79,7 +79,7 @@ def contact_words(found: ContactDemand, mechanism: Mechanism) -> str:
     if found.impact_friction > max(found.friction_needed, found.friction or 0.0):
         said.append(
             f"Impacts require a coefficient of friction of {number(found.impact_friction, 3)}, and much more with a "
-            f"lower restitution: {_at_impacts(found, mechanism)}."
+            f"lower restitution{_at_impacts(found, mechanism)}."
         )
     if not isnan(found.lost):
         said.append(f"Contact is lost at {_where(found.lost_joint)} at {number(found.lost, 4)} s{beyond}.")
@@ -120,13 +120,15 @@ def contact_words(found: ContactDemand, mechanism: Mechanism) -> str:
 
 
 def _at_impacts(found: ContactDemand, mechanism: Mechanism) -> str:
-    """Return what to do about the friction that impacts require, as a clause."""
+    """Return what to do about the friction that impacts require, as a clause with its colon."""
+    if found.friction is None and found.impact_friction <= MASONRY:
+        return ""
     # The check has the impulses of the kinematic restitution: those of another one do not follow at each joint.
     if not found.followed or restitution_source(mechanism) == "given":
-        return "joints with less slide at impacts, which is not simulated; prevent this, for instance by dowels"
+        return ": joints with less slide at impacts, which is not simulated; prevent this, for instance by dowels"
     if found.friction is None:
-        return "give `friction` in the file, and the check of the joints counts how far they slide at impacts"
-    return "the check of the joints counts how far they slide at impacts"
+        return ": give `friction` in the file, and the check of the joints counts how far they slide at impacts"
+    return ": the check of the joints counts how far they slide at impacts"
 
 
 def _friction(found: ContactDemand, beyond: str) -> str:
