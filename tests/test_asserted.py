@@ -261,6 +261,20 @@ def test_what_a_leaning_structure_fixes_opens_at_its_own_lever_arm_away_from_wha
     assert not nonlinear(stone, GroundMotion("in", 0.01, -out.acceleration)).unknown
 
 
+def test_of_a_leaning_structure_without_shapes_only_the_sliding_as_a_whole_is_known_at_rest():
+    """Where it touches at rest is not known: with its pivot alone it would seem to slide at 0.1 g."""
+    made = of("""
+bodies: {base: {mass: 2000, centroid: [0, 0.5], inertia: 300}, top: {mass: 900, centroid: [0, 2], inertia: 200}}
+friction: 0.3
+one_sided: positive
+rebound: 0.3
+negative: none
+positive: {lead: base, joints: {A: {pivot: base, at: [0.5, 0]}, F: {fixed: [base, top]}}}
+""")
+    failure = first_failure(resting(made), Direction.POSITIVE)
+    assert failure.push / G == pytest.approx(0.3, rel=1e-9) and failure.slides
+
+
 def test_faces_that_lie_on_one_another_without_a_joint_bear_at_rest():
     """Two equal piers side by side: pushed to the left, the right one leans on the other and cannot turn alone."""
     made = rk.load_structure(PORTICO)

@@ -120,6 +120,8 @@ def resting(mechanism: Mechanism) -> Rest:
         return known._replace(modes=[mode for mode in found if mode is not None])
     (direction,) = mechanism.directions
     known = Rest(None, [] if whole is None else [_slides_out(whole, there, direction)])
+    if any(each.held is None and len(each.points) == 1 for each in closed):  # its whole face is not known
+        return known
     mode = _first(mechanism, there, closed, direction, known, _leaning(mechanism, closed, direction))
     return known if mode is None else known._replace(modes=[*known.modes, mode])
 
