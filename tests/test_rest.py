@@ -236,3 +236,15 @@ def test_only_what_is_fixed_can_be_bonded(tmp_path):
         STACKS["stone"].replace("at: [0.5, 0]}", "at: [0.5, 0], bonded: true}"), encoding="utf-8"
     )
     assert "positive.joints.A.bonded cannot be combined with pivot" in run("equiv", "x.yaml", code=2).stderr
+
+
+@pytest.mark.parametrize("count", range(2, 9))
+def test_of_joints_that_fail_at_the_same_acceleration_the_first_of_the_file_is_named(count):
+    """All blocks of a stack slide at once, and the last digits of their forces differ from computer to computer."""
+    shapes = {f"b{k}": {"polygon": [[-0.5, k], [0.5, k], [0.5, k + 1], [-0.5, k + 1]]} for k in range(count)}
+    fixed = {f"F{k}": {"fixed": [f"b{k - 1}", f"b{k}"]} for k in range(1, count)}
+    side = {"lead": "b0", "joints": {**fixed, "A": {"pivot": "b0", "at": [0.5, 0]}}}
+    stack = rk.Linkage(bodies=shapes, positive=side, friction=1 / count - 0.01, density=2000.0, depth=1.0)
+    for direction in Direction:
+        failure = first_failure(resting(stack), direction)
+        assert (failure.joint, failure.slides) == ("the ground and b0", True)

@@ -321,4 +321,5 @@ def first_failure(found: Rest, direction: Direction) -> Failure | None:
         Failure(max(float(force[ONE]), 0.0) / (int(direction) * float(force[PUSH])), joint, slides, opens)
         for force, joint, slides, opens in rows if int(direction) * force[PUSH] > 0
     ]  # fmt: skip
-    return min(fails, default=None)
+    least = min((each.push for each in fails), default=0.0) * (1 + SAME)
+    return next((each for each in fails if each.push <= least), None)  # the first of several
