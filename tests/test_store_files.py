@@ -13,7 +13,7 @@ import pytest
 from rocking_cli.errors import InputError
 from rocking_cli.studies.fragility import store_file
 from rocking_cli.studies.fragility.store import Store
-from rocking_cli.studies.fragility.store_file import new_name, this_process
+from rocking_cli.studies.fragility.store_file import in_words, new_name, this_process
 from tests.stores import Sound, command, shown
 
 
@@ -303,3 +303,15 @@ def test_a_restart_keeps_no_store_without_runs_and_counts_those_that_it_keeps(so
     command("fragility", sound.study, "--store", place)
     said = command("fragility", sound.study, "--store", place, "--restart").stderr
     assert "study.before-2.db; an earlier one is kept beside it: remove what you do not need" in said
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows moves no file that is open")
+def test_a_store_that_a_restart_has_moved_is_no_matter_of_rights(tmp_path):
+    path = tmp_path / "study.db"
+    connection = sqlite3.connect(path, isolation_level=None)
+    connection.execute("CREATE TABLE runs (number)")
+    path.rename(tmp_path / "study.before.db")
+    with pytest.raises(InputError, match=r"study\.db: another process has moved this store") as caught, in_words(path):
+        connection.execute("INSERT INTO runs VALUES (1)")
+    connection.close()
+    assert "run the same command again" in str(caught.value)

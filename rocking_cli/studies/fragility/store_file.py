@@ -51,6 +51,9 @@ def in_words(path: Path) -> Iterator[None]:
     try:
         yield
     except sqlite3.Error as error:
+        if getattr(error, "sqlite_errorcode", 0) == sqlite3.SQLITE_READONLY_DBMOVED:  # by a restart elsewhere
+            what = "another process has moved this store: it has just started the study from scratch"
+            raise InputError(Problem(what, str(path), hint="run the same command again to continue")) from None
         code = getattr(error, "sqlite_errorcode", 0) & 0xFF  # the rest says more than is needed here
         if code == sqlite3.SQLITE_NOTADB:
             raise InputError(Problem("this is not the store of a study", str(path))) from None
