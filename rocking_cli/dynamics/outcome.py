@@ -84,7 +84,7 @@ class Outcome(Generic[Flags, Counts, Numbers]):
         return self.fell_to != 0  # type: ignore[return-value]
 
     @property
-    def overturned(self) -> Any:
+    def overturned(self) -> Numbers | bool | None:
         """Whether the structure overturns: of one motion True or False, and None if unknown or if the solver failed.
 
         Of many motions an ndarray of 1.0, 0.0, and NaN if unknown or if the solver failed: its sum and its mean are
@@ -95,7 +95,7 @@ class Outcome(Generic[Flags, Counts, Numbers]):
             return None if hidden else bool(self.fell)
         import numpy as np
 
-        return np.where(hidden, np.nan, self.fell)  # type: ignore[call-overload]
+        return np.where(hidden, np.nan, self.fell)  # type: ignore[call-overload, no-any-return]
 
     def share(self: Outcomes) -> tuple[float, float]:
         """Return the lowest and the highest share of many motions that overturn the structure.
