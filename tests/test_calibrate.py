@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import runpy
+import warnings
 from math import atan, cos, degrees, hypot, sin, sqrt
 
 import numpy as np
@@ -195,6 +196,15 @@ class TestRefusals:
 
     def test_noise_above_the_motion(self, clean):
         assert "there is no motion to fit" in self.refused(trace(clean[0], noise=0.6))
+
+    def test_numbers_that_no_instrument_writes(self, clean):
+        times, angles = DT * np.arange(len(clean[0])), clean[0]
+        assert "the angle is the same in all samples" in self.refused(Trace("t", times, np.full(times.size, 0.1)))
+        assert "check the unit of the angles" in self.refused(Trace("t", times, 1e-300 * angles))
+        assert "check the unit of the times" in self.refused(Trace("t", 1e200 * times, angles))
+        with warnings.catch_warnings():  # a fit that wanders far off says so in words, if at all
+            warnings.simplefilter("error")
+            self.refused(Trace("t", 1e-4 * times, 1e-5 * angles))
 
     def test_too_few_samples(self):
         assert "at least 30 samples, got 10" in self.refused(Trace("t", np.arange(10.0), np.ones(10)))

@@ -35,6 +35,8 @@ Reals = NDArray[np.float64]
 LEAST_IMPACTS = 3
 LEAST_SAMPLES = 30
 LEAST_ALPHA = 0.07  # rad: for smaller slenderness, p and alpha cannot be told apart
+LEAST_ANGLE = 1e-6  # of the rotation at which the structure overturns: no instrument sees less
+LONGEST = 1e6  # s of a trace
 SEEN = 3.0  # times the noise: half-cycles with larger peaks are seen
 ABOVE = 5.0  # times the noise: the least largest angle of a trace
 FARTHEST = 0.98  # of the critical rotation: the largest release
@@ -207,6 +209,11 @@ def fit_trace(structure: Structure, trace: Trace, *, free_geometry: bool = False
             f"{trace.name}: the largest angle, {np.degrees(scale):.3g} deg, is more than twice the rotation at which "
             f"the structure overturns, {np.degrees(most):.3g} deg: check the unit of the angles, and the structure"
         )
+    if scale < LEAST_ANGLE * most:
+        raise InputError(
+            f"{trace.name}: the largest angle, {np.degrees(scale):.3g} deg, is below {LEAST_ANGLE:g} times the "
+            f"rotation at which the structure overturns, {np.degrees(most):.3g} deg: check the unit of the angles"
+        )
     both = structure.mechanism.rocks_both_ways
     origin = float(kept.times[0])
     base = _Problem(
@@ -222,11 +229,16 @@ def fit_trace(structure: Structure, trace: Trace, *, free_geometry: bool = False
     ]
     if structure.model("nonlinear").symmetric:
         tries = [each for each in tries if each.first is Direction.POSITIVE]
-    fits = [fit for each in tries for fit in [_common(each, np.array(more), noise / scale)] if fit is not None]
-    if not fits:
-        raise InputError(_too_few(trace, 0))
-    problem, x, covariance, _ = min(fits, key=lambda each: each[3])
-    return _each(problem, x, covariance, trace, noise, origin, free_geometry)
+    try:
+        with np.errstate(all="ignore"):  # a trial far off has no finite residual, and is no best fit
+            fits = [fit for each in tries for fit in [_common(each, np.array(more), noise / scale)] if fit is not None]
+            if not fits:
+                raise InputError(_too_few(trace, 0))
+            problem, x, covariance, _ = min(fits, key=lambda each: each[3])
+            return _each(problem, x, covariance, trace, noise, origin, free_geometry)
+    except (ArithmeticError, np.linalg.LinAlgError):
+        what = "no motion of this structure fits: check its size, and the units of times and angles"
+        raise InputError(f"{trace.name}: {what}") from None
 
 
 def _geometry(
@@ -263,14 +275,19 @@ def _geometry(
 def _from_peak(trace: Trace) -> tuple[float, Trace]:
     """Return the noise of a trace, and the trace without samples in which it rises to its first peak.
 
-    Raises `InputError` if it is too short.
+    Raises `InputError` if it is too short or too long, or if nothing moves.
     """
     if trace.times.size < LEAST_SAMPLES:
         raise InputError(f"{trace.name}: a trace needs at least {LEAST_SAMPLES} samples, got {trace.times.size}")
+    length = float(trace.times[-1] - trace.times[0])
+    if length > LONGEST:
+        raise InputError(f"{trace.name}: the trace lasts {length:.3g} s: check the unit of the times")
     third = np.diff(trace.angles, 3)  # has 20 times the variance of white noise
     noise = float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20))
     size = np.abs(trace.angles - np.median(trace.angles))
     most = float(size.max())
+    if not most > 0:
+        raise InputError(f"{trace.name}: the angle is the same in all samples: there is no motion to fit")
     start = int(np.argmax(size > most / 2))
     end = start + int(np.argmax(np.append(size[start:], 0.0) < most / 2))
     peak = start + int(np.argmax(size[start:end]))
