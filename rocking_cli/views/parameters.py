@@ -113,7 +113,7 @@ PARAMETERS = (
         "eta",
         of("eta"),
         "",
-        words="coefficient of restitution of the impacts that end motion in this direction",
+        words="restitution when motion in this direction ends",
         symbol="η",
         meaning="Coefficient of restitution: rate of rotation just after an impact that ends motion in this "
         "direction, over "
