@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import pairwise, product
 from math import atan
 
@@ -17,6 +18,7 @@ from rocking_cli.core import Direction
 from rocking_cli.core.released import released
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.studies.contact import Contacts
+from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
 POSITIVE, NEGATIVE = Direction.POSITIVE, Direction.NEGATIVE
@@ -834,3 +836,13 @@ def test_hinges_above_one_another_come_from_below(by):
     points = [complex(1.0 + by, 3.0), 4 + 0j, complex(1.0 - by, 0.0), -2 + 5j, complex(1.0, 1.0)]
     assert from_the_left(points) == [3, 2, 4, 0, 1]
     assert from_the_left([]) == [] and from_the_left([2j, 1j]) == [1, 0]
+
+
+def test_joint_forces_of_an_assembly_without_masses_are_per_unit_mass(tmp_path):
+    file = EXAMPLES / "assembly.yaml"
+    bare = tmp_path / "bare.yaml"
+    bare.write_text(re.sub(r"(?m)^(density|depth):.*$", "", file.read_text(encoding="utf-8")), encoding="utf-8")
+    heavy, light = (run("collapse", each).stdout for each in (file, bare))
+    assert "Fx [kN]" in heavy and "N/kg" not in heavy
+    assert "Fx [N/kg]" in light and "kN" not in light
+    assert [run_json("collapse", each)["per_unit_mass"] for each in (file, bare)] == [False, True]
