@@ -468,7 +468,9 @@ class TestRespond:
 class TestBothPolarities:
     def test_each_is_what_it_is_alone_and_the_larger_governs(self):
         both = run_json("respond", FRAME, "--record", ACCEL, "--polarity", "both")
-        assert list(both) == ["structure", "record", "release", "restitution", "polarities", "governs", "notes"]
+        assert list(both) == [
+            "structure", "record", "release", "restitution", "conclusion", "polarities", "governs", "notes",
+        ]  # fmt: skip
         assert both["record"]["polarity"] == "both"
         peaks = {}
         for polarity in ("1", "-1"):

@@ -13,8 +13,8 @@ import yaml
 
 import rocking_cli as rk
 from rocking_cli.core import Direction
-from rocking_cli.studies.conclusion import ORDER, Concluded, Conclusion, Share, worst
-from rocking_cli.studies.verification.results import Check
+from rocking_cli.studies.conclusion import ORDER, Concluded, Conclusion, NeighbourShare, worst
+from rocking_cli.studies.verification.results import Requirement
 from rocking_cli.views.conclusion import conclusion_data, digits_beside_one, of_verification
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json, some
@@ -123,8 +123,8 @@ def test_histories_count_as_far_as_the_code_lets_them(pillar):
 
 def test_the_worst_of_several_governs():
     checks = [
-        Check.of("SLV", "nonlinear", 1.2, True), Check.of("SLC", "nonlinear_SLC", 1.05, True),
-        Check.of("SLD", "SLD", None, None),
+        Requirement.of("SLV", "nonlinear", 1.2, True), Requirement.of("SLC", "nonlinear_SLC", 1.05, True),
+        Requirement.of("SLD", "SLD", None, None),
     ]  # fmt: skip
     ends = [Conclusion(concluded=each.concluded, limit_state=each.state, ratio=each.ratio) for each in checks]
     assert worst(ends[:2]).limit_state == "SLC" and worst(ends).concluded is Concluded.NOT_CHECKED
@@ -132,7 +132,10 @@ def test_the_worst_of_several_governs():
         Conclusion(concluded=Concluded.ROCKS, motion=name, ratio=ratio) for name, ratio in (("a", 0.2), ("b", 0.5))
     ]
     assert worst(rocks).motion == "b"
-    near = [replace(rocks[0], share=Share(0.1, 0.4, 200)), replace(rocks[1], share=Share(0.2, 0.2, 200))]
+    near = [
+        replace(rocks[0], share=NeighbourShare(0.1, 0.4, 200)),
+        replace(rocks[1], share=NeighbourShare(0.2, 0.2, 200)),
+    ]
     assert worst(near).motion == "a"
     assert ORDER.index(Concluded.UNKNOWN) < ORDER.index(Concluded.OVERTURNS)
 
@@ -162,7 +165,7 @@ def test_a_response_concludes_the_same_in_text_json_and_report(tmp_path, pulse, 
     assert words in answer.plot().axes[0].get_title(loc="left")
     assert answer.conclusion.concluded.value == expected
     near = answer.neighbours[1]
-    assert answer.conclusion.share == Share(near.overturned, near.at_most, 20)
+    assert answer.conclusion.share == NeighbourShare(near.overturned, near.at_most, 20)
     assert (answer.conclusion.ratio is None) == (expected == "overturns")
 
 

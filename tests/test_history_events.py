@@ -648,7 +648,7 @@ def check(name, mechanism, history):
     peaks = {1: history.peak_positive, -1: history.peak_negative}
     for value in (*peaks.values(), history.peak_ratio, history.overturning_time, history.uplift_time, history.end_time):
         assert not np.isinf(value)
-    fallen = history.overturned
+    fallen = history.fell
     assert fallen == (history.fell_to != 0) == np.isnan(history.peak_ratio) == (not np.isnan(history.overturning_time))
     assert [np.isnan(peak) for peak in peaks.values()] == [history.fell_to == s for s in peaks]
     # It has one outcome, and ends unless nothing is known of its end.

@@ -191,7 +191,7 @@ def test_many_are_each_as_if_alone_to_the_last_bit():
             vertical=replace(up, acceleration=up.acceleration * runs.scale[k]) if up is not None else None,
         )
         alone = follow(models[runs.model[k]], scaled)
-        for field in ("overturned", "peak_positive", "peak_negative", "uplift_time", "impact_count", "end_time"):
+        for field in ("fell", "peak_positive", "peak_negative", "uplift_time", "impact_count", "end_time"):
             assert np.array_equal(getattr(alone, field), getattr(together, field)[k], equal_nan=True), (k, field)
 
 

@@ -42,7 +42,7 @@ class LeftOut(NamedTuple):
     why: str
 
 
-class Share(NamedTuple):
+class NeighbourShare(NamedTuple):
     """Share of neighbouring motions that overturn: its lowest and highest value, and their number.
 
     The two differ by the neighbours of unknown outcome.
@@ -69,7 +69,7 @@ class Conclusion:
         By how much: capacity over demand of a verification, peak over phi_cr (or the limit) of a response.
     known_until : float or None
         Time until which the response that governs is known [s]; None if all of it is known.
-    share : Share or None
+    share : NeighbourShare or None
         How sure: the share of the neighbours of the motion that governs.
     limit_states, motions : sequence of str
         Over what it is concluded: limit states that were verified, motions that were simulated.
@@ -90,7 +90,7 @@ class Conclusion:
     polarity: int | None = None
     ratio: float | None = None
     known_until: float | None = None
-    share: Share | None = None
+    share: NeighbourShare | None = None
     limit_states: Sequence[str] = ()
     motions: Sequence[str] = ()
     polarities: Sequence[int] = ()

@@ -15,7 +15,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conclusion import Concluded, Conclusion, Share, worst
+from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare, worst
 from rocking_cli.studies.contact import ContactDemand, Contacts
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 
@@ -65,7 +65,7 @@ def _of_run(run: History, near: Neighbours | None, motion: str, sign: int) -> Co
         ratio=run.peak_ratio if known else None,
         known_until=run.known_to if run.unknown else None,
         joint=run.check.joint if run.unknown and run.check is not None else "",
-        share=Share(near.overturned, near.at_most, near.around.count) if near is not None else None,
+        share=NeighbourShare(near.overturned, near.at_most, near.around.count) if near is not None else None,
         motions=[motion] if motion else [],
     )
 

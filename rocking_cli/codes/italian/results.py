@@ -13,7 +13,7 @@ from rocking_cli.core import Direction
 from rocking_cli.studies.conclusion import ORDER, Concluded, Conclusion, LeftOut
 from rocking_cli.studies.verification import results as frame
 from rocking_cli.studies.verification.motions import MotionPlace
-from rocking_cli.studies.verification.results import CLOSE, Check
+from rocking_cli.studies.verification.results import CLOSE, Requirement
 
 HISTORIES = "histories"
 """The key of the method by time histories in a conclusion."""
@@ -164,7 +164,7 @@ class Dynamic:
         """Whether the code requires more records before their mean may be used."""
         return len(self.records) < self.enough
 
-    def checks(self) -> list[Check]:
+    def checks(self) -> list[Requirement]:
         """Return what the histories with FC prove; none of too few that would pass."""
         names, found = [each.name for each in self.records], []
         for state, allowed in self.allowed.items():
@@ -177,7 +177,7 @@ class Dynamic:
                 concluded = Concluded.SATISFIED
             if concluded is not Concluded.SATISFIED or not self.too_few:
                 ratio = None if mean is None else allowed / mean if mean else inf
-                found.append(Check(state, HISTORIES, ratio, concluded, names))
+                found.append(Requirement(state, HISTORIES, ratio, concluded, names))
         return found
 
     def holds(self, state: str, *, confident: bool) -> bool:
@@ -255,12 +255,12 @@ class ItalianVerified(frame.Verified):
         return None if None in known else min(ratio for ratio in known if ratio is not None)
 
     @property
-    def checks(self) -> Sequence[Check]:
+    def checks(self) -> Sequence[Requirement]:
         """The limit states that the site gives, and the time histories if there are enough of them, or they fail."""
         return [*self._static, *([] if self.dynamic is None else self.dynamic.checks())]
 
     @property
-    def _static(self) -> list[Check]:
+    def _static(self) -> list[Requirement]:
         found = []
         for state, at in self.states.items():
             if at.demand is None and state != self.first:
@@ -268,9 +268,9 @@ class ItalianVerified(frame.Verified):
             by = self.governing[state]
             zeta = self.methods[by].zeta
             ratio = zeta if by == OF_STATE[state][0] and zeta is not None else at.ratio
-            found.append(Check.of(state, by, ratio, self.passes(state)))
+            found.append(Requirement.of(state, by, ratio, self.passes(state)))
         damage = self.methods["SLD"]
-        return found if damage.passed is None else [*found, Check.of("SLD", "SLD", damage.ratio, damage.passed)]
+        return found if damage.passed is None else [*found, Requirement.of("SLD", "SLD", damage.ratio, damage.passed)]
 
     def is_like(self, other: frame.Verified) -> bool:
         """Return whether another direction has the same curve; False with histories, as motions are not symmetric."""

@@ -55,7 +55,7 @@ def governing(methods: Mapping[str, Method]) -> str:
     return min(methods, key=lambda key: inf if (ratio := methods[key].ratio) is None or isnan(ratio) else ratio)
 
 
-class Check(NamedTuple):
+class Requirement(NamedTuple):
     """What a code requires of a direction at one limit state.
 
     Parameters
@@ -79,7 +79,7 @@ class Check(NamedTuple):
     motions: Sequence[str] = ()
 
     @classmethod
-    def of(cls, state: str, method: str, ratio: float | None, passed: bool | None) -> Check:
+    def of(cls, state: str, method: str, ratio: float | None, passed: bool | None) -> Requirement:
         """Return the check of a method that passes, fails, or lacks values of the site (None)."""
         known = {True: Concluded.SATISFIED, False: Concluded.NOT_SATISFIED, None: Concluded.NOT_CHECKED}
         return cls(state, method, ratio, known[passed])
@@ -127,9 +127,9 @@ class Verified:
         return self.counts.passed
 
     @property
-    def checks(self) -> Sequence[Check]:
+    def checks(self) -> Sequence[Requirement]:
         """All that the code requires; by default what `passed` says of the method that governs."""
-        return (Check.of("", self.governs, self.ratio, self.passed),)
+        return (Requirement.of("", self.governs, self.ratio, self.passed),)
 
     def is_like(self, other: Verified) -> bool:
         """Return whether another direction has the same numbers, so that only one needs to be shown."""
