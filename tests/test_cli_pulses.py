@@ -169,9 +169,8 @@ class TestWithPulse:
     def test_json_has_the_pulse_and_the_responses_to_it_alone(self, made):
         data = run_json("respond", FRAME, "--record", made, "--with-pulse", "sine", "--polarity", "-1")
         assert list(data) == [
-            "structure", "record", "release", "restitution", "conclusion", "responses", "agreement", "neighbours", "verdict",
-            "pulse",
-            "pulse_responses", "notes",
+            "structure", "record", "release", "restitution", "conclusion", "responses", "agreement", "neighbours",
+            "verdict", "pulse", "pulse_responses", "notes",
         ]  # fmt: skip
         assert list(data["pulse"]) == KEYS and data["pulse"]["sign"] == 1
         motion = read_record(made).scaled(-1)

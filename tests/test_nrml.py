@@ -254,13 +254,13 @@ def test_curves_as_a_table(store, tmp_path, ending):
             np.array([float(each[name]) for each in own]) for name in ("x", "probability", "low", "high")
         )
         median, beta = float(own[0]["median"]), float(own[0]["dispersion"])
-        below = x < 0.25  # no structure overturns that does not uplift
+        below = x <= 0.25  # no structure overturns that does not uplift
         assert not p[below].any()
         np.testing.assert_allclose(p[~below], norm.cdf(np.log(x[~below] / median) / beta), atol=1e-7)
         assert x.size > 100 and (x[0], x[-1]) == pytest.approx((0.1, 1.5)) and (np.diff(x) > 0).all()
         assert (low <= p).all() and (p <= high).all() and (high - low).max() > 0.1
     step = [(float(each["x"]), float(each["probability"])) for each in rows if each["kind"] == "step"]
-    assert {p for x, p in step if x < 0.25} == {0.0} and {p for x, p in step if x > 0.2501} == {1.0}
+    assert {p for x, p in step if x <= 0.25} == {0.0} and {p for x, p in step if x > 0.25} == {1.0}
     assert own[0]["unit"] == "g" and not own[0]["scale"]
 
 

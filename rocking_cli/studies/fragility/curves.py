@@ -154,7 +154,8 @@ class FragilityCurve:
         if self.fit is not None:
             found = self.fit.probability(self._design(x)).reshape(x.shape)
         elif self.step is not None:
-            found = np.heaviside(x - self.step.value, 0.5)
+            known = self.step.low == self.step.high  # by the uplift acceleration, which a motion must exceed
+            found = np.heaviside(x - self.step.value, 0.0 if known else 0.5)
         else:
             return np.full(x.shape, np.nan)
         return np.asarray(np.min([found, *(each.probability(x) for each in self.implied.values())], axis=0))
@@ -165,7 +166,8 @@ class FragilityCurve:
         if self.fit is not None:
             found = [each.reshape(x.shape) for each in self.fit.band(self._design(x))]
         elif self.step is not None:
-            found = [(x >= self.step.high).astype(np.float64), (x > self.step.low).astype(np.float64)]
+            below = x <= self.step.low
+            found = [((x >= self.step.high) & ~below).astype(np.float64), (~below).astype(np.float64)]
         else:
             return np.full(x.shape, np.nan), np.full(x.shape, np.nan)
         low, high = np.min([found, *(each.band(x) for each in self.implied.values())], axis=0)
