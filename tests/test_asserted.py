@@ -365,3 +365,12 @@ def test_a_linkage_and_an_assembly_of_three_columns_have_the_same_columns_alone(
     two["positive"]["joints"] = {k: each for k, each in data["positive"]["joints"].items() if k not in "CD"}
     two.pop("mechanism")
     assert not rk.Linkage(**two).columns_alone()
+
+
+def test_a_structure_whose_faces_at_rest_are_not_known_bears_while_it_rocks_only():
+    motion = pulse(0.6, 0.4)
+    wall = {**ROOF, "overburden": 20000.0, "support": 0.0}
+    both, leans = rk.SpanningWall(**wall), rk.SpanningWall(**wall, one_sided="positive", rebound=0.3)
+    assert "bear throughout the motion" in joints_in_words(nonlinear(both, motion))
+    assert "bear while the structure rocks" in joints_in_words(nonlinear(leans, motion))
+    assert not resting(leans).known and resting(both).known and resting(rk.load_structure(SLAB)).known

@@ -69,7 +69,8 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
         return " ".join([*_opens(history, check, valid=not slides), *slides, *taken])
     which = f" ({'; '.join(check.checked)})" if check.checked else ""
     but = f", except the joint between {check.warned_joint} for an instant at {check.warned:.4g} s"
-    bear = f"All checked joints bear throughout the motion{which}{'' if isnan(check.warned) else but}."
+    when = "throughout the motion" if check.at_rest else "while the structure rocks"
+    bear = f"All checked joints bear {when}{which}{'' if isnan(check.warned) else but}."
     return " ".join([bear, *slides, *taken])
 
 

@@ -89,6 +89,8 @@ class JointTables:
         Whether the only joint is that of a single body with the ground.
     checked : sequence of str
         Joints that are checked, by kind, in words.
+    at_rest : bool
+        Whether all joints are checked at rest too.
     """
 
     labels: Sequence[str]
@@ -110,6 +112,7 @@ class JointTables:
     calm: tuple[float, float] = NEVER
     alone: bool = False
     checked: Sequence[str] = ()
+    at_rest: bool = True
 
 
 @dataclass(frozen=True)
@@ -153,6 +156,8 @@ class JointCheck:
         Joints that are assumed to hold without a check, in words.
     checked : sequence of str
         Joints that are checked, by kind, in words.
+    at_rest : bool
+        Whether all joints were checked at rest too.
     """
 
     limit: float
@@ -172,6 +177,7 @@ class JointCheck:
     alone: bool
     asserted: Sequence[str] = ()
     checked: Sequence[str] = ()
+    at_rest: bool = True
 
 
 REASONS = ("opens", "slides", "crushes", "weightless", "apart")  # in the order of the kernel
@@ -211,6 +217,7 @@ def check_of(joints: JointTables | None, marks: Reals) -> JointCheck | None:
         alone=joints.alone,
         asserted=joints.asserted,
         checked=joints.checked,
+        at_rest=joints.at_rest,
     )
 
 
@@ -293,7 +300,7 @@ def joints_of(
         labels, contacts, bearing, rows, struck, within, _reach(mechanism, statics), mechanism.opening,
         not any(table.held.size for table in tables), QUICK / p, mechanism.gravity, rest, steady,
         mechanism.asserted(), sliding, redundant, _calm(within, tables, statics),
-        len(mechanism.bodies()) == 1, checked_joints(mechanism),
+        len(mechanism.bodies()) == 1, checked_joints(mechanism), still.known,
     )  # fmt: skip
 
 

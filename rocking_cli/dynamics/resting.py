@@ -75,10 +75,14 @@ class EarlyMechanism(NamedTuple):
 
 
 class Rest(NamedTuple):
-    """What may fail at rest: joints whose forces are known, and mechanisms that start before rocking."""
+    """What may fail at rest: joints whose forces are known, and mechanisms that start before rocking.
+
+    `known` is whether all joints at rest are known, so that nothing else may fail.
+    """
 
     closed: Released | None
     modes: Sequence[EarlyMechanism] = ()
+    known: bool = True
 
 
 def resting(mechanism: Mechanism) -> Rest:
@@ -100,17 +104,17 @@ def resting(mechanism: Mechanism) -> Rest:
     contacts = mechanism.contacts_at_rest()
     names = {tuple(piece.body.name for piece in mechanism.pieces(direction)) for direction in mechanism.directions}
     if contacts is None or len(names) > 1:
-        return Rest(None)
+        return Rest(None, known=False)
     there = Pieces(mechanism, mechanism.directions[0], np.zeros(1))
     closed = _closed(contacts, SAME * there.scale.max())
     if closed is None:
-        return Rest(None)
+        return Rest(None, known=False)
     if mechanism.rocks_both_ways and sum(contact.forces for contact in closed) == there.dq.shape[1]:
         rates, rows = there.rates(closed)
         try:
             inverse = inverted(rates.dense() / there.scale) / there.scale[:, None]
         except Undetermined:
-            return Rest(None)
+            return Rest(None, known=False)
         compliance = 1 / np.einsum("nir,nir->nr", inverse, there.momenta(inverse))
         return Rest(Released(closed, rows, inverse.swapaxes(1, 2) @ there.held_still(), compliance))
     whole = _as_one(mechanism, there, closed)
@@ -121,7 +125,7 @@ def resting(mechanism: Mechanism) -> Rest:
     (direction,) = mechanism.directions
     known = Rest(None, [] if whole is None else [_slides_out(whole, there, direction)])
     if any(each.held is None and len(each.points) == 1 for each in closed):  # its whole face is not known
-        return known
+        return known._replace(known=len(mechanism.bodies()) == 1)
     mode = _first(mechanism, there, closed, direction, known, _leaning(mechanism, closed, direction))
     return known if mode is None else known._replace(modes=[*known.modes, mode])
 
