@@ -142,8 +142,8 @@ class SpanningWall(Mechanism):
                 "The weakest hinge is not searched with loads, ties, crossing walls or crushing: compute lambda with "
                 "the hinge higher and lower as well."
             )
-        inside: list[str] = []
-        above: list[str] = []
+        inside: list[tuple[str, Direction]] = []
+        above: list[tuple[str, Direction]] = []
         for direction in self.directions:
             rho, lever = self._load_ratio, self._lever(direction)
             xi, given = self._weakest(direction), self.uplift(direction)
@@ -151,14 +151,15 @@ class SpanningWall(Mechanism):
             opens = 0.0 if at_top else lever * xi / (1 - xi)
             least = 0.0 if rho * lever < -TOP else 2 * self.thickness / (xi * self.height) * (1 + rho * (1 + opens))
             if least < (1 - LOWER) * given:
-                lowers = f"lambda is {least:.4g} g instead of {given:.4g} g in the {direction.label} direction"
-                (above if at_top else inside).append(lowers if at_top else f"at {xi:.3g} of the height {lowers}")
-        said = [f"The hinge is not the weakest: {' and '.join(inside)}."] if inside else []
+                lowers = f"lambda is {least:.4g} g instead of {given:.4g} g"
+                place = above if at_top else inside
+                place.append((lowers if at_top else f"at {xi:.3g} of the height {lowers}", direction))
+        said = [f"The hinge is not the weakest: {_by_direction(inside)}."] if inside else []
         if inside and all(1 - self._weakest(direction) >= TOP for direction in self.directions):
             said.append("Give `hinge: weakest`, unless something fixes its height.")
         if above:
             said.append(
-                f"The higher the hinge, the lower lambda: with the hinge near the top {' and '.join(above)}. Check at "
+                f"The higher the hinge, the lower lambda: with the hinge near the top {_by_direction(above)}. Check at "
                 "which height the wall hinges."
             )
         return " ".join(said)
@@ -249,3 +250,11 @@ class SpanningWall(Mechanism):
             lengths=[Length("t", complex(-t / 2), complex(t / 2)), Length("h", complex(-t / 2), -t / 2 + top)],
             notes=[load] if self.overburden else [],
         )
+
+
+def _by_direction(found: Sequence[tuple[str, Direction]]) -> str:
+    """Return texts with their directions; a text that is that of both once."""
+    texts = {text for text, _ in found}
+    if len(texts) < len(found):
+        return found[0][0]
+    return " and ".join(f"{text} in the {direction.label} direction" for text, direction in found)

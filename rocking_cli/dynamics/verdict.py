@@ -148,7 +148,7 @@ def verdict(histories: Mapping[ModelName, History], assumed_friction: float | No
         said.append(NO_JOINTS)
     else:
         said += bearing(histories, {name: name for name in histories})
-    if disagree(histories):
+    if not run.unknown and disagree(histories):
         said.append("Do not trust any of them alone: run weaker and stronger motions as well.")
     elif not run.fell and not run.unknown and run.peak_ratio > CLOSE and not any(run.ends_at_limit):
         said.append("This is close to overturning: run weaker and stronger motions before relying on it.")
