@@ -124,9 +124,9 @@ def test_the_equation_of_motion_is_that_of_lagrange(direction):
 @pytest.mark.parametrize(
     ("fields", "said"),
     [  # lambda h/t = 2 [1 + rho (1 + k xi/(1 - xi))]/xi, at .5 and at xi = 1/(1 + sqrt(rho k/(1 + rho)))
-        ({"rho": 0.315}, ["at 0.743 of the height lambda is 0.4765 g instead of 0.589 g in the positive", "weakest`"]),
+        ({"rho": 0.315}, ["at 0.743 of the height lambda is 0.4765 g instead of 0.589 g.", "weakest`"]),
         ({"k": 0.8}, ["at 0.613 of the height lambda is 1.066 g instead of 1.12 g", "at 0.76 of the height", "Give `"]),
-        ({"rho": 0.0}, ["near the top lambda is 0.2 g instead of 0.4 g in the positive", "Check at which"]),
+        ({"rho": 0.0}, ["near the top lambda is 0.2 g instead of 0.4 g.", "Check at which"]),
         ({"k": 1.0}, ["at 0.586 of the height", "near the top lambda is 0.4 g instead of 0.8 g in the negative"]),
         ({"k": 1.3, "rho": 0.3}, ["near the top lambda is 0 g instead of"]),
         ({"hinge": 0.667}, []),
