@@ -18,6 +18,7 @@ from rocking_cli.studies.verification.results import Requirement
 from rocking_cli.views.conclusion import conclusion_data, digits_beside_one, of_verification
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json, some
+from tests.test_rest import CRACKS, of
 
 PILLAR = {"mechanism": "block", "width": 0.5, "height": 2.2, "density": 1800, "depth": 0.5}
 SITE = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2, "soil": "B"}
@@ -109,16 +110,34 @@ def test_an_elastic_tie_is_named_in_the_conclusion(pillar, tmp_path):
     assert "Not counted: the stiffness of bar" in " ".join(run("verify", *asked).stdout.split())
 
 
-def test_histories_count_as_far_as_the_code_lets_them(pillar):
-    """One record that passes is too few to count; one that overturns fails whatever the static methods say."""
+def test_histories_count_only_if_there_are_as_many_as_the_code_requires():
+    """One record decides nothing, and it is said that it takes the structure past its capacity; seven do."""
     site = {**SITE, **FURTHER["all pass"]}
-    structure = {key: each for key, each in PILLAR.items() if key != "mechanism"}
-    weak = rk.verify(rk.Block(**structure), site, motions=["sine:0.1g:0.5s"]).conclusion
-    assert weak.concluded is Concluded.SATISFIED and [each.why for each in weak.left_out] == ["too_few"]
-    strong = rk.verify(rk.Block(**structure), site, motions=["sine:2g:1s"])
-    end = strong.conclusion
-    assert (end.concluded, end.method, end.left_out) == (Concluded.NOT_SATISFIED, "histories", [])
-    assert "a motion takes the structure past its capacity" in " ".join(of_verification(strong.result))
+    block = rk.Block(**{key: each for key, each in PILLAR.items() if key != "mechanism"})
+    for pulse, why in (("sine:0.1g:0.5s", "too_few"), ("sine:2g:1s", "too_few_and_past")):
+        one = rk.verify(block, site, motions=[pulse])
+        end = one.conclusion
+        assert end.concluded is Concluded.SATISFIED and [each.why for each in end.left_out] == [why]
+        assert ("past its capacity" in " ".join(of_verification(one.result))) == (why == "too_few_and_past")
+        weak, strong = (f"sine:0.1{k}g:0.5s" for k in range(7)), (f"sine:2.{k}g:1s" for k in range(7))
+        seven = rk.verify(block, site, motions=list(weak if why == "too_few" else strong))
+        end = seven.conclusion
+        assert not end.left_out and len(end.motions) == 7
+        assert end.concluded is (Concluded.SATISFIED if why == "too_few" else Concluded.NOT_SATISFIED)
+    assert end.method == "histories"
+    assert "a motion takes the structure past its capacity" in " ".join(of_verification(seven.result))
+
+
+def test_a_mechanism_that_does_not_start_first_is_not_satisfied():
+    """Of the wall with two cracks, whose fixed crack opens before it rocks the other way."""
+    weak = {key: (0.01 if key == "ag" else each) for key, each in SITE.items()}
+    found = rk.verify(of(CRACKS), weak)
+    assert found.conclusion.concluded is Concluded.NOT_CHECKED
+    assert [(each.what, each.name) for each in found.conclusion.left_out] == [("mechanism", "middle and upper")]
+    said = " ".join(of_verification(found.result))
+    assert "does not cover the structure" in said and "is satisfied" not in said
+    bonded = CRACKS.replace("middle]}", "middle], bonded: true}").replace("upper]}", "upper], bonded: true}")
+    assert rk.verify(of(bonded), weak).conclusion.concluded is Concluded.SATISFIED
 
 
 def test_the_worst_of_several_governs():

@@ -19,9 +19,12 @@ INSTANT = 1e-6  # of D_cr: less of an opening is said to be none
 # By comparison with free blocks: a peak below this share of phi_cr is off by some 20 % if a joint opens by more than
 # that share of D_cr.
 SMALL_PEAK, SMALL_PEAK_OPENING, SMALL_PEAK_ERROR = 0.02, 0.001, 0.2
-NEXT = "Next: `rocking margin` shows up to which scale factor the outcome is known. For stronger motions, {}."
+NEXT = "Next: `rocking margin` shows up to which scale factor the outcome is known. Under this motion, {}."
 OVERTURNS = "assume that it overturns"
-HINGES = f"describe the structure as a linkage that hinges at the joint that opens, or {OVERTURNS}"
+REMEDIES = {
+    "opens": f"describe the structure as a linkage that hinges at the joint that opens, or {OVERTURNS}",
+    "slides": f"anchor the joint that slides or justify a higher friction, or {OVERTURNS}",
+}
 
 
 def unchecked(name: str = "", why: str = "it does not say which of them stay closed") -> str:
@@ -58,8 +61,7 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
     check = history.check
     slides = [] if assumed_friction is None else [ASSUMED.format(assumed_friction, MASONRY)]
     if history.unknown:
-        alone = check is not None and check.alone
-        return " ".join([_until(history), *slides, NEXT.format(OVERTURNS if alone or history.apart else HINGES)])
+        return " ".join([_until(history), *slides, NEXT.format(_remedy(history))])
     if check is None:
         return " ".join(slides)
     if isnan(check.warned) and check.alone:
@@ -72,6 +74,14 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
     when = "throughout the motion" if check.at_rest else "while the structure rocks"
     bear = f"All checked joints bear {when}{which}{'' if isnan(check.warned) else but}."
     return " ".join([bear, *slides, *taken])
+
+
+def _remedy(history: History) -> str:
+    """Return what to do about an unknown outcome."""
+    check = history.check
+    if check is None or history.apart or (check.alone and check.reason == "opens"):
+        return OVERTURNS
+    return REMEDIES.get(check.reason or "", OVERTURNS)
 
 
 def _opens(history: History, check: JointCheck, *, valid: bool) -> Iterator[str]:
@@ -113,7 +123,7 @@ def why_unknown(history: History) -> str | None:
     if check.reason == "crushes":
         return f"the joint between {check.joint} crushes: its normal force exceeds its strength"
     does = "has slid by" if check.reason == "slides" else "has opened by"
-    limit = f"{percent(check.limit)} of D_cr = {check.reach:.3g} m, the least displacement of a block at phi_cr"
+    limit = f"{percent(check.limit)} of D_cr = {check.reach:.3g} m, by which the farthest block moves up to phi_cr"
     return f"the joint between {check.joint} {does} {_small(check.limit * check.reach, 'm')} ({limit})"
 
 

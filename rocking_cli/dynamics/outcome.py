@@ -58,7 +58,7 @@ class Outcome(Generic[Flags, Counts, Numbers]):
         Largest rotation over the critical rotation until `warned`, a lower bound of the peak ratio of the structure;
         NaN if `warned` is.
     opening : float
-        Largest opening or slip of a joint, over the least displacement of a block at the critical rotation; NaN if the
+        Largest opening or slip of a joint, over that of the farthest block at the critical rotation; NaN if the
         joints are not known, so that nothing was checked.
     """
 

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rocking_cli.core.contacts import Contact
+from rocking_cli.core.equivalence import AGREEMENT
 from rocking_cli.core.hung.attached import PointMass
 from rocking_cli.core.hung.elements import ConstantForce
 from rocking_cli.core.kinematics import Direction, Reals
@@ -327,3 +328,22 @@ def first_failure(found: Rest, direction: Direction) -> Failure | None:
     ]  # fmt: skip
     least = min((each.push for each in fails), default=0.0) * (1 + SAME)
     return next((each for each in fails if each.push <= least), None)  # the first of several
+
+
+class EarlyFailure(NamedTuple):
+    """How a structure fails before it rocks in a direction, or where it cannot rock, and lambda there if it can."""
+
+    direction: Direction
+    failure: Failure
+    lambda_: float | None
+
+
+def early_failures(mechanism: Mechanism) -> list[EarlyFailure]:
+    """Return what slides or opens at rest before a structure rocks, or pushes back what props it, by direction."""
+    still, found = resting(mechanism), []
+    for direction in Direction if mechanism.propped else mechanism.directions:
+        failure = first_failure(still, direction)
+        lambda_ = mechanism.uplift(direction) if direction in mechanism.directions else None
+        if failure is not None and (lambda_ is None or failure.push < (1 - AGREEMENT) * lambda_ * mechanism.gravity):
+            found.append(EarlyFailure(direction, failure, lambda_))
+    return found

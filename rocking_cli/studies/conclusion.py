@@ -28,13 +28,13 @@ class LeftOut(NamedTuple):
 
     Parameters
     ----------
-    what : {"tie", "motion", "records"}
+    what : {"tie", "motion", "mechanism"}
         Its kind.
     name : str
-        Its name.
-    why : {"elastic", "unreadable", "too_few"}
-        The reason: an elastic tie counts with its force at rest alone; a motion could not be read; fewer records than
-        the code requires.
+        Its name; of a mechanism the joint that opens or slides.
+    why : {"elastic", "too_few", "too_few_and_past", "starts_first"}
+        The reason: an elastic tie counts with its force at rest alone; the code requires more records, one of which may
+        take the structure past its capacity; another mechanism starts before the one that was verified.
     """
 
     what: str

@@ -192,8 +192,8 @@ def in_words(found: Margin, pga: float) -> str:
         return said
     first = float(found.factors[(found.unknown > 0).argmax()])
     said += (
-        f" From a factor of {at(first)} on, some outcomes are unknown, as joints open or slide that the model keeps "
-        "closed: there, the structure may overturn."
+        f" From a factor of {at(first)} on, some outcomes are unknown, as the model no longer holds (see `rocking "
+        "respond`): there, the structure may overturn."
     )
     known = [f"{percent(level)} from {at(least)}" for level in LEVELS if (least := found.first(level)) is not None]
     if known:

@@ -293,7 +293,7 @@ def neighbours(
         (low, middle, high),
         float((outcome[1:] == outcome[0]).mean()),
         over=peaks_over(model.ends_at_limit),
-        unknown=None if unchecked else float(found.unknown[1:].mean()),
+        unknown=None if unchecked and not found.unknown.any() else float(found.unknown[1:].mean()),
     )
 
 

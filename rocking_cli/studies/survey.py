@@ -390,7 +390,7 @@ def _of_one(
     most = int(peaks.argmax())
     worst = motions[int([*fell, *doubtful, record[most]][0])].name
     over = "limit" if any(model.ends_at_limit) else "phi_cr"
-    unknown = doubtful.size / len(motions) if model.joints is not None else None
+    unknown = doubtful.size / len(motions) if doubtful.size or model.joints is not None else None
     return Under(fell.size / len(motions), float(peaks[most]) if stays.any() else nan, worst, over, unknown)
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import isclose
 
-from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core import Mechanism
 from rocking_cli.core.equivalence import AGREEMENT
 from rocking_cli.core.restitution import why_none
-from rocking_cli.dynamics.resting import first_failure, resting
+from rocking_cli.dynamics.resting import early_failures
 
 
 def cautions_of(mechanism: Mechanism) -> list[str]:
@@ -43,17 +43,12 @@ def of_restitution(mechanism: Mechanism) -> list[str]:
 def before_rocking(mechanism: Mechanism) -> list[str]:
     """Return which joint slides or opens at rest before the structure rocks, in words, a sentence a direction."""
     found: list[str] = []
-    still, g = resting(mechanism), mechanism.gravity
-    for direction in Direction if mechanism.propped else mechanism.directions:
-        failure = first_failure(still, direction)
-        if failure is None:
-            continue
-        does = (
-            f"the joint between {failure.joint} {'slides' if failure.slides else 'opens'} from {failure.push / g:.4g} g"
-        )
-        if direction not in mechanism.directions:
+    for direction, failure, lambda_ in early_failures(mechanism):
+        push = failure.push / mechanism.gravity
+        does = f"the joint between {failure.joint} {'slides' if failure.slides else 'opens'} from {push:.4g} g"
+        if lambda_ is None:
             found.append(f"What props the structure is pushed back in the {direction.label} direction: {does}.")
-        elif failure.push < (1 - AGREEMENT) * (lambda_ := mechanism.uplift(direction)) * g:
+        else:
             first = "Another mechanism starts first" if failure.opens else "The structure slides before it rocks"
             found.append(f"{first}: at rest {does}, below lambda = {lambda_:.4g}.")
     return list(dict.fromkeys(found))

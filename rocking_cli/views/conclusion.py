@@ -24,8 +24,14 @@ ENGLISH = {
     "ratio": "capacity over demand {ratio:.{digits}g}",
     "past": "a motion takes the structure past its capacity",
     "unproven": "neither satisfied nor disproved",
-    "ties": "Not counted: the stiffness of {names}, because an elastic tie would never let the structure fall.",
-    "motions": "Not counted: time histories under {names}, because the code requires more records.",
+    "elastic": "Not counted: the stiffness of {names}, because an elastic tie would never let the structure fall.",
+    "too_few": "Not counted: time histories under {names}, because the code requires more records.",
+    "too_few_and_past": (
+        "Not counted, because the code requires more records: time histories under {names}, which take the structure "
+        "past its capacity."
+    ),
+    "not_covered": "The verification does not cover the structure, because another mechanism starts first.",
+    "starts_first": "Another mechanism starts before the one verified, at the joint between {names}.",
 }
 ITALIAN = {
     "satisfied": "La verifica è soddisfatta.",
@@ -40,8 +46,14 @@ ITALIAN = {
     "ratio": "rapporto tra capacità e domanda {ratio:.{digits}g}",
     "past": "un accelerogramma porta la struttura oltre la sua capacità",
     "unproven": "né soddisfatta né smentita",
-    "ties": ("Non è messa in conto la rigidezza di {names}: con una catena elastica la struttura non cadrebbe mai."),
-    "motions": "Non sono messe in conto le analisi sotto {names}: la norma richiede più accelerogrammi.",
+    "elastic": ("Non è messa in conto la rigidezza di {names}: con una catena elastica la struttura non cadrebbe mai."),
+    "too_few": "Non sono messe in conto le analisi sotto {names}: la norma richiede più accelerogrammi.",
+    "too_few_and_past": (
+        "Non sono messe in conto, perché la norma richiede più accelerogrammi, le analisi sotto {names}, che portano "
+        "la struttura oltre la sua capacità."
+    ),
+    "not_covered": "La verifica non riguarda la struttura, perché un altro meccanismo si attiva prima.",
+    "starts_first": "Un altro meccanismo si attiva prima di quello verificato, al giunto tra {names}.",
 }
 TEXTS = {"en": ENGLISH, "it": ITALIAN}
 
@@ -57,12 +69,13 @@ def of_verification(found: Verification, title: str | None = None) -> list[Told]
         Name of the method that governs, in the language of the reader; by default that of the method.
     """
     end = found.conclusion
-    said = [_told("satisfied_at", states=", ".join(end.limit_states))] if _at_all(end) else [_told(end.concluded.value)]
+    covers = all(each.what != "mechanism" for each in end.left_out)
+    first = end.concluded.value if covers or end.concluded is not Concluded.NOT_CHECKED else "not_covered"
+    said = [_told("satisfied_at", states=", ".join(end.limit_states)) if _at_all(end) else _told(first)]
     if end.concluded is not Concluded.NOT_CHECKED:
         said.append(_governs(end, title or _method(found, end)))
-    for what, key in (("tie", "ties"), ("motion", "motions")):
-        if names := [each.name for each in end.left_out if each.what == what]:
-            said.append(_told(key, names=", ".join(names)))
+    for why in dict.fromkeys(each.why for each in end.left_out):
+        said.append(_told(why, names=", ".join(each.name for each in end.left_out if each.why == why)))
     return said
 
 

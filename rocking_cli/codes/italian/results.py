@@ -165,19 +165,16 @@ class Dynamic:
         return len(self.records) < self.enough
 
     def checks(self) -> list[Requirement]:
-        """Return what the histories with FC prove; none of too few that would pass."""
+        """Return what the histories with FC prove; nothing if the code requires more of them."""
         names, found = [each.name for each in self.records], []
-        for state, allowed in self.allowed.items():
+        for state, allowed in () if self.too_few else self.allowed.items():
             mean = self.mean(confident=True)
             if self.passed(confident=True) or (mean is not None and not self.holds(state, confident=True)):
                 concluded = Concluded.NOT_SATISFIED
-            elif mean is None:
-                concluded = Concluded.UNKNOWN
             else:
-                concluded = Concluded.SATISFIED
-            if concluded is not Concluded.SATISFIED or not self.too_few:
-                ratio = None if mean is None else allowed / mean if mean else inf
-                found.append(Requirement(state, HISTORIES, ratio, concluded, names))
+                concluded = Concluded.UNKNOWN if mean is None else Concluded.SATISFIED
+            ratio = None if mean is None else allowed / mean if mean else inf
+            found.append(Requirement(state, HISTORIES, ratio, concluded, names))
         return found
 
     def holds(self, state: str, *, confident: bool) -> bool:
@@ -236,6 +233,11 @@ class ItalianVerified(frame.Verified):
         return any(
             method == OF_STATE[state][0] != self.governing[state] for state in self.states if state != self.first
         )
+
+    def decides(self, method: str) -> str:
+        """Return the limit state at which a method governs; empty if it governs at none."""
+        of = {key: state for state, key in self.governing.items()} | {"SLD": "SLD"}
+        return of.get(method, "")
 
     def passes(self, state: str) -> bool | None:
         """Return whether the direction passes at a limit state; None if the site does not give it."""
@@ -297,10 +299,11 @@ class ItalianVerification(frame.Verification):
 
     @property
     def conclusion(self) -> Conclusion:
-        """The worst check of all; records that are too few to count are left out, which it lists."""
-        found = super().conclusion
-        few = dict.fromkeys(
-            name for each in self.directions.values() if (on := each.dynamic) is not None and on.too_few
-            for name in (record.name for record in on.records) if name not in found.motions
-        )  # fmt: skip
-        return replace(found, left_out=[*found.left_out, *(LeftOut("motion", name, "too_few") for name in few)])
+        """The worst check of all; records that are too few to count are left out, and which of them it exceeds."""
+        found, why = super().conclusion, dict[str, str]()
+        for each in self.directions.values():
+            if each.dynamic is not None and each.dynamic.too_few:
+                past = each.dynamic.passed(confident=True)
+                for record in each.dynamic.records:
+                    why[record.name] = "too_few_and_past" if record.name in past else why.get(record.name, "too_few")
+        return replace(found, left_out=[*found.left_out, *(LeftOut("motion", *pair) for pair in why.items())])

@@ -36,7 +36,7 @@ OF_SITE = [
 class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
     """How the results of the Italian code are shown."""
 
-    of_site, compared = OF_SITE, "displacement capacity to demand"
+    of_site, compared = OF_SITE, "capacity to demand"
     notation = ": [formula] or §section"
 
     def of_direction(self, found: ItalianVerification, each: ItalianVerified, where: str) -> Iterable[Table | str]:
@@ -127,7 +127,7 @@ def _methods(each: ItalianVerified) -> Table:
             continue
         line = each.straight_methods[key]
         years = [method.lasts or ABSENT] if known else []
-        governs = "governs" if key in each.governing.values() else ""
+        governs = f"decides {state}" if (state := each.decides(key)) else ""
         rows.append(
             [
                 method.title,

@@ -6,10 +6,13 @@ from dataclasses import replace
 from numbers import Real
 from pathlib import Path
 
+from rocking_cli.core import Mechanism
+from rocking_cli.dynamics.resting import early_failures
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.io.yaml_file import Document
 from rocking_cli.plugins.errors import blame
 from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import LeftOut
 from rocking_cli.studies.verification import site_file
 from rocking_cli.studies.verification.code import Code
 from rocking_cli.studies.verification.control import Control
@@ -82,7 +85,8 @@ def verify(
     code = code_of(site)
     taken = {"control": control} if code.takes_control else {}
     try:
-        return _held(code.verify(structure.mechanism, site.site, **taken), code, "verify")
+        found = _held(code.verify(structure.mechanism, site.site, **taken), code, "verify")
+        return replace(found, left_out=[*found.left_out, *_preceding(structure.mechanism)])
     except InputError as error:
         own = type(structure.mechanism).model_fields
         placed = site.placed(error).problems
@@ -92,6 +96,12 @@ def verify(
                 for each in placed
             )
         ) from None
+
+
+def _preceding(mechanism: Mechanism) -> list[LeftOut]:
+    """Return the mechanisms that start before the one that is verified, by the joint that opens or slides."""
+    found = {each.failure.joint: None for each in early_failures(mechanism) if each.direction in mechanism.directions}
+    return [LeftOut("mechanism", joint, "starts_first") for joint in found]
 
 
 def _held(found: object, code: Code, method: str) -> Verification:

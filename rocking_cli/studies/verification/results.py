@@ -191,8 +191,12 @@ class Verification:
             and (each.concluded, each.limit_state, each.method)
             == (governs.concluded, governs.limit_state, governs.method) and _are_close(each.ratio, governs.ratio)
         ]  # fmt: skip
+        preceded = any(each.what == "mechanism" for each in self.left_out)
         return replace(
             governs,
+            concluded=Concluded.NOT_CHECKED
+            if preceded and governs.concluded is Concluded.SATISFIED
+            else governs.concluded,
             direction="" if len(alike) == len(self.directions) else governs.direction,
             limit_states=list(dict.fromkeys(each.limit_state for each in found if each.limit_state)),
             directions=[direction.label for direction in self.directions],

@@ -20,7 +20,10 @@ def part(say: Language, found: ItalianVerification, shown: Mapping[str, ItalianV
     said = [say.remark(each) for each in of_verification(found, method)]
     fails = end.concluded is not Concluded.SATISFIED
     items: list[Item] = [Sentence(" ".join(said), answers=True, fails=fails)]
-    items += [verdict(say, found.first, where, each) for where, each in shown.items()]
+    items += [
+        verdict(say, end.limit_state if end.limit_state in each.states else found.first, where, each)
+        for where, each in shown.items()
+    ]
     for where, each in shown.items():
         items += _starts_later(say, found.first, where, each)
     if len(shown) > 1:  # which direction governs
@@ -94,7 +97,9 @@ def _methods(say: Language, where: str, each: ItalianVerified) -> Grid:
         line = each.straight_methods[key]
         numbers = [say.number(v, 4) for v in (method.a_g, line.a_g, method.demand, method.zeta)]
         years = [method.lasts or say.number(None)] if known else []
-        rows.append([title(say, key), *numbers, *years, say.say("governs") if key in each.governing.values() else ""])
+        rows.append(
+            [title(say, key), *numbers, *years, say.say("governs", state=state) if (state := each.decides(key)) else ""]
+        )
     heads = [say.say("method"), f"a_[g] [g], {say.say('exact')}", f"a_[g] [g], {say.say('line')}"]
     heads += [f"{say.say('asked')} [g]", "ζ_[E]", *([say.say("TR_years")] if known else []), ""]
     return Grid(say.say("methods", where=where), heads, rows, range(1, len(heads) - 1))

@@ -38,7 +38,7 @@ TEXTS = {
         "{demand:.4g} m at T = {T:.4g} s. The capacity is a_[g] = {a_g:.4g} g, the demand {asked:.4g} g."
     ),
     "which": (
-        "The {least} direction governs: the ratio of displacement capacity to demand is {ratio:.4g}, against "
+        "The {least} direction governs: the ratio of capacity to demand is {ratio:.4g}, against "
         "{rest:.4g} in the other direction."
     ),
     "both": "Both directions",
@@ -60,7 +60,7 @@ TEXTS = {
     "method": "method",
     "exact": "exact curve",
     "line": "straight line",
-    "governs": "governs",
+    "governs": "decides {state}",
     "TR_years": "T_[R] [years]",
     "remarks": "Remarks",
     "caution": "Caution: {text}",

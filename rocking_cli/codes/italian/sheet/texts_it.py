@@ -40,9 +40,7 @@ TEXTS = {
         "governa il metodo non lineare: lo spostamento ammesso, {d:.4g} m, è {ratio:.4g} volte la domanda di "
         "{demand:.4g} m a T = {T:.4g} s. La capacità è a_[g] = {a_g:.4g} g, la domanda {asked:.4g} g."
     ),
-    "which": (
-        "Governa il verso {least}: il rapporto tra spostamento ammesso e domanda è {ratio:.4g}, nell'altro {rest:.4g}."
-    ),
+    "which": ("Governa il verso {least}: il rapporto tra capacità e domanda è {ratio:.4g}, nell'altro {rest:.4g}."),
     "both": "Entrambi i versi",
     "positive": "Verso positivo (orario)",
     "negative": "Verso negativo (antiorario)",
@@ -62,7 +60,7 @@ TEXTS = {
     "method": "metodo",
     "exact": "curva esatta",
     "line": "retta",
-    "governs": "governa",
+    "governs": "decide {state}",
     "TR_years": "T_[R] [anni]",
     "remarks": "Osservazioni",
     "caution": "Attenzione: {text}",
