@@ -45,7 +45,7 @@ from rocking_cli.text import in_short
 ABOVE = 1e-6  # of how far they are apart: hinges that are above one another
 SLIDING = 1e-6  # of it: a multiplier so near to the friction is that of sliding
 SLIPS = 0.01  # of the limit: where it is seen which way a face that slips goes
-GLUE = 0.01  # of lambda: by more than that the shear of joints without friction raises it, and it is said
+GLUE = 0.01  # of lambda: more than that, by the shear of joints without friction, has a caution
 OFF = 1e-7  # of its length: a joint that opens there by less stays shut
 LIGHT = 1e-9  # of the weight of the whole: blocks that weigh less may move and nobody sees it
 NAMED = 3  # of these

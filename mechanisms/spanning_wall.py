@@ -33,7 +33,7 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.contacts import MASONRY
 
-LOWER = 0.01  # of lambda: by more than that the weakest hinge lowers it, and it is said
+LOWER = 0.01  # of lambda: by more than that the weakest hinge lowers it, and there is a caution
 TOP = 1e-9  # of the height: a hinge so near the top is at it, and a load of so small a share of the weight is none
 
 

@@ -30,7 +30,7 @@ from rocking_cli.structure_file import parse_structure
 from rocking_cli.studies.verification.check import site_in
 from rocking_cli.studies.verification.control import control_at
 from rocking_cli.studies.verification.working import Formula, as_written, in_plain, put
-from rocking_cli.views.sheet.document import Grid, Steps
+from rocking_cli.views.sheet.document import Grid, Sentence, Steps
 from rocking_cli.views.verification import shown, view
 from rocking_cli.views.view import Table
 from tests.conftest import EXAMPLES
@@ -242,7 +242,7 @@ def test_a_new_limit_state_is_a_rule_and_its_fields(with_one_more, site, languag
     for key, items in own.items():
         assert repr(parts[key.replace("SLC", "SLN")]).replace("SLN", "SLC") == repr(items), key
     terminal = [*code.showing().of_direction(verified, side, "Positive direction"), *verified.remarks]
-    summary = parts["summary"][1:]  # without the conclusion, which names the state that governs
+    summary = [each for each in parts["summary"] if not isinstance(each, Sentence)]  # these name what governs
     for said in (summary, parts["remarks"], parts["site"], terminal, [*verified.workings], [*side.workings],
                  code.showing().data(verified, side)):  # fmt: skip
         assert repr(said).count("SLN") == repr(said).count("SLC"), said

@@ -183,8 +183,8 @@ class TestWords:
 
     def test_the_first_sentence_counts_unknown_outcomes_as_overturning(self):
         doubt = (
-            "From a factor of 2 (1 g) on, some outcomes are unknown, as joints open or slide that the model keeps "
-            "closed: there, the structure may overturn."
+            "From a factor of 2 (1 g) on, some outcomes are unknown, as the model no longer "
+            "holds (see `rocking respond`): there, the structure may overturn."
         )
         few = "At no factor tried are 10 % or more known to overturn it; this does not prove that it stands."
         assert in_words(made(0, 0, 0, unknown=(0, 0.3, 0.6)), 0.5) == (

@@ -70,11 +70,11 @@ def test_a_failed_verification_is_a_result_and_so_is_the_example():
 def test_the_direction_with_the_smaller_ratio_governs():
     leaning = rk.RigidBody(polygon=[[0, 0], [1.0, 0], [0.9, 5.0], [0.3, 5.0]], name="leaning")
     found = verified(leaning)
-    ratios = {direction: each.states["SLV"].ratio for direction, each in found.directions.items()}
+    ratios = {direction: each.ratio for direction, each in found.directions.items()}
     assert found.governs is min(ratios, key=ratios.get) and ratios[Direction.POSITIVE] != ratios[Direction.NEGATIVE]
     said = [part for part in view(found).parts if isinstance(part, str)]
     assert any(
-        f"The {found.governs.label} direction governs: its ratio of displacement capacity to demand is "
+        f"The {found.governs.label} direction governs: its ratio of capacity to demand is "
         f"{min(ratios.values()):.3g}, against {max(ratios.values()):.3g} in the other direction." in each
         for each in said
     )
