@@ -395,11 +395,15 @@ def test_samples_end_with_the_record_where_nothing_later_is_a_result():
     assert found.time[-1] == pytest.approx(short.duration) and whole.time[-1] > short.duration
 
 
-def test_what_to_do_next_depends_on_whether_the_body_is_alone():
-    portal = joints_in_words(history(structure("masonry/portal.yaml"), 2.0))
-    assert "describe the structure as a linkage that hinges at the joint that opens" in portal
-    body = joints_in_words(history(Registry()["block"](width=1.0, height=5.0, friction=0.1)))
-    assert "has slid by" in body and body.endswith("For stronger motions, assume that it overturns.")
+def test_what_to_do_next_depends_on_what_the_joint_does():
+    slides = history(structure("masonry/portal.yaml"), 2.0)
+    assert slides.check.reason == "slides"
+    assert "anchor the joint that slides or justify a higher friction" in joints_in_words(slides)
+    opens = history(structure("masonry/buttressed_arch.yaml"), 0.6)
+    assert opens.check.reason == "opens"
+    assert "describe the structure as a linkage that hinges at the joint that opens" in joints_in_words(opens)
+    alone = replace(opens, check=replace(opens.check, alone=True))
+    assert joints_in_words(alone).endswith("Under this motion, assume that it overturns.")
 
 
 @pytest.mark.parametrize(("name", "factor", "tilted"), [("block", 1.2, 0.05), ("portal", 1.5, 0.92)])
