@@ -374,3 +374,14 @@ def test_a_structure_whose_faces_at_rest_are_not_known_bears_while_it_rocks_only
     assert "bear throughout the motion" in joints_in_words(nonlinear(both, motion))
     assert "bear while the structure rocks" in joints_in_words(nonlinear(leans, motion))
     assert not resting(leans).known and resting(both).known and resting(rk.load_structure(SLAB)).known
+
+
+def test_neighbours_that_fall_out_of_step_count_though_no_joint_is_checked():
+    """Without spacing the joints are not checked; giving less must not make the share look better."""
+    answer = rk.respond(rk.SymmetricFrame(**COLONNADE, columns=4), "sine:0.8g:0.6s", models="nonlinear", neighbours=20)
+    (near,) = answer.neighbours.values()
+    assert answer["nonlinear"].check is None and near.unknown > 0
+    assert (answer.conclusion.share.lowest, answer.conclusion.share.highest) == (near.overturned, near.at_most)
+    assert f"the outcome under {round(20 * near.unknown)}" in str(near)
+    two = rk.respond(rk.SymmetricFrame(**COLONNADE, columns=2), "sine:0.8g:0.6s", models="nonlinear", neighbours=20)
+    assert all(each.unknown is None for each in two.neighbours.values())
