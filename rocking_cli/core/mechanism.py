@@ -71,8 +71,7 @@ class Mechanism(Given, ABC):
     caution: ClassVar[str] = ""
     """A sentence or two, which the tool shows, on where its answers are unsafe or mean less than they seem."""
     jumps: ClassVar[str] = ""
-    """What in a file makes the motion jump, and what to do, if the file gives the motion: else the plugin is at fault.
-    """
+    """Cause of a jump of the motion, with a remedy, if the structure's file gives the motion; empty by default."""
     starter: ClassVar[tuple[str, ...]] = ()
     """Optional fields that a first file needs all the same, such as one of two ways to give the masses."""
 

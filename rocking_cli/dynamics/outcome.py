@@ -85,7 +85,7 @@ class Outcome(Generic[Flags, Counts, Numbers]):
 
     @property
     def overturned(self) -> Numbers | bool | None:
-        """Whether the structure overturns: of one motion True or False, and None if unknown or if the solver failed.
+        """Whether the structure overturns; of one motion True or False, None if unknown or if the solver failed.
 
         Of many motions an ndarray of 1.0, 0.0, and NaN if unknown or if the solver failed: its sum and its mean are
         NaN as soon as one outcome is not known. Use `share` for the share that overturns.
