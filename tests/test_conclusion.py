@@ -10,12 +10,14 @@ from html import unescape
 import numpy as np
 import pytest
 import yaml
+from click.testing import CliRunner
 
 import rocking_cli as rk
+from rocking_cli.cli.main import main
 from rocking_cli.core import Direction
-from rocking_cli.studies.conclusion import ORDER, Concluded, Conclusion, NeighbourShare, worst
+from rocking_cli.studies.conclusion import ORDER, Concluded, Conclusion, LeftOut, NeighbourShare, NextStep, worst
 from rocking_cli.studies.verification.results import Requirement
-from rocking_cli.views.conclusion import conclusion_data, digits_beside_one, of_verification
+from rocking_cli.views.conclusion import STEPS, conclusion_data, digits_beside_one, next_in_words, of_verification
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json, some
 from tests.test_rest import CRACKS, of
@@ -125,7 +127,7 @@ def test_histories_count_only_if_there_are_as_many_as_the_code_requires():
         assert not end.left_out and len(end.motions) == 7
         assert end.concluded is (Concluded.SATISFIED if why == "too_few" else Concluded.NOT_SATISFIED)
     assert end.method == "histories"
-    assert "a motion takes the structure past its capacity" in " ".join(of_verification(seven.result))
+    assert "sine:2g:1s takes the structure past its capacity" in " ".join(of_verification(seven.result))
 
 
 def test_a_mechanism_that_does_not_start_first_is_not_satisfied():
@@ -140,6 +142,128 @@ def test_a_mechanism_that_does_not_start_first_is_not_satisfied():
     assert rk.verify(of(bonded), weak).conclusion.concluded is Concluded.SATISFIED
 
 
+BAR = {"name": "bar", "path": [{"ground": [4.0, 2.0]}, {"at": [0.25, 2.0]}]}
+CHANGES = {
+    "SLC fails": ({}, FURTHER["SLC fails"], ()),
+    "SLD fails": ({}, FURTHER["SLD fails"], ()),
+    "left out": ({"ties": [{**BAR, "stiffness": 1e7}]}, FURTHER["all pass"], ()),
+    "tied": ({"ties": [{**BAR, "stiffness": 0, "prestress": 500.0}]}, FURTHER["all pass"], ()),
+    "overturns": ({}, FURTHER["all pass"], [f"sine:2.{k}g:1s" for k in range(7)]),
+    "a record": ({}, FURTHER["all pass"], ["sine:2g:1s"]),
+    "unknown": ({"friction": 0.3}, FURTHER["all pass"], [f"sine:0.5{k}g:0.6s" for k in range(7)]),
+}
+
+
+def outcome_of(*asked):
+    """What a command prints, whatever its exit code: its result, or the error."""
+    result = CliRunner().invoke(main, [str(each) for each in asked])
+    assert "Traceback" not in result.stderr
+    return result.stdout or result.stderr
+
+
+def surfaces(folder, structure, states, pulses):
+    """What each surface of a verification concludes, in its own words."""
+    (folder / "p.yaml").write_text(yaml.safe_dump({**PILLAR, **structure}), encoding="utf-8")
+    (folder / "s.site.yaml").write_text(yaml.safe_dump({**SITE, **states}), encoding="utf-8")
+    (folder / "rows.csv").write_text("file,name\np.yaml,pillar\n", encoding="utf-8")
+    asked = ("p.yaml", "--site", "s.site.yaml", *(part for pulse in pulses for part in ("--pulse", pulse)))
+    found = {}
+    for name, sheet in (("English", "en.html"), ("Italian", "it.html")):
+        (folder / sheet).unlink(missing_ok=True)
+        said = outcome_of("verify", *asked, "--sheet", sheet, "--language", name[:2].lower())
+        page = text_of((folder / sheet).read_text(encoding="utf-8")) if (folder / sheet).exists() else said
+        start = re.search("The verification|La verifica|The site does", page)
+        found[name] = page[start.start() : start.start() + 330] if start else page
+    found["text"] = " ".join(said.split("Site")[0].split())
+    data = outcome_of("verify", *asked, "--json")
+    found["json"] = json.dumps(json.loads(data)["conclusion"]) if data.startswith("{") else data
+    if not pulses:
+        found["survey"] = outcome_of("survey", "rows.csv", "--site", "s.site.yaml")
+        report = outcome_of("report", "p.yaml", "--verify", "s.site.yaml", "-o", "r.html", "--json")
+        found["report"] = json.loads(report)["answer"] if report.startswith("{") else report
+    return found
+
+
+@pytest.mark.every(2)
+@pytest.mark.parametrize("change", CHANGES)
+def test_a_change_of_the_result_changes_every_surface(tmp_path, change):
+    """Whatever changes the conclusion is seen in text, data, both sheets, survey and report."""
+    base = surfaces(tmp_path, {}, FURTHER["all pass"], ())
+    found = surfaces(tmp_path, *CHANGES[change])
+    assert all(each.strip() for each in found.values())
+    assert {name for name, each in found.items() if each == base[name]} == set()
+
+
+def test_a_margin_a_pulse_and_a_response_conclude_alike():
+    """The same class and governing motion from three commands; a margin adds the share and the factor."""
+    block, pulses = rk.Block(width=0.5, height=2.2), ["sine:0.35g:0.7s", "sine:0.5g:0.7s", "sine:2g:1s", "sine:0.1g:1s"]
+    for pulse in pulses:
+        alone, margin = rk.respond(block, pulse, neighbours=20), rk.margin(block, pulse, polarity="1", neighbours=20)
+        assert alone.conclusion.concluded is margin.conclusion.concluded
+        assert alone.conclusion.share == margin.conclusion.share
+        _, ag, period = pulse.split(":")
+        end = rk.pulse(block, shape="sine", ag=float(ag[:-1]), period=float(period[:-1])).conclusion
+        assert end.concluded is alone.conclusion.concluded
+        found = margin[margin.conclusion.motion]
+        least = found.possible(0.1)
+        assert margin.conclusion.ratio == (np.inf if least is None else least)
+    several = rk.margin(block, pulses, polarity="1", neighbours=20)
+    assert several.conclusion.motion == several.sentences[0].split(". ")[1].split(" governs")[0] == "sine:2g:1s"
+    assert several.conclusion.motions == pulses
+    none = rk.margin(block, "sine:1e-3g:0.1s", polarity="1", neighbours=5)
+    assert np.isinf(none.conclusion.ratio) and "At no factor tried may 10 % or more overturn." in none.sentences[0]
+    assert none.to_dict()["conclusion"]["ratio"] is None
+
+
+@pytest.mark.parametrize(
+    ("aim", "motions", "expected"),
+    [
+        ("lambda >= 0.2", (), "satisfied"), ("lambda >= 2", (), "not_satisfied"),
+        ("overturned <= 0.1", ("sine:0.5g:0.7s",), "satisfied"),
+        ("overturned <= 0.1", ("sine:9g:3s",), "not_satisfied"),
+    ],
+)  # fmt: skip
+def test_a_design_concludes_whether_any_value_meets_the_requirement(aim, motions, expected):
+    found = rk.design(rk.Block(width=0.5, height=2), "width=0.2m:0.7m", aim, motions, neighbours=10, points=5)
+    assert found.conclusion.concluded == expected == found.to_dict()["conclusion"]["concluded"]
+    assert found.conclusion.motions == list(motions)
+    assert ("holds at no value" in found.sentences[0]) == (expected == "not_satisfied")
+
+
+def test_a_design_of_unknown_outcomes_is_unknown():
+    found = rk.design(rk.Block(width=0.5, height=2), "width=1m:1.4m", "overturned <= 0.1", "sine:9g:3s", neighbours=10,
+                      points=2)  # fmt: skip
+    assert found.behind[1].unknown > 0.5 and found.conclusion.concluded is Concluded.UNKNOWN
+    assert "Whether overturned <= 0.1 holds at any value of width tried" in found.sentences[0]
+
+
+def test_a_design_by_the_code_uses_the_limit_state_that_governs_and_no_mechanism_that_starts_later():
+    block = rk.Block(**{key: each for key, each in PILLAR.items() if key != "mechanism"})
+    site = {**SITE, **FURTHER["SLC fails"]}
+    found = rk.design(block, "width=0.5m:0.9m", "ratio >= 1", site=site, points=5)
+    assert found.metric[0] == rk.verify(block, site).conclusion.ratio < 1
+    assert rk.verify(block.model_copy(update={"width": found.value * 1.001}), site).conclusion.concluded == "satisfied"
+    assert rk.verify(block.model_copy(update={"width": found.value * 0.999}), site).conclusion.limit_state == "SLC"
+    cracks = rk.design(of(CRACKS), "density=1500kg/m3:2500kg/m3", "ratio >= 0.001", site=SITE, points=3)
+    assert not cracks.holds and "another mechanism starts first" in " ".join(cracks.sentences)
+
+
+def test_every_next_step_has_words_and_says_what_the_result_needs():
+    assert set(STEPS) == {*NextStep}
+    unknown = Conclusion(concluded=Concluded.UNKNOWN, remedy=NextStep.HOLD_JOINT)
+    assert unknown.next == [NextStep.HOLD_JOINT, NextStep.MARGIN]
+    assert replace(unknown, ratio=1.2).next == [NextStep.HOLD_JOINT]  # a margin need not name itself
+    fails = Conclusion(concluded=Concluded.NOT_SATISFIED, method="nonlinear", ratio=0.8)
+    assert fails.next == [NextStep.DESIGN] and "`rocking design`" in next_in_words(fails)
+    tie = [LeftOut("tie", "bar", "elastic")]
+    assert replace(fails, left_out=tie).next == [NextStep.YIELD_FORCE, NextStep.DESIGN]
+    first = replace(fails, concluded=Concluded.NOT_CHECKED, left_out=[LeftOut("mechanism", "a and b", "starts_first")])
+    assert first.next == [NextStep.FIRST_MECHANISM]
+    assert next_in_words(Conclusion(concluded=Concluded.NO_UPLIFT)) == ""
+    rocks = Conclusion(concluded=Concluded.ROCKS, share=NeighbourShare(0.0, 0.0, 20))
+    assert rocks.next == [] and replace(rocks, share=NeighbourShare(0.0, 0.1, 20)).next == [NextStep.MARGIN]
+
+
 def test_the_worst_of_several_governs():
     checks = [
         Requirement.of("SLV", "nonlinear", 1.2, True), Requirement.of("SLC", "nonlinear_SLC", 1.05, True),
@@ -148,7 +272,7 @@ def test_the_worst_of_several_governs():
     ends = [Conclusion(concluded=each.concluded, limit_state=each.state, ratio=each.ratio) for each in checks]
     assert worst(ends[:2]).limit_state == "SLC" and worst(ends).concluded is Concluded.NOT_CHECKED
     rocks = [
-        Conclusion(concluded=Concluded.ROCKS, motion=name, ratio=ratio) for name, ratio in (("a", 0.2), ("b", 0.5))
+        Conclusion(concluded=Concluded.ROCKS, motion=name, peak_ratio=peak) for name, peak in (("a", 0.2), ("b", 0.5))
     ]
     assert worst(rocks).motion == "b"
     near = [
@@ -186,7 +310,7 @@ def test_a_response_concludes_the_same_in_text_json_and_report(tmp_path, pulse, 
     assert answer.conclusion.concluded.value == expected
     near = answer.neighbours[1]
     assert answer.conclusion.share == NeighbourShare(near.overturned, near.at_most, 20)
-    assert (answer.conclusion.ratio is None) == (expected == "overturns")
+    assert (answer.conclusion.peak_ratio is None) == (expected == "overturns")
 
 
 def test_an_unknown_response_is_concluded_with_its_joint_and_time():

@@ -18,7 +18,7 @@ from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.structure import Structure, build_models
 from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.studies import margin as margins
-from rocking_cli.studies.margin import FACTORS, LEVELS, Margin, governing_in_words, in_words, margin
+from rocking_cli.studies.margin import FACTORS, LEVELS, Margin, in_words, margin
 from rocking_cli.studies.neighbours import Neighbourhood
 from tests.conftest import EXAMPLES
 from tests.following import build_model
@@ -199,21 +199,6 @@ class TestWords:
         assert in_words(made(0, 0.2, 0.0, 1.0, unknown=(0, 0.4, 0.3, 0)), 0.5).endswith(
             "A stronger motion is not always worse: at a factor of 3 (1.5 g) only 30 % do. "
             f"{doubt} Shares known to overturn it: 10 % from 2 (1 g), 50 % from 4 (2 g), 90 % from 4 (2 g)."
-        )
-
-    def test_the_motion_of_the_least_factor_governs_with_unknown_outcomes(self):
-        strong, open_, weak = made(0, 0.2, 0.6), made(0, 0, 0, unknown=(0, 0.5, 1)), made(0, 0.1, 0.2)
-        assert governing_in_words({"a": strong, "b": weak}) == (
-            "Of the 2 motions, a governs: at least 50 % of the neighbours overturn the structure from a factor of 3, "
-            "the smallest of all motions."
-        )
-        assert governing_in_words({"a": strong, "b": open_, "c": open_}) == (
-            "Of the 3 motions, b, c govern: at least 50 % of the neighbours overturn the structure, or have an unknown "
-            "outcome, from a factor of 2, the smallest of all motions."
-        )
-        assert "b governs: at least 10 %" in governing_in_words({"a": made(0, 0, 0.1), "b": weak})
-        assert governing_in_words({"a": made(0, 0, 0), "b": made(0, 0, 0)}) == (
-            "No motion governs: under none of the 2 do 10 % or more of the neighbours overturn the structure."
         )
 
     def test_the_numbers_are_those_of_the_shares(self):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Unpack
 
@@ -13,6 +14,7 @@ from rocking_cli.ask.given import StructureLike, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.studies.conclusion import Concluding, worst
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.view import heading
 
@@ -98,10 +100,12 @@ def margin(
         for each in chosen:
             scaled = each.motion.scaled(each.factor)
             found = study.margin(model, scaled, signs, around=around, progress=advance)
-            rows.append(MarginRow(each.motion.name, each.factor, scaled.of_ground.pga_g, found))
-    margins = {row.name: row.margin for row in rows}
+            end = study.conclusion(ready, scaled, signs, found)
+            rows.append(MarginRow(each.motion.name, each.factor, scaled.of_ground.pga_g, found, end))
+    end = replace(worst(row.conclusion for row in rows), motions=[row.name for row in rows])
+    margins = Concluding({row.name: row.margin for row in rows}, end)
     figure = partial(_figure, margins, heading(ready.mechanism))
-    shown = view(ready.mechanism, rows, str(polarity), around)
+    shown = view(ready.mechanism, rows, str(polarity), around, end)
     return MappingAnswer("margin", margins, shown, partial(_columns, margins), figure)
 
 

@@ -101,12 +101,12 @@ def pulse(
         raise InputError(Problem("is missing", field="structure", hint="give one, or `a` and `omega` without `ag`"))
     from rocking_cli.ask.given import sized_pulse, structure_figure, structure_of
     from rocking_cli.ask.ground_motions import signs_of
-    from rocking_cli.studies.pulse_on_structure import closed_forms
+    from rocking_cli.studies.pulse_on_structure import closed_forms, with_conclusion
     from rocking_cli.views.pulse_on_structure import view
 
     signs, sized, ready = signs_of(polarity), sized_pulse(shape, ag, period), structure_of(structure, opening)
     watch.compile()
-    found = {sign: _answers(ready, sized, sign, watch) for sign in signs}
+    found = with_conclusion(sized, {sign: _answers(ready, sized, sign, watch) for sign in signs})
     shown = view(ready, sized, found, closed_forms(ready, sized))
     return MappingAnswer("pulse", found, shown, partial(_columns, found), partial(structure_figure, ready.mechanism))
 

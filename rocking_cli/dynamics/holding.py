@@ -22,8 +22,9 @@ SMALL_PEAK, SMALL_PEAK_OPENING, SMALL_PEAK_ERROR = 0.02, 0.001, 0.2
 NEXT = "Next: `rocking margin` shows up to which scale factor the outcome is known. Under this motion, {}."
 OVERTURNS = "assume that it overturns"
 REMEDIES = {
-    "opens": f"describe the structure as a linkage that hinges at the joint that opens, or {OVERTURNS}",
-    "slides": f"anchor the joint that slides or justify a higher friction, or {OVERTURNS}",
+    "hinge_at_joint": f"describe the structure as a linkage that hinges at the joint that opens, or {OVERTURNS}",
+    "hold_joint": f"anchor the joint that slides or justify a higher friction, or {OVERTURNS}",
+    "assume_overturning": OVERTURNS,
 }
 
 
@@ -61,7 +62,7 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
     check = history.check
     slides = [] if assumed_friction is None else [ASSUMED.format(assumed_friction, MASONRY)]
     if history.unknown:
-        return " ".join([_until(history), *slides, NEXT.format(_remedy(history))])
+        return " ".join([_until(history), *slides, NEXT.format(REMEDIES[remedy(history)])])
     if check is None:
         return " ".join(slides)
     if isnan(check.warned) and check.alone:
@@ -76,12 +77,15 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
     return " ".join([bear, *slides, *taken])
 
 
-def _remedy(history: History) -> str:
-    """Return what to do about an unknown outcome."""
+def remedy(history: History) -> str:
+    """Return what to do about an unknown outcome: a key of `REMEDIES`."""
     check = history.check
-    if check is None or history.apart or (check.alone and check.reason == "opens"):
-        return OVERTURNS
-    return REMEDIES.get(check.reason or "", OVERTURNS)
+    if check is not None and not history.apart:
+        if check.reason == "slides":
+            return "hold_joint"
+        if check.reason == "opens" and not check.alone:
+            return "hinge_at_joint"
+    return "assume_overturning"
 
 
 def _opens(history: History, check: JointCheck, *, valid: bool) -> Iterator[str]:

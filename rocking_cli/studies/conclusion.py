@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import NamedTuple
+from typing import NamedTuple, Self, TypeVar
+
+K = TypeVar("K")
+V = TypeVar("V")
 
 
 class Concluded(StrEnum):
@@ -21,6 +24,33 @@ class Concluded(StrEnum):
 
 
 ORDER = list(Concluded)
+
+
+class NextStep(StrEnum):
+    """What to do next: about a joint, a motion, what does not count, or a result that is not good enough."""
+
+    HINGE_AT_JOINT = "hinge_at_joint"
+    HOLD_JOINT = "hold_joint"
+    ASSUME_OVERTURNING = "assume_overturning"
+    MARGIN = "margin"
+    YIELD_FORCE = "give_yield_force"
+    MORE_MOTIONS = "give_more_motions"
+    FIRST_MECHANISM = "verify_first_mechanism"
+    SITE_VALUES = "give_site_values"
+    RESPOND = "respond"
+    DESIGN = "design"
+
+
+OF_VERIFICATION = {
+    Concluded.NOT_SATISFIED: NextStep.DESIGN,
+    Concluded.UNKNOWN: NextStep.RESPOND,
+    Concluded.NOT_CHECKED: NextStep.SITE_VALUES,
+}
+OF_LEFT_OUT = {
+    "tie": NextStep.YIELD_FORCE,
+    "motion": NextStep.MORE_MOTIONS,
+    "mechanism": NextStep.FIRST_MECHANISM,
+}
 
 
 class LeftOut(NamedTuple):
@@ -66,7 +96,10 @@ class Conclusion:
     polarity : int or None
         The polarity of the motion that governs, 1 or -1; None if neither does.
     ratio : float or None
-        By how much: capacity over demand of a verification, peak over phi_cr (or the limit) of a response.
+        By how much: capacity over demand of a verification; the scale factor from which a tenth of the neighbours
+        overturn, or are of unknown outcome, of a margin (infinite if none does).
+    peak_ratio : float or None
+        Peak over phi_cr (or the limit) of the response that governs; None if it overturns or is unknown.
     known_until : float or None
         Time until which the response that governs is known [s]; None if all of it is known.
     share : NeighbourShare or None
@@ -79,6 +112,8 @@ class Conclusion:
         The directions that were verified.
     left_out : sequence of LeftOut
         What was given and does not count.
+    remedy : NextStep or None
+        What to do about the joint at which the response that governs ends; None if all of it is known.
     """
 
     concluded: Concluded
@@ -89,6 +124,7 @@ class Conclusion:
     joint: str = ""
     polarity: int | None = None
     ratio: float | None = None
+    peak_ratio: float | None = None
     known_until: float | None = None
     share: NeighbourShare | None = None
     limit_states: Sequence[str] = ()
@@ -96,14 +132,48 @@ class Conclusion:
     polarities: Sequence[int] = ()
     directions: Sequence[str] = ()
     left_out: Sequence[LeftOut] = ()
+    remedy: NextStep | None = None
+
+    @property
+    def next(self) -> Sequence[NextStep]:
+        """What to do next, the most useful step first."""
+        steps = [] if self.remedy is None else [self.remedy]
+        neighbours_differ = self.share is not None and self.share.highest > 0 and self.share.lowest < 1
+        if self.ratio is None and (self.remedy is not None or neighbours_differ):
+            steps.append(NextStep.MARGIN)
+        steps += dict.fromkeys(OF_LEFT_OUT[each.what] for each in self.left_out)
+        if self.method and NextStep.FIRST_MECHANISM not in steps and self.concluded in OF_VERIFICATION:
+            steps.append(OF_VERIFICATION[self.concluded])
+        return steps
+
+
+class Concluding(dict[K, V]):
+    """Results by their keys, with their common conclusion.
+
+    Parameters
+    ----------
+    results : mapping
+        The results.
+    conclusion : Conclusion
+        What is concluded of them together.
+    """
+
+    def __init__(self, results: Mapping[K, V], conclusion: Conclusion) -> None:
+        super().__init__(results)
+        self.conclusion = conclusion
+
+    def __reduce__(self) -> tuple[type[Self], tuple[dict[K, V], Conclusion]]:
+        """Return how a pickle builds it: a plain dictionary, and the conclusion."""
+        return type(self), (dict(self), self.conclusion)
 
 
 def worst(found: Iterable[Conclusion]) -> Conclusion:
-    """Return the worst of several conclusions: by what is concluded, then by the neighbours, then by the ratio."""
-    return max(found, key=_severity)
+    """Return the worst of several conclusions: by what is concluded, then by the neighbours, ratio and peak."""
+    return max(found, key=severity)
 
 
-def _severity(found: Conclusion) -> tuple[int, float, float]:
+def severity(found: Conclusion) -> tuple[int, float, float, float]:
+    """Return how bad a conclusion is, to compare it with others."""
     share = found.share.highest if found.share is not None else 0.0
-    ratio = 0.0 if found.ratio is None else found.ratio
-    return ORDER.index(found.concluded), share, -ratio if found.limit_state or found.method else ratio
+    ratio = 0.0 if found.ratio is None else -found.ratio  # without one, a motion takes the structure past its capacity
+    return ORDER.index(found.concluded), share, ratio, found.peak_ratio or 0.0

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.studies.metrics import Excitation, Metric, metric, taken_otherwise
 from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import cut
@@ -169,6 +170,8 @@ class Design:
         A caution about the lambda of the structure as given; empty if there is none.
     taken_otherwise : sequence of str
         Sentences on the values for which the code uses others than the structure gives, at either end of the scan.
+    motions : sequence of str
+        Names of the motions, of which the worst governs at each value.
     """
 
     structure: str
@@ -185,6 +188,7 @@ class Design:
     behind: Sequence[Neighbours | None] = ()
     caution: str = ""
     taken_otherwise: Sequence[str] = ()
+    motions: Sequence[str] = ()
 
     @property
     def has_effect(self) -> bool:
@@ -201,6 +205,17 @@ class Design:
     def met(self) -> NDArray[np.bool_]:
         """Whether the requirement is met at each value of the scan."""
         return np.array([self.aim.holds(each) for each in self.metric.tolist()])
+
+    @property
+    def conclusion(self) -> Conclusion:
+        """Whether the requirement is met at any value; unknown if it may be where outcomes are unknown."""
+        if self.holds:
+            what = Concluded.SATISFIED
+        elif any(each is not None and each.unknown and not each.half_overturn for each in self.behind):
+            what = Concluded.UNKNOWN
+        else:
+            what = Concluded.NOT_SATISFIED
+        return Conclusion(concluded=what, motions=self.motions)
 
     @property
     def is_least(self) -> bool:
@@ -291,6 +306,7 @@ def design(
         structure.name, field, structure.unit_of(field), aim, structure.value_of(field), values, numbers, holds,
         monotone, value, _not_built(values, reasons), behind, structure.mechanism.own_caution(),
         _taken_otherwise(structure, field, span, aim, excitation),
+        [each.name for each in excitation.motions] if excitation is not None else [],
     )  # fmt: skip
 
 

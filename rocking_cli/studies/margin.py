@@ -6,18 +6,23 @@ computations. Instead, the share of neighbouring motions that overturn is comput
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.dynamics.model import Model
+from rocking_cli.engines import respond
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import percent
+from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import Conclusion, NeighbourShare
 from rocking_cli.studies.neighbours import Draws, Neighbourhood, follow, least_uplift
+from rocking_cli.studies.response import concluded
 
 Reals = NDArray[np.float64]
 
@@ -67,6 +72,11 @@ class Margin:
     def itself_at_most(self) -> float:
         """The share that overturns at a factor of 1 if all neighbours of unknown outcome do."""
         return float(self.at_most[np.searchsorted(self.factors, 1.0)])
+
+    @property
+    def share(self) -> NeighbourShare:
+        """The share of neighbours that overturns at a factor of 1."""
+        return NeighbourShare(self.itself, self.itself_at_most, self.around.count)
 
     def first(self, level: float) -> float | None:
         """Return the least factor at which at least a share `level` overturns; None if there is none."""
@@ -174,6 +184,26 @@ def margin(
     return Margin(around, least, factors, overturned, at_most - overturned, checked=model.joints is not None)
 
 
+def conclusion(structure: Structure, motion: GroundMotion, polarities: Sequence[int], found: Margin) -> Conclusion:
+    """Return what is concluded at a factor of 1, with the share and the factor from which a tenth may overturn.
+
+    Parameters
+    ----------
+    structure : Structure
+        The structure, with the model of the margin.
+    motion : GroundMotion
+        The ground motion at a factor of 1.
+    polarities : sequence of int
+        The polarities, 1, -1 or both.
+    found : Margin
+        The margin.
+    """
+    runs = {sign: respond(structure, motion.scaled(sign), models=["nonlinear"]) for sign in polarities}
+    from_factor = found.possible(LEVELS[0])
+    ratio = inf if from_factor is None else from_factor
+    return replace(concluded(runs, {}, motion.name), share=found.share, ratio=ratio)
+
+
 def in_words(found: Margin, pga: float) -> str:
     """Describe a margin in a few sentences, of which the first one governs: unknown outcomes count as overturning.
 
@@ -232,25 +262,3 @@ def _reached(found: Margin, shares: Reals, does: str, pga: float) -> str:
 
 def _at(pga: float, factor: float, what: str = "") -> str:
     return f"{factor:.3g} ({what}{factor * pga:.3g} g)"
-
-
-def governing_in_words(margins: Mapping[str, Margin]) -> str:
-    """Return which of several motions governs: the one that overturns half of the neighbours at the least factor.
-
-    If no motion overturns half of them, a tenth is used; unknown outcomes count as overturning.
-    """
-    does = "overturn the structure"
-    if any(found.unknown.any() for found in margins.values()):
-        does += ", or have an unknown outcome,"
-    for level in (0.5, LEVELS[0]):
-        factors = {name: least for name, found in margins.items() if (least := found.possible(level)) is not None}
-        if factors:
-            least = min(factors.values())
-            names = [name for name, factor in factors.items() if factor == least]
-            who = f"{', '.join(names)} {'govern' if len(names) > 1 else 'governs'}"
-            return (
-                f"Of the {len(margins)} motions, {who}: at least {percent(level)} of the neighbours {does} from a "
-                f"factor of {least:.3g}, the smallest of all motions."
-            )
-    few = f"do {percent(LEVELS[0])} or more of the neighbours {does.removesuffix(',')}"
-    return f"No motion governs: under none of the {len(margins)} {few}."

@@ -115,7 +115,10 @@ def _p(structure: Structure, excitation: Excitation | None) -> float:
 
 def _ratio(structure: Structure, excitation: Excitation | None) -> float:
     assert excitation is not None and excitation.site is not None
-    return verify(structure, excitation.site).ratio
+    end = verify(structure, excitation.site).conclusion
+    if any(each.what == "mechanism" for each in end.left_out):
+        raise MechanismError("another mechanism starts first, which the verification does not cover")
+    return nan if end.ratio is None else end.ratio
 
 
 def taken_otherwise(structure: Structure, site: SiteFile) -> Sequence[str]:

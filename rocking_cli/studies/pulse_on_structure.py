@@ -13,6 +13,8 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.pulse_response import ClosedForm, closed_form
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import Concluding
+from rocking_cli.studies.response import Histories, concluded
 from rocking_cli.studies.sampled_pulse import SampledHistory, sampled_history
 
 KAPPAS: dict[ModelName, Literal[1, 2]] = {"linear1": 1, "linear2": 2}
@@ -62,6 +64,15 @@ def answers(
 def outcome(answer: Answer) -> ExactResponse | History:
     """Return the outcome of a model, exact or sampled."""
     return answer.history if isinstance(answer, SampledHistory) else answer
+
+
+def with_conclusion(pulse: Pulse, found: Mapping[int, Mapping[str, Answer]]) -> Concluding[int, Mapping[str, Answer]]:
+    """Return the responses to a pulse with their conclusion, by the nonlinear model under the worse polarity."""
+    sampled = {sign: each["nonlinear"] for sign, each in found.items()}
+    runs: dict[int, Histories] = {
+        sign: {"nonlinear": each.history} for sign, each in sampled.items() if isinstance(each, SampledHistory)
+    }
+    return Concluding(found, concluded(runs, {}, str(pulse)))
 
 
 def closed_forms(structure: Structure, pulse: Pulse) -> dict[str, ClosedForm]:

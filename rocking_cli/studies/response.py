@@ -8,6 +8,7 @@ from functools import partial
 from math import isclose
 
 from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.holding import remedy
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import ALIKE
 from rocking_cli.engines import respond
@@ -15,7 +16,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare, worst
+from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare, NextStep, worst
 from rocking_cli.studies.contact import ContactDemand, Contacts
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 
@@ -44,7 +45,7 @@ def concluded(runs: Runs, near: Mapping[int, Neighbours], motion: str = "") -> C
     governs = worst(each)
     alike = len(each) > 1 and all(
         (one.concluded, one.share) == (governs.concluded, governs.share)
-        and (one.ratio is None or governs.ratio is None or isclose(one.ratio, governs.ratio, rel_tol=ALIKE))
+        and isclose(one.peak_ratio or 0.0, governs.peak_ratio or 0.0, rel_tol=ALIKE)
         for one in each
     )
     return replace(governs, polarity=None if alike else governs.polarity, polarities=list(runs))
@@ -57,16 +58,16 @@ def _of_run(run: History, near: Neighbours | None, motion: str, sign: int) -> Co
         what = Concluded.OVERTURNS
     else:
         what = Concluded.ROCKS if run.lifted else Concluded.NO_UPLIFT
-    known = what in (Concluded.ROCKS, Concluded.NO_UPLIFT)
     return Conclusion(
         concluded=what,
         motion=motion,
         polarity=sign,
-        ratio=run.peak_ratio if known else None,
+        peak_ratio=None if run.unknown or run.fell else run.peak_ratio,
         known_until=run.known_to if run.unknown else None,
         joint=run.check.joint if run.unknown and run.check is not None else "",
         share=NeighbourShare(near.overturned, near.at_most, near.around.count) if near is not None else None,
         motions=[motion] if motion else [],
+        remedy=NextStep(remedy(run)) if run.unknown else None,
     )
 
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict
+from math import isfinite
 from typing import Any
 
 from rocking_cli import names
-from rocking_cli.studies.conclusion import Concluded, Conclusion
+from rocking_cli.dynamics.holding import REMEDIES
+from rocking_cli.names import percent
+from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare, NextStep
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.studies.verification.told import Told
 
@@ -22,8 +26,8 @@ ENGLISH = {
     "direction_positive": ", positive direction",
     "direction_negative": ", negative direction",
     "ratio": "capacity over demand {ratio:.{digits}g}",
-    "past": "a motion takes the structure past its capacity",
-    "unproven": "neither satisfied nor disproved",
+    "past": "{motion} takes the structure past its capacity",
+    "unproven": "neither satisfied nor disproved under {motion}",
     "elastic": "Not counted: the stiffness of {names}, because an elastic tie would never let the structure fall.",
     "too_few": "Not counted: time histories under {names}, because the code requires more records.",
     "too_few_and_past": (
@@ -44,8 +48,8 @@ ITALIAN = {
     "direction_positive": ", verso positivo",
     "direction_negative": ", verso negativo",
     "ratio": "rapporto tra capacità e domanda {ratio:.{digits}g}",
-    "past": "un accelerogramma porta la struttura oltre la sua capacità",
-    "unproven": "né soddisfatta né smentita",
+    "past": "{motion} porta la struttura oltre la sua capacità",
+    "unproven": "né soddisfatta né smentita sotto {motion}",
     "elastic": ("Non è messa in conto la rigidezza di {names}: con una catena elastica la struttura non cadrebbe mai."),
     "too_few": "Non sono messe in conto le analisi sotto {names}: la norma richiede più accelerogrammi.",
     "too_few_and_past": (
@@ -54,6 +58,16 @@ ITALIAN = {
     ),
     "not_covered": "La verifica non riguarda la struttura, perché un altro meccanismo si attiva prima.",
     "starts_first": "Un altro meccanismo si attiva prima di quello verificato, al giunto tra {names}.",
+}
+STEPS: Mapping[str, str] = {
+    **REMEDIES,
+    NextStep.MARGIN: "`rocking margin` shows from which scale factor on neighbours overturn, or are unknown",
+    NextStep.YIELD_FORCE: "give the force at which the tie yields as a constant force in `loads`, so that it counts",
+    NextStep.MORE_MOTIONS: "give at least as many records as the code requires",
+    NextStep.FIRST_MECHANISM: "describe the mechanism that starts first as a structure, and verify that structure",
+    NextStep.SITE_VALUES: "give the values that the code requires in the site file (`rocking new site` prints one)",
+    NextStep.RESPOND: "`rocking respond` under this motion names the joint that opens or slides, and when",
+    NextStep.DESIGN: "`rocking design` finds the value of a field at which the ratio reaches 1",
 }
 TEXTS = {"en": ENGLISH, "it": ITALIAN}
 
@@ -88,7 +102,7 @@ def _governs(end: Conclusion, method: str) -> Told:
     if end.ratio is not None:
         ratio = _told("ratio", ratio=end.ratio, digits=digits_beside_one(end.ratio))
     else:
-        ratio = _told("unproven" if end.concluded is Concluded.UNKNOWN else "past")
+        ratio = _told("unproven" if end.concluded is Concluded.UNKNOWN else "past", motion=end.motion)
     if end.limit_state:
         return _told("governs_at", state=end.limit_state, direction=direction, method=method, ratio=ratio)
     return _told("governs", direction=direction, method=f"{method[:1].upper()}{method[1:]}", ratio=ratio)
@@ -109,12 +123,40 @@ def digits_beside_one(ratio: float) -> int:
     return next((n for n in range(3, MOST_DIGITS) if (float(f"{ratio:.{n}g}") < 1) == (ratio < 1)), MOST_DIGITS)
 
 
+def of_margin(end: Conclusion) -> str:
+    """Return the conclusion of a margin in a sentence: the motion that governs, its outcome, share and factor."""
+    assert end.share is not None and end.ratio is not None
+    which = f"{end.motion} governs {len(end.motions)} motions: at" if len(end.motions) > 1 else "At"
+    factor = (
+        f"The smallest factor at which 10 % or more may overturn is {end.ratio:.3g}."
+        if isfinite(end.ratio)
+        else "At no factor tried may 10 % or more overturn."
+    )
+    said = f"{which} a factor of 1, the structure {headline(end)}, and {_of_neighbours(end.share)}."
+    return " ".join(filter(None, [said, factor, next_in_words(end)]))
+
+
+def _of_neighbours(share: NeighbourShare) -> str:
+    if share.highest > share.lowest:
+        some = f"{percent(share.lowest)} to {percent(share.highest)}"
+        return f"{some} of its {share.of} neighbours overturn, as some outcomes are unknown"
+    if share.lowest in (0, 1):
+        return f"{'all' if share.lowest else 'none'} of its {share.of} neighbours overturn{'' if share.lowest else 's'}"
+    return f"{percent(share.lowest)} of its {share.of} neighbours overturn"
+
+
+def next_in_words(end: Conclusion) -> str:
+    """Return what to do next as a sentence; empty if there is nothing to do."""
+    said = "; ".join(STEPS[each] for each in end.next)
+    return f"Next: {said}." if said else ""
+
+
 def headline(end: Conclusion) -> str:
     """Return what is concluded in a few words, for a heading: with the peak, the limit state, or until when known."""
     if end.known_until is not None:
         return f"{names.UNKNOWN} after {end.known_until:.3g} s"
-    if end.concluded is Concluded.ROCKS and end.ratio is not None:
-        return f"{names.ROCKS} to {end.ratio:.3g}"
+    if end.concluded is Concluded.ROCKS and end.peak_ratio is not None:
+        return f"{names.ROCKS} to {end.peak_ratio:.3g}"
     said = end.concluded.value.replace("_", " ")
     return f"{end.limit_state} {said}" if end.limit_state and end.concluded is not Concluded.SATISFIED else said
 
@@ -125,4 +167,6 @@ def conclusion_data(end: Conclusion) -> dict[str, Any]:
     found = {key: list(each) if key in lists else None if each == "" else each for key, each in asdict(end).items()}
     found["left_out"] = [each._asdict() for each in end.left_out]
     found["share"] = end.share._asdict() if end.share is not None else None
+    del found["remedy"]
+    found["next"] = list(end.next)
     return found

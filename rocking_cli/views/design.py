@@ -11,10 +11,12 @@ from rocking_cli import names
 from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import percent
+from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.studies.design import Design
 from rocking_cli.studies.metrics import Excitation
 from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import one_line
+from rocking_cli.views.conclusion import conclusion_data
 from rocking_cli.views.view import ABSENT, Table, View
 
 ROWS = 11  # of the scan in the table, at most
@@ -22,8 +24,8 @@ ROWS = 11  # of the scan in the table, at most
 
 def view(found: Design, excitation: Excitation | None = None) -> View:
     """Show the answer in a sentence, the scan, and remarks."""
-    said = [answer(found), *doubts(found, excitation)]
-    return View(lambda: data(found), [f"{found.structure}: {found.field} for {found.aim}", scan(found), *said])
+    title = f"{found.structure}: {found.field} for {found.aim}"
+    return View(lambda: data(found), [f"{title}. {answer(found)}", scan(found), *doubts(found, excitation)])
 
 
 def data(found: Design) -> dict[str, Any]:
@@ -38,6 +40,7 @@ def data(found: Design) -> dict[str, Any]:
         "until": str(found.aim),
         "holds": [list(each) for each in found.holds],
         "everywhere": found.everywhere,
+        "conclusion": conclusion_data(found.conclusion),
         "monotone": found.monotone,
         "scan": {"values": found.values.tolist(), "metric": found.metric.tolist(), **_unknown_data(found)},
         "not_built": [{"low": each.low, "high": each.high, "reason": each.reason} for each in found.not_built],
@@ -90,6 +93,11 @@ def answer(found: Design) -> str:
     aim, low, high = found.aim, _with_unit(found, found.values[0]), _with_unit(found, found.values[-1])
     if found.everywhere:
         return f"{aim} holds at every value of {found.field} tried, from {low} to {high}."
+    if found.conclusion.concluded is Concluded.UNKNOWN:
+        return (
+            f"Whether {aim} holds at any value of {found.field} tried, from {low} to {high}, is unknown: if unknown "
+            f"outcomes count as overturning, {_nearest(found)}"
+        )
     if not found.holds:
         return f"{aim} holds at no value of {found.field} tried, from {low} to {high}: {_nearest(found)}"
     if found.value is not None and len(found.holds) == 1 and (found.monotone or not aim.metric.shaken):

@@ -9,25 +9,30 @@ from typing import Any, NamedTuple
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.names import percent
-from rocking_cli.studies.margin import LEVELS, Margin, governing_in_words, in_words
+from rocking_cli.studies.conclusion import Conclusion
+from rocking_cli.studies.margin import LEVELS, Margin, in_words
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.cautions import cautions_of
+from rocking_cli.views.conclusion import conclusion_data, of_margin
 from rocking_cli.views.view import FEW, Table, View, heading, number
 
 MAY = "overturn or unknown"  # name of the row that governs
 
 
 class MarginRow(NamedTuple):
-    """A motion: its name, the scale factor on the record as read, its PGA with this factor [g], and its margin."""
+    """A motion: name, scale factor on the record as read, PGA with this factor [g], margin, and what is concluded."""
 
     name: str
     factor: float
     pga: float
     margin: Margin
+    conclusion: Conclusion
 
 
-def view(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood) -> View:
-    """Show the margins of a structure under some motions."""
+def view(
+    mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood, end: Conclusion
+) -> View:
+    """Show the margins of a structure under some motions, what is concluded of all of them first."""
     around = rows[0].margin.around if rows else around  # with the deviations of the structure
     heads = ["motion", "PGA\n[g]", "uplift\nat", "overturn\nat 1"]
     heads += [f"{percent(level)}\n{when}" for when in ("first\nat", "always\nfrom") for level in LEVELS]
@@ -38,7 +43,7 @@ def view(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around:
         "both": "motions as given and reversed (the worse of the two counts)",
     }[polarity]
     parts: list[Table | str] = [
-        heading(mechanism),
+        f"{heading(mechanism)}. {of_margin(end)}",
         f"Scale factors on {either}; at each, {around.count} neighbouring motions, {around.words}. 'First at' is the "
         "smallest factor at which so many of them overturn the structure; 'always from' the smallest from which on no "
         "factor tried (up to 5) has fewer.",
@@ -46,11 +51,10 @@ def view(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around:
         *_doubtful(rows),
     ]
     parts += [f"{row.name}: {in_words(row.margin, row.pga)}" for row in rows] if len(rows) <= FEW else []
-    parts += [governing_in_words({row.name: row.margin for row in rows})] if len(rows) > 1 else []
     parts += [f"Caution: {text}" for text in cautions_of(mechanism)]
     if not all(row.margin.checked for row in rows):
         parts.append(unchecked(why=mechanism.unchecked))
-    return View(_data(mechanism, rows, polarity, around), parts)
+    return View(_data(mechanism, rows, polarity, around) | {"conclusion": conclusion_data(end)}, parts)
 
 
 def _cells(row: MarginRow) -> Iterator[list[str]]:
@@ -92,6 +96,7 @@ def _data(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around
                 "name": row.name,
                 "scale": row.factor,
                 "pga": row.pga,
+                "conclusion": conclusion_data(row.conclusion),
                 **margin_data(row.margin),
                 "verdict": in_words(row.margin, row.pga),
             }

@@ -18,9 +18,11 @@ from rocking_cli.dynamics.verdict import SENSE
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import Concluding
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.pulse_on_structure import KAPPAS, Answer, outcome, scaled
 from rocking_cli.studies.sampled_pulse import SampledHistory
+from rocking_cli.views.conclusion import conclusion_data
 from rocking_cli.views.pulse import YES_NO, after_impacts, closed_data, how_far_off, impacts_before
 from rocking_cli.views.response import known_data, model_heads, not_checked, pulse_data
 from rocking_cli.views.restitution import restitution_data, restitution_used
@@ -28,7 +30,10 @@ from rocking_cli.views.view import ABSENT, Table, View, heading, in_degrees, num
 
 
 def view(
-    structure: Structure, pulse: Pulse, answers: Mapping[int, Mapping[str, Answer]], closed: Mapping[str, ClosedForm]
+    structure: Structure,
+    pulse: Pulse,
+    answers: Concluding[int, Mapping[str, Answer]],
+    closed: Mapping[str, ClosedForm],
 ) -> View:
     """Show the responses of the models of a structure to a pulse.
 
@@ -38,7 +43,7 @@ def view(
         The structure.
     pulse : Pulse
         The pulse as given.
-    answers : mapping of int to mapping of str to Answer
+    answers : Concluding, of int to mapping of str to Answer
         The responses of the models under each polarity to be analysed, 1 or -1.
     closed : mapping of str to ClosedForm
         Eqs. 41-42 with each kappa, shown with the responses in the first polarity; empty if they do not apply.
@@ -55,6 +60,7 @@ def view(
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
         "pulse": {**pulse_data(pulse), "polarity": polarity if len(answers) == 1 else "both"},
         "restitution": restitution_data(structure),
+        "conclusion": conclusion_data(answers.conclusion),
         "directions": seen,
         "closed_form": {name: closed_data(form, exact) for name, (form, exact) in _beside(closed, first).items()}
         or None,

@@ -45,6 +45,11 @@ def _limit_state(row: RankedStructure) -> str | None:
     return (row.found.verified.limit_state or None) if row.found.verified is not None else None
 
 
+def _not_counted(row: RankedStructure) -> str | None:
+    found = row.found.verified
+    return ", ".join(each.name for each in found.left_out) or None if found is not None else None
+
+
 def _peak(peak: float) -> str:
     return "no uplift" if peak == 0 else number(peak, 3)
 
@@ -60,6 +65,7 @@ OF_SITE: tuple[Column[RankedStructure], ...] = (
     Column("ratio", of("found.ratio"), head="ratio"),
     Column("concluded", of("found.verified.concluded.value"), head="verified", form=spaced, text=True),
     Column("limit_state", _limit_state, head="governs", text=True),
+    Column("not_counted", _not_counted, head="not\ncounted", text=True),
 )
 UNDER_MOTIONS: tuple[Column[RankedStructure], ...] = (
     Column("overturned", of("found.under.overturned"), head="overturn\nit", form=percent),
@@ -149,7 +155,10 @@ def has_unknown(found: Survey) -> bool:
 
 def table(found: Survey, top: int, longest: int | None = NAME) -> Table:
     """Return a table of the first rows, with names of at most `longest` characters."""
-    shown = [column for column in _columns(found) if column.key != "unknown" or has_unknown(found)]
+    empty = {"unknown"} if not has_unknown(found) else set[str]()
+    if all(_not_counted(row) is None for row in _ranked(found)):
+        empty.add("not_counted")
+    shown = [column for column in _columns(found) if column.key not in empty]
     whole = table_of(title(found), shown, _ranked(found, stop=top))
     if longest is None:
         return whole

@@ -12,7 +12,7 @@ from rocking_cli.studies.verification.installed import codes
 from rocking_cli.studies.verification.results import Verification, Verified
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.cautions import cautions_of
-from rocking_cli.views.conclusion import conclusion_data, of_verification
+from rocking_cli.views.conclusion import conclusion_data, next_in_words, of_verification
 from rocking_cli.views.view import ABSENT, Table, View, heading, number
 
 if TYPE_CHECKING:
@@ -114,7 +114,9 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
     """
     sides, own = shown(found), showing(found)
     by = f"{heading(found.mechanism)}, by the {found.name} ({found.edition}){f', at {site}' if site else ''}"
-    parts: list[Table | str] = [f"{by}. {' '.join(of_verification(found))}"]
+    parts: list[Table | str] = [
+        " ".join(filter(None, [f"{by}.", *of_verification(found), next_in_words(found.conclusion)]))
+    ]
     if found.workings:
         parts.append(_site(found, own.of_site))
     for where, each in sides.items():

@@ -70,6 +70,8 @@ class Requirement(NamedTuple):
         Whether it is satisfied.
     motions : sequence of str
         Names of the ground motions by which it was verified, if any.
+    motion : str
+        The ground motion that takes the structure past its capacity, or whose outcome is unknown; empty if none does.
     """
 
     state: str
@@ -77,6 +79,7 @@ class Requirement(NamedTuple):
     ratio: float | None
     concluded: Concluded
     motions: Sequence[str] = ()
+    motion: str = ""
 
     @classmethod
     def of(cls, state: str, method: str, ratio: float | None, passed: bool | None) -> Requirement:
@@ -181,7 +184,7 @@ class Verification:
         found = [
             Conclusion(
                 concluded=check.concluded, limit_state=check.state, method=check.method, direction=direction.label,
-                ratio=check.ratio, motions=check.motions,
+                ratio=check.ratio, motions=check.motions, motion=check.motion,
             )
             for direction, each in self.directions.items() for check in each.checks
         ]  # fmt: skip
