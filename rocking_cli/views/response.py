@@ -29,7 +29,7 @@ from rocking_cli.studies.neighbours import FRACTILES, Neighbours
 from rocking_cli.studies.response import Histories, Question, Response, Runs, concluded
 from rocking_cli.views import processing
 from rocking_cli.views.cautions import cautions_of
-from rocking_cli.views.conclusion import conclusion_data
+from rocking_cli.views.conclusion import conclusion_data, headline
 from rocking_cli.views.contact import contact_data, contact_words
 from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.view import ABSENT, Table, View, force_unit, in_degrees, number
@@ -350,7 +350,8 @@ def _tables(
     parts: list[Table | str] = []
     for polarity, histories in runs.items():
         heading = f"{title}, polarity {polarity}" if len(runs) > 1 else title
-        parts += [_table(heading, histories, shown, polarity), verdict(histories, shown.assumed_friction(polarity))]
+        ends = headline(concluded({polarity: histories}, near))
+        parts += [_table(f"{heading} ({ends})", histories, shown, polarity), verdict(histories, shown.assumed_friction(polarity))]
         parts += [str(near[polarity])] if polarity in near else []
         parts += shown.contact_words(polarity)
         if shown.etas is not None:

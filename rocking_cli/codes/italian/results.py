@@ -168,17 +168,14 @@ class Dynamic:
         """Return what the histories with FC prove; nothing if the code requires more of them."""
         names, found = [each.name for each in self.records], []
         for state, allowed in () if self.too_few else self.allowed.items():
-            mean, past = self.mean(confident=True), list(self.passed(confident=True))
+            mean, past = self.mean(confident=True), self.passed(confident=True)
             if past or (mean is not None and not self.holds(state, confident=True)):
                 concluded = Concluded.NOT_SATISFIED
             else:
                 concluded = Concluded.UNKNOWN if mean is None else Concluded.SATISFIED
             ratio = None if mean is None else allowed / mean if mean else inf
-            found.append(
-                Requirement(
-                    state, HISTORIES, ratio, concluded, names, next(iter([*past, *self.unknown(confident=True)]), "")
-                )
-            )
+            motion = next(iter(past + self.unknown(confident=True)), "")
+            found.append(Requirement(state, HISTORIES, ratio, concluded, names, motion))
         return found
 
     def holds(self, state: str, *, confident: bool) -> bool:
