@@ -53,6 +53,17 @@ def percent(share: float) -> str:
     return f"{sign}{size:.0f} %" if size >= 9.95 else f"{sign}{size:.2g} %"
 
 
+def digits_apart(one: float, other: float, fewest: int) -> int:
+    """Return the significant digits, from `fewest` to nine, that show which of two numbers is the greater.
+
+    Examples
+    --------
+    >>> digits_apart(0.3204, 0.3088, 4), digits_apart(0.40001, 0.4, 4)
+    (4, 5)
+    """
+    return next((n for n in range(fewest, 9) if f"{one:.{n}g}" != f"{other:.{n}g}"), 9)
+
+
 def peaks_over(free: list[bool] | tuple[bool, ...]) -> str:
     """Return what peak rotations are divided by, in words.
 

@@ -579,7 +579,7 @@ def test_binary_file(write, content):
 def test_something_else_altogether(write, content):
     found = problem(write(content), dt=0.01, units="g")
     assert "not a record format" in found.message
-    assert "PEER AT2" in found.hint
+    assert "PEER AT2" in found.hint and "\n" not in found.hint
 
 
 @UNTIMED

@@ -1,8 +1,8 @@
 """Mechanisms without dilation of confined blocks, such as those between a floor and a ceiling or between two walls.
 
 By associated flow a joint that slides also opens. Blocks that cannot move apart then never slide, however small their
-friction. They are those that can be squeezed: forces within the friction of the joints balance one another without any
-load. How much the sides squeeze them is not known, so that the least favourable squeeze counts.
+friction. They are those that forces within the friction of the joints can compress without any load, because these forces
+balance one another. How large they are is not known, so that the least favourable ones count.
 
 In a mechanism without dilation, each point of a joint has either no force or no opening, and each joint has either no
 slip, or the shear that its friction allows, against the slip. A linear programme knows forces and velocities, but not
@@ -30,7 +30,7 @@ BOTH = 1e-9  # of the weight, and of the unit velocity: a force and a rate that 
 SIMPLEST = 1e-9  # of the multiplier: by that much it may be greater, for the simplest mechanism
 TIE = 0.01  # by so much the last joint counts more than the first, to choose among equal mechanisms
 MOVES = 1e-6  # of the fastest velocity
-FREE = 1e3  # times all normal forces: forces of guides in a squeeze
+FREE = 1e3  # times all normal forces: forces of guides that compress blocks
 
 
 @dataclass(frozen=True, eq=False)

@@ -138,7 +138,7 @@ def collapse(
     ------
     DoesNotStand
         If the joints cannot balance the dead forces alone, or cannot balance any multiplier above zero, or if confined
-        blocks may fall because only a squeeze holds them.
+        blocks may fall because only compression between their sides holds them.
     NothingMoves
         If the joints can balance any multiplier.
     NoAnswer
@@ -154,9 +154,11 @@ def collapse(
     confined = undilated(problem, multiplier)
     if confined is not None:
         if confined.falls:
+            slides, them = ("slide", "them") if len(confined.falls) > 1 else ("slides", "it")
             raise DoesNotStand(
-                "it does not stand by its weight alone: only a squeeze by the sides could hold "
-                f"{listed(confined.falls)}. Add what supports it from below",
+                f"{listed(confined.falls)} {slides} down under weight alone: friction at the sides holds only if "
+                f"something presses them together, and the file gives no such force. Draw what supports {them} from "
+                "below",
                 confined.falls,
             )
         if confined.multiplier is not None:

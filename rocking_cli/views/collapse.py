@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import isfinite
+from math import isclose, isfinite
 from typing import Any
 
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
 from rocking_cli.core.contacts import MASONRY
+from rocking_cli.names import digits_apart
 from rocking_cli.text import in_short
 from rocking_cli.views.view import Table, View, force_unit, heading, number
 
 FEW = 6  # blocks of a part, all of which are named
 SOME = 3  # of one that has more
+REACHED = 1e-6  # of the friction given: a mechanism that requires this much uses all of it
 ROWS = 24  # joints, the forces in all of which are shown
 
 
@@ -78,7 +80,8 @@ def _sentences(mechanism: Mechanism, found: CollapseMechanism) -> list[str]:
         flow = (
             "The flow rule is associated, which overestimates lambda where sliding joints also open."
             if found.associated is None
-            else "It slides without dilation, with the least squeeze by the sides that confine it."
+            else "Sliding joints do not dilate here (non-associated flow), and the confining forces of the sides, which "
+            "are not known, are those with the least lambda."
         )
         said.append(
             f"The mechanism slides between {in_short(found.slides)}. lambda is the acceleration at which sliding "
@@ -87,11 +90,7 @@ def _sentences(mechanism: Mechanism, found: CollapseMechanism) -> list[str]:
     if found.no_model:
         said.append(f"It has no rocking model: {found.no_model}.")
     if found.friction_needed is not None:
-        given = mechanism.friction
-        held = "" if given is None else f"; {given:g} is given"
-        said.append(
-            f"It requires a coefficient of friction of {number(found.friction_needed, 4)} in every joint{held}."
-        )
+        said.append(_required(found.friction_needed, mechanism.friction))
     elif found.glued:
         said.append(
             f"No coefficient of friction is sufficient: {in_short(found.glued)} would have to carry shear without "
@@ -113,6 +112,16 @@ def _sentences(mechanism: Mechanism, found: CollapseMechanism) -> list[str]:
             "In displaced equilibrium (at acceleration G/B), this mechanism is valid up to its critical rotation."
         )
     return said
+
+
+def _required(needed: float, given: float | None) -> str:
+    """Return a sentence on the friction that a mechanism requires, with digits that tell it from the one given."""
+    required = "It requires a coefficient of friction of {} in every joint"
+    if given is None:
+        return f"{required.format(number(needed, 4))}."
+    if isclose(needed, given, rel_tol=REACHED):
+        return f"{required.format(number(given, 4))}: all that is given."
+    return f"{required.format(number(needed, digits_apart(needed, given, 4)))}; {given:g} is given."
 
 
 def _thrust(direction: Direction, found: CollapseMechanism, per: float, unit: str) -> list[Table | str]:

@@ -89,9 +89,11 @@ ENGLISH = {
     ),
     "letter": (
         "Weights carried without horizontal inertia, such as that of a sliding floor, enter the work of the weights "
-        "(P y') but not the inertia (P + Q); this is our choice. By the letter of the code they enter both: alpha0 "
-        "would be {by_letter:.4g} instead of {alpha0:.4g}, and a0* {a_letter:.4g} m/s2 instead of {a0:.4g} m/s2."
+        "(P y') but not the inertia (P + Q); this is our choice. By the letter of the code they enter both: {alpha0}, "
+        "and a0* {letter:.{digits}g} m/s2 instead of {own:.{digits}g} m/s2."
     ),
+    "alpha0_by_letter": "alpha0 would be {letter:.{digits}g} instead of {own:.{digits}g}",
+    "alpha0_same": "alpha0 would be the same",
     "control_same": "With this control point, d0* is the same as with the centroid of P + Q, {d0:.4g} m.",
     "control": (
         "With this control point, d0* is {d0:.4g} m, {change:.3g} % {side} than the {own:.4g} m obtained with the "
@@ -189,8 +191,10 @@ ITALIAN = {
     ),
     "letter": (
         "Il peso portato privo di inerzia orizzontale entra soltanto in P y', per nostra scelta; alla lettera ogni P "
-        "è in P + Q: alpha0 sarebbe {by_letter:.4g} (qui {alpha0:.4g}) e a0* {a_letter:.4g} m/s2 (qui {a0:.4g})."
+        "è in P + Q: {alpha0} e a0* {letter:.{digits}g} m/s2 (qui {own:.{digits}g})."
     ),
+    "alpha0_by_letter": "alpha0 sarebbe {letter:.{digits}g} (qui {own:.{digits}g})",
+    "alpha0_same": "alpha0 sarebbe lo stesso",
     "control_same": "Con questo punto di controllo d0* coincide con quello del baricentro di P + Q, {d0:.4g} m.",
     "control": (
         "Con questo punto di controllo d0* vale {d0:.4g} m, il {change:.3g} % {side} rispetto a {own:.4g} m del "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from math import isclose
 from typing import Any
 
 from rocking_cli.codes.italian.capacity import ExactCurve
@@ -16,6 +17,7 @@ from rocking_cli.codes.italian.site_hazard import LONGEST, SHORTEST, return_peri
 from rocking_cli.codes.italian.ties import STRETCHED, WIDE, carried, elastic, furthest, pulls
 from rocking_cli.core.hung.ties import Tie
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.names import digits_apart
 from rocking_cli.studies.verification.told import Told
 
 LONG = 4.0  # s: above it the code requires a study of the site, or records
@@ -178,8 +180,14 @@ def _of_letter(chain: Chain, curve: ExactCurve) -> list[str]:
         said.append(_told("own_formula", alpha0=alpha0, lambda_=lambda_))
     if not chain.is_by_the_letter:
         a_letter = curve.a0 * chain.start_by_the_letter
-        said.append(_told("letter", by_letter=chain.by_the_letter, alpha0=alpha0, a_letter=a_letter, a0=curve.a0))
+        same = isclose(chain.by_the_letter, alpha0, rel_tol=ROUNDING)
+        alpha = _told("alpha0_same") if same else _told("alpha0_by_letter", **_apart(chain.by_the_letter, alpha0))
+        said.append(_told("letter", alpha0=alpha, **_apart(a_letter, curve.a0)))
     return said
+
+
+def _apart(letter: float, own: float) -> dict[str, float | int]:
+    return {"letter": letter, "own": own, "digits": digits_apart(letter, own, 4)}
 
 
 def of_control(chosen: ItalianMethod, usual: ItalianMethod, d0: float, usual_d0: float) -> str:

@@ -212,13 +212,14 @@ def reader_for(text: str | None, file: str, readers: dict[str, Reader], data: by
         hint = "the file holds the marks of both: take out what is not its own, such as another file in its comments"
         raise InputError(Problem(f"more than one format claims this file: {why}", file=file, hint=hint))
     asked = {name: reader for name, reader in readers.items() if text is not None or takes_bytes(reader)}
-    tried = "".join(f"\n    {_described(name, reader)}" for name, reader in asked.items())
-    hint = f"tried, and what each looks for:{tried or ' nothing'}"
+    broken = [_described(name, reader) for name, reader in asked.items() if reader.TITLE == _Broken.TITLE]
+    known = ", ".join(sorted((each.TITLE for each in asked.values() if each.TITLE != _Broken.TITLE), key=str.lower))
     message = "not a record format that can be read: no acceleration values found"
+    hint = f"give a file with a number in each line, or of one of these formats: {known}"
     if text is None:
         message = "this is a binary file, and none of a record format that can be read"
-        hint = f"a spreadsheet, an archive or UTF-16 text must be saved as plain text (CSV, UTF-8) first; {hint}"
-    raise InputError(Problem(message, file=file, hint=hint))
+        hint = f"save a spreadsheet, an archive or UTF-16 text as plain text (CSV, UTF-8) first; binary formats: {known}"
+    raise InputError(Problem(message, file=file, hint="; ".join([hint, *broken])))
 
 
 def _described(name: str, reader: Reader) -> str:
