@@ -292,7 +292,7 @@ class TestRespond:
         motion = parse_pulse("sine:0.15g:0.8s").sampled()
         histories = respond(mechanism, motion, models=("nonlinear",))
         axes = draw_history(histories, motion, "x", watched=Watched(mechanism)).axes[1]
-        assert [text.get_text() for text in axes.texts if "wall" in text.get_text()] == ["side walls"]
+        assert [text.get_text() for text in axes.texts if "support" in text.get_text()] == ["supports"]
         low, high = axes.get_ylim()
         sign = Direction[side.upper()]
         assert max(sign * low, sign * high) > 2 * -min(sign * low, sign * high) > 0
@@ -359,7 +359,7 @@ class TestReport:
     def test_loads_are_told_with_their_shares(self, told):
         text, _ = told["leaning"]
         assert "floor block 0.2, 5 2000 1 0.333 0.5" in text
-        assert "The side walls it leans on are assumed not to move." in text
+        assert "The supports that it leans on are assumed not to move." in text
         assert "It rocks in the positive direction only" in text
         assert "Constant forces" in text
 

@@ -8,6 +8,7 @@ import io
 import json
 import os
 import re
+from collections import Counter
 from html.parser import HTMLParser
 from math import atan, isclose, sqrt
 from pathlib import Path
@@ -22,6 +23,7 @@ from rocking_cli.io.dotted import HOLE, closed, put, words
 from rocking_cli.io.spreadsheet import parse_sheet
 from rocking_cli.studies.structure_table import StructureTable
 from rocking_cli.studies.survey import MadeStructure, Under, survey
+from rocking_cli.views.survey import sentences
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, some
 
@@ -486,6 +488,31 @@ def test_a_site_ranks_by_what_its_code_allows(tmp_path):
     found = rk.verify(rk.Block(width=0.6, height=8.0), site).to_dict()["directions"]["positive"]
     assert ratios["facade"] == pytest.approx(found["states"]["SLV"]["ratio"])
     assert [row.name for row in rk.survey(tmp_path / "t.csv", site=site).rows] == [e["name"] for e in data["rows"]]
+
+
+SITE = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2, "SLD": {"ag": 0.08, "F0": 2.5, "TC": 0.36, "S": 1.2}}
+
+
+def test_the_first_sentence_counts_who_fails_and_what_governs():
+    sizes = {"thin": (0.3, 4), "thinner": (0.25, 4), "low": (0.5, 1.5), "tall": (0.7, 8.0), "thick": (1.6, 4)}
+    blocks = [rk.Block(name=name, width=b, height=h) for name, (b, h) in sizes.items()]
+    found = rk.survey(blocks, site=SITE)
+    said = found.sentences
+    ends = [row.verified for row in found.rows]
+    states = Counter(end.limit_state for end in ends if end.concluded == "not_satisfied").most_common()
+    assert len(states) == 2 and "satisfied" in [end.concluded for end in ends], "this table shows all that is said"
+    (first, most), (second, few) = states
+    assert said[0].startswith(
+        f"{most + few} of 5 structures do not satisfy the verification; {first} governs {most}, {second} {few} of "
+        f"them. The smallest ratio of capacity to demand is {found.rows[0].ratio:.3g}, that of {found.rows[0].name}."
+    )
+    caution = "Caution: formulas of the code have not been checked against the printed code yet"
+    assert any(each.startswith(caution) for each in said)
+    alone = {name: rk.survey([block], site=SITE).sentences[0] for name, block in zip(sizes, blocks, strict=True)}
+    assert alone["thin"].startswith("1 of 1 structure does not satisfy the verification; SL")
+    assert alone["thick"].startswith("The structure satisfies the verification. The smallest ratio")
+    printed = [dataclasses.replace(row, unprinted=False) for row in found.rows]
+    assert not any(each.startswith(caution) for each in sentences(dataclasses.replace(found.result, rows=printed)))
 
 
 def test_what_differs_by_rounding_keeps_its_order():

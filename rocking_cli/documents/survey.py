@@ -13,7 +13,7 @@ from rocking_cli.plotting.moving import asset
 from rocking_cli.plotting.survey import draw_survey
 from rocking_cli.studies.survey import Survey
 from rocking_cli.text import printable
-from rocking_cli.views.survey import sentences, table, title
+from rocking_cli.views.survey import counts, sentences, table, title
 
 MOST = 10_000  # rows of a page: browsers lay out more of them for many seconds
 SYMBOLS = {"lambda": "λ", "phi_cr": "φ_cr", "kappa2": "κ₂", "eta": "η"}
@@ -42,7 +42,7 @@ def render(found: Survey, source: str, about: Sequence[str]) -> str:
         source=source,
         about=about,
         title=title(found),
-        said=[each.replace("`", "") for each in sentences(found)],
+        said=[each.replace("`", "") for each in (*counts(found), *sentences(found))],
         picture=Markup(inline_svg(draw_survey(found, ""), "survey")) if found.rows else None,
         columns=[_symbolic(each) for each in rows.columns],
         words=[k for k in range(len(rows.columns)) if k not in rows.numbers],

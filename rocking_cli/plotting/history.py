@@ -218,7 +218,7 @@ def _draw_wall(axes: Axes, free: Direction, tall: float) -> None:
     axes.axhline(0.0, color=style.EARTH, linewidth=style.BOLD)
     side = "right" if free > 0 else "left"  # away from the legend, and from the words on impacts
     axes.annotate(
-        "side walls", (0.995 if free > 0 else 0.005, edge), (0, -3 * free), xycoords=axes.get_yaxis_transform(),
+        "supports", (0.995 if free > 0 else 0.005, edge), (0, -3 * free), xycoords=axes.get_yaxis_transform(),
         textcoords="offset points", ha=side, va="top" if free > 0 else "bottom", fontsize=style.SMALL, color=style.INK,
     )  # fmt: skip
     axes.set_ylim((-0.4 * tall, tall) if free > 0 else (-1.3 * tall, 0.45 * tall))

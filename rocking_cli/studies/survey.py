@@ -116,6 +116,8 @@ class Surveyed:
         site file lacks values that the code needs; None without a site.
     verified : Conclusion, optional
         The conclusion of the verification by the code of the site.
+    unprinted : bool
+        Whether a formula of that verification was not checked against the printed code.
     """
 
     row: int
@@ -136,6 +138,7 @@ class Surveyed:
     under: Under | None = None
     ratio: float | None = None
     verified: Conclusion | None = None
+    unprinted: bool = False
 
 
 @dataclass(frozen=True)
@@ -349,6 +352,7 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile 
         mechanism.own_caution() or None,
         ratio=found.ratio if found is not None else None,
         verified=found.conclusion if found is not None else None,
+        unprinted=found is not None and found.unprinted,
     )
 
 

@@ -191,7 +191,7 @@ def doubts(content: Assessment) -> list[str]:
     given = restitution_source(content.mechanism) == "given"
     if not content.mechanism.rocks_both_ways:
         said.append(
-            "The side walls it leans on are assumed not to move. "
+            "The supports that it leans on are assumed not to move. "
             + ("" if given else "The rebound from them was computed for a sequence of impacts, not measured.")
         )
     elif min(etas) <= 0:

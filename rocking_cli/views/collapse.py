@@ -80,8 +80,8 @@ def _sentences(mechanism: Mechanism, found: CollapseMechanism) -> list[str]:
         flow = (
             "The flow rule is associated, which overestimates lambda where sliding joints also open."
             if found.associated is None
-            else "Sliding joints do not dilate here (non-associated flow), and the confining forces of the sides, which "
-            "are not known, are those with the least lambda."
+            else "Sliding joints do not dilate here (non-associated flow), and the confining forces of the sides, "
+            "which are not known, are those with the least lambda."
         )
         said.append(
             f"The mechanism slides between {in_short(found.slides)}. lambda is the acceleration at which sliding "

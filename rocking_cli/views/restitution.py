@@ -39,12 +39,12 @@ def restitution_used(structure: Structure) -> str:
         sense = SENSE[structure.mechanism.directions[0]]
         if source == "missing":
             return (
-                f"The structure rocks {sense} only, away from its side walls. Its rebound is not given: static results "
+                f"The structure rocks {sense} only, away from the supports that it leans on. Its rebound is not given: static results "
                 "do not depend on it, time histories require it."
             )
         how = "as given" if source == "given" else "computed from a sequence of impacts after Housner, not measured"
         return (
-            f"The structure rocks {sense} only, away from its side walls. After an impact on them, its angular "
+            f"The structure rocks {sense} only, away from the supports that it leans on. After an impact on them, its angular "
             f"velocity is {structure.etas[0]:.4g} of that before (the rebound, {how})."
         )
     said = restitution_in_words(structure.etas, given=source == "given")

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from math import isnan
 from typing import Any, NamedTuple
 
 from rocking_cli.io.tables import Columns
-from rocking_cli.names import percent
+from rocking_cli.names import digits_apart, percent
+from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.studies.survey import Bad, Survey, Surveyed
 from rocking_cli.text import cut, one_line
 from rocking_cli.views.column import Column, data_of, frame_of, of, table_of
@@ -94,7 +97,7 @@ def view(found: Survey, top: int = TOP) -> View:
     """Show the most vulnerable structures, and how many of all overturn."""
     parts: list[Table | str] = []
     if found.rows:
-        parts = [table(found, top), *sentences(found, top)]
+        parts = [*counts(found), table(found, top), *sentences(found, top)]
     return View(lambda: data(found), parts)
 
 
@@ -171,6 +174,72 @@ def title(found: Survey) -> str:
     return f"{count:,} structure{'s' * (count != 1)}, the most vulnerable first"
 
 
+def counts(found: Survey) -> list[str]:
+    """Return the first sentences: how many structures fail or overturn, what governs, and which is the worst."""
+    rows = found.rows
+    said = []
+    if found.by == "ratio":
+        said.append(" ".join(_of_site(rows)))
+    if found.motions:
+        said.append(_of_motions(found))
+    if not said and len(rows) > 1:
+        first, last = rows[0], rows[-1]
+        said.append(
+            f"Of {_structures(len(rows))}, {_named([first])} uplifts at the lowest ground acceleration, "
+            f"{number(first.uplift, 3)} g, and {_named([last])} at the highest, {number(last.uplift, 3)} g."
+        )
+    return said
+
+
+def _of_site(rows: Sequence[Surveyed]) -> Iterator[str]:
+    """Yield how many structures do not satisfy the verification, which limit states govern them, and the worst."""
+    ends = [each.verified for each in rows if each.verified is not None]
+    fail = [end for end in ends if end.concluded in (Concluded.NOT_SATISFIED, Concluded.UNKNOWN)]
+    passed = sum(end.concluded is Concluded.SATISFIED for end in ends)
+    if fail:
+        does = "does" if len(fail) == 1 else "do"
+        yield f"{len(fail):,} of {_structures(len(rows))} {does} not satisfy the verification{_governing(fail)}."
+    elif passed == len(rows):
+        yield "All structures satisfy the verification." if passed > 1 else "The structure satisfies the verification."
+    else:
+        yield f"{passed:,} of {_structures(len(rows))} {'satisfies' if passed == 1 else 'satisfy'} the verification."
+    if without := [each for each, end in zip(rows, ends, strict=True) if end.concluded is Concluded.NOT_CHECKED]:
+        yield f"Not verified: {_named(without)}; `rocking verify` gives the reason."
+    least = rows[0].ratio
+    if least is not None and not isnan(least):
+        ratio = number(least, digits_apart(least, 1.0, 3))
+        yield f"The smallest ratio of capacity to demand is {ratio}, that of {_named(rows[:1])}."
+
+
+def _governing(fail: Sequence[Conclusion]) -> str:
+    """Return which limit states govern the structures that fail, as a clause; empty if a code has none."""
+    (first, count), *others = Counter(end.limit_state for end in fail).most_common()
+    if not first:
+        return ""
+    if not others:
+        return f"; {first} governs{' all of them' if count > 1 else ''}"
+    return f"; {first} governs {count:,}{''.join(f', {state} {n:,}' for state, n in others)} of them"
+
+
+def _of_motions(found: Survey) -> str:
+    """Return how many structures overturn, have an unknown outcome, and uplift under any of the motions."""
+    under = [each.under for each in found.rows if each.under is not None]
+    falls = sum(each.overturned > 0 for each in under)
+    doubtful = sum(bool(each.unknown) and each.overturned == 0 for each in under)
+    lifts = sum(each.at_most > 0 or each.peak_ratio > 0 for each in under)
+    motions = f"at least one of {len(found.motions)} motions" if len(found.motions) > 1 else found.motions[0]
+    unknown = f", {doubtful:,} may overturn (unknown outcome)" if doubtful else ""
+    verb = "overturns" if falls == 1 else "overturn"
+    return (
+        f"Under {motions}, {falls:,} of {_structures(len(under))} {verb}{unknown}, and {lifts:,} "
+        f"{'uplifts' if lifts == 1 else 'uplift'}."
+    )
+
+
+def _structures(count: int) -> str:
+    return f"{count:,} structure{'s' * (count != 1)}"
+
+
 def sentences(found: Survey, top: int | None = None) -> list[str]:
     """Return sentences on how to read the rows."""
     rows, many = found.rows, len(found.rows)
@@ -178,21 +247,21 @@ def sentences(found: Survey, top: int | None = None) -> list[str]:
     if top is not None and many > top:
         said[0] = f"Showing {top} of {many:,}, ranked {RANKED[found.by]}."
     if found.motions:
-        under = [each.under for each in rows if each.under is not None]
-        falls = sum(each.overturned > 0 for each in under)
-        lifts = sum(each.at_most > 0 or each.peak_ratio > 0 for each in under)
-        motions = f"the {len(found.motions)} motions" if len(found.motions) > 1 else found.motions[0]
         said.append(
-            f"Under {motions}, by the nonlinear model, {lifts:,} of {many:,} uplift and {falls:,} are known "
-            "to overturn. The peak is the largest rotation over the critical rotation among the motions that do not "
-            "overturn the structure. One time history is one sample: use `rocking respond` and "
-            "`rocking margin` to see how close the result is."
+            "Time histories are by the nonlinear model. The peak is the largest rotation over the critical rotation "
+            "among the motions that do not overturn the structure. One time history is one sample: use "
+            "`rocking respond` and `rocking margin` to see how close the result is."
         )
         said += _not_known(rows)
     cautioned = [each for each in rows if each.caution is not None]
     said += [f"Caution: {each.name}: {each.caution}" for each in cautioned[:CAUTIONED]]
     if len(cautioned) > CAUTIONED:
         said.append(f"{len(cautioned) - CAUTIONED:,} more structures have such a caution: JSON lists them all.")
+    if any(each.unprinted for each in rows):
+        said.append(
+            "Caution: formulas of the code have not been checked against the printed code yet: have them checked "
+            "before you rely on a verdict. `rocking verify` names them."
+        )
     without = [each for each in rows if each.no_block is not None]
     if without:
         said.append(

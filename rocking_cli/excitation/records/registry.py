@@ -218,7 +218,7 @@ def reader_for(text: str | None, file: str, readers: dict[str, Reader], data: by
     hint = f"give a file with a number in each line, or of one of these formats: {known}"
     if text is None:
         message = "this is a binary file, and none of a record format that can be read"
-        hint = f"save a spreadsheet, an archive or UTF-16 text as plain text (CSV, UTF-8) first; binary formats: {known}"
+        hint = f"first save a spreadsheet, archive or UTF-16 text as plain text (CSV, UTF-8); binary formats: {known}"
     raise InputError(Problem(message, file=file, hint="; ".join([hint, *broken])))
 
 

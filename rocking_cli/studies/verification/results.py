@@ -179,6 +179,12 @@ class Verification:
     left_out: Sequence[LeftOut] = field(default=(), kw_only=True)
 
     @property
+    def unprinted(self) -> bool:
+        """Whether any formula was not checked against the printed code."""
+        every = [*self.workings, *(line for each in self.directions.values() for line in each.workings)]
+        return any(line.standing in ("code", "transcription") for line in every)
+
+    @property
     def conclusion(self) -> Conclusion:
         """The worst check of all directions and limit states: "satisfied" needs all of them."""
         found = [
