@@ -142,7 +142,8 @@ def _check(
     if release is not None and not 0 < abs(release) < 1:
         raise InputError(f"release must be a fraction of phi_cr between 0 and 1 (or 0 and -1), got {release:g}")
     if release is not None and not (way := structure.mechanism).rocks_both_ways and release * way.directions[0] < 0:
-        raise InputError(f"release is against the supports that it leans on: it rocks in the {way.one_sided} direction only")
+        supports = "release is against the supports that it leans on"
+        raise InputError(f"{supports}: it rocks in the {way.one_sided} direction only")
     if not (isfinite(tail) and tail >= 0):
         raise InputError(f"tail must be a time in seconds, 0 or more, got {tail:g}")
     check_rtol(rtol)

@@ -36,16 +36,16 @@ def restitution_used(structure: Structure) -> str:
     """Return a sentence on the restitution that the histories used."""
     source = restitution_source(structure.mechanism)
     if not structure.mechanism.rocks_both_ways:
-        sense = SENSE[structure.mechanism.directions[0]]
+        only = f"{SENSE[structure.mechanism.directions[0]]} only, away from the supports that it leans on"
         if source == "missing":
             return (
-                f"The structure rocks {sense} only, away from the supports that it leans on. Its rebound is not given: static results "
-                "do not depend on it, time histories require it."
+                f"The structure rocks {only}. Its rebound is not given: static results do not depend on it, time "
+                "histories require it."
             )
         how = "as given" if source == "given" else "computed from a sequence of impacts after Housner, not measured"
         return (
-            f"The structure rocks {sense} only, away from the supports that it leans on. After an impact on them, its angular "
-            f"velocity is {structure.etas[0]:.4g} of that before (the rebound, {how})."
+            f"The structure rocks {only}. After an impact on them, its angular velocity is "
+            f"{structure.etas[0]:.4g} of that before (the rebound, {how})."
         )
     said = restitution_in_words(structure.etas, given=source == "given")
     if source == "kinematics" and ELASTIC < max(structure.etas) < 1 + ROUNDING:
