@@ -1,7 +1,7 @@
 """Mechanisms without dilation of confined blocks, such as those between a floor and a ceiling or between two walls.
 
 By associated flow a joint that slides also opens. Blocks that cannot move apart then never slide, however small their
-friction. They are those that forces within the friction of the joints can compress without any load, because such forces
+friction. They are those that forces within the friction of the joints can compress without any load: such forces
 balance one another. How large they are is not known, so that the least favourable ones count.
 
 In a mechanism without dilation, each point of a joint has either no force or no opening, and each joint has either no

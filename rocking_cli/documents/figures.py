@@ -31,7 +31,8 @@ def inline_svg(figure: Figure, prefix: str) -> str:
         style.save(figure, stream, format="svg", metadata=unnamed)
     text = stream.getvalue()
     text = text[text.index("<svg") :]
-    text = re.sub(r"<(metadata|style)\b.*?</\1>", "", text, flags=re.DOTALL)  # a style would hold for all of the page
+    # A style would hold for all of the page; the comments repeat every text.
+    text = re.sub(r"<(metadata|style)\b.*?</\1>|\s*<!--.*?-->", "", text, flags=re.DOTALL)
     return re.sub(r"<[^>]*>", lambda tag: _tag(tag[0], prefix), text)  # what a name says is left alone
 
 

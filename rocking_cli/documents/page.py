@@ -334,6 +334,7 @@ def _map(each: PulseMap, k: int) -> dict[str, Any]:
     places = [(name, fit.pulse.period, amplitude_in_g(fit)) for name, fit in each.marks]
     return {
         "title": each.found.shape.title,
+        "shape": each.found.shape.name,
         "picture": _still(draw_map(each.found, "", dimensionless=False, marks=places), f"map-{k}"),
         "share": f"{100 * share(each.found):.0f} %",
         "unknown": f"{100 * each.found.shares[Region.UNKNOWN]:.0f} %" if each.found.outcome.unknown.any() else "",

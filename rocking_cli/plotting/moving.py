@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from typing import Any
@@ -31,8 +32,9 @@ NAMES: Mapping[ModelName, str] = {
 
 
 def asset(name: str) -> str:
-    """Return the text of a data file of the package that is part of a page."""
-    return files("rocking_cli").joinpath("data", name).read_text(encoding="utf-8")
+    """Return the text of a data file of the package that is part of a page, without its lines of comments."""
+    text = files("rocking_cli").joinpath("data", name).read_text(encoding="utf-8")
+    return re.sub(r"^ *(//.*|/\*.*\*/)\n", "", text, flags=re.MULTILINE)
 
 
 def as_script(data: Mapping[str, Any]) -> str:
