@@ -102,9 +102,9 @@ class TestWords:
         said = next(words.differences(found, "SLV"))
         assert ("It is unconservative here." in said) == (linear > counts)
         assert (
-            f"{100 * linear / counts:.3g} % of that capacity"
+            f"{100 * linear / counts:.3g} % of the capacity at SLV"
             if linear < counts
-            else f"{linear / counts:.3g} times that capacity"
+            else f"{linear / counts:.3g} times the capacity at SLV"
         ) in said
 
     def test_two_that_agree_say_so(self):
@@ -324,6 +324,18 @@ def test_the_sheet_cites_the_code_alike(damage, linear, tmp_path):
     assert {"[3.2.6]*", "[3.2.7]*", "[C7.2.6]*", "[C7.2.7]*", "[C7.2.10]*", "[C8.7.1.8]*", "§8.3†", "§C7.2.3†"} <= cited
     assert {f"§C8.7.1.2.1.7{linear}", "§C8.7.1.2.1.8*", "[C7.2.6], [C7.2.9]‡"} <= cited
     assert ("a_g,linear (capacity as a ground acceleration on rock)" in " ".join(said.split())) == (linear == "‡")
+
+
+@pytest.mark.parametrize(
+    ("language", "remark"),
+    [("en", "times the capacity at SLV: it accepts 2 times"), ("it", "volte la capacità allo SLV: ammette 2 volte")],
+)
+def test_the_sheet_has_the_remark_on_the_linear_method(language, remark, tmp_path):
+    site, sheet = EXAMPLES / "verify" / "site.yaml", tmp_path / "sheet.html"
+    run("verify", EXAMPLES / "walls" / "gable.yaml", "--site", site, "--sheet", sheet, "--language", language)
+    page = sheet.read_text(encoding="utf-8")
+    heading = {"en": "Remarks", "it": "Osservazioni"}[language]
+    assert remark in page.partition(f">{heading}<")[2].partition("<h2")[0]
 
 
 class TestStanding:

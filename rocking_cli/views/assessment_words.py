@@ -85,7 +85,7 @@ def _under_motions(content: Assessment, verified: Verification | None) -> str:
     falls = [each for each in content.results if _overturns(each)]
     unknown = [each for each in content.results if each.unknown]
     doubtful = all(each.close for each in falls) if falls else any(each.close for each in content.results)
-    close = " The result is close to the other outcome: see \"How close is that?\" below." if doubtful else ""
+    close = ' The result is close to the other outcome: see "How close is that?" below.' if doubtful else ""
     contacts = [contact for each in content.results for contact in each.contacts.values()]
     if any(not contact.holds and not contact.followed for contact in contacts):
         close += " But its joints do not hold: see below from which time the result is no longer valid."

@@ -55,6 +55,21 @@ ENGLISH = {
         "The straight line deviates from the exact curve by up to {most:.2g} % of a0*; at d_SLV it is {there:.2g} % "
         "{side} it. The exact curve is used for the verdict."
     ),
+    "linear_same": "The linear method gives the same capacity at {state}, {linear:.4g} g.",
+    "linear_less": (
+        "The linear method gives only {linear:.4g} g, {share:.3g} % of the capacity at {state}: it accepts {times:.3g} "
+        "times the acceleration at which rocking starts, and ignores that the structure may then rock, with a period "
+        "of {T:.3g} s, up to its displacement capacity of {d:.3g} m."
+    ),
+    "linear_more": (
+        "The linear method gives {linear:.4g} g, {ratio:.3g} times the capacity at {state}: it accepts {times:.3g} "
+        "times the acceleration at which rocking starts, and ignores that the structure would then exceed its "
+        "displacement capacity of {d:.3g} m. It is unconservative here."
+    ),
+    "straight": (
+        "With the straight line from a0* to d0*, the nonlinear method gives a capacity of {line:.4g} g, "
+        "{change:.2g} % {side} than with the exact curve."
+    ),
     "ties": (
         "A tie contributes to alpha0 with its force at rest. To model the rigid-plastic tie of the code, give its "
         "yield force as a load, or as the `prestress` of a tie with `stiffness: 0`. The elastic ties here raise a* to "
@@ -153,6 +168,21 @@ ITALIAN = {
     "line": (
         "La retta si scosta dalla curva di capacità esatta fino al {most:.2g} % di a0*; in d_SLV sta {there:.2g} % "
         "{side}. Vale la curva esatta."
+    ),
+    "linear_same": "Il metodo lineare fornisce la stessa capacità allo {state}, {linear:.4g} g.",
+    "linear_less": (
+        "Il metodo lineare fornisce soltanto {linear:.4g} g, il {share:.3g} % della capacità allo {state}: ammette "
+        "{times:.3g} volte l'accelerazione di attivazione e trascura che la struttura può poi oscillare, con un "
+        "periodo di {T:.3g} s, fino alla sua capacità di spostamento di {d:.3g} m."
+    ),
+    "linear_more": (
+        "Il metodo lineare fornisce {linear:.4g} g, {ratio:.3g} volte la capacità allo {state}: ammette {times:.3g} "
+        "volte l'accelerazione di attivazione e trascura che la struttura supererebbe la sua capacità di spostamento "
+        "di {d:.3g} m. Qui è a sfavore di sicurezza."
+    ),
+    "straight": (
+        "Con la retta da a0* a d0* il metodo non lineare fornisce una capacità di {line:.4g} g, il {change:.2g} % "
+        "{side} rispetto alla curva esatta."
     ),
     "ties": (
         "Il tirante entra in alpha0 con la sua forza a riposo: il tirante rigido-plastico della norma si assegna con "

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rocking_cli.codes.italian.remarks import TEXTS
 from rocking_cli.codes.italian.results import Dynamic, ItalianVerified
 from rocking_cli.codes.italian.rules import OF_STATE
 from rocking_cli.dynamics.holding import unchecked
+from rocking_cli.studies.verification.told import Told
 
 SAME = 0.005  # of an a_g: methods that differ by less agree
 ORDINAL = {True: "With FC", False: "Without FC, as in `rocking respond`"}
@@ -42,34 +44,21 @@ def _verdict_at(found: ItalianVerified, state: str) -> str | None:
     return f"{outcome} The nonlinear method governs: {held}. {capacity}"
 
 
-def differences(found: ItalianVerified, first: str) -> Iterator[str]:
+def differences(found: ItalianVerified, first: str) -> Iterator[Told]:
     """Explain why the linear method and the straight line differ from the method and curve that govern."""
     linear, counts, at = found.methods["linear"].a_g, found.counts.a_g, found.states[first]
     if linear is None or counts is None:
         return
     ratio, begins = linear / counts, found.methods["damage"].a_g or 0.0
-    if abs(ratio - 1) <= SAME:
-        yield f"The linear method gives the same capacity, {linear:.4g} g."
-    elif ratio < 1:
-        yield (
-            f"The linear method gives only {linear:.4g} g, {100 * ratio:.3g} % of that capacity: it accepts "
-            f"{linear / begins:.3g} times the acceleration at which rocking starts, and ignores that the structure may "
-            f"then rock, with a period of {at.T:.3g} s, up to its displacement capacity of {at.d:.3g} m."
-        )
-    else:
-        yield (
-            f"The linear method gives {linear:.4g} g, {ratio:.3g} times that capacity: it accepts "
-            f"{linear / begins:.3g} times the acceleration at which rocking starts, and ignores that the structure "
-            f"would then exceed its displacement capacity of {at.d:.3g} m. It is unconservative here."
-        )
+    key = "linear_same" if abs(ratio - 1) <= SAME else "linear_less" if ratio < 1 else "linear_more"
+    yield Told.of(
+        TEXTS, key, linear=linear, state=first, ratio=ratio, share=100 * ratio, times=linear / begins, T=at.T, d=at.d
+    )
     line = found.straight_methods["nonlinear"].a_g
     exact = found.methods["nonlinear"].a_g
     if line is not None and exact is not None and abs(line / exact - 1) > SAME:
-        more = "more" if line > exact else "less"
-        yield (
-            f"With the straight line from a0* to d0*, the nonlinear method gives a capacity of {line:.4g} g, "
-            f"{100 * abs(line / exact - 1):.2g} % {more} than with the exact curve."
-        )
+        side = Told.of(TEXTS, "more" if line > exact else "less")
+        yield Told.of(TEXTS, "straight", line=line, change=100 * abs(line / exact - 1), side=side)
 
 
 def beyond_first(found: ItalianVerified, first: str) -> Iterator[str]:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from rocking_cli.codes.italian.results import ItalianVerification, ItalianVerified
 from rocking_cli.codes.italian.rules import OF_STATE
 from rocking_cli.codes.italian.sheet.methods import title
+from rocking_cli.codes.italian.words import differences
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.views.conclusion import of_verification
 from rocking_cli.views.sheet.document import Grid, Item, Sentence, SheetPart
@@ -35,14 +36,17 @@ def part(say: Language, found: ItalianVerification, shown: Mapping[str, ItalianV
         items += [_states(say, where, each), _methods(say, where, each)]
     caution = found.mechanism.caution
     remarks = [remark for each in shown.values() for remark in each.remarks]
-    said = [say.remark(each) for each in dict.fromkeys([*remarks, *found.remarks])]
+    said = [
+        f"{where}: {say.remark(text)}" if len(shown) > 1 else say.remark(text)
+        for where, each in shown.items() for text in differences(each, found.first)
+    ]  # fmt: skip
+    said += [say.remark(each) for each in dict.fromkeys([*remarks, *found.remarks])]
     if caution:
         said.append(say.say("caution", text=say.caution(found.mechanism.mechanism, caution)))
     if own := found.mechanism.own_caution():
         said.append(say.say("caution", text=plain(own)))
-    return SheetPart(
-        "summary", say.say("summary"), items, [SheetPart("remarks", say.say("remarks"), [*map(Sentence, said)])]
-    )
+    under = [SheetPart("remarks", say.say("remarks"), [*map(Sentence, said)])] if said else []
+    return SheetPart("summary", say.say("summary"), items, under)
 
 
 def verdict(say: Language, first: str, where: str, each: ItalianVerified) -> Sentence:
