@@ -165,7 +165,7 @@ class TestCommand:
     def test_a_page_is_written_and_what_happened_is_said(self, tmp_path):
         pulse = ("--pulse", "sine:0.6g:0.5s", "--polarity", "-1", "--neighbours", 20)
         ends = []
-        for limit, said in (("1", "The structure rocks to"), ("0.5%", "The structure has an unknown outcome")):
+        for limit, said in (("1", "The structure rocks to"), ("0.5%", "The outcome is unknown after")):
             asked = ("animate", EXAMPLES / "arch.yaml", *pulse, "--opening", limit)
             assert said in run(*asked, "--out", "a.html").stdout
             page = Path("a.html").read_text(encoding="utf-8")

@@ -114,7 +114,9 @@ class TestNeighbours:
         for name in ("north.csv", "south.csv"):
             (tmp_path / name).write_text(record, encoding="utf-8")
         pair = ("--record", tmp_path / "north.csv", "--record", tmp_path / "south.csv")
-        assert "No motion governs: north.csv, south.csv have the same effect." in run("respond", FRAME, *pair).stdout
+        assert (
+            "north.csv and south.csv govern alike: under each, the median peak" in run("respond", FRAME, *pair).stdout
+        )
         pulses = ("--pulse", "sine:0.2g:0.5s", "--pulse", "sine:1g:3s")
         text = run("respond", FRAME, *pulses).stdout
         lines = run("respond", FRAME, *pulses, "--json").stdout.splitlines()

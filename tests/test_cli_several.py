@@ -81,11 +81,18 @@ class TestRespond:
                 else:
                     assert cell == ("-" if found["uplift_time"] is None else f"{found['peak_ratio']:.4g}")
         assert {cell for row in rows.values() for cell in row[1:]} >= {"overturns", "uplift"}
-        assert "By the nonlinear model, 1 of 3 motions overturn it." in text
-        assert (
-            "none of 2 motions overturns it"
-            in run("respond", FRAME, "--pulse", "sine:0.1g:1s", "--pulse", "ricker:0.1g:1s").stdout
-        )
+        found = {name: each["responses"]["nonlinear"] for name, each in objects.items()}
+        assert [name for name, each in found.items() if each["overturned"]] == ["west.csv"]
+        still = sum(each["uplift_time"] is None for each in found.values())
+        counts = [
+            "overturns under 1 of 3 motions (west.csv)",
+            f"rocks under {2 - still}",
+            f"does not uplift under {still}",
+        ]
+        said = " and ".join(", ".join(each for each in counts if not each.endswith(" 0")).rsplit(", ", 1))
+        assert f"By the nonlinear model, the structure {said}. west.csv governs: " in " ".join(text.split())
+        weak = run("respond", FRAME, "--pulse", "sine:0.1g:1s", "--pulse", "ricker:0.1g:1s").stdout
+        assert "By the nonlinear model, the structure uplifts under none of 2 motions.\n" in weak
 
     def test_both_polarities_and_the_pulses_in_them_have_rows_of_their_own(self, records):
         both = run("respond", FRAME, "--record", records, "--polarity", "both").stdout

@@ -217,7 +217,7 @@ LINEAR = {"linear1", "linear2", "closed_form"}  # equivalent blocks have no join
 KNOWN = {"at_rest", "rocks", "still_rocking", "does not uplift", "overturned"}
 PASSED = re.compile(
     r"does not overturn(?! before its first impact)|overturns under none|overturns in no direction\.|"
-    r"none of \d+ motions overturns it\.|"
+    r"uplifts under none of \d+ motions\.|"
     r"^\s*outcome(?!.*unknown).*(?:rocks|at rest|still rocking)|structure rocks|(?<!not )\bsatisfied|\bpasses\b(?! if)",
     re.IGNORECASE | re.MULTILINE,
 )

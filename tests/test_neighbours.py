@@ -275,7 +275,8 @@ class TestWithoutShaking:
 
 
 @pytest.mark.parametrize(
-    ("off", "said"), [(1e-9, "No motion governs: one, other have the same effect."), (1e-4, "other governs: 40 %")]
+    ("off", "said"),
+    [(1e-9, "one and other govern alike: under each, 40 % of the neighbours"), (1e-4, "other governs: 40 %")],
 )
 def test_what_differs_by_rounding_does_not_govern(off, said):
     one, other = Severity(0.4, np.inf, 0.5, 0.4), Severity(0.4, np.inf, 0.5 * (1 + off), 0.4)
@@ -291,8 +292,8 @@ def test_what_differs_by_rounding_does_not_govern(off, said):
         ),
         (Severity(0.6, np.inf, np.inf, 0.0), "other governs: 60 % of its neighbours have an unknown outcome."),
         (Severity(0.6, np.inf, np.inf, 0.6), "other governs: 60 % of its neighbours overturn."),
-        (Severity(0.0, 0.0, np.inf, 0.0), "other governs: its outcome is unknown."),
-        (Severity(0.0, 0.0, np.inf, 1.0), "other governs: it overturns."),
+        (Severity(0.0, 0.0, np.inf, 0.0), "other governs: the outcome is unknown."),
+        (Severity(0.0, 0.0, np.inf, 1.0), "other governs: the structure overturns."),
     ],
 )
 def test_an_unknown_outcome_is_as_bad_as_overturning(worst, said):
@@ -303,17 +304,17 @@ def test_an_unknown_outcome_is_as_bad_as_overturning(worst, said):
 def test_of_motions_that_all_overturn_none_is_worse():
     falls, fallen, better = Severity(1.0, np.inf, np.inf, 1.0), Severity(0.0, 0.0, np.inf, 1.0), Severity(0, 0, 0.5, 0)
     assert governing({"one": falls, "two": falls, "three": better, "four": falls}) == (
-        "No motion governs: all neighbours overturn under one, two and four, so none of these is worse than the others."
+        "one, two and four govern alike: under each, 100 % of the neighbours overturn."
     )
     assert governing({"one": fallen, "two": fallen, "three": better}).startswith(
-        "No motion governs: the structure overturns under one and two,"
+        "one and two govern alike: under each, the structure overturns."
     )
 
 
 def test_of_two_unknown_outcomes_none_is_said_to_be_the_same():
     doubt = Severity(0.6, np.inf, np.inf, 0.3)
     assert governing({"one": doubt, "other": doubt}) == (
-        "Which motion governs is not known: the outcomes under one, other are unknown."
+        "one and other govern alike: under each, 60 % of the neighbours overturn or have an unknown outcome."
     )
 
 

@@ -140,7 +140,7 @@ def test_python_says_why_there_is_no_block_and_takes_tuples_and_arrays():
 @pytest.mark.usefixtures("small_maps")
 @pytest.mark.parametrize(
     ("checked", "words"),
-    [(True, "block under sine:0.4g:0.6s is unknown: it is known until 0.06 s: then the joint between the "
+    [(True, "block under sine:0.4g:0.6s is unknown after 0.06 s: then the joint between the "
             "ground and block has slid by 1.51 mm"),
      (False, "its joints do not hold")],
 )  # fmt: skip

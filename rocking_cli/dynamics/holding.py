@@ -131,17 +131,23 @@ def why_unknown(history: History) -> str | None:
     return f"the joint between {check.joint} {does} {_small(check.limit * check.reach, 'm')} ({limit})"
 
 
+def unknown_after(history: History) -> str:
+    """Return the sentence that an outcome is unknown: until when it is known, and why not beyond."""
+    return f"The outcome is unknown after {history.known_to:.4g} s: then {why_unknown(history)}."
+
+
 def _until(history: History) -> str:
     """Return until when a history is valid and why not beyond, in words, with the lower bound of the peak."""
-    said = f"The motion is known until {history.known_to:.4g} s: then {why_unknown(history)}."
+    said = f"{unknown_after(history)} The structure may overturn."
     over = "its kinematic limit" if any(history.ends_at_limit) else "its critical rotation"
     if not history.peak_ratio:
         return f"{said} Until then it does not uplift."
-    least = f"The peak of the structure is at least {history.lower_bound:.4g}"
     if isfinite(history.warned) and history.lower_bound < history.peak_ratio:
-        said += f" Until then, with its joints kept closed, the model rocks to {history.peak_ratio:.4g} of {over}."
-        return f"{said} {least}, reached before any joint opens or slides."
-    return f"{said} {least} of {over}."
+        return (
+            f"{said} Until then the model, which keeps the joints closed, has a peak of {history.peak_ratio:.4g} of "
+            f"{over}. A lower bound of the peak is {history.lower_bound:.4g}, that before any joint opens or slides."
+        )
+    return f"{said} A lower bound of the peak is {history.lower_bound:.4g} of {over}, that until then."
 
 
 def _small(value: float, unit: str) -> str:

@@ -141,7 +141,7 @@ def verdict(histories: Mapping[ModelName, History], assumed_friction: float | No
     best: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
     run = histories[best]
     by = "" if best == "nonlinear" or len(histories) == 1 else f"By {best} the"
-    said = [f"{by or 'The'} structure {_ends(run)}."]
+    said = [] if run.unknown else [f"{by or 'The'} structure {_ends(run)}."]
     if run.unknown or (best == "nonlinear" and run.check is not None):
         said += filter(None, [joints_in_words(run, assumed_friction)])
     if run.unknown and len(histories) > 1:

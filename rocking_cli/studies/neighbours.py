@@ -315,7 +315,7 @@ def severity(history: History, near: Neighbours | None = None) -> Severity:
 
 
 def governing(severities: Mapping[str, Severity], over: str = "phi_cr") -> str:
-    """Return a sentence on which motion governs, if one does.
+    """Return a sentence on which motion governs, or which ones alike.
 
     Parameters
     ----------
@@ -326,28 +326,23 @@ def governing(severities: Mapping[str, Severity], over: str = "phi_cr") -> str:
     """
     worst = max(severities.values())
     if not any(worst):
-        return "No motion lifts it."
+        return "No motion uplifts the structure."
     which = [name for name, each in severities.items() if np.allclose(each, worst, rtol=ALIKE, atol=0)]
     share, median, itself, certain = worst
     doubtful = share > certain or (not share and np.isinf(itself) and not certain)
-    if len(which) > 1:
-        if doubtful:
-            return f"Which motion governs is not known: the outcomes under {', '.join(which)} are unknown."
-        if certain == 1:
-            every = "all neighbours overturn" if share else "the structure overturns"
-            these = f"{', '.join(which[:-1])} and {which[-1]}"
-            return f"No motion governs: {every} under {these}, so none of these is worse than the others."
-        return f"No motion governs: {', '.join(which)} have the same effect."
+    many = len(which) > 1
     if share:
         does = ["overturn"] if certain else []
         does += ["have an unknown outcome"] if doubtful else []
-        why = f"{percent(share)} of its neighbours {' or '.join(does)}"
+        why = f"{percent(share)} of {'the' if many else 'its'} neighbours {' or '.join(does)}"
     elif median:
-        why = f"the median peak of its neighbours is {median:.3g} {over}"
+        why = f"the median peak of {'the' if many else 'its'} neighbours is {median:.3g} {over}"
     elif np.isinf(itself):
-        why = "its outcome is unknown" if doubtful else "it overturns"
+        why = "the outcome is unknown" if doubtful else "the structure overturns"
     else:
-        why = f"it reaches {itself:.3g} {over}"
+        why = f"the structure reaches {itself:.3g} {over}"
+    if many:
+        return f"{', '.join(which[:-1])} and {which[-1]} govern alike: under each, {why}."
     return f"{which[0]} governs: {why}."
 
 

@@ -12,7 +12,7 @@ from rocking_cli.core.advice import Grade
 from rocking_cli.core.equivalence import AGREEMENT
 from rocking_cli.core.size import doubts as doubts_about_size
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.holding import joints_in_words, why_unknown
+from rocking_cli.dynamics.holding import joints_in_words, unknown_after, why_unknown
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import SENSE, agreements, bearing, disagree
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -119,11 +119,8 @@ def _under_motions(content: Assessment, verified: Verification | None) -> str:
 def _not_known(content: Assessment, unknown: Sequence[MotionResult]) -> str:
     """Return the answer of a report on a structure that overturns under no motion, but has unknown outcomes."""
     if len(content.results) == 1:
-        run = unknown[0].histories["nonlinear"]
-        return (
-            f"The outcome of {content.name} under {_named(unknown)} is {names.UNKNOWN}: it is known until "
-            f"{run.known_to:.4g} s: then {why_unknown(run)}. The structure may overturn."
-        )
+        after = unknown_after(unknown[0].histories["nonlinear"]).removeprefix("The outcome")
+        return f"The outcome of {content.name} under {_named(unknown)}{after} The structure may overturn."
     others = len(content.results) - len(unknown)
     rest = f" It overturns under none of the {others} other{'s' if others > 1 else ''}." if others else ""
     return (

@@ -139,7 +139,7 @@ def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
     if unknown:
         rows.insert(2, ["known until", *(number(each.known_to, 5) for each in found), "s"])
         least = (each.lower_bound if each.unknown else nan for each in found)
-        rows.insert(5, ["peak rotation / phi_cr, at least", *(number(each, 5) for each in least), ""])
+        rows.insert(5, ["lower bound of peak / phi_cr", *(number(each, 5) for each in least), ""])
     return Table(title, ["", *model_heads(answers, unknown=unknown), "unit"], rows, numbers=range(1, len(found) + 1))
 
 
@@ -157,7 +157,7 @@ def _verdict(answers: Mapping[str, Answer], mechanism: Mechanism) -> str:
     if nonlinear.check is not None or nonlinear.unknown:
         joints = joints_in_words(nonlinear, Contacts(mechanism).check(nonlinear, sampled.motion).assumed_friction)
     if nonlinear.unknown:
-        return f"The structure has an {names.UNKNOWN} outcome. {joints} {NO_JOINTS}"
+        return f"{joints} {NO_JOINTS}"
     if not nonlinear.lifted:
         return f"The structure {names.NO_UPLIFT}."
     if nonlinear.fell:

@@ -318,18 +318,18 @@ def view(
     caution = [f"Caution: {text}" for text in cautions_of(mechanism)]
     if structure.misleading and any(name != "nonlinear" for name in first):
         caution.append(f"Caution: {structure.misleading}.")
-    caution += [f"Caution: {text}" for text in _apart(shown, found.runs)]
+    caution += [f"Caution: {text}" for text in apart(shown.watched, found.runs)]
     caution += not_checked(mechanism, first.values())
     joints = ["Joints are named as in `rocking draw`."] if any(each.joint for each in found.contacts.values()) else []
     said = [*parts, *joints, *models_used(first), restitution_used(structure), *notes, *caution]
     return View({**data, "notes": [*doubts, *notes, *caution]}, said)
 
 
-def _apart(shown: HistoryDetails, runs: Runs) -> Iterator[str]:
+def apart(watched: Watched | None, runs: Runs) -> Iterator[str]:
     """Warn if blocks of crossing walls have slid out of one another."""
-    interlock = shown.watched.mechanism.interlock if shown.watched is not None else None
+    interlock = watched.mechanism.interlock if watched is not None else None
     every = [run for histories in runs.values() for run in histories.values()]
-    if shown.watched is not None and interlock is not None and any(map(shown.watched.is_torn_apart, every)):
+    if watched is not None and interlock is not None and any(map(watched.is_torn_apart, every)):
         yield (
             f"at the crossing walls the structure moves by more than their overlap of {1000 * interlock.overlap:.0f} "
             "mm: the blocks have then separated and the friction assumed here is lost. The result is not valid."
@@ -339,7 +339,7 @@ def _apart(shown: HistoryDetails, runs: Runs) -> Iterator[str]:
 def runs_view(title: str, runs: Runs, mechanism: Mechanism, contacts: Mapping[int, ContactDemand]) -> View:
     """Show responses without neighbours, in one polarity or both."""
     shown = HistoryDetails(Watched(mechanism), contacts=contacts, mechanism=mechanism)
-    caution = [f"Caution: {text}" for text in _apart(shown, runs)]
+    caution = [f"Caution: {text}" for text in apart(shown.watched, runs)]
     return View(lambda: runs_data(runs, {}, shown), [*_tables(title, runs, {}, shown), *caution])
 
 
@@ -377,7 +377,7 @@ def _table(title: str, histories: Histories, shown: HistoryDetails, polarity: in
     ]
     if unknown:
         rows.insert(1, ["known until", *(number(run.known_to, 5) for run in runs), "s"])
-        rows.insert(3, [f"peak / {over}, at least", *(number(_bound(run), 5) for run in runs), ""])
+        rows.insert(3, [f"lower bound of peak / {over}", *(number(_bound(run), 5) for run in runs), ""])
     if shown.watched is not None:
         rows += _movement_rows([shown.watched.peaks(run) for run in runs])
     if polarity in shown.contacts and shown.mechanism is not None:
@@ -386,7 +386,11 @@ def _table(title: str, histories: Histories, shown: HistoryDetails, polarity: in
         rows.append(
             ["base shear, without impacts", *(shear if run.model == "nonlinear" else ABSENT for run in runs), unit]
         )
-    return Table(title, ["", *model_heads(histories, unknown=unknown), "unit"], rows, numbers=range(1, len(runs) + 1))
+    heads = [
+        f"{head},\nuntil {number(run.known_to, 4)} s" if run.unknown else head
+        for head, run in zip(model_heads(histories, unknown=unknown), runs, strict=True)
+    ]
+    return Table(title, ["", *heads, "unit"], rows, numbers=range(1, len(runs) + 1))
 
 
 def model_heads(models: Iterable[str], *, unknown: bool) -> list[str]:

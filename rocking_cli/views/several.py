@@ -2,23 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import isinf
 
 from rocking_cli import names
+from rocking_cli.core.contacts import MASONRY
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.holding import unchecked, why_unknown
+from rocking_cli.dynamics.holding import unchecked, unknown_after
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.names import peaks_over, percent
+from rocking_cli.names import digits_apart, peaks_over, percent
 from rocking_cli.structure import Structure
 from rocking_cli.studies.contact import ContactDemand
+from rocking_cli.studies.movements import Watched
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, Severity, governing, severity
 from rocking_cli.studies.response import Histories, Response
+from rocking_cli.text import in_short
+from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.contact import contact_words
-from rocking_cli.views.response import model_heads, models_used
+from rocking_cli.views.response import apart, model_heads, models_used
 from rocking_cli.views.restitution import restitution_used
-from rocking_cli.views.view import ABSENT, Table, heading
+from rocking_cli.views.view import ABSENT, Table, heading, number
+
+NAMED = 6  # motions that a sentence names
+CLAUSES = {
+    names.OVERTURNS: names.OVERTURNS,
+    names.UNKNOWN: "has an unknown outcome",
+    names.ROCKS: names.ROCKS,
+    names.NO_UPLIFT: names.NO_UPLIFT,
+}
+"""What a structure does, by its outcome, the worst first."""
+BAD = (names.OVERTURNS, names.UNKNOWN)  # the motions are named under which the outcome is one of these
 
 
 class Several:
@@ -42,12 +56,16 @@ class Several:
         self._best: ModelName = "nonlinear" if "nonlinear" in models else models[0]
         self._rows: list[list[str]] = []
         self._worst: dict[str, Severity] = {}
-        self._fallen = self._unknown = 0
+        self._outcomes: dict[str, list[str]] = {outcome: [] for outcome in CLAUSES}
         self._asked = asked
         self._checked, self._doubtful = True, False
         self._until: dict[str, str] = {}
         self._around: Neighbourhood | None = None
         self._mechanism = structure.mechanism
+        self._cautions = cautions_of(structure.mechanism)
+        if structure.misleading and any(name != "nonlinear" for name in models):
+            self._cautions.append(f"{structure.misleading}.")
+        self._watched, self._torn = Watched(structure.mechanism), dict[str, list[str]]()
         self._contacts: dict[str, ContactDemand] = {}
 
     def add(self, found: Response) -> None:
@@ -63,7 +81,7 @@ class Several:
             run = histories[self._best]
             self._doubtful |= near is not None and bool(near.unknown)
             if run.unknown:
-                self._until[name] = f"the outcome is known until {run.known_to:.4g} s: then {why_unknown(run)}."
+                self._until[name] = unknown_after(run).replace("The", "the", 1)
             severities.append(severity(run, near))
             self._checked &= run.model != "nonlinear" or run.check is not None
             self._around = near.around if near is not None else None
@@ -73,10 +91,11 @@ class Several:
             own = found.fit.pulse
             self._row(f"  its {own.name} pulse alone", f"{own.amplitude / STANDARD_GRAVITY:.4g}", found.to_pulse, None)
         self._worst[found.given.motion.name] = max(severities)
-        runs = [histories[self._best] for histories in found.runs.values()]
-        fallen = any(run.fell for run in runs)
-        self._fallen += fallen
-        self._unknown += not fallen and any(run.unknown for run in runs)
+        ends = {histories[self._best].words for histories in found.runs.values()}
+        worst = next((end for end in CLAUSES if end in ends), names.ROCKS)  # still rocking: it does not overturn
+        self._outcomes[worst].append(found.given.motion.name)
+        for text in apart(self._watched, found.runs):
+            self._torn.setdefault(text, []).append(found.given.motion.name)
 
     def _row(self, what: str, pga: str, histories: Histories, near: Neighbours | None) -> None:
         self._rows.append([what, pga, *(_fate(histories[name]) for name in self._models), *neighbours_cells(near)])
@@ -94,43 +113,65 @@ class Several:
             heads += ["neighbours\noverturn", "their\nmedian"]
             rows = [[*row[:-2], row[-1]] for row in rows]
         yield Table(self._title, heads, rows, numbers=range(1, len(heads)))
-        yield f"By the {self._best} model, {self._outcomes()}."
+        governs = f" {governing(self._worst, peaks_over(self._free))}" if any(map(any, self._worst.values())) else ""
+        yield f"By the {self._best} model, {self._counted()}{governs}"
         if (lost := self._asked - len(self._worst)) > 0:
             yield f"Not counted: {lost} of {self._asked} motions, which could not be used."
         if self._around is not None:
             yield f"Neighbours: {self._around.count} neighbouring motions for each motion, {self._around.words}."
-        yield governing(self._worst, peaks_over(self._free))
         yield from self._joints()
         yield from models_used(self._models)
         yield self._restitution
+        yield from (f"Caution: {text}" for text in self._cautions)
+        yield from (f"Caution: under {in_short(each, most=NAMED)}, {text}" for text, each in self._torn.items())
         if not self._checked:
             yield unchecked(why=self._mechanism.unchecked)
 
-    def _outcomes(self) -> str:
-        """Return a sentence on how many motions overturn the structure, and how many are unknown."""
-        count = len(self._worst)
-        if self._fallen:
-            said = f"{self._fallen} of {count} motions overturn it"
-            return f"{said}, and the outcome under {self._unknown} is {names.UNKNOWN}" if self._unknown else said
-        if not self._unknown:
-            return f"none of {count} motions overturns it"
-        said = f"the outcome under {self._unknown} of {count} motions is {names.UNKNOWN}"
-        return said if self._unknown == count else f"{said}, and none of the others overturns it"
+    def _counted(self) -> str:
+        """Return a sentence on under how many motions the structure has each outcome, the worst first."""
+        count, said = len(self._worst), list[str]()
+        if len(self._outcomes[names.NO_UPLIFT]) == count:
+            return f"the structure uplifts under none of {count} motions."
+        for outcome, under in self._outcomes.items():
+            if not under:
+                continue
+            of = f"all {count}" if len(under) == count else f"{len(under)}{'' if said else f' of {count}'}"
+            named = f" ({in_short(under, most=NAMED)})" if outcome in BAD and len(under) < count else ""
+            said.append(f"{CLAUSES[outcome]} under {of}{'' if said else ' motions'}{named}")
+        *before, last = said
+        return f"the structure {', '.join(before)}{' and ' if before else ''}{last}."
 
     def _joints(self) -> Iterator[str]:
-        """Yield until when motions are known, and the contact demands of motions under which the joints fail.
+        """Yield until when motions are known, the friction that each requires, and the joints that fail.
 
         If the joints hold under all motions, yield the demands of the most demanding one.
         """
         for name, until in self._until.items():
             yield f"{name}: {until}"
-        fail = {name: found for name, found in self._contacts.items() if not found.stands}
+        if self._until:
+            yield "Next: `rocking margin` shows up to which scale factor the outcomes are known."
         asks = {name: found for name, found in self._contacts.items() if found.friction_needed >= 0}
+        order = sorted(asks, key=lambda name: -asks[name].friction_needed)
+        if len(order) > 1:
+            yield f"Friction that the joints require: {self._friction(asks, order)}."
+        fail = {name: found for name, found in self._contacts.items() if not found.stands}
         if not fail and asks:
-            most = max(asks, key=lambda name: asks[name].friction_needed)
-            fail = {f"The joints hold under all motions, of which {most} demands most of them": asks[most]}
+            fail = {f"The joints hold under all motions, of which {order[0]} demands most of them": asks[order[0]]}
         for name, found in fail.items():
             yield f"{name}: {contact_words(found, self._mechanism).removeprefix('Contact: ')}"
+
+    def _friction(self, asks: Mapping[str, ContactDemand], order: Sequence[str]) -> str:
+        """Return the friction that motions require, the largest first, and under which it is more than there is."""
+        given = asks[order[0]].friction
+        there, of = (MASONRY, "usual for masonry") if given is None else (given, "available")
+        needs = {name: asks[name].friction_needed for name in order}
+        shown = [f"{number(need, digits_apart(need, there, 3))} under {name}" for name, need in needs.items()]
+        each = in_short(shown, most=NAMED)
+        more = [name for name, need in needs.items() if need > there]
+        if not more:
+            return f"{each}; the {there:g} {of} is enough under all"
+        assumed = ": the results assume that nothing slides" if given is None else ""
+        return f"{each}; it is more than the {there:g} {of} under {in_short(more, most=NAMED)}{assumed}"
 
 
 def neighbours_cells(near: Neighbours | None) -> list[str]:
