@@ -8,6 +8,10 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.equivalence import AGREEMENT
 from rocking_cli.core.restitution import why_none
 from rocking_cli.dynamics.resting import early_failures
+from rocking_cli.names import digits_apart
+
+OPENS = "lambda and what follows from it are unconservative: describe the structure so that this joint can move"
+SLIDES = "Stronger motions move it by sliding, which is not modelled: prevent this, for instance by dowels"
 
 
 def cautions_of(mechanism: Mechanism) -> list[str]:
@@ -41,14 +45,21 @@ def of_restitution(mechanism: Mechanism) -> list[str]:
 
 
 def before_rocking(mechanism: Mechanism) -> list[str]:
-    """Return which joint slides or opens at rest before the structure rocks, in words, a sentence a direction."""
-    found: list[str] = []
+    """Return which joint slides or opens at rest before the structure rocks, in which direction, and what to do."""
+    found: dict[tuple[str, str], list[str]] = {}
     for direction, failure, lambda_ in early_failures(mechanism):
         push = failure.push / mechanism.gravity
-        does = f"the joint between {failure.joint} {'slides' if failure.slides else 'opens'} from {push:.4g} g"
+        does = f"the joint between {failure.joint} {'slides' if failure.slides else 'opens'} from"
         if lambda_ is None:
-            found.append(f"What props the structure is pushed back in the {direction.label} direction: {does}.")
+            first = "What props the structure is pushed back"
+            what = f"{does} {push:.4g} g. Beyond it the structure loses that support: no result is valid there"
         else:
+            digits = digits_apart(push, lambda_, 4)
+            what = f"at rest {does} {push:.{digits}g} g, below lambda = {lambda_:.{digits}g}. "
             first = "Another mechanism starts first" if failure.opens else "The structure slides before it rocks"
-            found.append(f"{first}: at rest {does}, below lambda = {lambda_:.4g}.")
-    return list(dict.fromkeys(found))
+            what += OPENS if failure.opens else SLIDES
+        found.setdefault((first, what), []).append(direction.label)
+    return [
+        f"{first} in {'both directions' if len(labels) > 1 else f'the {labels[0]} direction'}: {what}."
+        for (first, what), labels in found.items()
+    ]
