@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+FEWEST, FEWEST_OF_MEDIAN = 20, 5
+"""Motions from which on a quantile is told, and the median: of fewer, a single motion decides it."""
+
 
 def median(values: NDArray[np.float64]) -> float:
     """Return the median of one or more numbers, equal to that of `numpy.median` to the last bit."""

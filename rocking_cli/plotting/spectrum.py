@@ -16,6 +16,7 @@ from matplotlib.ticker import MaxNLocator, PercentFormatter
 from numpy.typing import NDArray
 
 from rocking_cli import names
+from rocking_cli.median import FEWEST
 from rocking_cli.plotting import style
 from rocking_cli.studies.spectrum import Spectrum
 from rocking_cli.studies.under_pulses import Reals
@@ -52,7 +53,7 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
     doubtful = [np.isinf(median) & ~fall for median, fall in zip(medians, falls, strict=True)]
     rows = [(k, True) for k, some in enumerate(falls) if some.any()]
     rows += [(k, False) for k, some in enumerate(doubtful) if some.any()]
-    shaded = many and low < high and len(spectra) <= SHADED
+    shaded = many and low < high and len(spectra) <= SHADED and any((each.followed >= FEWEST).any() for each in spectra)
     top = _top(spectra, high if shaded else 0.5)
     for k, (each, median) in enumerate(zip(spectra, medians, strict=True)):
         if shaded:

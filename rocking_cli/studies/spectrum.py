@@ -16,6 +16,7 @@ from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.median import FEWEST
 from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.sizes import Sizes
 from rocking_cli.studies.under_pulses import Integers, Progress, PulsedModel, Reals, parse_shape, pulsed_model, uplift
@@ -221,8 +222,12 @@ class Spectrum:
         return np.where(self.followed > 0, counts / np.maximum(self.followed, 1), np.nan)
 
     def fractile(self, q: float) -> Reals:
-        """Return the q-fractile of the peak ratio, shape (n,); unknown outcomes count as overturning."""
-        return fractile(self.peak_ratio, q)
+        """Return the q-fractile of the peak ratio, shape (n,); unknown outcomes count as overturning.
+
+        It is NaN at sizes with too few motions, except for the median.
+        """
+        found = fractile(self.peak_ratio, q)
+        return found if q == 0.5 else np.where(self.followed < FEWEST, np.nan, found)
 
     def fractile_overturns(self, q: float) -> NDArray[np.bool_]:
         """Return whether the q-fractile overturns even if no unknown outcome does, shape (n,)."""

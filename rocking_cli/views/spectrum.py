@@ -11,6 +11,7 @@ import numpy as np
 
 from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.excitation.scaled import Scaled
+from rocking_cli.median import FEWEST
 from rocking_cli.names import NO_UPLIFT, OVERTURNS, ROCKS, UNKNOWN
 from rocking_cli.studies.spectrum import Spectrum
 from rocking_cli.studies.under_pulses import Integers, Reals
@@ -233,7 +234,10 @@ def _curve(results: ShownSpectra, each: Spectrum) -> Iterator[Table | str]:
             f"built and simulated separately. Uplift is {' and '.join(ends)}."
         )
     if not results.one:
-        yield "Median and fractiles of the peak phi/phi_cr; an overturning motion ranks above every finite peak."
+        few = "" if (each.followed >= FEWEST).all() else (
+            f" Except for the median they are '{ABSENT}' under fewer than {FEWEST} motions, of which one decides them."
+        )  # fmt: skip
+        yield f"Median and fractiles of the peak phi/phi_cr; an overturning motion ranks above every finite peak.{few}"
     yield Table("", heads, rows, numbers=range(len(heads)))
 
 
