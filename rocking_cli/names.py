@@ -39,17 +39,19 @@ def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False, unk
 
 
 def percent(share: float) -> str:
-    """Return a share in per cent: two digits below ten per cent, whole numbers above, never a power of ten.
+    """Return a share in per cent: two digits below ten per cent, whole numbers above; 100 % only of all.
 
     Examples
     --------
-    >>> percent(0.0489), percent(2.831), percent(0)
-    ('4.9 %', '283 %', '0 %')
+    >>> percent(0.0489), percent(2.831), percent(0), percent(0.995)
+    ('4.9 %', '283 %', '0 %', '99.5 %')
     """
     size = 100 * abs(share)
     sign = "-" if share < 0 else ""
     if size < 5e-3:
         return "0 %"
+    if 99.5 <= size < 100:
+        return f"{sign}{min(size, 99.9):.3g} %"
     return f"{sign}{size:.0f} %" if size >= 9.95 else f"{sign}{size:.2g} %"
 
 

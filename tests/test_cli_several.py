@@ -215,5 +215,5 @@ def test_what_governs_is_over_the_limit_where_nothing_is_critical(tmp_path):
     )
     said = " ".join(run("respond", file, "--pulse", "sine:0.4g:0.8s", "--pulse", "sine:0.5g:0.8s").stdout.split())
     assert "of the limit" in said and "governs" in said and "phi_cr." not in said.split("governs")[1].split(".")[0]
-    governs = re.search(r"governs: the median peak of its neighbours is [\d.]+ ([a-z_ ]+)\.", said)
+    governs = re.search(r"governs: the structure rocks to [\d.]+ ([a-z_ ]+), and", said)
     assert governs is not None and governs[1] == "of the limit"

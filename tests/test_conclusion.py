@@ -17,12 +17,21 @@ from rocking_cli.cli.main import main
 from rocking_cli.core import Direction
 from rocking_cli.studies.conclusion import ORDER, Concluded, Conclusion, LeftOut, NeighbourShare, NextStep, worst
 from rocking_cli.studies.verification.results import Requirement
-from rocking_cli.views.conclusion import STEPS, conclusion_data, digits_beside_one, next_in_words, of_verification
+from rocking_cli.views.conclusion import (
+    STEPS,
+    conclusion_data,
+    digits_beside_one,
+    governing,
+    governing_polarity,
+    next_in_words,
+    of_verification,
+)  # fmt: skip
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json, some
 from tests.test_rest import CRACKS, of
 
 PILLAR = {"mechanism": "block", "width": 0.5, "height": 2.2, "density": 1800, "depth": 0.5}
+LEANING = rk.RigidBody(polygon=[[0, 0], [0.7, 0], [0.7, 2.8], [0.2, 2.8]], density=1800, depth=1)
 SITE = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2, "soil": "B"}
 
 
@@ -283,6 +292,57 @@ def test_the_worst_of_several_governs():
     assert ORDER.index(Concluded.UNKNOWN) < ORDER.index(Concluded.OVERTURNS)
 
 
+def ended(motion, what, peak=None, *shares):
+    """A conclusion under a motion, with the lowest and highest share of 40 neighbours that overturn."""
+    until = 3.32 if what is Concluded.UNKNOWN else None
+    share = NeighbourShare(*shares, 40) if shares else None
+    return Conclusion(concluded=what, motion=motion, peak_ratio=peak, known_until=until, share=share)
+
+
+@pytest.mark.parametrize(
+    ("governs", "said"),
+    [
+        (ended("b", Concluded.OVERTURNS), "b governs: the structure overturns."),
+        (ended("b", Concluded.OVERTURNS, None, 0.3, 0.3),
+         "b governs: the structure overturns, and 30 % of its 40 neighbours overturn."),
+        (ended("b", Concluded.UNKNOWN, None, 0.0, 1.0), "b governs: the outcome is unknown after 3.32 s, and 0 % to "
+         "100 % of its 40 neighbours overturn, as some outcomes are unknown."),
+        (ended("b", Concluded.ROCKS, 0.1, 0.6, 0.6),
+         "b governs: the structure rocks to 0.1 phi_cr, and 60 % of its 40 neighbours overturn."),
+        (ended("b", Concluded.ROCKS, 0.5), "b governs: the structure rocks to 0.5 phi_cr."),
+        (ended("b", Concluded.ROCKS, 0.4 * (1 + 1e-9)),
+         "a and b govern alike: under each, the structure rocks to 0.4 phi_cr."),
+    ],
+)  # fmt: skip
+def test_the_motion_that_governs_is_named_with_what_the_structure_does(governs, said):
+    shares = (0.4, 0.4) if governs.share is not None and governs.concluded is Concluded.ROCKS else ()
+    assert governing([ended("a", Concluded.ROCKS, 0.4, *shares), governs], "phi_cr") == said
+
+
+def test_no_motion_governs_if_none_uplifts_the_structure():
+    assert governing([ended("a", Concluded.NO_UPLIFT, 0.0), ended("b", Concluded.NO_UPLIFT, 0.0)], "phi_cr") == ""
+
+
+def test_the_polarity_that_governs_is_that_of_the_conclusion():
+    falls, open_, rocks = (ended("a", Concluded.OVERTURNS), ended("a", Concluded.UNKNOWN),
+                           ended("a", Concluded.ROCKS, 0.2))  # fmt: skip
+    assert governing_polarity({1: open_, -1: falls}, -1, "phi_cr") == (
+        "Polarity -1 governs: with the motion reversed, the structure overturns; as given, the outcome is unknown "
+        "after 3.32 s."
+    )
+    assert governing_polarity({1: rocks, -1: rocks}, None, "of the limit") == (
+        "Neither polarity governs: with the motion as given and reversed, the structure rocks to 0.2 of the limit."
+    )
+    for pulse in ("sine:0.35g:0.7s", "ricker:0.6g:0.7s", "sine:2g:1s"):
+        both = rk.respond(LEANING, pulse, polarity="both", neighbours=20)
+        end, data = both.conclusion, both.to_dict()
+        assert data["governs"] == end.polarity
+        said = "Neither polarity governs: " if end.polarity is None else f"Polarity {end.polarity} governs: "
+        assert any(each.startswith(said) for each in both.sentences)
+        alone = [rk.respond(LEANING, pulse, polarity=sign, neighbours=20).conclusion for sign in ("1", "-1")]
+        assert end.concluded is max((each.concluded for each in alone), key=ORDER.index)
+
+
 @pytest.mark.parametrize("ratio", [0.9999, 0.99999999, 1.0, 1.0001, 0.4, 12.345])
 def test_a_printed_ratio_shows_on_which_side_of_one_it_is(ratio):
     printed = float(f"{ratio:.{digits_beside_one(ratio)}g}")
@@ -324,8 +384,7 @@ def test_an_unknown_response_is_concluded_with_its_joint_and_time():
 
 
 def test_directions_that_differ_name_the_one_that_governs():
-    leaning = rk.RigidBody(polygon=[[0, 0], [0.7, 0], [0.7, 2.8], [0.2, 2.8]], density=1800, depth=1)
-    found = rk.verify(leaning, SITE)
+    found = rk.verify(LEANING, SITE)
     least = min(found.directions, key=lambda direction: found.directions[direction].ratio)
     assert found.conclusion.direction == least.label
     assert found.conclusion.ratio == found.directions[least].ratio

@@ -274,43 +274,6 @@ class TestWithoutShaking:
         assert neighbours(model, None, dull, release=0.99 * sign).overturned == 0
 
 
-@pytest.mark.parametrize(
-    ("off", "said"),
-    [(1e-9, "one and other govern alike: under each, 40 % of the neighbours"), (1e-4, "other governs: 40 %")],
-)
-def test_what_differs_by_rounding_does_not_govern(off, said):
-    one, other = Severity(0.4, np.inf, 0.5, 0.4), Severity(0.4, np.inf, 0.5 * (1 + off), 0.4)
-    assert governing({"one": one, "other": other}).startswith(said)
-
-
-@pytest.mark.parametrize(
-    ("worst", "said"),
-    [
-        (
-            Severity(0.6, np.inf, np.inf, 0.3),
-            "other governs: 60 % of its neighbours overturn or have an unknown outcome.",
-        ),
-        (Severity(0.6, np.inf, np.inf, 0.0), "other governs: 60 % of its neighbours have an unknown outcome."),
-        (Severity(0.6, np.inf, np.inf, 0.6), "other governs: 60 % of its neighbours overturn."),
-        (Severity(0.0, 0.0, np.inf, 0.0), "other governs: the outcome is unknown."),
-        (Severity(0.0, 0.0, np.inf, 1.0), "other governs: the structure overturns."),
-    ],
-)
-def test_an_unknown_outcome_is_as_bad_as_overturning(worst, said):
-    better = Severity(0.5, np.inf, np.inf, 0.5) if worst.share else Severity(0.0, 0.0, 0.9, 0.0)
-    assert governing({"one": better, "other": worst}) == said
-
-
-def test_of_motions_that_all_overturn_none_is_worse():
-    falls, fallen, better = Severity(1.0, np.inf, np.inf, 1.0), Severity(0.0, 0.0, np.inf, 1.0), Severity(0, 0, 0.5, 0)
-    assert governing({"one": falls, "two": falls, "three": better, "four": falls}) == (
-        "one, two and four govern alike: under each, 100 % of the neighbours overturn."
-    )
-    assert governing({"one": fallen, "two": fallen, "three": better}).startswith(
-        "one and two govern alike: under each, the structure overturns."
-    )
-
-
 def test_of_two_unknown_outcomes_none_is_said_to_be_the_same():
     doubt = Severity(0.6, np.inf, np.inf, 0.3)
     assert governing({"one": doubt, "other": doubt}) == (

@@ -6,7 +6,7 @@ That it passes for no command is in `test_every_command.py`.
 from __future__ import annotations
 
 from dataclasses import replace
-from math import inf, isclose, nan
+from math import isclose, nan
 from types import SimpleNamespace
 
 import numpy as np
@@ -20,16 +20,17 @@ from rocking_cli.codes.italian.sheet.build import SHEET
 from rocking_cli.codes.italian.words import of_histories
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.outcome import Outcome
-from rocking_cli.dynamics.verdict import governs
 from rocking_cli.plotting.azimuths import draw_azimuths
 from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.plotting.survey import draw_survey
+from rocking_cli.structure import Structure
 from rocking_cli.studies import survey as survey_studies
 from rocking_cli.studies.azimuths import AzimuthResponses
+from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.studies.margin import LEVELS, Margin
 from rocking_cli.studies.metrics import METRICS, Excitation
 from rocking_cli.studies.movements import Watched, largest
-from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, Severity, governing
+from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
 from rocking_cli.studies.survey import ORDERS, Survey, Surveyed, Under
 from rocking_cli.views import assessment_words
 from rocking_cli.views import azimuths as azimuth_views
@@ -65,6 +66,8 @@ class TestMargin:
         np.array([0.0, 0.1, 0.4, 0.4]),
     )  # fmt: skip
 
+    END = Conclusion(concluded=Concluded.ROCKS, peak_ratio=0.2, motion="a", ratio=1.0, share=FOUND.share)
+
     def test_levels_lie_between_what_overturns_and_what_may(self):
         data = margin_views.margin_data(self.FOUND)
         assert data["shares"] == [0, 0.05, 0.2, 0.6] and data["unknown"] == [0, 0.1, 0.4, 0.4]
@@ -79,13 +82,15 @@ class TestMargin:
     def test_what_is_not_checked_is_null_and_warned_of(self):
         found = replace(self.FOUND, unknown=np.zeros(4), checked=False)
         assert margin_views.margin_data(found)["unknown"] is None
-        mechanism = rk.load_structure(EXAMPLES / "curve.yaml")
-        parts = margin_views.view(mechanism, [margin_views.MarginRow("a", 1.0, 0.5, found)], "1", found.around).parts
+        structure, end = Structure(rk.load_structure(EXAMPLES / "curve.yaml")), self.END
+        row = margin_views.MarginRow("a", 1.0, 0.5, found, end)
+        parts = margin_views.view(structure, [row], "1", found.around, end).parts
         assert str(parts[-1]).startswith("Caution: the joints of this mechanism are not checked")
 
     def test_the_table_has_a_second_row_and_the_plot_a_band(self):
-        row = margin_views.MarginRow("a.csv", 1.0, 0.5, self.FOUND)
-        table = margin_views.view(rk.Block(width=0.5, height=2.0), [row], "both", self.FOUND.around).parts[2]
+        row = margin_views.MarginRow("a.csv", 1.0, 0.5, self.FOUND, self.END)
+        block = Structure(rk.Block(width=0.5, height=2.0))
+        table = margin_views.view(block, [row], "both", self.FOUND.around, self.END).parts[2]
         assert [cells[0].strip() for cells in table.rows] == ["a.csv: overturn or unknown", "known to overturn"]
         assert [cells[3] for cells in table.rows] == ["15 %", "5 %"]
         assert table.rows[0][4:] == ["1", "2", "4"] * 2 and table.rows[1][4:7] == ["2", "4", "-"]
@@ -93,44 +98,6 @@ class TestMargin:
         low, high = (f(axes.collections[0].get_paths()[0].vertices[:, 1]) for f in (np.min, np.max))
         assert low == 0 and high == 1  # the band goes from the one curve to the other
         assert [line.get_ydata()[-1] for line in axes.lines if len(line.get_xdata()) == 4] == [0.6, 1.0]
-
-
-def severity(share, median, itself, certain):
-    return Severity(share, median, itself, certain)
-
-
-@pytest.mark.parametrize(
-    ("worst", "said"),
-    [
-        (severity(1.0, inf, inf, 0.0), "a governs: 100 % of its neighbours have an unknown outcome."),
-        (severity(0.8, inf, inf, 0.3), "a governs: 80 % of its neighbours overturn or have an unknown outcome."),
-        (severity(0.8, inf, inf, 0.8), "a governs: 80 % of its neighbours overturn."),
-        (severity(0.0, 0.0, inf, 0.0), "a governs: the outcome is unknown."),
-        (severity(0.0, 0.0, inf, 1.0), "a governs: the structure overturns."),
-    ],
-)
-def test_a_motion_of_unknown_outcome_governs_as_one_that_overturns(worst, said):
-    assert governing({"a": worst, "b": severity(0.0, 0.0, 0.4, 0.0)}) == said
-
-
-def test_of_unknown_outcomes_none_is_the_worse():
-    both = severity(1.0, inf, inf, 0.0)
-    alike = "a and b govern alike: under each, 100 % of the neighbours have an unknown outcome."
-    assert governing({"a": both, "b": both}) == alike
-
-
-def ended(**fields):
-    """What of a history counts where two polarities are compared."""
-    usual = {"fell": False, "unknown": False, "peak_ratio": 0.2, "overturning_time": nan}
-    return {"nonlinear": SimpleNamespace(**{**usual, **fields})}
-
-
-def test_a_polarity_that_overturns_governs_over_one_that_is_unknown():
-    falls, open_ = ended(fell=True, peak_ratio=nan, overturning_time=3.0), ended(unknown=True)
-    worse, said = governs({1: open_, -1: falls})
-    assert worse == -1
-    assert said.endswith(": with the motion reversed it overturns, as given its outcome is unknown.")
-    assert governs({1: ended(), -1: open_})[0] is None
 
 
 class TestSeveral:

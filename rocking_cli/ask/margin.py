@@ -105,7 +105,7 @@ def margin(
     end = replace(worst(row.conclusion for row in rows), motions=[row.name for row in rows])
     margins = Concluding({row.name: row.margin for row in rows}, end)
     figure = partial(_figure, margins, heading(ready.mechanism))
-    shown = view(ready.mechanism, rows, str(polarity), around, end)
+    shown = view(ready, rows, str(polarity), around, end)
     return MappingAnswer("margin", margins, shown, partial(_columns, margins), figure)
 
 

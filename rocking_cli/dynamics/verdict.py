@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import isclose
 
 import numpy as np
 
@@ -17,14 +16,12 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.names import percent
 
 CLOSE = 0.8  # phi/phi_cr from which a motion is close to overturning
-ALIKE = 1e-6  # relative difference below which neither polarity governs
 # Of two motions, the rms of the difference over that of the nonlinear one, up to which the other agrees with it, and
 # serves a first estimate. Two motions of one size that have nothing to do with each other differ by 1.4 of it.
 FOLLOWS, STRAYS = 0.25, 0.5
 TOGETHER = 1e-2  # s within which two motions are at one time
 ANOTHER = 1.0  # p times the time between two peaks, or overturnings, beyond which they are not the same one
 PEAK = 0.999  # of its largest sample: when a motion first comes so far it has its peak, rounding apart
-WAYS = {1: "as given", -1: "reversed"}  # the polarities of a motion
 SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
 
 
@@ -247,48 +244,3 @@ def _without_the_structure(histories: Mapping[ModelName, History], called: Mappi
         if grade(run.uplift_error) is Grade.DISREGARD
     ]
     return said
-
-
-def governs(runs: Mapping[int, Mapping[ModelName, History]]) -> tuple[int | None, str]:
-    """Return the polarity that governs by the best model, None if neither does, and a sentence on it.
-
-    Parameters
-    ----------
-    runs : mapping of int to mapping of str to History
-        Histories under the motion as given (1) and reversed (-1).
-    """
-    model: ModelName = "nonlinear" if "nonlinear" in runs[1] else next(iter(runs[1]))
-    by_model = f"by the {model} model"
-    one, other = runs[1][model], runs[-1][model]
-    falls = next((sign for sign, run in ((1, one), (-1, other)) if run.fell), None)
-    if falls is not None and runs[-falls][model].unknown:
-        said = f"with the motion {WAYS[falls]} it overturns, {WAYS[-falls]} its outcome is {names.UNKNOWN}"
-        return falls, f"Polarity {falls} governs {by_model}: {said}."
-    if one.unknown or other.unknown:
-        doubtful = " and ".join(WAYS[sign] for sign, run in ((1, one), (-1, other)) if run.unknown)
-        return None, f"Which polarity governs is not known: the outcome under the motion {doubtful} is {names.UNKNOWN}."
-    if one.fell != other.fell:
-        worse = 1 if one.fell else -1
-        said = f"with the motion {WAYS[worse]} it overturns, {WAYS[-worse]} it does not"
-        return worse, f"Polarity {worse} governs {by_model}: {said}."
-    sizes = {1: _size(one), -1: _size(other)}
-    if isclose(sizes[1], sizes[-1], rel_tol=ALIKE):
-        return None, f"Neither polarity governs {by_model}: the motion has the same effect as given and reversed."
-    if one.fell:
-        worse = min(sizes, key=sizes.__getitem__)
-        said = (
-            f"it overturns at {sizes[worse]:.4g} s with the motion {WAYS[worse]}, "
-            f"at {sizes[-worse]:.4g} s {WAYS[-worse]}"
-        )
-    else:
-        worse = max(sizes, key=sizes.__getitem__)
-        said = (
-            f"it rocks to {sizes[worse]:.4g} of the {runs[worse][model].reference} with the motion {WAYS[worse]}, "
-            f"to {sizes[-worse]:.4g} {WAYS[-worse]}"
-        )
-    return worse, f"Polarity {worse} governs {by_model}: {said}."
-
-
-def _size(history: History) -> float:
-    """Return the number by which two polarities are compared: the overturning time [s], or else the peak ratio."""
-    return history.overturning_time if history.fell else history.peak_ratio

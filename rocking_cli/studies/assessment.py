@@ -16,7 +16,7 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import ways
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.dynamics.verdict import CLOSE, disagree, governs
+from rocking_cli.dynamics.verdict import CLOSE, disagree
 from rocking_cli.engines import default_models, engine_of, respond
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
@@ -112,8 +112,6 @@ class MotionResult:
         The histories of each model under each polarity that was simulated.
     polarity : int
         The polarity that governs.
-    governs : str
-        A sentence that says which polarity governs; empty if only one was simulated.
     neighbours : mapping of int to Neighbours
         Outcomes of the neighbours of the motion under each polarity, by the nonlinear model.
     margin : Margin
@@ -134,7 +132,6 @@ class MotionResult:
     doubts: tuple[Doubt, ...]
     runs: Mapping[int, Mapping[ModelName, History]]
     polarity: int
-    governs: str
     neighbours: Mapping[int, Neighbours]
     margin: Margin
     fits: tuple[PulseFit, ...]
@@ -363,20 +360,18 @@ def _result(structure: Structure, given: Scaled, polarities: Sequence[int], arou
     names, model = default_models(structure), structure.model("nonlinear")
     runs = {sign: respond(structure, motion, models=names) for sign, motion in under.items()}
     contacts = Contacts(structure.mechanism)
-    worse, said = governs(runs) if len(runs) > 1 else (polarities[0], "")
-    doubtful_signs = [sign for sign in polarities if runs[sign]["nonlinear"].unknown]
     scaled = given.motion.scaled(given.factor)
     fits = _fits(given, scaled)
     alone, alone_unknown = _alone(structure, fits[0], polarities) if fits else (None, False)
+    near = {sign: neighbours(model, motion, around) for sign, motion in under.items()}
     return MotionResult(
         given=given,
         file=file_of_motion(given),
         measured=measure(scaled),
         doubts=tuple(doubtful),
         runs=runs,
-        polarity=worse or [*doubtful_signs, *polarities][0],
-        governs=said,
-        neighbours={sign: neighbours(model, motion, around) for sign, motion in under.items()},
+        polarity=concluded(runs, near).polarity or polarities[0],
+        neighbours=near,
         margin=margin(model, scaled, polarities, around=around),
         fits=fits,
         alone=alone,

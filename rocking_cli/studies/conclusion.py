@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from math import isclose
 from typing import NamedTuple, Self, TypeVar
 
+ALIKE = 1e-6  # relative difference below which neither of two conclusions is the worse
 K = TypeVar("K")
 V = TypeVar("V")
 
@@ -170,6 +172,11 @@ class Concluding(dict[K, V]):
 def worst(found: Iterable[Conclusion]) -> Conclusion:
     """Return the worst of several conclusions: by what is concluded, then by the neighbours, ratio and peak."""
     return max(found, key=severity)
+
+
+def are_alike(one: Conclusion, other: Conclusion) -> bool:
+    """Return whether two conclusions differ by no more than rounding, so that neither governs."""
+    return all(isclose(a, b, rel_tol=ALIKE) for a, b in zip(severity(one), severity(other), strict=True))
 
 
 def severity(found: Conclusion) -> tuple[int, float, float, float]:

@@ -6,7 +6,6 @@ together with its neighbours: the same motion a little stronger or weaker, with 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from statistics import NormalDist
 from typing import NamedTuple
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.history import RTOL, History
+from rocking_cli.dynamics.history import RTOL
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError, Problem, SolverError
@@ -27,7 +26,6 @@ Reals = NDArray[np.float64]
 
 FRACTILES = (0.16, 0.50, 0.84)
 AGREEMENT = 0.9  # share that must end as the history itself, else its answer is sensitive
-ALIKE = 1e-6  # relative difference below which no motion is the worse
 ENOUGH = 20  # neighbours from which on the peaks of 16 and 84 % are told: of fewer, one or two decide them
 LEAST_ETA = 1e-3  # a restitution drawn below that is this: an impact leaves some motion
 MOST = 1_000_000  # neighbours; more take minutes
@@ -295,55 +293,6 @@ def neighbours(
         over=peaks_over(model.ends_at_limit),
         unknown=None if unchecked and not found.unknown.any() else float(found.unknown[1:].mean()),
     )
-
-
-class Severity(NamedTuple):
-    """Severity of a motion, compared field by field in this order; an unknown outcome counts as overturning."""
-
-    share: float  # of neighbours that overturn or are of unknown outcome; 0 without neighbours
-    median: float  # of their peaks over the critical rotation, infinite where they overturn; 0 without neighbours
-    itself: float  # peak of the history over the critical rotation, infinite if it overturns
-    certain: float  # the share that overturns for certain; without neighbours 1 if the history overturns
-
-
-def severity(history: History, near: Neighbours | None = None) -> Severity:
-    """Return the severity of a motion, for comparison with other motions."""
-    itself = np.inf if history.fell or history.unknown else history.peak_ratio
-    if near is None:
-        return Severity(0.0, 0.0, itself, float(history.fell))
-    return Severity(near.at_most, near.peak_ratio[1], itself, near.overturned)
-
-
-def governing(severities: Mapping[str, Severity], over: str = "phi_cr") -> str:
-    """Return a sentence on which motion governs, or which ones alike.
-
-    Parameters
-    ----------
-    severities : mapping of str to Severity
-        The severity of each motion by its name; at least one.
-    over : str
-        Reference of the peaks.
-    """
-    worst = max(severities.values())
-    if not any(worst):
-        return "No motion uplifts the structure."
-    which = [name for name, each in severities.items() if np.allclose(each, worst, rtol=ALIKE, atol=0)]
-    share, median, itself, certain = worst
-    doubtful = share > certain or (not share and np.isinf(itself) and not certain)
-    many = len(which) > 1
-    if share:
-        does = ["overturn"] if certain else []
-        does += ["have an unknown outcome"] if doubtful else []
-        why = f"{percent(share)} of {'the' if many else 'its'} neighbours {' or '.join(does)}"
-    elif median:
-        why = f"the median peak of {'the' if many else 'its'} neighbours is {median:.3g} {over}"
-    elif np.isinf(itself):
-        why = "the outcome is unknown" if doubtful else "the structure overturns"
-    else:
-        why = f"the structure reaches {itself:.3g} {over}"
-    if many:
-        return f"{', '.join(which[:-1])} and {which[-1]} govern alike: under each, {why}."
-    return f"{which[0]} governs: {why}."
 
 
 def follow(

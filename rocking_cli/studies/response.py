@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from math import isclose
 
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.holding import remedy
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.dynamics.verdict import ALIKE
 from rocking_cli.engines import respond
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare, NextStep, worst
+from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare, NextStep, are_alike, worst
 from rocking_cli.studies.contact import ContactDemand, Contacts
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 
@@ -43,11 +41,7 @@ def concluded(runs: Runs, near: Mapping[int, Neighbours], motion: str = "") -> C
     best: ModelName = "nonlinear" if "nonlinear" in next(iter(runs.values())) else next(iter(next(iter(runs.values()))))
     each = [_of_run(run[best], near.get(sign), motion, sign) for sign, run in runs.items()]
     governs = worst(each)
-    alike = len(each) > 1 and all(
-        (one.concluded, one.share) == (governs.concluded, governs.share)
-        and isclose(one.peak_ratio or 0.0, governs.peak_ratio or 0.0, rel_tol=ALIKE)
-        for one in each
-    )
+    alike = len(each) > 1 and all(are_alike(one, governs) for one in each)
     return replace(governs, polarity=None if alike else governs.polarity, polarities=list(runs))
 
 

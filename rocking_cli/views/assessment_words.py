@@ -18,10 +18,9 @@ from rocking_cli.dynamics.verdict import SENSE, agreements, bearing, disagree
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.assessment import Assessment, MotionResult
 from rocking_cli.studies.margin import in_words
-from rocking_cli.studies.neighbours import governing, severity
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.views.cautions import cautions_of
-from rocking_cli.views.conclusion import headline, of_verification
+from rocking_cli.views.conclusion import governing, headline, of_verification
 from rocking_cli.views.contact import contact_words
 from rocking_cli.views.restitution import restitution_source, restitution_used
 from rocking_cli.views.several import neighbours_cells
@@ -158,13 +157,7 @@ def _neighbours_unknown(content: Assessment) -> bool:
 
 def governs(content: Assessment) -> str:
     """Return a sentence on the motion that governs."""
-    return governing(
-        {
-            each.given.motion.name: severity(each.histories["nonlinear"], each.neighbours[each.polarity])
-            for each in content.results
-        },
-        _over(content),
-    )
+    return governing([each.conclusion for each in content.results], _over(content))
 
 
 def _over(content: Assessment) -> str:

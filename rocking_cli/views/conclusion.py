@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from math import isfinite
 from typing import Any
@@ -10,11 +10,12 @@ from typing import Any
 from rocking_cli import names
 from rocking_cli.dynamics.holding import REMEDIES
 from rocking_cli.names import percent
-from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare, NextStep
+from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare, NextStep, are_alike, worst
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.studies.verification.told import Told
 
 MOST_DIGITS = 9
+WAYS = {1: "as given", -1: "reversed"}
 ENGLISH = {
     "satisfied": "The verification is satisfied.",
     "satisfied_at": "The verification is satisfied at all limit states that the site gives ({states}).",
@@ -123,17 +124,55 @@ def digits_beside_one(ratio: float) -> int:
     return next((n for n in range(3, MOST_DIGITS) if (float(f"{ratio:.{n}g}") < 1) == (ratio < 1)), MOST_DIGITS)
 
 
-def of_margin(end: Conclusion) -> str:
-    """Return the conclusion of a margin in a sentence: the motion that governs, its outcome, share and factor."""
-    assert end.share is not None and end.ratio is not None
+def governing(ends: Sequence[Conclusion], over: str) -> str:
+    """Return a sentence on which motion governs, or which ones alike; empty if none uplifts the structure.
+
+    Parameters
+    ----------
+    ends : sequence of Conclusion
+        The conclusion under each motion, at least one.
+    over : str
+        Reference of the peaks, see `names.peaks_over`.
+    """
+    end = worst(ends)
+    which = [each.motion for each in ends if are_alike(each, end)]
+    if end.concluded is Concluded.NO_UPLIFT and not (end.share is not None and end.share.highest):
+        return ""
+    if len(which) > 1:
+        return f"{', '.join(which[:-1])} and {which[-1]} govern alike: under each, {_does(end, over)}."
+    return f"{which[0]} governs: {_does(end, over)}."
+
+
+def governing_polarity(ends: Mapping[int, Conclusion], governs: int | None, over: str) -> str:
+    """Return a sentence on which of two polarities governs; arguments are those of `governing`."""
+    if governs is None:
+        return f"Neither polarity governs: with the motion as given and reversed, {_does(ends[1], over)}."
+    way, other = (WAYS[governs], WAYS[-governs])
+    said = f"with the motion {way}, {_does(ends[governs], over)}; {other}, {_does(ends[-governs], over)}"
+    return f"Polarity {governs} governs: {said}."
+
+
+def of_margin(end: Conclusion, over: str) -> str:
+    """Return the conclusion of a margin in sentences: the motion that governs, its outcome, share and factor."""
+    assert end.ratio is not None
     which = f"{end.motion} governs {len(end.motions)} motions: at" if len(end.motions) > 1 else "At"
     factor = (
         f"The smallest factor at which 10 % or more may overturn is {end.ratio:.3g}."
         if isfinite(end.ratio)
         else "At no factor tried may 10 % or more overturn."
     )
-    said = f"{which} a factor of 1, the structure {headline(end)}, and {_of_neighbours(end.share)}."
-    return " ".join(filter(None, [said, factor, next_in_words(end)]))
+    return " ".join(filter(None, [f"{which} a factor of 1, {_does(end, over)}.", factor, next_in_words(end)]))
+
+
+def _does(end: Conclusion, over: str) -> str:
+    """Return what the structure does, and the share of its neighbours that overturn."""
+    if end.concluded is Concluded.UNKNOWN:
+        itself = f"the outcome is {names.UNKNOWN} after {end.known_until:.3g} s"
+    elif end.concluded is Concluded.ROCKS:
+        itself = f"the structure {names.ROCKS} to {end.peak_ratio:.3g} {over}"
+    else:
+        itself = f"the structure {end.concluded.value.replace('_', ' ')}"
+    return itself if end.share is None else f"{itself}, and {_of_neighbours(end.share)}"
 
 
 def _of_neighbours(share: NeighbourShare) -> str:

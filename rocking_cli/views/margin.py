@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.holding import unchecked
-from rocking_cli.names import percent
+from rocking_cli.names import peaks_over, percent
+from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion
 from rocking_cli.studies.margin import LEVELS, Margin, in_words
 from rocking_cli.studies.neighbours import Neighbourhood
@@ -30,9 +31,10 @@ class MarginRow(NamedTuple):
 
 
 def view(
-    mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood, end: Conclusion
+    structure: Structure, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood, end: Conclusion
 ) -> View:
     """Show the margins of a structure under some motions, what is concluded of all of them first."""
+    mechanism, over = structure.mechanism, peaks_over([side.phi_cr is None for side in structure.statics])
     around = rows[0].margin.around if rows else around  # with the deviations of the structure
     heads = ["motion", "PGA\n[g]", "uplift\nat", "overturn\nat 1"]
     heads += [f"{percent(level)}\n{when}" for when in ("first\nat", "always\nfrom") for level in LEVELS]
@@ -43,7 +45,7 @@ def view(
         "both": "motions as given and reversed (the worse of the two counts)",
     }[polarity]
     parts: list[Table | str] = [
-        f"{heading(mechanism)}. {of_margin(end)}",
+        f"{heading(mechanism)}. {of_margin(end, over)}",
         f"Scale factors on {either}; at each, {around.count} neighbouring motions, {around.words}. 'First at' is the "
         "smallest factor at which so many of them overturn the structure; 'always from' the smallest from which on no "
         "factor tried (up to 5) has fewer.",

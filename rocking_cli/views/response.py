@@ -17,7 +17,7 @@ from rocking_cli.dynamics.history import FELT, History
 from rocking_cli.dynamics.holding import unchecked, why_unknown
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import OneOutcome
-from rocking_cli.dynamics.verdict import SENSE, agreements, governs, verdict
+from rocking_cli.dynamics.verdict import SENSE, agreements, verdict
 from rocking_cli.dynamics.vertical import vertical_notes
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
@@ -29,7 +29,7 @@ from rocking_cli.studies.neighbours import FRACTILES, Neighbours
 from rocking_cli.studies.response import Histories, Question, Response, Runs, concluded
 from rocking_cli.views import processing
 from rocking_cli.views.cautions import cautions_of
-from rocking_cli.views.conclusion import conclusion_data, headline
+from rocking_cli.views.conclusion import conclusion_data, governing_polarity, headline
 from rocking_cli.views.contact import contact_data, contact_words
 from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.view import ABSENT, Table, View, force_unit, in_degrees, number
@@ -139,8 +139,9 @@ def runs_data(
         }
         for polarity, histories in runs.items()
     }
-    end = {"conclusion": conclusion_data(concluded(runs, near, motion))}
-    return end | (each.popitem()[1] if len(each) == 1 else {"polarities": each, "governs": governs(runs)[0]})
+    found = concluded(runs, near, motion)
+    both = {"polarities": each, "governs": found.polarity}
+    return {"conclusion": conclusion_data(found)} | (each.popitem()[1] if len(each) == 1 else both)
 
 
 def histories_data(histories: Histories, shown: HistoryDetails = NOTHING_MORE, polarity: int = 1) -> dict[str, Any]:
@@ -349,16 +350,20 @@ def _tables(
     """Return a table and sentences for each polarity, and which of two governs."""
     parts: list[Table | str] = []
     for polarity, histories in runs.items():
-        heading = f"{title}, polarity {polarity}" if len(runs) > 1 else title
-        ends = headline(concluded({polarity: histories}, near))
-        parts += [_table(f"{heading} ({ends})", histories, shown, polarity), verdict(histories, shown.assumed_friction(polarity))]
+        of = f"{title}, polarity {polarity}" if len(runs) > 1 else title
+        heading = f"{of} ({headline(concluded({polarity: histories}, near))})"
+        parts += [_table(heading, histories, shown, polarity), verdict(histories, shown.assumed_friction(polarity))]
         parts += [str(near[polarity])] if polarity in near else []
         parts += shown.contact_words(polarity)
         if shown.etas is not None:
             for name, run in histories.items():
-                parts += ["", *_impact_table(f"{heading}: impacts, {name}", run, shown.etas)]
+                parts += ["", *_impact_table(f"{of}: impacts, {name}", run, shown.etas)]
         parts += [""] if len(runs) > 1 else []
-    return [*parts, governs(runs)[1]] if len(runs) > 1 else parts
+    if len(runs) > 1:
+        ends = {sign: concluded({sign: histories}, near) for sign, histories in runs.items()}
+        free = next(iter(next(iter(runs.values())).values())).ends_at_limit
+        parts.append(governing_polarity(ends, concluded(runs, near).polarity, names.peaks_over(list(free))))
+    return parts
 
 
 def _table(title: str, histories: Histories, shown: HistoryDetails, polarity: int) -> Table:

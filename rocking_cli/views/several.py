@@ -13,12 +13,14 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import digits_apart, peaks_over, percent
 from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import Conclusion
 from rocking_cli.studies.contact import ContactDemand
 from rocking_cli.studies.movements import Watched
-from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, Severity, governing, severity
+from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
 from rocking_cli.studies.response import Histories, Response
 from rocking_cli.text import in_short
 from rocking_cli.views.cautions import cautions_of
+from rocking_cli.views.conclusion import governing
 from rocking_cli.views.contact import contact_words
 from rocking_cli.views.response import apart, model_heads, models_used
 from rocking_cli.views.restitution import restitution_used
@@ -55,7 +57,7 @@ class Several:
         self._models = models
         self._best: ModelName = "nonlinear" if "nonlinear" in models else models[0]
         self._rows: list[list[str]] = []
-        self._worst: dict[str, Severity] = {}
+        self._ends: list[Conclusion] = []
         self._outcomes: dict[str, list[str]] = {outcome: [] for outcome in CLAUSES}
         self._asked = asked
         self._checked, self._doubtful = True, False
@@ -72,7 +74,6 @@ class Several:
         """Add the response to one motion."""
         assert found.given is not None
         pga = f"{abs(found.given.factor) * found.given.motion.of_ground.pga_g:.4g}"
-        severities = []
         for sign, histories in found.runs.items():
             reversed_ = ", reversed" if sign < 0 and len(found.runs) > 1 else ""
             near = found.neighbours.get(sign)
@@ -82,7 +83,6 @@ class Several:
             self._doubtful |= near is not None and bool(near.unknown)
             if run.unknown:
                 self._until[name] = unknown_after(run).replace("The", "the", 1)
-            severities.append(severity(run, near))
             self._checked &= run.model != "nonlinear" or run.check is not None
             self._around = near.around if near is not None else None
             if sign in found.contacts:
@@ -90,7 +90,7 @@ class Several:
         if found.fit is not None and found.to_pulse is not None:
             own = found.fit.pulse
             self._row(f"  its {own.name} pulse alone", f"{own.amplitude / STANDARD_GRAVITY:.4g}", found.to_pulse, None)
-        self._worst[found.given.motion.name] = max(severities)
+        self._ends.append(found.conclusion)
         ends = {histories[self._best].words for histories in found.runs.values()}
         worst = next((end for end in CLAUSES if end in ends), names.ROCKS)  # still rocking: it does not overturn
         self._outcomes[worst].append(found.given.motion.name)
@@ -113,9 +113,8 @@ class Several:
             heads += ["neighbours\noverturn", "their\nmedian"]
             rows = [[*row[:-2], row[-1]] for row in rows]
         yield Table(self._title, heads, rows, numbers=range(1, len(heads)))
-        governs = f" {governing(self._worst, peaks_over(self._free))}" if any(map(any, self._worst.values())) else ""
-        yield f"By the {self._best} model, {self._counted()}{governs}"
-        if (lost := self._asked - len(self._worst)) > 0:
+        yield f"By the {self._best} model, {self._counted()} {governing(self._ends, peaks_over(self._free))}".rstrip()
+        if (lost := self._asked - len(self._ends)) > 0:
             yield f"Not counted: {lost} of {self._asked} motions, which could not be used."
         if self._around is not None:
             yield f"Neighbours: {self._around.count} neighbouring motions for each motion, {self._around.words}."
@@ -129,7 +128,7 @@ class Several:
 
     def _counted(self) -> str:
         """Return a sentence on under how many motions the structure has each outcome, the worst first."""
-        count, said = len(self._worst), list[str]()
+        count, said = len(self._ends), list[str]()
         if len(self._outcomes[names.NO_UPLIFT]) == count:
             return f"the structure uplifts under none of {count} motions."
         for outcome, under in self._outcomes.items():
