@@ -22,6 +22,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records import read_record
 from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.studies.under_pulses import parse_shape
 from rocking_cli.views.column import data_of
 from rocking_cli.views.parameters import PARAMETERS
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, PROJECT, RECORDS
@@ -77,6 +78,12 @@ def read(path):
 
 @pytest.mark.usefixtures("small_maps")
 class TestContent:
+    def test_its_map_is_named_so_that_it_can_be_drawn_again_and_no_comment_is_in_it(self, frame_report):
+        page = frame_report[0].read_text(encoding="utf-8")
+        (shape,) = re.findall("<code>--shape (.+) --model nonlinear --polarity both</code>", page)
+        assert f"Shape of the pulse: {parse_shape(shape).title}." in page
+        assert not re.search(r"<!--|/\*|^ *//", page, re.MULTILINE)
+
     def test_the_summary_has_the_numbers_of_respond_and_equiv(self, frame_report):
         out, printed = frame_report
         words = read(out).words
