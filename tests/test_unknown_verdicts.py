@@ -5,6 +5,7 @@ That it passes for no command is in `test_every_command.py`.
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from math import isclose, nan
 from types import SimpleNamespace
@@ -109,6 +110,13 @@ class TestSeveral:
         assert "sine:2g:0.4s: the outcome is unknown after 0.0617 s: then the joint between voussoir" in said
         (row,) = (line.split() for line in said.splitlines() if line.startswith(" sine:2g"))
         assert row == ["sine:2g:0.4s", "2", "unknown", "0", "%", "100", "%", "unknown"]
+
+    def test_a_motion_that_only_slides_has_no_empty_line(self, tmp_path):
+        text = "mechanism: block\nwidth: 0.8\nheight: 1.6\ndensity: 2000\ndepth: 1\nfriction: 0.3\n"
+        (tmp_path / "squat.yaml").write_text(text, encoding="utf-8")
+        motions = ("--pulse", "sine:0.45g:0.8s", "--pulse", "sine:0.05g:1s", "--neighbours", 3)
+        said = run("respond", tmp_path / "squat.yaml", *motions).stdout
+        assert "sine:0.45g:0.8s: the outcome is unknown after" in said and not re.search(r": *$", said, re.MULTILINE)
 
 
 class TestSurvey:

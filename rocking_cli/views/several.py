@@ -157,7 +157,8 @@ class Several:
         if not fail and asks:
             fail = {f"The joints hold under all motions, of which {order[0]} demands most of them": asks[order[0]]}
         for name, found in fail.items():
-            yield f"{name}: {contact_words(found, self._mechanism).removeprefix('Contact: ')}"
+            if said := contact_words(found, self._mechanism):  # nothing of a structure that does not rock
+                yield f"{name}: {said.removeprefix('Contact: ')}"
 
     def _friction(self, asks: Mapping[str, ContactDemand], order: Sequence[str]) -> str:
         """Return the friction that motions require, the largest first, and under which it is more than there is."""
