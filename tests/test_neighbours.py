@@ -23,13 +23,10 @@ from rocking_cli.studies.neighbours import (
     Draws,
     Neighbourhood,
     Neighbours,
-    Severity,
     can_lift,
     follow,
-    governing,
     least_uplift,
     neighbours,
-    severity,
 )
 from tests.conftest import EXAMPLES
 from tests.following import build_model, respond
@@ -272,21 +269,6 @@ class TestWithoutShaking:
         assert found.overturned == (dull.drawn(model).slender < 0.99).mean()
         assert found.overturned == pytest.approx(ndtr(log(0.99) / 0.10), abs=0.01)
         assert neighbours(model, None, dull, release=0.99 * sign).overturned == 0
-
-
-def test_of_two_unknown_outcomes_none_is_said_to_be_the_same():
-    doubt = Severity(0.6, np.inf, np.inf, 0.3)
-    assert governing({"one": doubt, "other": doubt}) == (
-        "one and other govern alike: under each, 60 % of the neighbours overturn or have an unknown outcome."
-    )
-
-
-def test_a_history_of_unknown_outcome_is_as_severe_as_one_that_overturns():
-    unknown, rocks = (respond(PORTAL, ACCEL.scaled(scale), models=("nonlinear",))["nonlinear"] for scale in (2.0, 1.0))
-    assert severity(unknown) == (0.0, 0.0, np.inf, 0.0)
-    assert severity(rocks) == (0.0, 0.0, rocks.peak_ratio, 0.0) and rocks.peak_ratio > 0
-    near = Neighbours(Neighbourhood(), "nonlinear", 0.2, (0.1, 0.3, np.inf), 1.0, unknown=0.1)
-    assert severity(unknown, near) == (pytest.approx(0.3), 0.3, np.inf, 0.2)
 
 
 NEAR = "(standard deviations 4 % of amplitude, 10 % of slenderness, 0.05 of restitution),"
