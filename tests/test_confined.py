@@ -64,7 +64,7 @@ def test_a_key_between_two_walls_falls_unless_it_is_a_wedge(flare, stands):
     """Whatever the friction; wider below it falls free of both walls, where no force could ever balance it."""
     key = shape("key", -flare + 0j, 1 + flare + 0j, 1 + 1j, 1j)
     walls = [shape("left", -2 + 0j, -flare + 0j, 1j, -2 + 1j), shape("right", 1 + flare + 0j, 3 + 0j, 3 + 1j, 1 + 1j)]
-    problem = "'key' slides down under weight alone: friction at the sides holds only if something presses them"
+    problem = "'key' would slide down under weight alone: friction at the sides holds only if something presses them"
     for mu in (0.6, 5.0):
         with pytest.raises(AssemblyFault, match="^no acceleration sets" if stands else f"^{problem}"):
             found([key], walls, mu)
@@ -199,8 +199,8 @@ def test_a_key_that_only_a_squeeze_holds_is_refused(tmp_path):
     path = tmp_path / "hang.yaml"
     path.write_text(yaml.safe_dump({**given, "friction": 0.6}), encoding="utf-8")
     refused = " ".join(run("collapse", path, code=2).stderr.split())
-    assert "blocks.a: 'a' and 'b' slide down under weight alone: friction at the sides holds only if" in refused
-    assert "Draw what supports them from below" in refused
+    assert "blocks.a: 'a' and 'b' would slide down under weight alone: friction at the sides holds only if" in refused
+    assert "Draw a support from below" in refused
     path.write_text(yaml.safe_dump(given), encoding="utf-8")  # glued between the walls
     found = run_json("collapse", path)["directions"]["positive"]
     assert found["lambda"] == approx(1.25) and found["lambda_with_usual"] == 0 and not found["confined"]

@@ -154,11 +154,9 @@ def collapse(
     confined = undilated(problem, multiplier)
     if confined is not None:
         if confined.falls:
-            slides, them = ("slide", "them") if len(confined.falls) > 1 else ("slides", "it")
             raise DoesNotStand(
-                f"{listed(confined.falls)} {slides} down under weight alone: friction at the sides holds only if "
-                f"something presses them together, and the file gives no such force. Draw what supports {them} from "
-                "below",
+                f"{listed(confined.falls)} would slide down under weight alone: friction at the sides holds only if "
+                "something presses them together, and the file gives no such force. Draw a support from below",
                 confined.falls,
             )
         if confined.multiplier is not None:
