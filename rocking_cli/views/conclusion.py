@@ -167,7 +167,7 @@ def of_margin(end: Conclusion, over: str) -> str:
 def _does(end: Conclusion, over: str) -> str:
     """Return what the structure does, and the share of its neighbours that overturn."""
     if end.concluded is Concluded.UNKNOWN:
-        itself = f"the outcome is {names.UNKNOWN} after {end.known_until:.3g} s"
+        itself = f"the outcome is {names.UNKNOWN} after {end.known_until:.4g} s"
     elif end.concluded is Concluded.ROCKS:
         itself = f"the structure {names.ROCKS} to {end.peak_ratio:.3g} {over}"
     else:
@@ -193,7 +193,7 @@ def next_in_words(end: Conclusion) -> str:
 def headline(end: Conclusion) -> str:
     """Return what is concluded in a few words, for a heading: with the peak, the limit state, or until when known."""
     if end.known_until is not None:
-        return f"{names.UNKNOWN} after {end.known_until:.3g} s"
+        return f"{names.UNKNOWN} after {end.known_until:.4g} s"
     if end.concluded is Concluded.ROCKS and end.peak_ratio is not None:
         return f"{names.ROCKS} to {end.peak_ratio:.3g}"
     said = end.concluded.value.replace("_", " ")
