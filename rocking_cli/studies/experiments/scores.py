@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from rocking_cli.studies.fragility.fit import Counts, fit_outcomes
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -220,10 +222,55 @@ def base_rates(seen: Reals, clusters: Sequence[str], halves: Sequence[str]) -> R
     ndarray, shape (n,)
         NaN for tests without any other.
     """
-    names, parts = np.array(clusters, dtype=object), np.array(halves, dtype=object)
     rates = np.full(seen.size, np.nan)
+    for own, others in _apart(clusters, halves):
+        if others.any():
+            rates[own] = seen[others].mean()
+    return rates
+
+
+def fitted_shares(measure: Reals, seen: Reals, clusters: Sequence[str], halves: Sequence[str]) -> Reals:
+    """Return the shares of a logistic curve over ln of a measure, fitted to the tests of which `base_rates` are.
+
+    Parameters
+    ----------
+    measure : ndarray, shape (n,)
+        Intensity measure of each test; a test whose measure is not positive has no part in a fit.
+    seen, clusters, halves
+        As for `base_rates`.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        NaN for tests without a measure, and if the others determine no curve.
+    """
+    x = np.log(np.where(measure > 0, measure, np.nan))
+    shares = np.full(seen.size, np.nan)
+    for own, others in _apart(clusters, halves):
+        told = others & np.isfinite(x)
+        shares[own] = _logistic(x[told], seen[told], x[own])
+    return shares
+
+
+def _logistic(x: Reals, seen: Reals, at: Reals) -> Reals:
+    """Fit a logistic curve to outcomes, and return its shares at other places; NaN if there is no fit."""
+    fell, stood = x[seen == 1], x[seen == 0]
+    if not (fell.size and stood.size):
+        return np.full(at.size, np.nan)
+    if stood.max() <= fell.min():  # the curve is ever steeper: a step in the middle of the gap
+        return np.where(np.isnan(at), np.nan, np.heaviside(at - (stood.max() + fell.min()) / 2, 0.5))
+    each = np.arange(x.size)
+    fit = fit_outcomes("logit", _design(x), Counts(each, each, np.ones(x.size)), seen, 0.9)
+    return np.full(at.size, np.nan) if isinstance(fit, str) else fit.probability(_design(at))
+
+
+def _design(x: Reals) -> Reals:
+    return np.column_stack([np.ones(x.size), x])
+
+
+def _apart(clusters: Sequence[str], halves: Sequence[str]) -> Iterator[tuple[NDArray[np.bool_], NDArray[np.bool_]]]:
+    """Yield masks of tests, and of the others that a rule for them may learn from: of other halves, or clusters."""
+    names, parts = np.array(clusters, dtype=object), np.array(halves, dtype=object)
     for cluster, half in dict.fromkeys(zip(clusters, halves, strict=True)):
         others = (parts != half) & (parts != "") if half else names != cluster
-        if others.any():
-            rates[(names == cluster) & (parts == half)] = seen[others].mean()
-    return rates
+        yield (names == cluster) & (parts == half), others
