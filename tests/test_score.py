@@ -5,7 +5,8 @@ from __future__ import annotations
 import csv
 import json
 import runpy
-from math import log
+from dataclasses import replace
+from math import exp, log
 
 import numpy as np
 import pytest
@@ -15,10 +16,11 @@ import rocking_cli as rk
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError
 from rocking_cli.plotting.score import draw_reliability
+from rocking_cli.studies.experiments import score as score_study
 from rocking_cli.studies.experiments.score import Stated, scored
-from rocking_cli.studies.experiments.scores import distance_from_uniform
-from rocking_cli.studies.experiments.table import ObservedTest, parse_columns
-from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.studies.experiments.scores import distance_from_uniform, fitted_shares
+from rocking_cli.studies.experiments.table import ObservedTest, parse_columns, read_tests
+from rocking_cli.studies.neighbours import Neighbourhood, follow
 from tests.conftest import EXAMPLES, SHARED
 from tests.elsewhere import PROJECT
 
@@ -96,9 +98,8 @@ def made(count=60, clusters=9, seed=5, known=0.8):
             k + 2, "a.yaml", f"r{k}", seen, cluster=f"c{random.integers(clusters)}", half="ab"[k % 2] if k < 30 else "",
             forecasts=forecasts,
         )  # fmt: skip
-        stated.append(
-            Stated(test, over, unknown, COUNT, float(random.random() < 0.5), float(k % 4 == 0) if k % 5 else np.nan)
-        )
+        west, velocity = float(random.random() < 0.5), float(k % 4 == 0) if k % 5 else np.nan
+        stated.append(Stated(test, over, unknown, COUNT, west, velocity, pgv=0.1 + 0.02 * over + 0.05 * (k % 11)))
     return stated
 
 
@@ -117,20 +118,37 @@ class TestScores:
             "velocity": lambda each: each.velocity,
             "other": lambda each: each.test.forecasts.get("other", np.nan),
             "base_rate": lambda each: self.base_rate(stated, each),
+            "fitted_pgv": lambda each: self.fitted(stated, each),
         }[rule]
         kept = [(shares(each), int(each.test.overturned), each.test.cluster) for each in stated]
         return [each for each in kept if each[0] == each[0]]
 
-    def base_rate(self, stated, one):
-        test = one.test
+    def others(self, stated, test):
         if test.half:
-            others = [each.test.overturned for each in stated if each.test.half not in ("", test.half)]
-        else:
-            others = [each.test.overturned for each in stated if each.test.cluster != test.cluster]
-        return sum(others) / len(others)
+            return [each for each in stated if each.test.half not in ("", test.half)]
+        return [each for each in stated if each.test.cluster != test.cluster]
+
+    def base_rate(self, stated, one):
+        others = self.others(stated, one.test)
+        return sum(each.test.overturned for each in others) / len(others)
+
+    def fitted(self, stated, one):
+        """By Newton's method, written out in two unknowns."""
+        rows = [(log(each.pgv), int(each.test.overturned)) for each in self.others(stated, one.test)]
+        a = b = 0.0
+        for _ in range(12):
+            g = h = c = d = e = 0.0
+            for x, seen in rows:
+                p = 1 / (1 + exp(-a - b * x))
+                w = p * (1 - p)
+                g, h, c, d, e = g + seen - p, h + (seen - p) * x, c + w, d + w * x, e + w * x * x
+            a, b = a + (e * g - d * h) / (c * e - d * d), b + (c * h - d * g) / (c * e - d * d)
+        return 1 / (1 + exp(-a - b * log(one.pgv)))
 
     @pytest.mark.every(2)
-    @pytest.mark.parametrize("rule", ["tool", "tool_with_unknown", "base_rate", "west", "velocity", "other"])
+    @pytest.mark.parametrize(
+        "rule", ["tool", "tool_with_unknown", "base_rate", "west", "velocity", "fitted_pgv", "other"]
+    )
     def test_every_score_is_that_of_another_program(self, both, rule):
         stated, found = both
         kept = self.rows(stated, rule)
@@ -145,7 +163,7 @@ class TestScores:
         for name, measure in (
             ("brier", brier), ("log_loss", lambda rows: log_loss(rows, COUNT)), ("right", right), ("auc", area),
         ):  # fmt: skip
-            assert list(getattr(score, name)) == pytest.approx(with_interval(measure, rows, clusters), abs=1e-12), name
+            assert list(getattr(score, name)) == pytest.approx(with_interval(measure, rows, clusters), abs=1e-9), name
 
     def test_differences_are_paired(self, both):
         stated, found = both
@@ -194,6 +212,25 @@ class TestScores:
         half = [Stated(ObservedTest(2, "a", "b", seen, cluster=str(seen)), 10, 0, COUNT) for seen in (False, True)]
         assert scored(half, Neighbourhood(COUNT)).scores["tool"].right.value == 0.5
 
+    def test_a_curve_that_separates_is_a_step_and_none_without_both_outcomes(self):
+        at, clusters = np.array([0.1, 0.15, 0.5, 0.8, np.nan, 0.0]), list("abcdef")
+        fell = np.array([0.0, 0.0, 1.0, 1.0, 0.0, 0.0])
+        assert fitted_shares(at, fell, clusters, [""] * 6).tolist()[:4] == [0, 0, 1, 1]
+        assert np.isnan(fitted_shares(at, fell, clusters, [""] * 6)[4:]).all()
+        assert np.isnan(fitted_shares(at, np.zeros(6), clusters, [""] * 6)).all()
+        equal = fitted_shares(np.ones(4), np.array([0.0, 1.0, 0.0, 1.0]), list("abcd"), list("xxyy"))
+        assert np.isnan(equal).all() or equal.tolist() == [0.5] * 4
+
+    def test_one_cluster_has_no_interval(self):
+        stated = [replace(each, test=replace(each.test, cluster="c")) for each in made()]
+        found = scored(stated, Neighbourhood(COUNT))
+        for each in (*found.scores["tool"][1:], found.differences["west"], found.bias, found.bins[0].observed):
+            assert np.isfinite(each.value) and np.isnan(each.low) and np.isnan(each.high)
+        assert not any(each.outside for each in found.bins)
+        both = [Stated(ObservedTest(k, "a", "b", k > 1, cluster="ab"[k % 2]), 9 * k, 0, COUNT) for k in range(3)]
+        bins = scored(both, Neighbourhood(COUNT)).bins
+        assert [np.isnan(each.observed.low) for each in bins] == [True, True, True, True, True]
+
     def test_the_distance_from_uniform_is_that_of_scipy(self):
         from scipy.stats import kstest
 
@@ -214,7 +251,7 @@ def test_each_row_is_stated_in_its_order_and_as_shares_state_it(tmp_path):
         assert each["overturned"] == bool(int(seen)) and each["record"] == pulse
     assert len({each["share"] for each in data["tests"]}) > 2
     assert sum(each["tests"] for each in data["calibration"]) == len(rows)
-    assert set(data["scores"]) == {"tool", "tool_with_unknown", "base_rate", "west", "velocity"}
+    assert set(data["scores"]) == {"tool", "tool_with_unknown", "base_rate", "west", "velocity", "fitted_pgv"}
     assert data["peaks"] is None
 
 
@@ -223,6 +260,17 @@ def test_a_polarity_that_is_not_known_is_both():
     found = rk.score({**leaning, "overturned": [1] * 3, "polarity": [1, -1, ""]}, neighbours=COUNT).tests
     one, other, both = (each.share for each in found)
     assert abs(one - other) > 0.2 and both == pytest.approx((one + other) / 2)
+
+
+def test_a_symmetric_structure_is_simulated_once(monkeypatch):
+    followed = []
+    monkeypatch.setattr(score_study, "follow", lambda *a, **k: followed.append(k["polarity"]) or follow(*a, **k))
+    given = {"record": ["sine:0.41g:0.8s"] * 3, "peak": ["0.1 rad"] * 3, "polarity": [1, -1, ""]}
+    one, other, both = rk.score({"structure": [BLOCK] * 3, **given}, neighbours=COUNT, threads=1).tests
+    assert len(followed) == 3 and 0 < one.share == other.share == both.share < 1
+    assert (both.count, both.rank) == (COUNT, one.rank)
+    leaning = {"structure": [str(EXAMPLES / "rigid_body.yaml")], "record": ["sine:0.5g:0.9s"], "overturned": [1]}
+    assert rk.score(leaning, neighbours=COUNT).tests[0].count == 2 * COUNT and len(followed) == 5
 
 
 def test_scales_of_amplitude_and_time_are_those_of_a_pulse():
@@ -267,7 +315,6 @@ def test_peaks_are_ranked_among_the_neighbours():
     assert found.distance != pytest.approx(distance_from_uniform(np.array([each.rank for each in found.ranks])))
     model = rk.build_models(rk.load_structure(BLOCK), ("nonlinear",))[0]
     from rocking_cli.excitation.pulses import parse_pulse
-    from rocking_cli.studies.neighbours import follow
 
     runs = follow(model, parse_pulse("sine:0.3g:0.8s").sampled(), Neighbourhood(50).drawn(model))
     peaks = np.maximum(runs.peak_positive, runs.peak_negative)
@@ -282,7 +329,10 @@ class TestWords:
         from rocking_cli.views.score import view
 
         found = scored(stated, Neighbourhood(count))
-        return found, " ".join(part for part in view(found, "tests.csv").parts if isinstance(part, str))
+        return found, self.said(view(found, "tests.csv"))
+
+    def said(self, view):
+        return " ".join(part for part in view.parts if isinstance(part, str))
 
     def stated(self, tool, other, seen, clusters=40):
         tests = [
@@ -314,6 +364,44 @@ class TestWords:
         _, text = self.text(self.stated(lambda k: share, lambda k: 0.5, lambda k: k % 2))
         assert f"the tool states {said} than was observed" in text and "The mean gap of the bins is 10 points" in text
 
+    def test_bins_that_are_off_are_named(self):
+        found, text = self.text(self.stated(lambda k: 15 if k % 3 else 0, lambda k: 0.5, lambda k: k % 3 and k % 2))
+        (off,) = [each for each in found.bins if each.outside]
+        assert off.low == 0.6 and off.stated > off.observed.high
+        said = "excludes the stated one in the bin 0.6 to 0.8 (stated 0.750, observed"
+        assert f"{said} {off.observed.value:.3f} [{off.observed.low:.3f} {off.observed.high:.3f}])" in text
+        _, right = self.text(self.stated(lambda k: 10, lambda k: 0.5, lambda k: k % 2))
+        assert "excludes the stated one" not in right
+
+    def test_one_cluster_has_no_interval(self):
+        _, text = self.text(self.stated(lambda k: 12, lambda k: 0.5, lambda k: k % 2, clusters=1))
+        assert "with 1 cluster of tests only, there are no intervals" in text and "nan" not in text
+        assert "10 percentage points more than was observed. " in text
+
+    def test_deviations_are_those_that_were_used(self):
+        tests = {"structure": [BLOCK] * 2, "record": ["sine:0.4g:0.8s"] * 2, "overturned": [0, 1]}
+        answer = rk.score(tests, neighbours=4, slenderness_deviation=0.07)
+        assert "standard deviations 4 % of amplitude, 7 % of slenderness, 0.05 of restitution" in self.said(answer.view)
+        used = {"count": 4, "amplitude": 0.04, "slenderness": 0.07, "restitution": 0.05}
+        assert answer.to_dict()["neighbours"] == used | {"drawn": [used | {"structures": [BLOCK]}]}
+        given = str(EXAMPLES / "point_mass.yaml")
+        two = rk.score({**tests, "structure": [BLOCK, given]}, neighbours=4)
+        assert two.to_dict()["neighbours"]["restitution"] == (0.05 if len(two.drawn) == 1 else None)
+
+    def test_what_the_table_leaves_open_is_said(self):
+        tests = {
+            "structure": [BLOCK] * 4, "record": ["sine:0.3g:0.8s"] * 4, "overturned": [0, 0, "", 1],
+            "peak [deg]": [13, 15, "", 15], "pgv [m/s]": ["", 0.3, "", 0.4],
+        }  # fmt: skip
+        found = rk.score(tests, neighbours=4)  # phi_cr is 14.04 degrees
+        assert [each.doubtful for each in found.tests] == [False, True, False, False]
+        assert [each.pgv for each in found.tests][1::2] == [0.3, 0.4]
+        said = self.said(found.view)
+        assert "1 test did not overturn, but the peak lies beyond the critical rotation (line 2)" in said
+        assert "the PGV of 1 scored test is integrated from the record" in said
+        assert "The outcome of 1 test is not given" in said
+        assert found.tests[2].share == found.tests[0].share and found.scores["tool"].tests == 3
+
     def test_commanded_motions_are_named(self):
         tests = [ObservedTest(2, "a", "b", False, commanded=True, cluster="c")]
         _, text = self.text([Stated(each, 3, 0, COUNT) for each in tests])
@@ -330,9 +418,19 @@ class TestBadInput:
             (2, "peak: '0.5' is a text without a unit"),
             (3, "structure is empty"), (3, "peak: 3 kg is a mass"), (3, "polarity must be 1, -1 or both"),
             (3, "scale must be positive, got -3"), (3, "pred_x must be from 0 to 1, got 1.2"),
-            (4, "overturned is empty, and no peak is given"), (4, "censored must be 0 or 1"), (4, "scale: 'abc'"),
+            (4, "censored must be 0 or 1"), (4, "scale: 'abc'"),
         ):  # fmt: skip
             assert f"tests.csv:{line}: {what}" in said
+
+    def test_wrong_headings_and_cells_are_named_at_once(self, tmp_path):
+        table = write(tmp_path, [f"{BLOCK},2,5,x"], "structure,overturned,peak [kg],scal")
+        said = run("score", table, code=2).stderr.splitlines()
+        for what in (
+            "1: record: the column is missing", "1: peak [kg] must be one of rad, deg",
+            "1: scal is not a column of a table of tests", "2: overturned must be 0 or 1, got '2'",
+        ):  # fmt: skip
+            assert sum(f"tests.csv:{what}" in line for line in said) == 1, what
+        assert sum("tests.csv:" in line for line in said) == 4
 
     @pytest.mark.parametrize(
         ("headings", "said"),
@@ -382,8 +480,6 @@ class TestBadInput:
 def test_tables_of_spreadsheets_and_of_python(tmp_path):
     table = tmp_path / "tests.csv"
     table.write_text("structure;record;peak [deg];#note;scale\nb.yaml;r.csv;1,5;seen;0,5\n", encoding="utf-8")
-    from rocking_cli.studies.experiments.table import read_tests
-
     (test,) = read_tests(table).tests
     assert (test.peak, test.scale, test.cluster) == (pytest.approx(np.radians(1.5)), 0.5, "r.csv")
     for heading in ("peak_deg", "peak (deg)"):
@@ -423,4 +519,10 @@ def test_shares_are_met_in_tests_of_two_boulders(tmp_path):
     tool = found.scores["tool"]
     assert len(found.observed) == 200 and not found.failed
     assert tool.brier.value < 0.064 and tool.log_loss.value < 0.205
-    assert all(found.differences[rule].high < 0 for rule in ("base_rate", "west", "velocity"))
+    assert all(found.differences[rule].high < 0 for rule in ("base_rate", "west", "velocity", "fitted_pgv"))
+    fitted = found.scores["fitted_pgv"].brier.value
+    assert fitted == pytest.approx(0.099, abs=0.01)
+    motions = {test.record: rk.read_record(tmp_path / test.record) for test in read_tests(tmp_path / "tests.csv").tests}
+    ratios = [score_study._pgv(motions[each.test.record]) / each.test.pgv for each in found.tests[::2]]
+    low, middle, high = np.quantile(ratios, [0.05, 0.5, 0.95])
+    assert 0.65 < low < 0.85 and 1.2 < middle < 1.45 and 4.5 < high < 7.0  # of all 300: .757, 1.342 and 6.28

@@ -2,26 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from math import isnan
 from typing import Any
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import percent
-from rocking_cli.studies.experiments.score import BASE_RATE, TOOL, VELOCITY, WEST, WITH_UNKNOWN, Scored, Stated
+from rocking_cli.studies.experiments.score import (
+    BASE_RATE,
+    FITTED_PGV,
+    TOOL,
+    VELOCITY,
+    WEST,
+    WITH_UNKNOWN,
+    Scored,
+    Stated,
+)
 from rocking_cli.studies.experiments.scores import DRAWS, CalibrationBin, RuleScore, ScoreEstimate
 from rocking_cli.text import one_line
 from rocking_cli.views.column import Column, data_of, frame_of, of, rounded, table_of
 from rocking_cli.views.view import ABSENT, Table, View
 
 FEW_CLUSTERS = 10
+INTEGRATED = "In 300 shake-table tests, such a PGV was 1.3 times the measured one (0.76 to 6.3 times in 90 % of them)"
 NAMES = {
     TOOL: "the tool",
     WITH_UNKNOWN: "the tool, unknown as overturned",
     BASE_RATE: "base rate of other tests",
     WEST: "West: PGA > lambda g",
     VELOCITY: "PGV > v_imp",
+    FITTED_PGV: "fitted PGV",
 }
 ROWS: tuple[Column[Stated], ...] = (
     Column("line", of("test.line")),
@@ -31,6 +42,8 @@ ROWS: tuple[Column[Stated], ...] = (
     Column("share", of("share")),
     Column("unknown", of("unknown_share")),
     Column("overturned", of("test.overturned"), text=True),
+    Column("doubtful", of("doubtful"), text=True),
+    Column("pgv", lambda each: _number(each.pgv)),
 )
 BINS: tuple[Column[CalibrationBin], ...] = (
     Column("", lambda each: f"{each.low:g} to {each.high:g}", head="stated share", text=True),
@@ -41,6 +54,7 @@ BINS: tuple[Column[CalibrationBin], ...] = (
     Column("stated", lambda each: _number(each.stated), head="mean\nstated", form=rounded(3)),
     Column("observed", lambda each: _number(each.observed.value), head="observed", form=rounded(3)),
     Column("interval", lambda each: _list(each.observed)[1:], head="5 to 95 %", form=lambda ends: _range(*ends)),
+    Column("outside", of("outside"), text=True),
 )
 
 
@@ -67,19 +81,40 @@ def _parts(found: Scored, file: str) -> Iterator[Table | str]:
     yield (
         f"{file}: {_count(len(tests), 'test')} of {_count(len(structures), 'structure')} under "
         f"{_count(len(records), 'motion')}. {found.around.count} neighbouring motions are simulated for each, "
-        f"{found.around.words}; the stated share is that of the neighbours that overturn."
+        f"{_deviations(found)}; the stated share is that of the neighbours that overturn."
     )
     if commanded := sum(each.test.commanded for each in tests):
         yield (
             f"Caution: the motions of {_count(commanded, 'test')} are those commanded, not those recorded: what the "
             "table did may differ by far more than the neighbours do."
         )
+    if integrated := sum(each.test.pgv is None for each in kept):
+        yield (
+            f"Caution: the PGV of {_count(integrated, 'scored test')} is integrated from the record. {INTEGRATED}: "
+            "give what was measured in the column `pgv`."
+        )
+    if doubtful := [str(each.test.line) for each in tests if each.doubtful]:
+        yield (
+            f"Caution: {_count(len(doubtful), 'test')} did not overturn, but the peak lies beyond the critical "
+            f"rotation (line {', '.join(doubtful)}): check its unit, and the outcome."
+        )
     if kept:
         yield from _scores(found, len(kept))
     if found.ranks:
         yield _peaks(found)
+    if silent := sum(each.test.overturned is None and each.test.peak is None for each in tests):
+        yield f"The outcome of {_count(silent, 'test')} is not given: shares are stated, and no score includes them."
     if found.failed:
         yield f"{_count(len(found.failed), 'test')} could not be simulated, and no score includes what they showed."
+
+
+def _deviations(found: Scored) -> str:
+    """Return the standard deviations of the neighbours, with the structures if these have different ones."""
+    drawn = found.drawn or {found.around: []}
+    return " and ".join(
+        f"{around.words} ({', '.join(structures)})" if len(drawn) > 1 else around.words
+        for around, structures in drawn.items()
+    )
 
 
 def _scores(found: Scored, count: int) -> Iterator[Table | str]:
@@ -107,7 +142,8 @@ def _scores(found: Scored, count: int) -> Iterator[Table | str]:
     )
     if found.clusters < FEW_CLUSTERS:
         yield (
-            f"Caution: with {_count(found.clusters, 'cluster')} of tests only, the true intervals are wider: "
+            f"Caution: with {_count(found.clusters, 'cluster')} of tests only, "
+            f"{'the true intervals are wider' if found.clusters > 1 else 'there are no intervals'}: "
             "no rule can be called better than another."
         )
     else:
@@ -115,7 +151,19 @@ def _scores(found: Scored, count: int) -> Iterator[Table | str]:
             _compared(NAMES.get(name, name), each) for name, each in found.differences.items() if name in shown
         )
     yield table_of("Stated and observed shares of overturning", BINS, found.bins)
+    if wrong := [each for each in found.bins if each.outside]:
+        yield f"The interval of the observed share excludes the stated one in {_listed(wrong)}."
     yield _calibrated(found)
+
+
+def _listed(bins: Sequence[CalibrationBin]) -> str:
+    """Return bins with what was stated and observed."""
+    each_said = (
+        f"the bin {each.low:g} to {each.high:g} (stated {each.stated:.3f}, observed {each.observed.value:.3f} "
+        f"{_range(*each.observed[1:])})"
+        for each in bins
+    )
+    return ", ".join(each_said)
 
 
 def _compared(name: str, each: ScoreEstimate) -> str:
@@ -123,6 +171,8 @@ def _compared(name: str, each: ScoreEstimate) -> str:
     if isnan(each.value):
         return f"There is no test on which {name} can be compared."
     how = "better than" if each.high < 0 else "worse than" if each.low > 0 else "not distinguishable from"
+    if isnan(each.low):
+        return f"The tool and '{name}' are compared in one cluster only: there is no interval."
     interval = _range(each.low, each.high)
     return f"The tool is {how} '{name}': its Brier score differs by {each.value:+.3f} {interval}."
 
@@ -132,10 +182,11 @@ def _calibrated(found: Scored) -> str:
     points = 100 * found.bias.value
     more = "more" if points > 0 else "less"
     low, high = (100 * each for each in found.bias[1:])
-    apart = "the interval includes 0" if low <= 0 <= high else "the interval excludes 0"
+    apart = "includes" if low <= 0 <= high else "excludes"
+    interval = "" if isnan(low) else f" [{low:.2g} {high:.2g}]; the interval {apart} 0"
     return (
-        f"On average, the tool states {abs(points):.2g} percentage points {more} than was observed "
-        f"[{low:.2g} {high:.2g}]; {apart}. The mean gap of the bins is {100 * found.mean_gap:.2g} points."
+        f"On average, the tool states {abs(points):.2g} percentage points {more} than was observed{interval}. "
+        f"The mean gap of the bins is {100 * found.mean_gap:.2g} points."
     )
 
 
@@ -160,7 +211,7 @@ def _data(found: Scored) -> dict[str, Any]:
         error = reason(each)
         tests.append(data_of(ROWS, each) | ({"error": error} if error is not None else {}))
     return {
-        "neighbours": asdict(found.around),
+        "neighbours": _neighbours(found),
         "tests": tests,
         "scores": {name: _score(each) for name, each in found.scores.items()},
         "differences": {name: _list(each) for name, each in found.differences.items()},
@@ -177,6 +228,17 @@ def _data(found: Scored) -> dict[str, Any]:
         if found.ranks
         else None,
     }
+
+
+def _neighbours(found: Scored) -> dict[str, Any]:
+    """Return how neighbours were drawn: of all structures, None where they differ, and of each."""
+    each = [asdict(around) | {"structures": structures} for around, structures in found.drawn.items()]
+    same = {
+        name: value if all(one[name] == value for one in each) else None
+        for name, value in (each[0] if each else asdict(found.around)).items()
+        if name != "structures"
+    }
+    return same | {"drawn": each}
 
 
 def _score(each: RuleScore) -> dict[str, Any]:
@@ -202,7 +264,7 @@ def _cell(each: ScoreEstimate | None) -> str:
 
 
 def _range(low: float | None, high: float | None) -> str:
-    return ABSENT if low is None or high is None else f"[{low:.3f} {high:.3f}]"
+    return ABSENT if low is None or high is None or isnan(low) else f"[{low:.3f} {high:.3f}]"
 
 
 def _count(number: int, what: str) -> str:

@@ -28,13 +28,14 @@ from rocking_cli.studies.experiments.scores import (
     calibration,
     difference,
     distance_from_uniform,
+    fitted_shares,
     mean_gap,
     score,
 )
-from rocking_cli.studies.experiments.table import ObservedTest
+from rocking_cli.studies.experiments.table import OWN, ObservedTest
 from rocking_cli.studies.neighbours import Neighbourhood, follow
 
-TOOL, WITH_UNKNOWN, BASE_RATE, WEST, VELOCITY = "tool", "tool_with_unknown", "base_rate", "west", "velocity"
+TOOL, WITH_UNKNOWN, BASE_RATE, WEST, VELOCITY, FITTED_PGV = OWN
 DRIFT = "0.1"  # Hz, below which the velocity of a record is drift
 
 
@@ -68,11 +69,18 @@ class Stated:
     overturned, unknown : int
         Number of neighbours that overturn, and of those whose outcome is unknown.
     count : int
-        Number of neighbours, under one polarity or two; 0 if the test could not be simulated.
+        Number of neighbours, under one polarity or, if the two differ, under both; 0 if the test could not be
+        simulated.
     west, velocity : float
         1 if the rule states that the structure overturns, 0 if it stands; NaN if it states neither.
     rank : float
         Rank of the observed peak among the neighbours; NaN without one.
+    pgv : float
+        Peak velocity [m/s]: the one of the table or, without it, that of the record.
+    doubtful : bool
+        Whether the structure is said not to have overturned, but its peak lies beyond the critical rotations.
+    around : Neighbourhood, optional
+        How the neighbours were drawn, with the standard deviations of the structure.
     error : RockingError, optional
         Why the test could not be simulated.
     """
@@ -84,6 +92,9 @@ class Stated:
     west: float = nan
     velocity: float = nan
     rank: float = nan
+    pgv: float = nan
+    doubtful: bool = False
+    around: Neighbourhood | None = None
     error: RockingError | None = None
 
     @property
@@ -145,6 +156,15 @@ class Scored:
     def observed(self) -> Sequence[Stated]:
         """The tests that are scored: simulated, and with an observed outcome."""
         return [each for each in self.tests if each.error is None and each.test.overturned is not None]
+
+    @property
+    def drawn(self) -> Mapping[Neighbourhood, Sequence[str]]:
+        """How the neighbours were drawn, each with the structures for which they were."""
+        drawn: dict[Neighbourhood, list[str]] = {}
+        for each in self.tests:
+            if each.around is not None and each.test.structure not in drawn.setdefault(each.around, []):
+                drawn[each.around].append(each.test.structure)
+        return drawn
 
 
 def score_tests(
@@ -217,20 +237,26 @@ def state(test: ObservedTest, structure: Structure, motion: GroundMotion, around
     model = structure.model("nonlinear")
     shaking = in_time(motion.scaled(test.scale), test.time_scale)
     signs = (1, -1) if test.polarity == "both" else (int(test.polarity),)
+    if model.symmetric:  # a reversed motion has the same effect
+        signs = signs[:1]
     drawn = around.drawn(model)
     found = [follow(model, shaking, drawn, polarity=sign, threads=1) for sign in signs]
     peaks = np.concatenate([_peaks(each) for each in found])
     rank = nan
     if test.peak is not None:
         rank = float(((peaks < test.peak).sum() + 0.5 * (peaks == test.peak).sum()) / peaks.size)
+    pgv = _pgv(shaking) if test.pgv is None else test.pgv
     return Stated(
         test,
         sum(int(each.fell.sum()) for each in found),
         sum(int(each.unknown.sum()) for each in found),
         len(signs) * around.count,
         float(shaking.pga_g > min(structure.uplift)),
-        _by_velocity(test, structure, shaking),
+        _by_velocity(pgv, structure),
         rank,
+        pgv,
+        test.overturned is False and test.peak is not None and test.peak > max(model.phi_cr),
+        around.of(model),
     )
 
 
@@ -246,15 +272,17 @@ def _peaks(found: Outcomes) -> Reals:
     return np.where(found.fell | found.unknown, inf, peaks)
 
 
-def _by_velocity(test: ObservedTest, structure: Structure, motion: GroundMotion) -> float:
+def _pgv(motion: GroundMotion) -> float:
+    """Return the peak velocity of a record [m/s], without its drift."""
+    with suppress(InputError):  # too short to be filtered, and to drift
+        motion = process(motion, [parse_step("highpass", DRIFT)])
+    return measure(motion).pgv
+
+
+def _by_velocity(pgv: float, structure: Structure) -> float:
     """Return 1 if the peak velocity exceeds the step that overturns, 0 if not, and NaN if there is no such step."""
     if structure.why_no_block is not None:
         return nan
-    pgv = test.pgv
-    if pgv is None:
-        with suppress(InputError):  # too short to be filtered, and to drift
-            motion = process(motion, [parse_step("highpass", DRIFT)])
-        pgv = measure(motion).pgv
     step = min(structure.equivalence.positive.v_imp, structure.equivalence.negative.v_imp)
     return nan if isnan(step) else float(pgv > step)
 
@@ -309,12 +337,14 @@ def stated_by(tests: Sequence[Stated], seen: Reals) -> dict[str, Reals]:
     seen : ndarray, shape (n,)
         1 for tests that overturned, 0 for others.
     """
+    apart = [each.test.cluster for each in tests], [each.test.half for each in tests]
     rules = {
         TOOL: [each.overturned / each.count for each in tests],
         WITH_UNKNOWN: [(each.overturned + each.unknown) / each.count for each in tests],
-        BASE_RATE: base_rates(seen, [each.test.cluster for each in tests], [each.test.half for each in tests]),
+        BASE_RATE: base_rates(seen, *apart),
         WEST: [each.west for each in tests],
         VELOCITY: [each.velocity for each in tests],
+        FITTED_PGV: fitted_shares(np.array([each.pgv for each in tests]), seen, *apart),
     }
     for name in dict.fromkeys(name for each in tests for name in each.test.forecasts):
         rules[name] = [each.test.forecasts.get(name, nan) for each in tests]

@@ -21,7 +21,10 @@ BINS = 5  # of stated shares, equally wide
 
 
 class ScoreEstimate(NamedTuple):
-    """A number and its interval, 5 to 95 % of the draws of clusters; NaN where it does not exist."""
+    """A number and its interval, 5 to 95 % of the draws of clusters; NaN where it does not exist.
+
+    Tests of a single cluster have no interval, as all draws of them are equal.
+    """
 
     value: float
     low: float
@@ -74,6 +77,11 @@ class CalibrationBin(NamedTuple):
     stated: float
     observed: ScoreEstimate
 
+    @property
+    def outside(self) -> bool:
+        """Whether the mean stated share lies outside the interval of the observed one; False without either."""
+        return self.stated < self.observed.low or self.stated > self.observed.high
+
 
 class ClusterDraws:
     """Draws of clusters with replacement, as many in each draw as there are; the same for every score.
@@ -103,7 +111,7 @@ class ClusterDraws:
             return ScoreEstimate(np.nan, np.nan, np.nan)
         sums = np.bincount(self.of[kept], values[kept], self.count)
         counts = np.bincount(self.of[kept], minlength=self.count).astype(np.float64)
-        return _estimate(float(values[kept].mean()), lambda: (self.weights @ sums, self.weights @ counts))
+        return _estimate(float(values[kept].mean()), counts, lambda: (self.weights @ sums, self.weights @ counts))
 
     def area(self, stated: Reals, seen: Reals) -> ScoreEstimate:
         """Return the area under the curve of hits against false alarms, with its interval."""
@@ -120,11 +128,16 @@ class ClusterDraws:
             w = self.weights
             return np.einsum("dk,kl,dl->d", w, above, w, optimize=True), (w @ fallen) * (w @ standing)
 
-        return _estimate(float(above.sum() / (fallen.sum() * standing.sum())), drawn)
+        return _estimate(float(above.sum() / (fallen.sum() * standing.sum())), fallen + standing, drawn)
 
 
-def _estimate(value: float, drawn: Callable[[], tuple[Reals, Reals]]) -> ScoreEstimate:
-    """Return a ratio with the interval of its draws; draws in which it does not exist are left out."""
+def _estimate(value: float, counts: Reals, drawn: Callable[[], tuple[Reals, Reals]]) -> ScoreEstimate:
+    """Return a ratio with the interval of its draws; draws in which it does not exist are left out.
+
+    `counts` are the tests of each cluster behind the ratio.
+    """
+    if np.count_nonzero(counts) == 1:
+        return ScoreEstimate(value, np.nan, np.nan)
     above, below = drawn()
     there = below > 0
     low, high = np.quantile(above[there] / below[there], RANGE)

@@ -16,7 +16,7 @@ from rocking_cli.units import UnitError, read, units_of
 
 FORECAST = "pred_"
 """How a heading begins whose column has the shares that another rule foretells."""
-OWN = ("tool", "tool_with_unknown", "base_rate", "west", "velocity")
+OWN = ("tool", "tool_with_unknown", "base_rate", "west", "velocity", "fitted_pgv")
 """Names of the rules that `rocking score` computes itself."""
 NOTE = "#"
 """How a heading begins whose column is for people only."""
@@ -43,7 +43,7 @@ class ObservedTest:
     structure, record : str
         The file of the structure, and the file of the motion or a pulse as text.
     overturned : bool or None
-        Whether the structure overturned; None if that was not observed.
+        Whether the structure overturned; None if that was not observed: the test is in no score.
     peak : float or None
         Largest rotation, of either direction [rad].
     censored : bool
@@ -130,20 +130,20 @@ def parse_columns(columns: Mapping[str, Sequence[Any]], name: str = "table") -> 
 
 def parse_tests(sheet: Spreadsheet, folder: Path) -> TableOfTests:
     """Return the tests of a table of text; `folder` is where its paths begin. Raises as `read_tests`."""
-    units = _check_headings(sheet)
-    if not sheet.rows:
-        raise InputError(Problem("the table has no rows below its headings", sheet.file))
     problems: list[Problem] = []
-    tests = [_test(_Cells(sheet, row, units, problems)) for row in sheet.rows]
+    places = _check_headings(sheet, problems)
+    if not sheet.rows:
+        problems.append(Problem("the table has no rows below its headings", sheet.file))
+    tests = [_test(_Cells(sheet, row, places, problems)) for row in sheet.rows]
     if problems:
         raise InputError(*problems)
     return TableOfTests(sheet.file, folder, tests)
 
 
-def _check_headings(sheet: Spreadsheet) -> dict[str, tuple[int, str]]:
-    """Return the place and the unit of each column by its heading without the unit. Raises `InputError`."""
+def _check_headings(sheet: Spreadsheet, problems: list[Problem]) -> dict[str, tuple[int, str]]:
+    """Return the place and the unit of each column by its heading without the unit, and add what is wrong."""
     places: dict[str, tuple[int, str]] = {}
-    problems: list[Problem] = []
+    wrong: set[str] = set()  # columns that are there, but cannot be read
     at = partial(Problem, file=sheet.file, line=sheet.line)
     for k, heading in enumerate(sheet.headings):
         if not heading or heading.startswith(NOTE):
@@ -162,6 +162,7 @@ def _check_headings(sheet: Spreadsheet) -> dict[str, tuple[int, str]]:
         if unit and (kind is None or unit not in units_of(kind)):
             must = f"must be one of {', '.join(units_of(kind))}" if kind else "has no unit"
             problems.append(at(must, field=shown))
+            wrong.add(name)
         if name in places:
             problems.append(at("is the heading of two columns", field=cut(one_line(name))))
         places[name] = k, unit
@@ -170,9 +171,7 @@ def _check_headings(sheet: Spreadsheet) -> dict[str, tuple[int, str]]:
             problems.append(at("the column is missing", field=needed))
     if not {"overturned", "peak"} & set(places):
         problems.append(at("the column is missing: give what was observed", field="overturned", hint="or `peak`"))
-    if problems:
-        raise InputError(*problems)
-    return places
+    return {name: place for name, place in places.items() if name not in wrong}
 
 
 class _Cells:
@@ -238,11 +237,9 @@ class _Cells:
 
 def _test(cells: _Cells) -> ObservedTest:
     for name in ("structure", "record"):
-        if not cells.text(name):
+        if name in cells.places and not cells.text(name):
             cells.wrong(name, "is empty")
     overturned, peak = cells.flag("overturned"), cells.number("peak", "rad", zero=True)
-    if not cells.text("overturned") and not cells.text("peak"):
-        cells.wrong("overturned", "is empty, and no peak is given", "a test needs one of the two")
     forecasts = {
         name.removeprefix(FORECAST): cells.number(name, zero=True, most=1.0)
         for name in cells.places
