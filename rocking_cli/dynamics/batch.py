@@ -218,7 +218,7 @@ def respond_many(
         starts = np.array([[model.q(float(tilt)) for tilt in different] for model in models])
         rows[:, kernels.START] = starts[runs.model, which]
     rows[:, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = etas
-    marks = np.empty((len(runs), kernels.MARKS))
+    marks = np.full((len(runs), kernels.MARKS), np.nan)  # a run that is never computed has failed
     most = DECISIVE - 1 if only_peaks else MOST_IMPACTS  # it is left after more than these
     for name in dict.fromkeys(model.kernel for model in models):
         kernel, own = KERNELS[name], [k for k, model in enumerate(models) if model.kernel == name]

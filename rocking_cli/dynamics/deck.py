@@ -67,7 +67,7 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
     Parameters
     ----------
     marks : ndarray, shape (n, MARKS)
-        Marks of the finished runs, as the kernel fills them.
+        Marks of the finished runs, as the kernel fills them; NaN for a run that was never computed.
     phi_cr : ndarray, shape (n, 2)
         Critical rotations of the positive and the negative direction [rad].
     reach : ndarray, shape (n,)
@@ -77,7 +77,7 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
     passed, crossed = marks[:, kernels.PASSED], marks[:, kernels.CROSSED]
     # What has passed the critical rotation for good has overturned, whatever opens later on.
     overturned = (status == kernels.OVERTURNED) & ~(passed < np.where(np.isnan(crossed), np.inf, crossed))
-    failed = status == kernels.STALLED
+    failed = (status == kernels.STALLED) | np.isnan(status)
     unknown = np.isfinite(passed) & ~overturned & ~failed
     fell_to = np.where(overturned, 1 - 2 * marks[:, kernels.SIDE], 0).astype(np.int64)
     until = np.where(unknown[:, None], kernels.PASSED_PEAK, kernels.PEAK) + np.arange(2)
@@ -85,6 +85,7 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
     warned = np.where(marks[:, kernels.WARNED] <= np.where(unknown, passed, np.inf), marks[:, kernels.WARNED], np.nan)
     bound = (marks[:, kernels.WARNED_PEAK : kernels.WARNED_PEAK + 2] / phi_cr).max(axis=1)
     uplift = marks[:, kernels.FIRST_UPLIFT]
+    impacts = np.where(unknown, marks[:, kernels.PASSED_IMPACTS], marks[:, kernels.IMPACTS])
     return Outcome(
         still_rocking=(status == kernels.STILL_ROCKING) & ~unknown,
         failed=failed,
@@ -94,7 +95,7 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
         peak_ratio=np.where(overturned, np.nan, (peaks / phi_cr).max(axis=1)),
         overturning_time=np.where(overturned, marks[:, kernels.CROSSED], np.nan),
         uplift_time=np.where(unknown & (uplift > passed), np.nan, uplift),
-        impact_count=np.where(unknown, marks[:, kernels.PASSED_IMPACTS], marks[:, kernels.IMPACTS]).astype(np.int64),
+        impact_count=np.nan_to_num(impacts).astype(np.int64),
         end_time=np.where(unknown, np.nan, marks[:, kernels.ENDED]),
         unknown=unknown,
         known_to=np.where(unknown, passed, np.nan),

@@ -68,7 +68,7 @@ def exact_many(
     segments = np.array(segments_of(pulse), dtype=np.float64)
     factors, stretches = polarity_of(polarity) * sizes[0] / pulse.amplitude, sizes[1] / pulse.period
     n = factors.size
-    results = np.empty((n, pulse_motion.RESULTS))
+    results = np.full((n, pulse_motion.RESULTS), np.nan)  # a pulse that is never computed has failed
     if n:
         many = ways.kernel(PULSES)
 
@@ -86,14 +86,14 @@ def exact_many(
     )
     return Outcome(
         still_rocking=np.zeros(n, dtype=bool),
-        failed=status == pulse_motion.SPENT,
+        failed=(status == pulse_motion.SPENT) | np.isnan(status),
         fell_to=fell_to,
         peak_positive=positive,
         peak_negative=negative,
         peak_ratio=np.where(overturned, np.nan, np.maximum(*ratios)),
         overturning_time=np.full(n, np.nan),
         uplift_time=uplift_time.copy(),
-        impact_count=impacts.astype(np.int64),
+        impact_count=np.nan_to_num(impacts).astype(np.int64),
         end_time=np.full(n, np.nan),
         **{name: np.full(n, value) for name, value in UNCHECKED.items()},
     )

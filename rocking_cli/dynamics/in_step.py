@@ -57,7 +57,7 @@ def out_of_step(
     for k, model in enumerate(models):
         mine = np.flatnonzero((own == k) & (marks[:, kernels.IMPACTS] > 0))
         for column in model.columns if mine.size else ():
-            there, found = rows[mine].copy(), np.empty((mine.size, kernels.MARKS))
+            there, found = rows[mine].copy(), np.full((mine.size, kernels.MARKS), np.nan)
             there[:, kernels.STRUCTURE] = 0
             there[:, kernels.START] = [column.q(tilt) for tilt in tilts[mine].tolist()]
             for place, eta, of in zip((kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE), column.eta, model.eta, strict=True):
