@@ -31,10 +31,11 @@ def command(ctx: click.Context, file: str, reading: ReadingOptions, output: Outp
     """Score the stated shares of overturning against the outcomes of shake-table tests.
 
     Each row of the table is a test: the file of a `structure`, the file of a `record` or a pulse, and whether it
-    `overturned` (0 or 1; empty if not observed), or its `peak` with a unit (deg or rad). Optional columns: `censored` (1: the peak was at
-    least this), `scale`, `time_scale`, `polarity` (empty: both, averaged), `cluster` (tests that are not independent;
-    by default those of one record), `half`, `motion` (recorded or commanded), `pgv` in m/s, and `pred_NAME` with the
-    shares of other predictions. Paths are relative to the table. TESTS.csv may be - for standard input.
+    `overturned` (0, 1, or empty if not observed), or its `peak` with a unit. Optional columns: `censored` (1: the peak
+    was at least this), `scale`, `time_scale`, `polarity` (empty: both, averaged), `cluster` (tests that are not
+    independent; by default those of one record), `half`, `motion` (recorded or commanded), `pgv` in m/s, and
+    `pred_NAME` with the shares of other predictions. Paths are relative to the table. TESTS.csv may be - for standard
+    input.
 
     The share of neighbours that overturn is compared with the base rate of other tests, with West's rule (PGA above
     lambda g), with the peak velocity over the velocity step that overturns, with a logistic curve over PGV that is

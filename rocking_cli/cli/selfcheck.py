@@ -12,11 +12,12 @@ from rocking_cli.cli import options, terminal
 @options.as_json
 @click.pass_context
 def command(ctx: click.Context, quick: bool, as_json: bool) -> None:
-    """Check that this installation computes correctly, each result against something that shares no code with it.
+    """Check that this installation computes correctly, against formulas, literal values and a general solver.
 
-    Released blocks are compared with quadrature, thresholds of overturning with the closed form, time histories with a
-    general solver, records with the samples that were written, batches in several threads with those in one, and the
-    shipped machine code with its source run by Python. Temporary files are written and removed.
+    Released blocks and walls are compared with quadrature, thresholds of overturning, filters, shares of neighbours,
+    sliding joints and equivalent blocks with formulas, time histories with a general solver, and records with the
+    samples that were written. Two checks compare results of the same code: batches in several threads with those in
+    one, and the shipped machine code with its source run by Python. Temporary files are written and removed.
 
     A check that cannot be run on this machine is reported, with the reason, and is not counted as passed. If a check
     fails, the output states what to do, and the exit code is 4.

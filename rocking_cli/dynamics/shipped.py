@@ -19,7 +19,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rocking_cli.dynamics.calling import ARRAYS, FUNCTIONS, KernelSet, Layout, symbol
+from rocking_cli.dynamics.calling import ARRAYS, FUNCTIONS, SETS, KernelSet, Layout, symbol
 
 FOLDER = Path(__file__).with_name("ready")
 MANIFEST = "manifest.json"
@@ -31,6 +31,10 @@ MADE_BY = {"numba": "0.61.2", "llvmlite": "0.44.0", "ziglang": "0.17.1"}
 ENDINGS = {"linux": "so", "darwin": "dylib", "win32": "dll"}
 PROCESSORS = {"amd64": "x86_64", "arm64": "aarch64"}
 """Other names of processors."""
+LIBRARIES = (
+    "darwin-aarch64.dylib", "darwin-x86_64.dylib", "linux-aarch64.so", "linux-x86_64.so", "win32-x86_64.dll"
+)  # fmt: skip
+"""The libraries that belong to the package."""
 _ROWS = (ctypes.POINTER(ctypes.c_int64), ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_int64))
 _LOADING = threading.Lock()
 
@@ -40,7 +44,7 @@ class Unusable(ImportError):
 
 
 class Broken(Unusable):
-    """Error: a file of the shipped kernels is damaged or missing, though one for this system belongs to the package."""
+    """Error: the kernels for this system, which belong to the package, are damaged or missing, or do not load."""
 
 
 def source_hash() -> str:
@@ -75,6 +79,16 @@ def is_there() -> bool:
         return False
 
 
+def is_broken() -> bool:
+    """Return whether the kernels for this system, which belong to the package, cannot be used."""
+    try:
+        for each in SETS.values():
+            load(each)
+    except ImportError as error:
+        return isinstance(error, Broken)
+    return False
+
+
 @functools.cache
 def load(kernel: KernelSet) -> Any:
     """Return the function of a kernel. Raises `Unusable` if its library cannot be used."""
@@ -82,7 +96,7 @@ def load(kernel: KernelSet) -> Any:
         try:
             return ctypes.CFUNCTYPE(ctypes.c_int32, *_ROWS)((symbol(kernel.name), _library()))
         except (AttributeError, OSError, ValueError) as error:  # whatever the system says of a library
-            raise Unusable(f"the shipped kernels cannot be loaded: {error}") from error
+            raise Broken(f"{place()} cannot be loaded, reinstall rocking-cli: {error}") from error
 
 
 def forget() -> None:
@@ -96,7 +110,7 @@ def _library() -> ctypes.CDLL:
     """Load the library for this system, and give it the C functions that it calls."""
     at = place()
     listed = manifest()["files"].get(at.name)
-    if struct.calcsize("P") != 8 or (listed is None and not is_there()):
+    if struct.calcsize("P") != 8 or at.name not in LIBRARIES:
         raise Unusable(f"no kernels are shipped for {at.stem}")
     if not is_there():
         raise Broken(f"{at} is missing, reinstall rocking-cli")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from rocking_cli.studies.selfcheck.check import Checked, SelfCheck
+from rocking_cli.studies.selfcheck import Checked, SelfCheck
 from rocking_cli.views.column import Column, data_of, frame_of, of, table_of
 from rocking_cli.views.view import View, number
 
