@@ -64,7 +64,7 @@ def run_json(*arguments):
 
 def test_json_has_the_promised_keys(block):
     got = run_json(block, "--ag", "0.4g", "--period", 0.5)
-    assert set(got) == {"structure", "pulse", "restitution", "directions", "closed_form", "responses"}
+    assert set(got) == {"structure", "pulse", "restitution", "conclusion", "directions", "closed_form", "responses"}
     assert got["structure"] == {"mechanism": "block", "name": "tower"}
     assert got["pulse"] == {
         "shape": "sine",
