@@ -38,6 +38,9 @@ def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False, unk
     return ROCKS if uplifts else NO_UPLIFT
 
 
+HALF_UP = 1e-9  # of a per cent: a share that ends in .5 is rounded up, whatever its last bit
+
+
 def percent(share: float) -> str:
     """Return a share in per cent: two digits below ten per cent, whole numbers above; 100 % only of all.
 
@@ -52,7 +55,7 @@ def percent(share: float) -> str:
         return "0 %"
     if 99.5 <= size < 100:
         return f"{sign}{min(size, 99.9):.3g} %"
-    return f"{sign}{size:.0f} %" if size >= 9.95 else f"{sign}{size:.2g} %"
+    return f"{sign}{size + HALF_UP:.0f} %" if size >= 9.95 else f"{sign}{size:.2g} %"
 
 
 def digits_apart(one: float, other: float, fewest: int) -> int:

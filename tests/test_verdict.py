@@ -62,7 +62,7 @@ LOW = {"uplift_error": -0.33}
         ),
         (
             {"nonlinear": peak(0.4), "linear1": peak(0.45)},
-            "linear1 is good for a first estimate: its peak is 12 % higher",
+            "linear1 is good for a first estimate: its peak is 13 % higher",
             "Disr",
         ),
         (
@@ -384,7 +384,7 @@ def test_every_command_calls_an_outcome_the_same(structure, pulse, word, tmp_pat
 @pytest.mark.parametrize(
     ("share", "said"),
     [(0.0, "0 %"), (1e-6, "0 %"), (0.00049, "0.049 %"), (0.0489, "4.9 %"), (0.0994, "9.9 %"), (0.0996, "10 %"),
-     (-0.33, "-33 %"), (2.83, "283 %"), (1234.5, "123450 %")],
+     (-0.33, "-33 %"), (0.575, "58 %"), (0.125, "13 %"), (0.995, "99.5 %"), (0.9999, "99.9 %"), (1.0, "100 %"), (2.83, "283 %"), (1234.5, "123450 %")],
 )  # fmt: skip
 def test_percentages_have_no_powers_of_ten(share, said):
     assert names.percent(share) == said

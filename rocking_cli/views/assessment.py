@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rocking_cli.studies.assessment import Assessment
+from rocking_cli.studies.conclusion import worst
 from rocking_cli.studies.movements import Watched
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.views import assessment_words as words
@@ -17,6 +18,9 @@ from rocking_cli.views.view import View
 def view(content: Assessment, verified: Verification | None = None) -> View:
     """Show a report: its answer in a sentence, and all its content as plain data."""
     verdicts, watched = words.verdicts(content), Watched(content.mechanism)
+    ends = [
+        end for end in (verified.conclusion if verified is not None else None, content.conclusion) if end is not None
+    ]
     data = {
         "structure": {
             "mechanism": content.mechanism.mechanism,
@@ -25,7 +29,7 @@ def view(content: Assessment, verified: Verification | None = None) -> View:
             "sha256": content.file.checksum,
         },
         "answer": words.in_a_sentence(content, verified),
-        "conclusion": conclusion_data(content.conclusion) if content.conclusion is not None else None,
+        "conclusion": conclusion_data(worst(ends)) if ends else None,
         "doubts": words.doubts(content),
         "parameters": {side.direction.label: side.parameters for side in sides_of(content.structure)},
         "no_block": content.structure.why_no_block,

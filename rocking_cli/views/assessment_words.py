@@ -12,7 +12,7 @@ from rocking_cli.core.advice import Grade
 from rocking_cli.core.equivalence import AGREEMENT
 from rocking_cli.core.size import doubts as doubts_about_size
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.holding import joints_in_words, unknown_after, why_unknown
+from rocking_cli.dynamics.holding import REMEDIES, joints_in_words, remedy, unknown_after, why_unknown
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import SENSE, agreements, bearing, disagree
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -370,9 +370,10 @@ def _doubts(result: MotionResult) -> list[str]:
     contact = result.contacts.get(result.polarity)
     best = result.histories["nonlinear"]
     if best.unknown:
+        said_next = REMEDIES[remedy(best)]
         said.append(
             f"The outcome is unknown after {best.known_to:.4g} s (see Joints): the structure may overturn. "
-            "Describe the structure as a linkage that hinges at the joint that opens, or assume that it overturns."
+            f"{said_next[0].upper()}{said_next[1:]}."
         )
     elif contact is not None and not contact.stands:
         said.append("Its joints do not hold under this motion (see Joints): the result is not valid beyond that time.")

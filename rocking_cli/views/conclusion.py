@@ -29,7 +29,10 @@ ENGLISH = {
     "ratio": "capacity over demand {ratio:.{digits}g}",
     "past": "{motion} takes the structure past its capacity",
     "unproven": "neither satisfied nor disproved under {motion}",
-    "elastic": "Not counted: the stiffness of {names}, because an elastic tie would never let the structure fall.",
+    "elastic": (
+        "Not counted: the stiffness of {names}, because the code counts only what still acts at collapse, and an "
+        "elastic tie has no strength."
+    ),
     "too_few": "Not counted: time histories under {names}, because the code requires more records.",
     "too_few_and_past": (
         "Not counted, because the code requires more records: time histories under {names}, which take the structure "
@@ -51,7 +54,10 @@ ITALIAN = {
     "ratio": "rapporto tra capacità e domanda {ratio:.{digits}g}",
     "past": "{motion} porta la struttura oltre la sua capacità",
     "unproven": "né soddisfatta né smentita sotto {motion}",
-    "elastic": ("Non è messa in conto la rigidezza di {names}: con una catena elastica la struttura non cadrebbe mai."),
+    "elastic": (
+        "Non è messa in conto la rigidezza di {names}: la norma considera solo ciò che agisce fino al collasso, e una "
+        "catena elastica non ha resistenza."
+    ),
     "too_few": "Non sono messe in conto le analisi sotto {names}: la norma richiede più accelerogrammi.",
     "too_few_and_past": (
         "Non sono messe in conto, perché la norma richiede più accelerogrammi, le analisi sotto {names}, che portano "

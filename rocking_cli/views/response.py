@@ -29,7 +29,7 @@ from rocking_cli.studies.neighbours import FRACTILES, Neighbours
 from rocking_cli.studies.response import Histories, Question, Response, Runs, concluded
 from rocking_cli.views import processing
 from rocking_cli.views.cautions import cautions_of
-from rocking_cli.views.conclusion import conclusion_data, governing_polarity, headline
+from rocking_cli.views.conclusion import conclusion_data, governing_polarity, headline, next_in_words
 from rocking_cli.views.contact import contact_data, contact_words
 from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.view import ABSENT, Table, View, force_unit, in_degrees, number
@@ -351,9 +351,10 @@ def _tables(
     parts: list[Table | str] = []
     for polarity, histories in runs.items():
         of = f"{title}, polarity {polarity}" if len(runs) > 1 else title
-        heading = f"{of} ({headline(concluded({polarity: histories}, near))})"
+        end = concluded({polarity: histories}, near)
+        heading = f"{of} ({headline(end)})"
         parts += [_table(heading, histories, shown, polarity), verdict(histories, shown.assumed_friction(polarity))]
-        parts += [str(near[polarity])] if polarity in near else []
+        parts += [f"{near[polarity]} {'' if end.remedy else next_in_words(end)}".rstrip()] if polarity in near else []
         parts += shown.contact_words(polarity)
         if shown.etas is not None:
             for name, run in histories.items():
@@ -377,7 +378,11 @@ def _table(title: str, histories: Histories, shown: HistoryDetails, polarity: in
         ["peak rotation, clockwise", *(in_degrees(run.peak_positive) for run in runs), "deg"],
         ["peak rotation, anticlockwise", *(in_degrees(run.peak_negative) for run in runs), "deg"],
         ["first uplift", *(number(run.uplift_time, 5) for run in runs), "s"],
-        ["overturning time", *(number(run.overturning_time, 5) for run in runs), "s"],
+        [
+            "overturning time",
+            *(ABSENT if unknown and not run.unknown else number(run.overturning_time, 5) for run in runs),
+            "s",
+        ],
         ["impacts", *(str(len(run.felt)) for run in runs), ""],
     ]
     if unknown:

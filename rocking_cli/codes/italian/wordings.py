@@ -132,13 +132,13 @@ def _of_ties(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[str]:
 def _of_stretch(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[str]:
     """Return remarks on ties of too large elongation, forces with large displacements, and blocks that move far."""
     said: dict[str, str] = {}
-    for state, at in states.items():
+    for state, at in sorted(states.items(), key=lambda pair: -pair[1].d):  # the largest displacement verified
         if state != "SLV" and at.demand is None:
             continue
         held = pulls(curve, at.d)
         for pull in held:
             e = pull.elongation
-            if pull.strain is None and state == "SLV" and e > 0:
+            if pull.strain is None and e > 0:
                 text = _told("follows", state=state, name=pull.name, e=e, most=100 * STRETCHED, length=e / STRETCHED)
                 said.setdefault(pull.name, text)
             elif pull.strain is not None and pull.strain > STRETCHED:

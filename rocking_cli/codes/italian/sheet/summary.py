@@ -51,11 +51,12 @@ def part(say: Language, found: ItalianVerification, shown: Mapping[str, ItalianV
 
 def verdict(say: Language, first: str, where: str, each: ItalianVerified) -> Sentence:
     """Return the sentence with the verdict on a direction."""
-    at, counts, passes = each.states[first], each.counts, each.passes(first)
+    (damage, nonlinear), by = OF_STATE[first], each.governing[first]
+    at, counts, passes = each.states[first], each.methods[by], each.passes(first)
     if passes is None or at.demand is None or at.ratio is None or counts.a_g is None or counts.demand is None:
         return Sentence(say.say("no_state", where=where, state=first))
-    if each.governs == "damage":
-        other = each.methods["nonlinear"].a_g or 0.0
+    if by == damage:
+        other = each.methods[nonlinear].a_g or 0.0
         why = say.say("why_damage", a_g=counts.a_g, other=other, asked=counts.demand)
     else:
         why = say.say(
