@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
+from math import cos, sin
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -15,6 +16,7 @@ from rocking_cli.ask.ground_motions import OF_FILES, ReadingArguments, check_kno
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.score import motions_of, tests_of
 from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.dynamics.model import MEASURED
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.studies.neighbours import Neighbourhood
 
@@ -145,11 +147,11 @@ def _of_trace(
 
     trace = free if isinstance(free, Trace) else read_trace(Path(free))
     found = fit_trace(ready, trace, free_geometry=free_geometry)
-    eta = ready.with_eta(found.eta.value)  # or it says why the structure cannot have this restitution
+    ready.with_eta(found.eta.value)  # or it says why the structure cannot have this restitution
     if out is not None:
         if source is None:
             raise InputError(Problem("needs the file of the structure, of which it is a copy", field="`out`"))
-        _write(eta, source, Path(out), found)
+        _write(ready, source, Path(out), found)
     return Answer(
         "calibrate",
         found,
@@ -164,6 +166,7 @@ def _write(structure: Structure, source: Path, out: Path, found: TraceFit) -> No
     from rocking_cli.io.files import keep_apart, write_whole
     from rocking_cli.io.yaml_edit import with_fields
     from rocking_cli.io.yaml_file import read_text
+    from rocking_cli.structure import Structure
     from rocking_cli.structure_file import parse_structure
 
     keep_apart([("`out`", out)], [str(source), found.trace.name])
@@ -174,10 +177,19 @@ def _write(structure: Structure, source: Path, out: Path, found: TraceFit) -> No
     where = f"fitted to {Path(found.trace.name).name}, {len(found.etas)} impacts"
     fields = {
         "restitution" if mechanism.rocks_both_ways else "rebound": f"{found.eta.value:.4f}  # {where}",
-        "uncertainty": f"{{{words}}}  # restitution: scatter from impact to impact, {where}",
+        "uncertainty": f"{{{words}}}  # restitution: scatter from impact to impact, drawn towards {MEASURED:g}",
     }
+    if found.p is not None and found.alpha is not None:
+        size = 1.5 * mechanism.gravity / found.p.value**2  # 2R of a uniform block
+        for name, length in (("width", size * sin(found.alpha.value)), ("height", size * cos(found.alpha.value))):
+            fields[name] = f"{length:.5g}  # of a uniform block with p and alpha as {where}"
     text = with_fields(read_text(source, "structure"), fields, str(source))
-    parse_structure(text, str(out), structure.name)  # as it will be read
+    written = Structure(parse_structure(text, str(out), structure.name)).equivalence.positive  # as it will be read
+    if found.p is not None and found.alpha is not None:
+        for one, other in ((written.p, found.p.value), (written.phi_cr, found.alpha.value)):
+            if abs(one / other - 1) > 1e-3:
+                what = f"cannot be written: no width and height give p = {found.p.value:.4g} rad/s and alpha = "
+                raise InputError(Problem(f"{what}{found.alpha.value:.4g} rad with the other fields", field="`out`"))
     write_whole(out, lambda file: file.write(text.encode("utf-8")))
 
 

@@ -24,6 +24,8 @@ def draw_trace(found: TraceFit, name: str) -> Figure:
     axes, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1))
     style.heading(axes, f"{name}: free rocking, eta = {found.eta.value:.4f}, scatter {found.scatter:.2g}")
     times, degrees = found.trace.times, np.degrees
+    start, end = found.part
+    axes.set_xlim(start - 0.15 * (end - start), end + 0.02 * (end - start))  # lifting and holding may be far longer
     axes.plot(
         times,
         degrees(found.trace.angles),
@@ -34,9 +36,9 @@ def draw_trace(found: TraceFit, name: str) -> Figure:
         label="trace",
     )
     axes.plot(*_broken(times, degrees(found.fitted)), color=style.INK, linewidth=style.MEDIUM, label="fit with one eta")
-    rest = degrees(found.offset + found.drift * times)
+    rest = degrees(found.offset.value + found.drift.value * times)
     axes.plot(times, rest, color=style.FAINT, linewidth=style.THIN, linestyle="--", label="at rest")
-    at_impact = degrees(found.offset + found.drift * found.impacts)
+    at_impact = degrees(found.offset.value + found.drift.value * found.impacts)
     axes.plot(found.impacts, at_impact, label="impacts", linestyle="none", **{**style.MARKED, "markersize": 5})
     axes.set_ylabel("angle [deg]", fontsize=style.LABEL)
     axes.legend(loc="upper right", ncols=2, **style.LEGEND)

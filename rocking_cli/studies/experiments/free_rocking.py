@@ -22,7 +22,7 @@ Reals = NDArray[np.float64]
 PIECES = 400  # of the spline of energy and inertia over the rotation
 KNOTS = 16  # of a quarter cycle
 COARSE = 2  # to see how many half-cycles are needed
-LEAST = 1e-4  # of the rate of the first impact: the structure is at rest when that of another is smaller
+LEAST = 2e-3  # of the rate of the first impact: the structure is at rest when that of another is smaller
 MOST = 1000  # half-cycles
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
@@ -77,20 +77,34 @@ class MechanismSide:
         return CubicSpline(phi, lift), CubicSpline(phi, self.mechanism.kinetic_inertia(phi, self.direction))
 
 
-@dataclass(frozen=True)
-class BlockSide:
-    """A free-standing block of one rigid body, by its frequency parameter p [rad/s] and slenderness alpha [rad]."""
+@dataclass(frozen=True, eq=False)
+class ScaledSide:
+    """A direction whose frequency parameter and slenderness are other multiples of those of a given one.
 
-    p: float
-    end: float  # alpha
+    Parameters
+    ----------
+    side : RockingSide
+        The given direction.
+    p, alpha : float
+        Factors on both.
+    """
+
+    side: RockingSide
+    p: float = 1.0
+    alpha: float = 1.0
+
+    @property
+    def end(self) -> float:
+        """Largest rotation [rad]."""
+        return self.alpha * self.side.end
 
     def lift(self, phi: Reals) -> Reals:
-        """Return the potential energy over I_o, p^2 (cos(alpha - phi) - cos alpha), divided by the rotation."""
-        return np.asarray(self.p**2 * np.sin(self.end - phi / 2) * np.sinc(phi / (2 * np.pi)))
+        """Return the potential energy over the rotation, divided by the rotation."""
+        return self.alpha * self.side.lift(phi / self.alpha)
 
     def inertia(self, phi: Reals) -> Reals:
-        """Return 1."""
-        return np.ones_like(phi)
+        """Return the inertia."""
+        return self.side.inertia(phi / self.alpha) / self.p**2
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,24 +7,24 @@ impacts, and peaks, would be biased by noise and drift.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq, least_squares
+from scipy.optimize import least_squares
 
 from rocking_cli.core import Direction
+from rocking_cli.dynamics.model import MEASURED
 from rocking_cli.errors import InputError
 from rocking_cli.structure import Structure
 from rocking_cli.studies.experiments.free_rocking import (
-    BlockSide,
     FreeRocking,
     MechanismSide,
     RockingSide,
+    ScaledSide,
     free_rocking,
     quarter_cycles,
 )
@@ -33,6 +33,7 @@ from rocking_cli.studies.experiments.trace import Trace
 Reals = NDArray[np.float64]
 
 LEAST_IMPACTS = 3
+MOST_IMPACTS = 15  # that have a restitution of their own: later ones are too small to say anything of it
 LEAST_SAMPLES = 30
 LEAST_ALPHA = 0.07  # rad: for smaller slenderness, p and alpha cannot be told apart
 LEAST_ANGLE = 1e-6  # of the rotation at which the structure overturns: no instrument sees less
@@ -40,21 +41,57 @@ LONGEST = 1e6  # s of a trace
 SEEN = 3.0  # times the noise: half-cycles with larger peaks are seen
 ABOVE = 5.0  # times the noise: the least largest angle of a trace
 FARTHEST = 0.98  # of the critical rotation: the largest release
+AFTER = 0.9  # of the quarter cycle before the first impact is fitted: what is before may be lifting, or a hand
+GROWS = 0.2  # of the release: a half-cycle that exceeds the one before on its side by more begins another test
 GAP = 3.0  # times the usual interval: what is longer is a gap
 STARTS = (0.6, 0.75, 0.85, 0.9, 0.94, 0.97, 0.985)  # restitutions, where the times of impacts do not lead to a fit
-FITS = 0.05  # of the largest angle: a residual up to which no other start is tried; a missed impact gives more
+FITS = 0.05  # of the release: a residual up to which no other start is tried; a missed impact gives more
 WINDOWS = (3, 6, 12, 24, 48, 1_000_000)  # impacts up to which the trace is fitted, one after the other
 NEAR = 0.03  # of the largest angle: levels of rest that are nearer lead to the same fit
 FURTHER = 3  # further starts, if the residual of the first is large
-POOR = 0.2  # of the largest angle: a residual with which the trace is no free rocking of the structure
-RELEASE, START, OFFSET, DRIFT, ETA = range(5)  # the parameters; further etas, or ln p and ln alpha, follow
+POOR = 0.2  # of the release: a residual with which the trace is no free rocking of the structure
+OTHER = 0.08  # of the release: a residual, with an eta for each impact, with which it is that of another structure
+EXACT = 1e-5  # of the release: noise below which the fit itself is not exact
+PATTERN = 2.0  # times that of white noise: a variance of means of residuals that says more than noise
+STEP = 0.02  # of the errors of the geometry, by which their effect is found
+RELEASE, START, OFFSET, DRIFT, ETA = range(5)  # the parameters; further etas follow, and the geometry
+PRIOR = 1.0  # impacts with the scatter of other bodies that count with those of the trace
+DROP = 1.6  # of the log-likelihood: an interval of 5 to 95 % (1.35 of many impacts)
+OFF = 1.2  # times the noise: a residual that says more than noise
+SIDES, P, ALPHA = range(
+    3
+)  # of the geometry: ln of the ratio of alpha of both sides, of p, of alpha, each over the file's
 
 
 class Estimated(NamedTuple):
-    """A fitted number and its standard deviation due to noise."""
+    """A fitted number and its standard deviation."""
 
     value: float
     deviation: float
+
+
+class Pooled(NamedTuple):
+    """Mean and scatter of the restitutions of impacts.
+
+    Parameters
+    ----------
+    mean : float
+        Weighted mean.
+    weights : ndarray, shape (n,)
+        Weights of the mean.
+    scatter : float
+        Standard deviation of the restitution from impact to impact, drawn towards that of other bodies; never 0.
+    seen : float
+        That of these impacts alone, beyond what noise makes of it; 0 if noise suffices.
+    interval : tuple of float
+        Values of it that these impacts leave open, 5 to 95 %.
+    """
+
+    mean: float
+    weights: Reals
+    scatter: float
+    seen: float
+    interval: tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,22 +103,31 @@ class TraceFit:
     trace : Trace
         The trace.
     eta : Estimated
-        Coefficient of restitution of all impacts.
+        Coefficient of restitution: the mean of the impacts. Its deviation is that of noise, of the scatter from impact
+        to impact, and of the geometry of the structure.
     etas : sequence of Estimated
-        That of each impact that is seen, each fitted on its own.
+        That of each impact that is seen, each fitted on its own; deviations are those of noise.
+    pooled : Pooled
+        Mean and scatter of the restitutions, without the error of the geometry.
     release : float
         Angle at which the structure was let go, in the sense of the trace [rad]; like all that follows but `fitted`, it
         is that of the fit with a restitution for each impact, which a scatter does not disturb.
     release_time : float
         Time at which it was let go [s].
-    offset, drift : float
+    offset, drift : Estimated
         Angle of the trace at time zero with the structure at rest [rad], and its rate [rad/s].
     impacts : ndarray, shape (k,)
         Times of the impacts that are seen [s].
     fitted, own : ndarray, shape (n,)
-        Angle at each sample [rad], with one restitution for all impacts and with one for each.
+        Angle at each sample [rad], with one restitution for all impacts and with one for each; NaN where the trace is
+        not fitted: before the structure falls, and long after it has come to rest.
     noise : float
-        Noise of the trace, from the differences of neighbouring samples [rad].
+        Noise of the trace, from the differences of neighbouring residuals [rad].
+    patterned : bool
+        Whether means of some neighbouring residuals are larger than white noise leaves; deviations include that.
+    sides : Estimated or None
+        Slenderness in the positive sense of the trace over that in the negative one, as a multiple of this ratio in the
+        structure; None if it rocks in one direction only.
     p, alpha : Estimated, optional
         Frequency parameter [rad/s] and slenderness [rad], if they were fitted.
     """
@@ -89,32 +135,30 @@ class TraceFit:
     trace: Trace
     eta: Estimated
     etas: Sequence[Estimated]
+    pooled: Pooled
     release: float
     release_time: float
-    offset: float
-    drift: float
+    offset: Estimated
+    drift: Estimated
     impacts: Reals
     fitted: Reals
     own: Reals
     noise: float
+    patterned: bool
+    sides: Estimated | None
     p: Estimated | None = None
     alpha: Estimated | None = None
 
     @property
     def scatter(self) -> float:
-        """Standard deviation of the restitution from impact to impact, beyond what noise makes of it.
+        """Standard deviation of the restitution from impact to impact, drawn towards that of other bodies; never 0."""
+        return self.pooled.scatter
 
-        It is that by which the etas scatter as much as they do (Paule and Mandel 1982); 0 if noise alone suffices. The
-        last impact is too uncertain to count.
-        """
-        etas = np.array(self.etas[:-1])
-
-        def excess(variance: float) -> float:
-            weights = 1 / (etas[:, 1] ** 2 + variance)
-            mean = (weights @ etas[:, 0]) / weights.sum()
-            return float(weights @ (etas[:, 0] - mean) ** 2) - (len(etas) - 1)
-
-        return 0.0 if excess(0.0) <= 0 else float(np.sqrt(brentq(excess, 0.0, 1.0)))
+    @property
+    def part(self) -> tuple[float, float]:
+        """Times between which the trace is fitted [s]."""
+        times = self.trace.times[np.isfinite(self.own)]
+        return float(times[0]), float(times[-1])
 
     @property
     def residual(self) -> float:
@@ -129,23 +173,30 @@ class TraceFit:
 
 @dataclass(frozen=True, eq=False)
 class _Problem:
-    """The samples to fit, and the structure; angles are in units of the largest, `scale`, times from `origin`."""
+    """The samples to fit, and the structure; angles are in units of the release, `scale`, times from `origin`."""
 
     times: Reals
     angles: Reals
+    origin: float
     scale: float
-    sides_of: Callable[[Reals], Mapping[Direction, RockingSide]]
+    level: float  # of rest, where the fit starts
+    contact: float  # about the time of the first impact
+    crossings: Sequence[tuple[float, bool]]  # times of the impacts, and whether they are in a gap
+    sides: Mapping[Direction, RockingSide]
     first: Direction
-    rebounds: bool
     sense: float  # of the trace, that of a positive rotation of the structure
-    more: int = 0  # parameters of the geometry
+    free: Sequence[int] = ()  # what of the geometry is fitted, too: the last parameters
+    geometry: tuple[float, float, float] = (0.0, 0.0, 0.0)  # what is held, or added to
 
     def motion(self, x: Reals) -> FreeRocking:
         """Return the rotation over the time from the release, for parameters."""
-        etas, sides = x[ETA : x.size - self.more], self.sides_of(x[x.size - self.more :])
+        etas, geometry = x[ETA : x.size - len(self.free)], np.array(self.geometry)
+        geometry[list(self.free)] += x[x.size - len(self.free) :]
+        one, p, alpha = np.exp(geometry)
+        sides = {each: ScaledSide(side, p, alpha * one ** (int(each) / 2)) for each, side in self.sides.items()}
         release = min(x[RELEASE] * self.scale, 0.9999 * sides[self.first].end)
         until = float(self.times[-1] - x[START])
-        return free_rocking(sides, int(self.first) * release, etas, rebounds=self.rebounds, until=until)
+        return free_rocking(sides, int(self.first) * release, etas, rebounds=len(sides) == 1, until=until)
 
     def model(self, x: Reals, times: Reals) -> Reals:
         """Return the angle at times for parameters."""
@@ -157,18 +208,17 @@ class _Problem:
         return _rms(self.model(x, self.times) - self.angles)
 
     def fit(self, x: Reals, until: float = np.inf) -> tuple[Reals, Reals, float]:
-        """Return the fitted parameters, their covariance and the root mean square of the residual, up to a time."""
+        """Return the fitted parameters, the Jacobian and the root mean square of the residual, up to a time."""
         inside = self.times <= until
         times, angles = self.times[inside], self.angles[inside]
         low, high = np.full(x.size, -np.inf), np.full(x.size, np.inf)
-        low[RELEASE], low[ETA : x.size - self.more], high[ETA : x.size - self.more] = 1e-6, 0.02, 1.2
+        etas, geometry = slice(ETA, x.size - len(self.free)), slice(x.size - len(self.free), None)
+        low[RELEASE], low[etas], high[etas], low[geometry], high[geometry] = 1e-6, 0.02, 1.2, -1.0, 1.0
         found = least_squares(
             lambda each: self.model(each, times) - angles, np.clip(x, low, high), bounds=(low, high),
-            x_scale="jac", diff_step=1e-6, xtol=1e-10, ftol=1e-10, gtol=1e-10, max_nfev=20,
+            x_scale="jac", diff_step=1e-6, xtol=1e-8, ftol=1e-6, gtol=1e-10, max_nfev=20,
         )  # fmt: skip
-        free = max(angles.size - x.size, 1)
-        covariance = np.linalg.pinv(found.jac.T @ found.jac) * (2 * found.cost / free)
-        return found.x, covariance, float(np.sqrt(2 * found.cost / angles.size))
+        return found.x, found.jac, float(np.sqrt(2 * found.cost / angles.size))
 
 
 def fit_trace(structure: Structure, trace: Trace, *, free_geometry: bool = False) -> TraceFit:
@@ -179,14 +229,15 @@ def fit_trace(structure: Structure, trace: Trace, *, free_geometry: bool = False
     structure : Structure
         The structure; its geometry is held.
     trace : Trace
-        Angle over time, of either sense, with any sampling and gaps; it may begin before the release.
+        Angle over time, of either sense, with any sampling and gaps. Lifting and holding may come before the release,
+        and rest, or another test, after the rocking: the largest release is fitted.
     free_geometry : bool
         Whether p and alpha are fitted as well; only of a free-standing block.
 
     Returns
     -------
     TraceFit
-        One restitution for all impacts, and one for each.
+        The restitution, its scatter, and that of each impact.
 
     Raises
     ------
@@ -195,108 +246,67 @@ def fit_trace(structure: Structure, trace: Trace, *, free_geometry: bool = False
     MechanismError
         If the structure has no critical rotation.
     """
-    sides_of, more = _geometry(structure, free_geometry)
-    noise, kept = _from_peak(trace)
-    scale = float(np.abs(kept.angles - np.median(kept.angles)).max())
-    if not scale > ABOVE * noise:
-        raise InputError(
-            f"{trace.name}: the noise, {np.degrees(noise):.2g} deg, is not below a fifth of the largest angle, "
-            f"{np.degrees(scale):.2g} deg: there is no motion to fit"
-        )
-    most = max(side.end for side in sides_of(np.array(more)).values())
-    if scale > 2 * most:
-        raise InputError(
-            f"{trace.name}: the largest angle, {np.degrees(scale):.3g} deg, is more than twice the rotation at which "
-            f"the structure overturns, {np.degrees(most):.3g} deg: check the unit of the angles, and the structure"
-        )
-    if scale < LEAST_ANGLE * most:
-        raise InputError(
-            f"{trace.name}: the largest angle, {np.degrees(scale):.3g} deg, is below {LEAST_ANGLE:g} times the "
-            f"rotation at which the structure overturns, {np.degrees(most):.3g} deg: check the unit of the angles"
-        )
-    both = structure.mechanism.rocks_both_ways
-    origin = float(kept.times[0])
-    base = _Problem(
-        kept.times - origin, kept.angles / scale, scale, sides_of, Direction.POSITIVE, not both, 1.0, len(more)
-    )
-    count = max(len(_crossings(base.times, base.angles - level, _held_off(noise / scale))) for level in _levels(base))
-    if both and count < LEAST_IMPACTS:
+    mechanism = structure.mechanism
+    structure.ask("trace")
+    if free_geometry:
+        _check_free(structure)
+    sides: dict[Direction, RockingSide] = {
+        direction: MechanismSide(mechanism, direction, each.reference)
+        for direction, each in zip(Direction, structure.statics, strict=True)
+        if direction in mechanism.directions
+    }
+    noise = _noise(trace)
+    symmetric = structure.model("nonlinear").symmetric
+    problems, count = [], 0
+    for level in _levels(trace, noise, max(side.end for side in sides.values())):
+        for first in [Direction.POSITIVE] if symmetric else sides:
+            problem = _problem(trace, level, noise, sides, first)
+            if problem is not None:
+                problems.append(problem)
+                count = max(count, len(problem.crossings))
+    if not problems or (mechanism.rocks_both_ways and count < LEAST_IMPACTS):
         raise InputError(_too_few(trace, count))
-    tries = [
-        problem
-        for problem in (replace(base, first=first, sense=sense) for first in Direction for sense in (1.0, -1.0))
-        if both or problem.first in structure.mechanism.directions
-    ]
-    if structure.model("nonlinear").symmetric:
-        tries = [each for each in tries if each.first is Direction.POSITIVE]
     try:
         with np.errstate(all="ignore"):  # a trial far off has no finite residual, and is no best fit
-            fits = [fit for each in tries for fit in [_common(each, np.array(more), noise / scale)] if fit is not None]
-            if not fits:
-                raise InputError(_too_few(trace, 0))
-            problem, x, covariance, _ = min(fits, key=lambda each: each[3])
-            return _each(problem, x, covariance, trace, noise, origin, free_geometry)
+            problem, x = _common(problems)
+            level = float(x[OFFSET] + x[DRIFT] * problem.contact / problem.times[-1]) * problem.scale
+            again = _problem(trace, level, noise, sides, problem.first)  # so that nothing of the lifting is fitted
+            return _each(*_common([again or problem]), trace, structure, free_geometry)
     except (ArithmeticError, np.linalg.LinAlgError):
         what = "no motion of this structure fits: check its size, and the units of times and angles"
         raise InputError(f"{trace.name}: {what}") from None
 
 
-def _geometry(
-    structure: Structure, free: bool
-) -> tuple[Callable[[Reals], Mapping[Direction, RockingSide]], list[float]]:
-    """Return how both directions follow from the parameters of the geometry, and the start of these."""
+def _check_free(structure: Structure) -> None:
+    """Raise `InputError` unless p and alpha of a structure can be fitted."""
     mechanism = structure.mechanism
-    structure.ask("trace")
-    if not free:
-        sides: dict[Direction, RockingSide] = {
-            direction: MechanismSide(mechanism, direction, each.reference)
-            for direction, each in zip(Direction, structure.statics, strict=True)
-            if direction in mechanism.directions
-        }
-        return lambda _: sides, []
     if mechanism.mechanism != "block" or not mechanism.is_bare:
         raise InputError(
             f"{structure.name}: p and alpha can be fitted of a free-standing block (mechanism: block) only"
         )
-    block = structure.equivalence.positive
-    if block.phi_cr < LEAST_ALPHA:
+    alpha = structure.equivalence.positive.phi_cr
+    if alpha < LEAST_ALPHA:
         raise InputError(
-            f"{structure.name}: alpha is {block.phi_cr:.3g} rad. Below {LEAST_ALPHA:g} rad, a trace does not tell p "
+            f"{structure.name}: alpha is {alpha:.3g} rad. Below {LEAST_ALPHA:g} rad, a trace does not tell p "
             "and alpha apart: hold the geometry"
         )
 
-    def sides_of(geometry: Reals) -> Mapping[Direction, RockingSide]:
-        side = BlockSide(block.p * float(np.exp(geometry[0])), block.phi_cr * float(np.exp(geometry[1])))
-        return dict.fromkeys(Direction, side)
 
-    return sides_of, [0.0, 0.0]
-
-
-def _from_peak(trace: Trace) -> tuple[float, Trace]:
-    """Return the noise of a trace, and the trace without samples in which it rises to its first peak.
-
-    Raises `InputError` if it is too short or too long, or if nothing moves.
-    """
+def _noise(trace: Trace) -> float:
+    """Return the noise of a trace. Raises `InputError` if it is too short or too long, or is no numbers."""
+    if not (np.isfinite(trace.times).all() and np.isfinite(trace.angles).all()):
+        raise InputError(f"{trace.name}: times and angles must be finite numbers: leave out samples without an angle")
     if trace.times.size < LEAST_SAMPLES:
         raise InputError(f"{trace.name}: a trace needs at least {LEAST_SAMPLES} samples, got {trace.times.size}")
     length = float(trace.times[-1] - trace.times[0])
     if length > LONGEST:
         raise InputError(f"{trace.name}: the trace lasts {length:.3g} s: check the unit of the times")
-    third = np.diff(trace.angles, 3)  # has 20 times the variance of white noise
-    noise = float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20))
-    size = np.abs(trace.angles - np.median(trace.angles))
-    most = float(size.max())
-    if not most > 0:
-        raise InputError(f"{trace.name}: the angle is the same in all samples: there is no motion to fit")
-    start = int(np.argmax(size > most / 2))
-    end = start + int(np.argmax(np.append(size[start:], 0.0) < most / 2))
-    peak = start + int(np.argmax(size[start:end]))
-    rises = size[0] < size[peak] - max(SEEN * 2 * noise, 0.02 * most)
-    return noise, Trace(trace.name, trace.times[peak:], trace.angles[peak:]) if rises else trace
+    third = np.abs(np.diff(trace.angles, 3))  # has 20 times the variance of white noise
+    return float(np.median(third) or np.mean(third)) / 0.6745 / float(np.sqrt(20))
 
 
 def _rms(values: Reals) -> float:
-    return float(np.sqrt(np.mean(values**2)))
+    return float(np.sqrt(np.nanmean(values**2)))
 
 
 def _too_few(trace: Trace, count: int) -> str:
@@ -306,20 +316,75 @@ def _too_few(trace: Trace, count: int) -> str:
     )
 
 
-def _levels(problem: _Problem) -> list[float]:
-    """Return what the angle at rest may be: zero, the end of the trace, the middle between its extremes."""
-    angles = problem.angles
+def _levels(trace: Trace, noise: float, most: float) -> list[float]:
+    """Return what the angle at rest may be [rad]: zero, the end of the trace, the middle between its extremes.
+
+    Raises `InputError` if no angle is large enough, or all are too large.
+    """
+    angles = trace.angles
+    size = float(np.ptp(angles)) / 2
+    if not size > 0:
+        raise InputError(f"{trace.name}: the angle is the same in all samples: there is no motion to fit")
+    if not size > ABOVE * noise:
+        raise InputError(
+            f"{trace.name}: the noise, {np.degrees(noise):.2g} deg, is not below a fifth of the largest angle, "
+            f"{np.degrees(size):.2g} deg: there is no motion to fit"
+        )
+    if size > 2 * most:
+        raise InputError(
+            f"{trace.name}: the largest angle, {np.degrees(size):.3g} deg, is more than twice the rotation at which "
+            f"the structure overturns, {np.degrees(most):.3g} deg: check the unit of the angles, and the structure"
+        )
+    if size < LEAST_ANGLE * most:
+        raise InputError(
+            f"{trace.name}: the largest angle, {np.degrees(size):.3g} deg, is below {LEAST_ANGLE:g} times the "
+            f"rotation at which the structure overturns, {np.degrees(most):.3g} deg: check the unit of the angles"
+        )
+    levels: list[float] = []
     tail = angles[-max(angles.size // 10, 5) :]
-    levels = [0.0]
-    for level in (float(np.median(tail)), float((angles.max() + angles.min()) / 2)):
-        if min(abs(level - each) for each in levels) > NEAR:
+    for level in (float(np.median(tail)), 0.0, float((angles.max() + angles.min()) / 2)):
+        if all(abs(level - each) > NEAR * size for each in levels):
             levels.append(level)
     return levels
 
 
-def _held_off(noise: float) -> float:
-    """Return how far an angle must be from rest to have a sign, in units of the largest."""
-    return max(4 * noise, 0.01)
+def _problem(
+    trace: Trace, level: float, noise: float, sides: Mapping[Direction, RockingSide], first: Direction
+) -> _Problem | None:
+    """Find the rocking in a trace, and return what is to be fitted; None if nothing falls with this level of rest."""
+    times, angles = trace.times, trace.angles - level
+    top = int(np.argmax(np.abs(angles)))
+    release, sign = abs(float(angles[top])), float(np.sign(angles[top]))
+    sizes = np.linspace(0.002, FARTHEST, 80) * sides[first].end
+    table = quarter_cycles(sides[first], sizes)
+    if len(sides) == 1:  # no angle changes its sign: the first impact follows soon after half of the fall
+        falls = np.flatnonzero(sign * angles[top:] < release / 2)[:1]
+        crossings = [(float(times[top + k]) + 0.25 * float(np.interp(release, sizes, table)), True) for k in falls]
+    else:
+        crossings = [each for each in _crossings(times, angles, max(4 * noise, 0.01 * release)) if each[0] > times[top]]
+    if not crossings:
+        return None
+    contact = crossings[0][0]
+    for _ in range(3):  # what was lifted further before does not count
+        falling = (times > contact - np.interp(release, sizes, table)) & (times < contact)
+        highest = float(np.max(sign * angles[falling], initial=0.0))
+        release = highest if highest > release / 2 else release  # or it falls more slowly than this structure
+    since = contact - AFTER * float(np.interp(release, sizes, table))
+    until = np.inf
+    if len(sides) > 1:
+        edges = [*(each[0] for each in crossings), np.inf]
+        peaks = [np.max(np.abs(angles[(times >= a) & (times < b)]), initial=0.0) for a, b in pairwise(edges)]
+        grows = np.flatnonzero(np.array(peaks[1:]) > np.array([release, *peaks[:-2]]) + GROWS * release) + 1
+        crossings = crossings[: grows[0] + 1] if grows.size else crossings
+        until = crossings[-1][0] if grows.size else 2 * crossings[-1][0] - since
+    inside = (times >= since) & (times <= until)
+    if inside.sum() < LEAST_SAMPLES:
+        return None
+    origin = float(times[inside][0])
+    return _Problem(
+        times[inside] - origin, trace.angles[inside] / release, origin, release, level / release, contact - origin,
+        [(when - origin, hidden) for when, hidden in crossings], sides, first, sign * int(first),
+    )  # fmt: skip
 
 
 def _crossings(times: Reals, angles: Reals, hold: float) -> list[tuple[float, bool]]:
@@ -327,125 +392,202 @@ def _crossings(times: Reals, angles: Reals, hold: float) -> list[tuple[float, bo
     usual = float(np.median(np.diff(times)))
     found: list[tuple[float, bool]] = []
     far = np.flatnonzero(np.abs(angles) > hold)
-    for one, other in pairwise(far):
-        if angles[one] * angles[other] < 0:
-            part = slice(one, other + 1)
-            when = float(np.interp(0.0, *_increasing(angles[part], times[part])))
-            found.append((when, bool(np.diff(times[part]).max() > GAP * usual)))
+    for k in np.flatnonzero(np.diff(np.sign(angles[far]))):
+        one, other = far[k], far[k + 1]
+        part = slice(one, other + 1)
+        share = angles[one] / (angles[one] - angles[other])
+        when = float(times[one] + share * (times[other] - times[one]))
+        found.append((when, bool(np.diff(times[part]).max() > GAP * usual)))
     return found
 
 
-def _increasing(values: Reals, times: Reals) -> tuple[Reals, Reals]:
-    """Return the ends of a part of a trace, in order of the values."""
-    pair = np.array([values[0], values[-1]]), np.array([times[0], times[-1]])
-    return pair if values[0] < values[-1] else (pair[0][::-1], pair[1][::-1])
-
-
-def _starts(problem: _Problem, geometry: Reals, level: float, noise: float) -> list[Reals]:
+def _starts(problem: _Problem) -> list[Reals]:
     """Return where a fit may start, best first: the restitution by the times of impacts, then given ones."""
-    angles = problem.angles - level
-    crossings = _crossings(problem.times, angles, _held_off(noise))
-    if problem.rebounds:
-        crossings = []
-    before = angles[problem.times <= (crossings[0][0] if crossings else np.inf)]
-    if not before.size:
-        return []
-    extreme = float(before[int(np.argmax(np.abs(before)))])
-    if extreme * problem.sense * int(problem.first) <= 0:
-        return []
-    release = min(abs(extreme), FARTHEST * problem.sides_of(geometry)[problem.first].end / problem.scale)
-    sides = problem.sides_of(geometry)
-    sizes = np.linspace(0.002, 0.98, 80) * sides[problem.first].end
-    table = quarter_cycles(sides[problem.first], sizes)
-    quarter = float(np.interp(release * problem.scale, sizes, table))
-    if crossings:
-        start = crossings[0][0] - quarter
-    else:
-        start = float(problem.times[int(np.argmax(np.abs(angles) < 0.95 * abs(extreme)))]) - 0.3 * quarter
+    side = problem.sides[problem.first]
+    sizes = np.linspace(0.002, 0.98, 80) * side.end
+    table = quarter_cycles(side, sizes)
+    release = min(1.0, FARTHEST * side.end / problem.scale)
+    start = problem.contact - float(np.interp(release * problem.scale, sizes, table))
     etas = list(STARTS)
     spans = [
         (k, (after - when) / 2)
-        for k, ((when, hidden), (after, also)) in enumerate(pairwise(crossings), 1)
+        for k, ((when, hidden), (after, also)) in enumerate(pairwise(problem.crossings), 1)
         if not hidden and not also
     ]
     if len(spans) > 1:
         peaks = np.interp([each[1] for each in spans], table, sizes)
-        heights = np.log(peaks * sides[problem.first].lift(peaks))
+        heights = np.log(peaks * side.lift(peaks))
         slope = float(np.polyfit([each[0] for each in spans], heights, 1)[0])
         etas.insert(0, float(np.clip(np.exp(slope / 2), 0.3, 0.995)))
-    return [np.array([release, start, level, 0.0, eta, *geometry]) for eta in etas]
+    return [np.array([release, start, problem.level, 0.0, eta]) for eta in etas]
 
 
-def _common(problem: _Problem, geometry: Reals, noise: float) -> tuple[_Problem, Reals, Reals, float] | None:
-    """Fit one restitution for all impacts; None if no start of this sense is possible."""
-    best: tuple[_Problem, Reals, Reals, float] | None = None
-    held = replace(problem, sides_of=partial(_held, problem.sides_of, geometry), more=0)
-    starts = [start[: ETA + 1] for level in _levels(problem) for start in _starts(problem, geometry, level, noise)]
+def _common(problems: Sequence[_Problem]) -> tuple[_Problem, Reals]:
+    """Fit one restitution for all impacts to each part of a trace that may be the rocking; return the best."""
+    starts = [(each, x) for each in sorted(problems, key=lambda each: -each.times[-1]) for x in _starts(each)]
     # Those by the times of impacts first, then those that are nearest to the trace.
-    first = [each for each in starts if each[ETA] not in STARTS]
-    rest = sorted((each for each in starts if each[ETA] in STARTS), key=held.distance)
-    for x in [*first, *rest[:FURTHER]]:
+    first = [each for each in starts if each[1][ETA] not in STARTS]
+    rest = sorted((each for each in starts if each[1][ETA] in STARTS), key=lambda each: each[0].distance(each[1]))
+    best, least = starts[0], np.inf
+    for problem, x in [*first, *rest[:FURTHER]]:
         for count in WINDOWS:  # over ever longer parts of the trace, so that no impact is missed or added
-            impacts = held.motion(x).impacts + x[START]
+            impacts = problem.motion(x).impacts + x[START]
             until = impacts[count - 1] if count <= impacts.size else np.inf
-            x, covariance, rms = held.fit(x, until)
-            if until >= held.times[-1] or rms > POOR:
+            x, _, rms = problem.fit(x, until)
+            if until >= problem.times[-1] or rms > POOR:
                 break
-        if best is None or rms < best[3]:
-            best = held, x, covariance, rms
-        if best[3] < FITS:
+        if rms < least:
+            best, least = (problem, x), rms
+        if least < FITS:
             break
-    if best is None or not problem.more:
-        return best
-    x, covariance, rms = problem.fit(np.append(best[1], geometry))
-    return problem, x, covariance, rms
+    return best
 
 
-def _held(
-    sides_of: Callable[[Reals], Mapping[Direction, RockingSide]], geometry: Reals, _: Reals
-) -> Mapping[Direction, RockingSide]:
-    """Return both directions of a geometry that is held."""
-    return sides_of(geometry)
+def _freed(problem: _Problem, x: Reals, free: Sequence[int]) -> tuple[_Problem, Reals, Reals]:
+    """Fit some of the geometry, too; return the problem that holds it, the parameters, and its covariance."""
+    apart = replace(problem, free=free)
+    x, jacobian, _ = apart.fit(np.append(x, np.zeros(len(free))))
+    geometry = np.array(problem.geometry)
+    geometry[list(free)] += x[-len(free) :]
+    misfit = apart.model(x, apart.times) - apart.angles
+    noise = max(_noise_of(misfit), EXACT)
+    factor = noise**2 * max(1.0, _pattern(misfit, noise, len(problem.crossings) * 6))
+    covariance = factor * np.asarray(np.linalg.pinv(jacobian.T @ jacobian))[-len(free) :, -len(free) :]
+    return replace(problem, geometry=tuple(geometry.tolist())), x[: -len(free)], covariance
 
 
-def _each(
-    problem: _Problem, x: Reals, covariance: Reals, trace: Trace, noise: float, origin: float, free: bool
-) -> TraceFit:
+def _each(problem: _Problem, x: Reals, trace: Trace, structure: Structure, free_geometry: bool) -> TraceFit:
     """Fit a restitution for each impact, and return both fits in the units of the trace. Raises `InputError`."""
-    fitted = problem.model(x, trace.times - origin) * problem.scale
-    if not _rms(trace.angles - fitted) < POOR * problem.scale:
-        share = _rms(trace.angles - fitted) / problem.scale
-        raise InputError(
-            f"{trace.name}: the best fit is off by {100 * share:.2g} % of the largest angle (root mean square): this "
-            "is not free rocking of this structure. Check its size, and the unit of the angles"
+    times, scale = problem.times, problem.scale
+    one = problem.distance(x)
+    if not one < POOR:
+        raise InputError(_is_other(problem, x, one, trace, structure))
+    # Errors of width and height alike, in ln p and ln alpha, which move the mean.
+    size = structure.model("nonlinear").scatter.slenderness / np.sqrt(2)
+    errors = np.array([[0.0, size], [-size / 2, -size]])
+    p = alpha = sides = None
+    if free_geometry:
+        problem, x, covariance = _freed(problem, x, [P, ALPHA])
+        errors, block = np.linalg.cholesky(covariance).T, structure.equivalence.positive
+        values = np.exp(problem.geometry[P:]) * (block.p, block.phi_cr)
+        p, alpha = (
+            Estimated(float(v), float(v * d)) for v, d in zip(values, np.sqrt(np.diag(covariance)), strict=True)
         )
-    motion = problem.motion(x)
-    inside = motion.impacts[:-1] + x[START] < problem.times[-1]
-    count = int(np.count_nonzero(inside & (motion.peaks[1:] > SEEN * noise)))
-    if count < LEAST_IMPACTS:
-        raise InputError(_too_few(trace, count))
-    split = np.concatenate([x[:ETA], np.full(count, x[ETA]), x[ETA + 1 :]])
-    own, own_covariance, _ = problem.fit(split)
-    total = float(problem.times[-1])
-    deviation, own_deviation = np.sqrt(np.diag(covariance)), np.sqrt(np.diag(own_covariance))
-    p = alpha = None
-    if free:
-        side = problem.sides_of(x[-2:])[problem.first]
-        assert isinstance(side, BlockSide)
-        p, alpha = Estimated(side.p, side.p * deviation[-2]), Estimated(side.end, side.end * deviation[-1])
-    drift = float(own[DRIFT]) * problem.scale / total
+    own, count, solve, noise, pattern = _own(problem, x, trace)
+    if len(problem.sides) > 1 and problem.distance(x) > OFF * noise:
+        apart, other, covariance = _freed(problem, x, [SIDES])
+        least = problem.distance(own) ** 2
+        if apart.distance(other) ** 2 - least < 0.1 * (problem.distance(x) ** 2 - least):  # it explains the scatter
+            problem, x = apart, other
+            ratio = float(np.exp(problem.sense * problem.geometry[SIDES]))
+            sides = Estimated(ratio, ratio * float(np.sqrt(covariance[0, 0])))
+            own, count, solve, noise, pattern = _own(problem, x, trace)
+    if not problem.distance(own) < OTHER:
+        raise InputError(_is_other(problem, x, problem.distance(own), trace, structure))
+    covariance = noise**2 * max(1.0, pattern) * solve @ solve.T
+    deviation = np.sqrt(np.diag(covariance))
+    last = ETA + count - 1  # left out: it is that of all that follow, too
+    pooled = pool(own[ETA:last], covariance[ETA:last, ETA:last], MEASURED)
+    w = pooled.weights
+    variance = w @ covariance[ETA:last, ETA:last] @ w + pooled.scatter**2 * (w @ w)
+    for error in errors:
+        geometry = np.array(problem.geometry) + STEP * np.append(0.0, error)
+        moved = solve @ (replace(problem, geometry=tuple(geometry)).model(own, times) - problem.model(own, times))
+        variance += (w @ moved[ETA:last] / STEP) ** 2
+    total, origin = float(times[-1]), problem.origin
+    drift = Estimated(float(own[DRIFT]) * scale / total, float(deviation[DRIFT]) * scale / total)
+    to_zero, part = np.array([1.0, -origin / total]), slice(OFFSET, DRIFT + 1)
+    offset = Estimated(
+        float(to_zero @ own[part]) * scale, float(np.sqrt(to_zero @ covariance[part, part] @ to_zero)) * scale
+    )
+    after = trace.times - origin
+    fitted = (after >= 0) & (after <= total)
     return TraceFit(
         trace,
-        Estimated(float(x[ETA]), float(deviation[ETA])),
-        [Estimated(float(own[ETA + k]), float(own_deviation[ETA + k])) for k in range(count)],
-        problem.sense * int(problem.first) * float(own[RELEASE]) * problem.scale,
+        Estimated(pooled.mean, float(np.sqrt(variance))),
+        [Estimated(float(own[k]), float(deviation[k])) for k in range(ETA, last + 1)],
+        pooled,
+        problem.sense * int(problem.first) * float(own[RELEASE]) * scale,
         float(own[START]) + origin,
-        float(own[OFFSET]) * problem.scale - drift * origin,
+        offset,
         drift,
         problem.motion(own).impacts[:count] + float(own[START]) + origin,
-        fitted,
-        problem.model(own, trace.times - origin) * problem.scale,
-        noise,
+        np.where(fitted, problem.model(x, after) * scale, np.nan),
+        np.where(fitted, problem.model(own, after) * scale, np.nan),
+        noise * scale,
+        pattern > PATTERN,
+        sides,
         p,
         alpha,
     )
+
+
+def _is_other(problem: _Problem, x: Reals, off: float, trace: Trace, structure: Structure) -> str:
+    """Say that a trace is not of this structure, and which frequency parameter fits better, if one does."""
+    said = (
+        f"{trace.name}: the best fit is off by {100 * off:.2g} % of the release (root mean square): this is not free "
+        "rocking of this structure. Check its size, and the units of angles and times"
+    )
+    other, y, _ = _freed(problem, x, [P])
+    if other.distance(y) > off / 2:
+        return said
+    p = structure.p * np.exp(other.geometry[P])
+    return f"{said}; p = {p:.3g} rad/s fits better than {structure.p:.3g} rad/s, its own"
+
+
+def _own(problem: _Problem, x: Reals, trace: Trace) -> tuple[Reals, int, Reals, float, float]:
+    """Fit a restitution for each impact that is seen, from one for all.
+
+    Return the parameters, the number of impacts, the inverse of the Jacobian, the noise, and the pattern of residuals.
+    """
+    motion, noise = problem.motion(x), _noise_of(problem.model(x, problem.times) - problem.angles)
+    inside = motion.impacts[:-1] + x[START] < problem.times[-1]
+    count = int(np.count_nonzero(inside & (motion.peaks[1:] > SEEN * noise * problem.scale)))
+    if count < LEAST_IMPACTS:
+        raise InputError(_too_few(trace, count))
+    count = min(count, MOST_IMPACTS)
+    own, jacobian, _ = problem.fit(np.concatenate([x[:ETA], np.full(count, x[ETA]), x[ETA + 1 :]]))
+    rocking = problem.times < problem.motion(own).impacts[count - 1] + own[START]  # a coarse digit may hide in rest
+    misfit = (problem.model(own, problem.times) - problem.angles)[rocking]
+    noise = max(_noise_of(misfit), EXACT)
+    return own, count, np.asarray(np.linalg.pinv(jacobian)), noise, _pattern(misfit, noise, 6 * count)
+
+
+def _noise_of(misfit: Reals) -> float:
+    """Return the noise from the differences of neighbouring residuals, which no slow misfit enters."""
+    return _rms(np.diff(misfit)) / float(np.sqrt(2))
+
+
+def _pattern(misfit: Reals, noise: float, parts: int) -> float:
+    """Return the variance of means of parts of the residual, over that of white noise."""
+    size = max(2, misfit.size // parts)
+    means = misfit[: misfit.size // size * size].reshape(-1, size).mean(axis=1)
+    return float(np.mean(means**2)) * size / noise**2
+
+
+def pool(etas: Reals, covariance: Reals, usual: float) -> Pooled:
+    """Return mean and scatter of restitutions with errors.
+
+    Parameters
+    ----------
+    etas : ndarray, shape (n,)
+        Restitutions of impacts.
+    covariance : ndarray, shape (n, n)
+        Covariance of their errors.
+    usual : float
+        Scatter of other bodies, towards which that of few impacts is drawn.
+    """
+    scatters = np.geomspace(1e-5, 0.5, 150)
+    inverse = np.linalg.inv(covariance + scatters[:, None, None] ** 2 * np.eye(etas.size))
+    weights = inverse.sum(axis=2) / inverse.sum(axis=(1, 2))[:, None]
+    off = etas - (weights @ etas)[:, None]
+    chi = np.einsum("ki,kij,kj->k", off, inverse, off)
+    likelihood = (np.linalg.slogdet(inverse)[1] - np.log(inverse.sum(axis=(1, 2))) - chi) / 2
+    best = int(np.argmax(likelihood))
+    inside = scatters[likelihood > likelihood[best] - DROP]
+    drawn = likelihood - PRIOR * (np.log(scatters) + (usual / scatters) ** 2 / 2)
+    each = np.exp(drawn - drawn.max())
+    scatter = float(np.sqrt(each.sum() / (each @ scatters**-2)))
+    low, seen = (0.0 if best == 0 else float(scatters[best]) for best in (np.searchsorted(scatters, inside[0]), best))
+    w = weights[best]
+    return Pooled(float(w @ etas), w, scatter, seen, (low, float(inside[-1])))
