@@ -72,7 +72,7 @@ def calibrate(
         Number of neighbours of each test at each point of the grid, at least 1, by default 40; with `tests` only.
     out : str or Path, optional
         Write a copy of the file of the structure with the fitted `restitution` and its scatter (`uncertainty`) to this
-        YAML file; with `free` only.
+        YAML file, and with `free_geometry` width and height too; with `free` only.
     threads : int, optional
         Number of tests at a time; by default, one for each processor.
     readings : tuple of (Reading, Reading or None), optional
@@ -85,7 +85,7 @@ def calibrate(
     Returns
     -------
     Answer of TraceFit or JointRegion
-        From a trace: `eta`, its `scatter` from impact to impact, `etas`, `release`, `offset` and `drift`. From tests:
+        From a trace: `eta`, its `scatter` from impact to impact, `etas`, `release`, `offset`, `drift`. From tests:
         the log-likelihood over the grid, the `best` point and the `ranges` of the joint region of 90 %.
 
     Raises

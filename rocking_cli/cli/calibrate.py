@@ -78,10 +78,11 @@ ETA = QuantityKind("restitution", "", "0.8", "0.8:0.99", 1e-3, 1.0)
 def command(file: str, reading: ReadingOptions, output: Output, **question: Any) -> None:
     """Find the coefficient of restitution of a structure from what was measured on it.
 
-    With --free, the whole trace of a free-rocking test is fitted at once: time and angle of the release, one
-    restitution for all impacts, and offset and drift of the instrument; the geometry is that of FILE. A second fit with
-    a restitution for each impact tells how much it scatters, which is what neighbours should draw. The trace may begin
-    before the release, and have any sampling, gaps and either sense. -o writes both numbers into a copy of FILE.
+    With --free, the trace of a free-rocking test is fitted at once: time and angle of the release, the restitution, and
+    offset and drift of the instrument; the geometry is that of FILE. A restitution for each impact tells how much it
+    scatters, which is what neighbours should draw. The trace may have lifting, holding and rest in it, any sampling,
+    gaps and either sense. -o writes restitution and scatter, and with --free-geometry width and height, into a copy of
+    FILE.
 
     With --tests, the outcomes of shake-table tests give the likelihood over slenderness and restitution. Outcomes alone
     leave a ridge of pairs that explain them about as well: the region is shown, and nothing is written.

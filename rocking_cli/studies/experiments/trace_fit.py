@@ -436,9 +436,10 @@ def _common(problems: Sequence[_Problem]) -> tuple[_Problem, Reals]:
             x, _, rms = problem.fit(x, until)
             if until >= problem.times[-1] or rms > POOR:
                 break
+        same = abs(rms - least) < 1e-3 * rms  # two starts lead there
         if rms < least:
             best, least = (problem, x), rms
-        if least < FITS:
+        if least < FITS or same:
             break
     return best
 
