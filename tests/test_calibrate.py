@@ -145,6 +145,7 @@ class TestFit:
         assert found.part[0] == pytest.approx(let_go + 0.1 * times[0], abs=0.05)
         assert found.impacts[:3] == pytest.approx(let_go + np.array(times[:3]), abs=0.01)
 
+    @pytest.mark.rest
     def test_of_two_tests_the_larger_is_fitted(self):
         angles, times = simulate(ALPHA, P, [ETA] * 61, RELEASE, 60)
         small, _ = simulate(ALPHA, P, [ETA] * 61, 0.5 * RELEASE, 60)
@@ -164,6 +165,7 @@ class TestFit:
         part = np.sqrt(usual.eta.deviation**2 - sharp.eta.deviation**2)  # of 10 % of slenderness, 3.5 % of p
         assert part == pytest.approx(0.0033 * 3.5 / 3, rel=0.8)
 
+    @pytest.mark.rest
     def test_sides_that_differ_are_no_scatter(self):
         """One side of 5 % more alpha; the rates go on, as the inertia of both is the same."""
         motion = free_rocking(
@@ -281,6 +283,7 @@ class TestRefusals:
         for wrong in (np.nan, np.inf):
             some = np.where(times == 1.0, wrong, angles)
             assert "must be finite numbers" in self.refused(Trace("t", times, some))
+        assert "and times increase" in self.refused(Trace("t", times[::-1], angles))
         with warnings.catch_warnings():  # a fit that wanders far off says so in words, if at all
             warnings.simplefilter("error")
             self.refused(Trace("t", 1e-4 * times, 1e-5 * angles))

@@ -294,8 +294,9 @@ def _check_free(structure: Structure) -> None:
 
 def _noise(trace: Trace) -> float:
     """Return the noise of a trace. Raises `InputError` if it is too short or too long, or is no numbers."""
-    if not (np.isfinite(trace.times).all() and np.isfinite(trace.angles).all()):
-        raise InputError(f"{trace.name}: times and angles must be finite numbers: leave out samples without an angle")
+    if not (np.isfinite(trace.angles).all() and np.isfinite(trace.times).all() and (np.diff(trace.times) > 0).all()):
+        what = "times and angles must be finite numbers, and times increase: leave out samples without an angle"
+        raise InputError(f"{trace.name}: {what}")
     if trace.times.size < LEAST_SAMPLES:
         raise InputError(f"{trace.name}: a trace needs at least {LEAST_SAMPLES} samples, got {trace.times.size}")
     length = float(trace.times[-1] - trace.times[0])
