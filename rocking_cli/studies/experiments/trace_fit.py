@@ -50,7 +50,7 @@ WINDOWS = (3, 6, 12, 24, 48, 1_000_000)  # impacts up to which the trace is fitt
 NEAR = 0.03  # of the largest angle: levels of rest that are nearer lead to the same fit
 FURTHER = 3  # further starts, if the residual of the first is large
 POOR = 0.2  # of the release: a residual with which the trace is no free rocking of the structure
-OTHER = 0.08  # of the release: a residual, with an eta for each impact, with which it is that of another structure
+OTHER = 0.1  # of the release: a residual, with an eta for each impact, with which it is that of another structure
 EXACT = 1e-5  # of the release: noise below which the fit itself is not exact
 PATTERN = 2.0  # times that of white noise: a variance of means of residuals that says more than noise
 STEP = 0.02  # of the errors of the geometry, by which their effect is found
@@ -448,7 +448,9 @@ def _common(problems: Sequence[_Problem]) -> tuple[_Problem, Reals]:
 def _freed(problem: _Problem, x: Reals, free: Sequence[int]) -> tuple[_Problem, Reals, Reals]:
     """Fit some of the geometry, too; return the problem that holds it, the parameters, and its covariance."""
     apart = replace(problem, free=free)
-    x, jacobian, _ = apart.fit(np.append(x, np.zeros(len(free))))
+    x = np.append(x, np.zeros(len(free)))
+    for _ in range(4):  # a valley, along which one fit may not come to its end
+        x, jacobian, _ = apart.fit(x)
     geometry = np.array(problem.geometry)
     geometry[list(free)] += x[-len(free) :]
     misfit = apart.model(x, apart.times) - apart.angles
@@ -548,7 +550,7 @@ def _own(problem: _Problem, x: Reals, trace: Trace) -> tuple[Reals, int, Reals, 
     if count < LEAST_IMPACTS:
         raise InputError(_too_few(trace, count))
     count = min(count, MOST_IMPACTS)
-    own, jacobian, _ = problem.fit(np.concatenate([x[:ETA], np.full(count, x[ETA]), x[ETA + 1 :]]))
+    own, jacobian, _ = problem.fit(np.concatenate([x[:ETA], np.full(count, x[ETA])]))
     rocking = problem.times < problem.motion(own).impacts[count - 1] + own[START]  # a coarse digit may hide in rest
     misfit = (problem.model(own, problem.times) - problem.angles)[rocking]
     noise = max(_noise_of(misfit), EXACT)
@@ -579,7 +581,7 @@ def pool(etas: Reals, covariance: Reals, usual: float) -> Pooled:
     usual : float
         Scatter of other bodies, towards which that of few impacts is drawn.
     """
-    scatters = np.geomspace(1e-5, 0.5, 150)
+    scatters = np.geomspace(1e-5, 0.5, 400)  # the first is taken for 0
     inverse = np.linalg.inv(covariance + scatters[:, None, None] ** 2 * np.eye(etas.size))
     weights = inverse.sum(axis=2) / inverse.sum(axis=(1, 2))[:, None]
     off = etas - (weights @ etas)[:, None]
@@ -590,6 +592,5 @@ def pool(etas: Reals, covariance: Reals, usual: float) -> Pooled:
     drawn = likelihood - PRIOR * (np.log(scatters) + (usual / scatters) ** 2 / 2)
     each = np.exp(drawn - drawn.max())
     scatter = float(np.sqrt(each.sum() / (each @ scatters**-2)))
-    low, seen = (0.0 if best == 0 else float(scatters[best]) for best in (np.searchsorted(scatters, inside[0]), best))
-    w = weights[best]
-    return Pooled(float(w @ etas), w, scatter, seen, (low, float(inside[-1])))
+    seen, low, high = (0.0 if each == scatters[0] else float(each) for each in (scatters[best], inside[0], inside[-1]))
+    return Pooled(float(weights[best] @ etas), weights[best], scatter, seen, (low, high))
