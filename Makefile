@@ -16,7 +16,8 @@ PYTEST := -m pytest -n auto --dist worksteal
 LATER := rest or docs or types or kernels
 
 .PHONY: setup constraints demo selfcheck test test-all test-newest test-oldest test-kernels test-versions test-elsewhere damage soak fuzz fields \
-	properties lint type contracts check bench kernels same-kernels validation scoreboard stub pictures docs release clean
+	properties lint type contracts check bench kernels same-kernels validation scoreboard trust trust-check stub pictures \
+	docs release clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
 
@@ -110,8 +111,17 @@ soak: setup  ## What takes too long for the tests, an hour: damaged stores, race
 validation: setup  ## Write docs/validation.md anew
 	$(BIN)/python docs/make_validation.py
 
+EXPERIMENTS := $(or $(ROCKING_EXPERIMENTS),../shared/experiments)
 scoreboard: setup  ## Write the line of this version into docs/scoreboard.md; ROCKING_EXPERIMENTS is the folder of the tests
-	$(BIN)/python docs/make_scoreboard.py "$(ROCKING_EXPERIMENTS)"
+	$(BIN)/python docs/make_scoreboard.py "$(EXPERIMENTS)"
+
+trust: setup  ## Write docs/how_far_to_trust_it.md and its parts anew, an hour
+	$(BIN)/python docs/make_traces.py
+	$(BIN)/python scripts/middle_of_the_scale.py "$(EXPERIMENTS)"
+	$(BIN)/python docs/make_trust.py "$(EXPERIMENTS)"
+
+trust-check: setup  ## Whether that page is stale, two minutes; without the tests nothing is checked
+	$(BIN)/python docs/make_trust.py "$(EXPERIMENTS)" --check
 
 KERNELS := out/kernels
 kernels:  ## Compile the kernels that are shipped, rocking_cli/dynamics/ready; PYTHON up to 3.13, READY=FOLDER for another place

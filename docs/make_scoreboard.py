@@ -31,7 +31,7 @@ from rocking_cli.studies.neighbours import Neighbourhood
 DOCS = Path(__file__).resolve().parent
 PAGE = DOCS / "scoreboard.md"
 HEADS = ("set", "version", "tests", "clusters", "Brier score", "drift", "log loss", "right", "area", "mean gap")
-BOULDERS, SHAKEBOT = "granite boulders", "shakebot pulses"
+BOULDERS, SHAKEBOT, RATES = "granite boulders", "shakebot pulses", "shakebot pulses, by base rates"
 GRID = (np.geomspace(0.02, 0.4, 12), np.geomspace(0.002, 2.0, 13))  # slenderness, and half diagonal [m]
 ROUGH = Neighbourhood(20)
 SAME = 5e-4  # difference of Brier scores that rounding to three digits hides
@@ -77,9 +77,10 @@ def motion(name: str) -> GroundMotion:
     return parse_pulse(name).sampled()
 
 
-def shakebot(source: Path) -> Scored:
-    """Fit a block to every other test of each posture, and score the shares of the remaining tests."""
-    stated: list[Stated] = []
+@cache
+def postures(source: Path) -> dict[str, list[ObservedTest]]:
+    """Return the tests of each posture to which a block can be fitted, with the name of this block."""
+    found = {}
     with (source / "shakebot_pulses.csv").open(encoding="utf-8") as stream:
         rows = sorted(csv.DictReader(stream), key=lambda row: (row["set"], row["date"], row["time"]))
     for posture, group in groupby(rows, key=lambda row: row["set"]):
@@ -90,24 +91,43 @@ def shakebot(source: Path) -> Scored:
             )
             for k, row in enumerate(group)
         ]  # fmt: skip
-        name = fitted(tests[::2])
-        print(
-            f"{posture}: slenderness and half diagonal [m] {name}, fitted to {len(tests[::2])} tests", file=sys.stderr
-        )
-        found = score_tests(tests, lambda _, name=name: structure(name), motion)
+        name, inside = fitted(tests[::2])
+        refused = "" if inside else ": left out, as this lies on the edge of the grid"
+        print(f"{posture}: slenderness and half diagonal [m] {name}, {len(tests[::2])} tests{refused}", file=sys.stderr)
+        if inside:
+            found[name] = tests
+    return found
+
+
+def shakebot(source: Path) -> Scored:
+    """Fit a block to every other test of each posture, and score the shares of the remaining tests."""
+    stated: list[Stated] = []
+    for name, tests in postures(source).items():
+        found = score_tests(tests[1::2], lambda _, name=name: structure(name), motion)
         stated += found.tests
-    judged = scored(stated, Neighbourhood())
-    return scored([each for each in judged.tests if each.test.half == "b"], Neighbourhood())
+    return scored(stated, Neighbourhood())
 
 
-def fitted(tests: list[ObservedTest]) -> str:
-    """Return the name of the block of the grid to which the outcomes are likeliest."""
+def rates(source: Path) -> Scored:
+    """Score the base rate of each posture: the share of every other test that overturned, on the remaining tests."""
+    stated: list[Stated] = []
+    for tests in postures(source).values():
+        outcomes = [bool(each.overturned) for each in tests[::2]]
+        stated += [Stated(each, sum(outcomes), 0, len(outcomes)) for each in tests[1::2]]
+    return scored(stated, Neighbourhood())
 
-    def likelihood(name: str) -> float:
+
+def fitted(tests: list[ObservedTest]) -> tuple[str, bool]:
+    """Return the name of the block of the grid to which the outcomes are likeliest, and whether it is off all edges."""
+
+    def likelihood(place: tuple[float, float]) -> float:
+        name = f"{place[0]:.4g} {place[1]:.4g}"
         found = score_tests(tests, lambda _: structure(name), motion, ROUGH)
         return -found.scores["tool"].log_loss.value
 
-    return max((f"{alpha:.4g} {size:.4g}" for alpha, size in product(*GRID)), key=likelihood)
+    best = max(product(*GRID), key=likelihood)
+    inside = all(values[0] < each < values[-1] for each, values in zip(best, GRID, strict=True))
+    return f"{best[0]:.4g} {best[1]:.4g}", inside
 
 
 SETS: dict[str, tuple[Callable[[Path], Scored], str, str]] = {
@@ -125,7 +145,14 @@ SETS: dict[str, tuple[Callable[[Path], Scored], str, str]] = {
         "of the table differed by a factor of about two. Posture, sign and size of the rock are not documented, so a "
         "block (slenderness and half diagonal) is fitted to every other test of each posture, which also takes up a "
         "constant factor, and the remaining tests are scored. Such a fit measures no rock, and the scores are those "
-        "of the motions as much as of the tool.",
+        "of the motions as much as of the tool. A posture whose block lies on the edge of the grid is left out, as "
+        "`rocking calibrate --tests` refuses it.",
+    ),
+    RATES: (
+        rates,
+        "shakebot_pulses.csv",
+        "the same tests, each with the share of the fitted tests of its posture that overturned. Where the line above "
+        "is no better than this one, the fitted blocks say no more than the base rate of each posture.",
     ),
 }  # fmt: skip
 
