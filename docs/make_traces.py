@@ -199,9 +199,9 @@ def page(rows: Sequence[str], recorded: Sequence[str], wrong: Sequence[str], fre
 `rocking calibrate --free` on {count} simulated traces of each kind: a block let go at {RELEASE:g} alpha, seven
 impacts, 100 Hz, noise of {100 * NOISE:g} % of the release, with and without a drift of 1 % of alpha a second.
 `docs/make_traces.py` integrates them by a method of its own. 'As stated' is the mean of the standard deviations that
-the fits state, 'error over stated' the root mean square of the ratio (1 if it covers), and 'caution' the share of fits whose residual is said to leave a pattern. Where eta scatters from
-impact to impact (+- {SCATTER:g}), no single eta is right: the fit is checked against the mean of the seven that the
-trace had, too.
+the fits state, 'error over stated' the root mean square of the ratio (1 if it covers), and 'caution' the share of fits
+whose residual is said to leave a pattern. Where eta scatters from impact to impact (+- {SCATTER:g}), no single eta is
+right: the fit is checked against the mean of the seven that the trace had, too.
 
 {heads}
 {"|---" * 12}|

@@ -291,7 +291,7 @@ def part(path: Path) -> str:
 NUMBER = re.compile(r"\d*\.?\d+")
 
 
-def alike(before: str, now: str) -> bool:
+def is_same(before: str, now: str) -> bool:
     """Return whether two lines have the same words, and numbers that differ by no more than a unit of their last digit.
 
     Another processor rounds differently.
@@ -306,7 +306,7 @@ def stale(before: str, now: str) -> list[str]:
     """Return the lines of a page that are no longer what the scripts make."""
     old, new = before.splitlines(), now.splitlines()
     if len(old) == len(new):
-        new = [a if alike(a, b) else b for a, b in zip(old, new, strict=True)]
+        new = [a if is_same(a, b) else b for a, b in zip(old, new, strict=True)]
     return list(unified_diff(old, new, PAGE.name, "what the scripts make", n=0, lineterm=""))
 
 
@@ -317,7 +317,7 @@ def outdated() -> list[str]:
         f"docs/trust/{path.name} is stale" for path, maker in makers.items()
         for sample in [runpy.run_path(str(maker))["sample"]()]
         if sample not in (text := path.read_text(encoding="utf-8"))
-        and not any(alike(line, sample) for line in text.splitlines())
+        and not any(is_same(line, sample) for line in text.splitlines())
     ]  # fmt: skip
 
 

@@ -29,6 +29,13 @@ def test_a_number_that_changed_is_named(made, text):
     assert "-" + row in made["stale"](text, text.replace(row, row.replace("0.0", "0.1")))
 
 
+@pytest.mark.parametrize(
+    ("now", "same"), [("eta .0303 +- 0.02", True), ("eta .0304 +- 0.02", False), ("eta .0302 + 0.02", False)]
+)
+def test_a_line_that_differs_by_a_unit_of_its_last_digit_is_not_stale(made, now, same):
+    assert made["is_same"]("eta .0302 +- 0.02", now) == same
+
+
 def test_what_was_given_of_the_other_half_agrees_with_itself(made):
     bins, scores = made["KEPT_APART"], made["KEPT_APART_SCORES"]
     own = next(line for line in scores.splitlines() if line.startswith("| neighbours |"))
