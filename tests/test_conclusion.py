@@ -197,21 +197,27 @@ def surfaces(folder, structure, states, pulses):
     return found
 
 
-@pytest.mark.every(2)
+@pytest.fixture(scope="module")
+def unchanged(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder := tmp_path_factory.mktemp("unchanged"))
+        return surfaces(folder, {}, FURTHER["all pass"], ())
+
+
+@pytest.mark.every(3)
 @pytest.mark.parametrize("change", CHANGES)
-def test_a_change_of_the_result_changes_every_surface(tmp_path, change):
+def test_a_change_of_the_result_changes_every_surface(unchanged, tmp_path, change):
     """Whatever changes the conclusion is seen in text, data, both sheets, survey and report."""
-    base = surfaces(tmp_path, {}, FURTHER["all pass"], ())
     found = surfaces(tmp_path, *CHANGES[change])
     assert all(each.strip() for each in found.values())
-    assert {name for name, each in found.items() if each == base[name]} == set()
+    assert {name for name, each in found.items() if each == unchanged[name]} == set()
 
 
 def test_a_margin_a_pulse_and_a_response_conclude_alike():
     """The same class and governing motion from three commands; a margin adds the share and the factor."""
-    block, pulses = rk.Block(width=0.5, height=2.2), ["sine:0.35g:0.7s", "sine:0.5g:0.7s", "sine:2g:1s", "sine:0.1g:1s"]
+    block, pulses = rk.Block(width=0.5, height=2.2), ["sine:0.35g:0.7s", "sine:2g:1s", "sine:0.1g:1s"]
     for pulse in pulses:
-        alone, margin = rk.respond(block, pulse, neighbours=20), rk.margin(block, pulse, polarity="1", neighbours=20)
+        alone, margin = rk.respond(block, pulse, neighbours=10), rk.margin(block, pulse, polarity="1", neighbours=10)
         assert alone.conclusion.concluded is margin.conclusion.concluded
         assert alone.conclusion.share == margin.conclusion.share
         _, ag, period = pulse.split(":")
@@ -220,7 +226,7 @@ def test_a_margin_a_pulse_and_a_response_conclude_alike():
         found = margin[margin.conclusion.motion]
         least = found.possible(0.1)
         assert margin.conclusion.ratio == (np.inf if least is None else least)
-    several = rk.margin(block, pulses, polarity="1", neighbours=20)
+    several = rk.margin(block, pulses, polarity="1", neighbours=5)
     assert several.conclusion.motion == several.sentences[0].split(". ")[1].split(" governs")[0] == "sine:2g:1s"
     assert several.conclusion.motions == pulses
     none = rk.margin(block, "sine:1e-3g:0.1s", polarity="1", neighbours=5)
@@ -253,11 +259,11 @@ def test_a_design_of_unknown_outcomes_is_unknown():
 def test_a_design_by_the_code_uses_the_limit_state_that_governs_and_no_mechanism_that_starts_later():
     block = rk.Block(**{key: each for key, each in PILLAR.items() if key != "mechanism"})
     site = {**SITE, **FURTHER["SLC fails"]}
-    found = rk.design(block, "width=0.5m:0.9m", "ratio >= 1", site=site, points=5)
+    found = rk.design(block, "width=0.5m:0.9m", "ratio >= 1", site=site, points=2)
     assert found.metric[0] == rk.verify(block, site).conclusion.ratio < 1
     assert rk.verify(block.model_copy(update={"width": found.value * 1.001}), site).conclusion.concluded == "satisfied"
     assert rk.verify(block.model_copy(update={"width": found.value * 0.999}), site).conclusion.limit_state == "SLC"
-    cracks = rk.design(of(CRACKS), "density=1500kg/m3:2500kg/m3", "ratio >= 0.001", site=SITE, points=3)
+    cracks = rk.design(of(CRACKS), "density=1500kg/m3:2500kg/m3", "ratio >= 0.001", site=SITE, points=2)
     assert not cracks.holds and "another mechanism starts first" in " ".join(cracks.sentences)
 
 

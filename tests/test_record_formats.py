@@ -609,8 +609,7 @@ def test_a_reader_of_bytes_gets_bytes_and_the_others_text(tmp_path, monkeypatch)
     path.write_bytes(b"PK\0\0")
     found = problem(path)
     assert "binary file, and none of a record format" in found.message
-    assert "b (B" in found.hint
-    assert "a (A" not in found.hint  # it was not asked
+    assert found.hint.endswith("binary formats: B")  # a reader of text was not asked
 
 
 def test_a_reader_of_bytes_and_one_of_text_may_not_claim_the_same_file():
@@ -622,7 +621,8 @@ def test_a_reader_of_bytes_and_one_of_text_may_not_claim_the_same_file():
 
 def test_a_file_of_no_format_lists_what_was_tried(write):
     found = problem(write("nothing of the kind\n"))
-    assert all(f"{name} (" in found.hint for name in [*MADE, "peer_at2", "sac", "miniseed", "text"])
+    assert all(reader.TITLE in found.hint for reader in load_readers().values())
+    assert "\n" not in found.hint
 
 
 def test_a_broken_reader_is_named(monkeypatch):
