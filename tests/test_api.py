@@ -147,6 +147,7 @@ ANSWERS = {
 }
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("name", ANSWERS)
 def test_an_answer_shows_itself(name, tmp_path):
     answer = ANSWERS[name]()
@@ -232,6 +233,7 @@ VERBS = [f".ask.{path.stem}" for path in FILES if ">>>" in path.read_text(encodi
 MODULES = ("", *VERBS, ".dynamics.batch", ".dynamics.exact", ".names", ".units", ".views.column")
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("name", MODULES)
 def test_examples_in_docstrings_run(name, monkeypatch):
     monkeypatch.chdir(PROJECT)

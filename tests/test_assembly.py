@@ -581,6 +581,7 @@ def test_what_is_in_mappings_can_vary(field, unit):
         Structure(portal).unit_of("blocks.left.volume")
 
 
+@pytest.mark.rest
 def test_every_command_takes_both(tmp_path):
     files = {
         "asm": {"mechanism": "assembly", "blocks": PORTAL, "ground": FLOOR},

@@ -63,6 +63,7 @@ def text_of(page):
     return " ".join(unescape(re.sub(r"<[^>]+>", "", page)).split())
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("case", FURTHER)
 def test_a_verification_concludes_the_same_everywhere(pillar, tmp_path, case):
     asked = pillar(case)
@@ -204,7 +205,7 @@ def unchanged(tmp_path_factory):
         return surfaces(folder, {}, FURTHER["all pass"], ())
 
 
-@pytest.mark.every(3)
+@pytest.mark.every(6)
 @pytest.mark.parametrize("change", CHANGES)
 def test_a_change_of_the_result_changes_every_surface(unchanged, tmp_path, change):
     """Whatever changes the conclusion is seen in text, data, both sheets, survey and report."""
@@ -256,6 +257,7 @@ def test_a_design_of_unknown_outcomes_is_unknown():
     assert "Whether overturned <= 0.1 holds at any value of width tried" in found.sentences[0]
 
 
+@pytest.mark.rest
 def test_a_design_by_the_code_uses_the_limit_state_that_governs_and_no_mechanism_that_starts_later():
     block = rk.Block(**{key: each for key, each in PILLAR.items() if key != "mechanism"})
     site = {**SITE, **FURTHER["SLC fails"]}

@@ -65,6 +65,7 @@ def test_values_that_two_other_programs_agree_on(name, fields, reach, rows):
         assert found.words == ("unknown" if found.unknown else "rocks")
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize(("name", "factor"), [("masonry/buttressed_arch.yaml", 0.5), ("masonry/portal.yaml", 1.75)])
 def test_motion_and_openings_are_those_of_a_program_that_shares_nothing(name, factor):
     theirs, found = openings(EXAMPLES / name, ACCEL, factor), history(structure(name), factor)

@@ -562,6 +562,7 @@ def test_a_number_that_is_changed_is_found(sheets):
         Recomputed(items)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("name", ["facade", "tied", "two bodies on a floor", "laden, on a hazard", "table"])
 def test_a_document_has_the_steps_and_tables_of_the_page(name, sheets):
     pytest.importorskip("docx")
