@@ -316,11 +316,11 @@ def page(study: Study) -> str:
     )
     return f"""### Shares of {LOW} to {HIGH}
 
-`scripts/middle_of_the_scale.py` studies on the tests above why these shares are too high.
+`scripts/middle_of_the_scale.py` studies on the tests above whether, and why, these shares are too high.
 {sample()}
-What becomes of these boulders depends on the ratio of amplitude to slenderness and on the restitution only, so
-amplitude and slenderness are one source of scatter. Each test is simulated for {POINTS} pairs of both. Weights on these
-time histories give the shares of a rule without the chance of a draw. By the rule:
+In the model, what becomes of these boulders depends only on the ratio of amplitude to slenderness and on the
+restitution, so amplitude and slenderness are one source of scatter. Each test is simulated for {POINTS} pairs of both.
+Weights on these time histories give the shares of a rule without the chance of a draw. By the rule:
 
 | tests with a share of {LOW} to {HIGH} | tests | mean stated | observed |
 |---|---|---|---|
@@ -328,7 +328,7 @@ time histories give the shares of a rule without the chance of a draw. By the ru
 
 - **Part of the gap is the chance of a draw.** The observed share of these tests is {drawn(study)}.
 - **The two boulders differ.** Of all tests, the mean stated share is above the observed one by {points_of(bias[0])}
-  percentage points for specimen 1, and by {points_of(bias[1])} for specimen 2, which stands firmer than its first
+  percentage points for specimen 1, and by {points_of(bias[1])} for specimen 2, which may stand firmer than its first
   edge says. Such an error of a description is common to all tests of a body. So even where stated shares are right on
   average over many structures, all those of one structure may be too high, or too low.
 - **No motion decides.** These tests are of {(motions > 0).sum()} motions, at most {motions.max()} of one.
@@ -348,10 +348,12 @@ Shares of {LOW} to {HIGH} by the rule are {gap(study, study.rule)} points too hi
 intervals do not account for the {len(rows)} candidates that were compared, two boulders are two samples of an error in
 slenderness, and the half that is kept apart has judged none of the candidates.
 
-The third source shows how the two boulders differ. With the other edge of the foot at twice the angle of the first one,
+The other edge shows how the two boulders differ. With the other edge of the foot at twice the angle of the first one,
 the log loss changes by {signed(second)} thousandths on specimen 2, and by {signed(first)} on specimen 1.
-The scan of specimen 2 rests on a facet with edges at {", ".join(f"{each:.1f}" for each in study.edges)} degrees, so the
-two sides of its foot do differ; the scan of specimen 1 is not at hand. Such an edge is to be measured, not drawn. The
+The scan of specimen 2 rests on a facet with edges at {", ".join(f"{each:.1f}" for each in study.edges)} degrees, in
+directions of their own; the angle that the data state along the axis of the table was not found again from the scan.
+So its foot is not symmetric, though the model is; the scan of specimen 1 is not at hand. Such an edge is to be
+measured, not drawn. The
 sign of the motions is not documented, so these shares are the mean of both.
 """
 
