@@ -410,7 +410,7 @@ def test_motions_that_could_not_be_used_are_not_counted_silently(tmp_path):
     assert "Not counted" not in run(*how).stdout
     record = EXAMPLES / "accel.csv"
     said = some("respond", "p.yaml", "--record", record, "--record", "bad.csv", "--neighbours", 0).stdout
-    assert "Not counted: 1 of 2 motions, which could not be used." in " ".join(said.split())
+    assert "Not counted: 1 of 2 motions (bad.csv), which could not be used." in " ".join(said.split())
 
 
 def test_a_report_does_not_call_a_constant_force_elastic_and_repeats_cautions_of_its_verification(tmp_path, pillar):

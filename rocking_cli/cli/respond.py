@@ -182,7 +182,7 @@ def _show_each(
     if watch.left_out == motions.count:
         click.get_current_context().exit(refused.exit_code)
     if not output.as_json:
-        terminal.show(View({}, [*table.parts(), *details]), as_json=False)
+        terminal.show(View({}, [*table.parts(watch.left_out_names), *details]), as_json=False)
 
 
 def _check(asked: GroundMotions, output: Output, question: Mapping[str, Any]) -> None:

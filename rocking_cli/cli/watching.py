@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager
+from pathlib import Path
 
 import click
 
 from rocking_cli.ask.watcher import Advance, Watcher
 from rocking_cli.cli import terminal, waiting
-from rocking_cli.errors import INCOMPLETE, RockingError
+from rocking_cli.errors import INCOMPLETE, InputError, RockingError
 
 
 class OnTerminal(Watcher):
@@ -16,6 +17,7 @@ class OnTerminal(Watcher):
 
     def __init__(self) -> None:
         self.left_out = 0
+        self.left_out_names: list[str] = []
 
     def note(self, text: str) -> None:
         """Print a note."""
@@ -30,6 +32,9 @@ class OnTerminal(Watcher):
         terminal.error(f"{name}: {error}" if name else str(error))
         terminal.debug_traceback(error)
         self.left_out += 1
+        place = error.problems[0].file if isinstance(error, InputError) else None
+        if name or place is not None:
+            self.left_out_names.append(name or Path(str(place)).name)
 
     def incomplete(self, text: str) -> None:
         """Print an error, and count it."""

@@ -101,10 +101,10 @@ def answer(found: Design) -> str:
     if not found.holds:
         return f"{aim} holds at no value of {found.field} tried, from {low} to {high}: {_nearest(found)}"
     if found.value is not None and len(found.holds) == 1 and (found.monotone or not aim.metric.shaken):
-        which, where = ("smallest", f"up to {high}") if found.is_least else ("largest", f"from {low}")
+        which, end = ("smallest", high) if found.is_least else ("largest", low)
         return (
-            f"The {which} {found.field} for which {aim} holds is {_with_unit(found, found.value)}; the requirement "
-            f"holds {where}."
+            f"The {which} {found.field} for which {aim} holds is {_with_unit(found, found.value)}; from there it holds to "
+            f"the end of the range tried, {end}."
         )
     ranges = [f"from {_with_unit(found, a)} to {_with_unit(found, b)}" for a, b in found.holds]
     said = f"Judging by the {len(found.values)} values tried, {aim} holds for {found.field} {_listed(ranges)}"

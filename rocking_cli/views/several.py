@@ -100,8 +100,8 @@ class Several:
     def _row(self, what: str, pga: str, histories: Histories, near: Neighbours | None) -> None:
         self._rows.append([what, pga, *(_fate(histories[name]) for name in self._models), *neighbours_cells(near)])
 
-    def parts(self) -> Iterator[Table | str]:
-        """Yield the table, how many motions overturn the structure, and which governs."""
+    def parts(self, left_out: Sequence[str] = ()) -> Iterator[Table | str]:
+        """Yield how many motions overturn the structure, which governs and which are left out, and the table."""
         heads = [f"peak phi/{'limit' if any(self._free) else 'phi_cr'}\nunder", "PGA\n[g]"]
         heads += model_heads(self._models, unknown=bool(self._until))
         rows = self._rows
@@ -112,10 +112,11 @@ class Several:
         else:
             heads += ["neighbours\noverturn", "their\nmedian"]
             rows = [[*row[:-2], row[-1]] for row in rows]
-        yield Table(self._title, heads, rows, numbers=range(1, len(heads)))
         yield f"By the {self._best} model, {self._counted()} {governing(self._ends, peaks_over(self._free))}".rstrip()
         if (lost := self._asked - len(self._ends)) > 0:
-            yield f"Not counted: {lost} of {self._asked} motions, which could not be used."
+            named = f" ({in_short(left_out, most=NAMED)})" if left_out else ""
+            yield f"Not counted: {lost} of {self._asked} motions{named}, which could not be used."
+        yield Table(self._title, heads, rows, numbers=range(1, len(heads)))
         if self._around is not None:
             yield f"Neighbours: {self._around.count} neighbouring motions for each motion, {self._around.words}."
         yield from self._joints()

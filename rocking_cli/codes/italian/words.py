@@ -11,7 +11,7 @@ from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.studies.verification.told import Told
 
 SAME = 0.005  # of an a_g: methods that differ by less agree
-ORDINAL = {True: "With FC", False: "Without FC, as in `rocking respond`"}
+ORDINAL = {True: "With FC", False: "Without FC (`rocking respond` uses none)"}
 
 
 def verdict(found: ItalianVerified, first: str, where: str) -> str:
