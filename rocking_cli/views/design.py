@@ -103,8 +103,8 @@ def answer(found: Design) -> str:
     if found.value is not None and len(found.holds) == 1 and (found.monotone or not aim.metric.shaken):
         which, end = ("smallest", high) if found.is_least else ("largest", low)
         return (
-            f"The {which} {found.field} for which {aim} holds is {_with_unit(found, found.value)}; from there it holds to "
-            f"the end of the range tried, {end}."
+            f"The {which} {found.field} for which {aim} holds is {_with_unit(found, found.value)}; from there it holds "
+            f"to the end of the range tried, {end}."
         )
     ranges = [f"from {_with_unit(found, a)} to {_with_unit(found, b)}" for a, b in found.holds]
     said = f"Judging by the {len(found.values)} values tried, {aim} holds for {found.field} {_listed(ranges)}"
