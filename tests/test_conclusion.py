@@ -26,6 +26,7 @@ from rocking_cli.views.conclusion import (
     next_in_words,
     of_verification,
 )  # fmt: skip
+from rocking_cli.views.view import Table
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json, some
 from tests.test_rest import CRACKS, of
@@ -124,6 +125,11 @@ def test_an_elastic_tie_is_named_in_the_conclusion(pillar, tmp_path):
     data = run_json("verify", *asked)
     assert data["conclusion"]["left_out"] == [{"what": "tie", "name": "bar", "why": "elastic"}]
     assert "Not counted: the stiffness of bar" in " ".join(run("verify", *asked).stdout.split())
+    (tmp_path / "rows.csv").write_text("file,name\npillar.yaml,tied\npillar.yaml,again\n", encoding="utf-8")
+    rows = run_json("survey", "rows.csv", "--site", "s.site.yaml")["rows"]
+    assert [row["not_counted"] for row in rows] == ["bar", "bar"]
+    (table,) = (part for part in rk.survey("rows.csv", site="s.site.yaml").view.parts if isinstance(part, Table))
+    assert table.rows[0][table.columns.index("not\ncounted")] == "bar"
 
 
 def test_histories_count_only_if_there_are_as_many_as_the_code_requires():

@@ -8,6 +8,7 @@ from enum import StrEnum
 from math import isclose
 from typing import NamedTuple, Self, TypeVar
 
+LEAST_SHARE = 0.1  # of neighbours that may overturn: the `ratio` of a margin is the least factor with so many
 ALIKE = 1e-6  # relative difference below which neither of two conclusions is the worse
 K = TypeVar("K")
 V = TypeVar("V")

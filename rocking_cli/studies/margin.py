@@ -20,13 +20,13 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conclusion import Conclusion, NeighbourShare
+from rocking_cli.studies.conclusion import LEAST_SHARE, Conclusion, NeighbourShare
 from rocking_cli.studies.neighbours import Draws, Neighbourhood, follow, least_uplift
 from rocking_cli.studies.response import concluded
 
 Reals = NDArray[np.float64]
 
-LEVELS = (0.1, 0.5, 0.9)
+LEVELS = (LEAST_SHARE, 0.5, 0.9)
 SAME = 1e-9  # relative difference of factors that are one
 FACTORS: Reals = np.geomspace(0.2, 5.0, 60)
 
@@ -199,7 +199,7 @@ def conclusion(structure: Structure, motion: GroundMotion, polarities: Sequence[
         The margin.
     """
     runs = {sign: respond(structure, motion.scaled(sign), models=["nonlinear"]) for sign in polarities}
-    from_factor = found.possible(LEVELS[0])
+    from_factor = found.possible(LEAST_SHARE)
     ratio = inf if from_factor is None else from_factor
     return replace(concluded(runs, {}, motion.name), share=found.share, ratio=ratio)
 

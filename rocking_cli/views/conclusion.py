@@ -10,7 +10,15 @@ from typing import Any
 from rocking_cli import names
 from rocking_cli.dynamics.holding import REMEDIES
 from rocking_cli.names import percent
-from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare, NextStep, are_alike, worst
+from rocking_cli.studies.conclusion import (
+    LEAST_SHARE,
+    Concluded,
+    Conclusion,
+    NeighbourShare,
+    NextStep,
+    are_alike,
+    worst,
+)
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.studies.verification.told import Told
 
@@ -162,10 +170,11 @@ def of_margin(end: Conclusion, over: str) -> str:
     """Return the conclusion of a margin in sentences: the motion that governs, its outcome, share and factor."""
     assert end.ratio is not None
     which = f"{end.motion} governs {len(end.motions)} motions: at" if len(end.motions) > 1 else "At"
+    some = f"{percent(LEAST_SHARE)} or more"
     factor = (
-        f"The smallest factor at which 10 % or more may overturn is {end.ratio:.3g}."
+        f"The smallest factor at which {some} may overturn is {end.ratio:.3g}."
         if isfinite(end.ratio)
-        else "At no factor tried may 10 % or more overturn."
+        else f"At no factor tried may {some} overturn."
     )
     return " ".join(filter(None, [f"{which} a factor of 1, {_does(end, over)}.", factor, next_in_words(end)]))
 

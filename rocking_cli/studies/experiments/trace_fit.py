@@ -58,9 +58,7 @@ RELEASE, START, OFFSET, DRIFT, ETA = range(5)  # the parameters; further etas fo
 PRIOR = 1.0  # impacts with the scatter of other bodies that count with those of the trace
 DROP = 1.6  # of the log-likelihood: an interval of 5 to 95 % (1.35 of many impacts)
 OFF = 1.2  # times the noise: a residual that says more than noise
-SIDES, P, ALPHA = range(
-    3
-)  # of the geometry: ln of the ratio of alpha of both sides, of p, of alpha, each over the file's
+SIDES, P, ALPHA = range(3)  # ln of the ratio of alpha of both sides, of p and of alpha, each over that of the file
 
 
 class Estimated(NamedTuple):
