@@ -172,13 +172,20 @@ def _region_parts(found: JointRegion, name: str, file: str, count: int) -> Itera
     inside = found.inside
     if inside[[0, -1]].any() or inside[:, [0, -1]].any():
         yield "Caution: the region reaches the edge of the grid, and is wider than the grid shows."
-    heads = ["slenderness", *(f"{each:.3g}" for each in found.restitution)]
-    top = float(found.likelihood.max())
-    rows = [
-        [f"x {one:.3g}", *(f"{value - top:.1f}{'*' * bool(inside)}" for value, inside in zip(*row, strict=True))]
-        for one, *row in zip(found.slenderness, found.likelihood, inside, strict=True)
+    above = found.likelihood - found.likelihood.max()
+    cells = [
+        [f"{value:.1f}{'*' * bool(within)}" for value, within in zip(*row, strict=True)]
+        for row in zip(above.T, inside.T, strict=True)
     ]
-    yield Table("Log-likelihood less the largest, over restitution; * in the region", heads, rows, range(1, len(heads)))
+    grid = [
+        Column[int]("", lambda i: f"x {found.slenderness[i]:.3g}", head="slenderness", text=True),
+        *(
+            Column[int]("", column.__getitem__, head=f"{eta:.3g}")
+            for eta, column in zip(found.restitution, cells, strict=True)
+        ),
+    ]
+    title = "Log-likelihood less the largest, over restitution; * in the region"
+    yield table_of(title, grid, range(found.slenderness.size))
     if found.unknown:
         yield (
             f"Caution: at the likeliest point, the outcome of {percent(found.unknown)} of the neighbours is unknown, "

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from rocking_cli import names
 from rocking_cli.dynamics.holding import unchecked
-from rocking_cli.io.tables import Columns
 from rocking_cli.names import percent
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.studies.design import Design
 from rocking_cli.studies.metrics import Excitation
-from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import one_line
+from rocking_cli.views.column import Column, frame_of, table_of
 from rocking_cli.views.conclusion import conclusion_data
 from rocking_cli.views.view import ABSENT, Table, View
 
@@ -30,6 +30,8 @@ def view(found: Design, excitation: Excitation | None = None) -> View:
 
 def data(found: Design) -> dict[str, Any]:
     """Return a design as plain data."""
+    every = range(len(found.values))
+    unknown = {each.key: [each.of(k) for k in every] for each in _unknown(found) if found.aim.metric.shaken}
     return {
         "structure": found.structure,
         "field": found.field,
@@ -42,50 +44,44 @@ def data(found: Design) -> dict[str, Any]:
         "everywhere": found.everywhere,
         "conclusion": conclusion_data(found.conclusion),
         "monotone": found.monotone,
-        "scan": {"values": found.values.tolist(), "metric": found.metric.tolist(), **_unknown_data(found)},
+        "scan": {"values": found.values.tolist(), "metric": found.metric.tolist(), **unknown},
         "not_built": [{"low": each.low, "high": each.high, "reason": each.reason} for each in found.not_built],
         "taken_otherwise": list(found.taken_otherwise),
         "verdict": answer(found),
     }
 
 
-def columns(found: Design) -> Columns:
+def columns(found: Design) -> dict[str, list[Any]]:
     """Return the scan as columns of a table."""
-    unit = f" [{found.unit}]" if found.unit else ""
-    of_metric = f" [{found.aim.metric.unit}]" if found.aim.metric.unit else ""
-    met = ["yes" if each else "no" for each in found.met.tolist()]
-    table: dict[str, Any] = {f"{found.field}{unit}": found.values}
-    table |= {f"{found.aim.metric.name}{of_metric}": found.metric, "holds": met}
-    return table | {name: np.array(shares, dtype=np.float64) for name, shares in _unknown_data(found).items()}
+    return frame_of(_columns(found), range(len(found.values)))
 
 
-def _unknown_data(found: Design) -> dict[str, list[float | None]]:
-    """Return the share of unknown outcome at each value, for a metric of motions; None if nothing was checked."""
-    if not found.aim.metric.shaken:
-        return {}
-    return {"unknown": [near.unknown if near is not None else None for near in found.behind]}
+def _columns(found: Design) -> list[Column[int]]:
+    """Return the columns of the scan, whose rows are the values tried."""
+    metric = found.aim.metric
+    return [
+        Column(found.field, found.values.item, found.unit, _head(found.field, found.unit), _value),
+        Column(metric.name, found.metric.item, metric.unit),
+        Column("", partial(_metric, found), head=_head(metric.name, metric.unit)),
+        *(_unknown(found) if metric.shaken else ()),
+        Column("holds", lambda k: "yes" if found.met[k] else "no", head="holds", text=True),
+    ]
 
 
-def _some_unknown(found: Design) -> bool:
-    return any(near is not None and near.unknown for near in found.behind)
+def _head(name: str, unit: str) -> str:
+    return f"{name}\n[{unit}]" if unit else name
+
+
+def _unknown(found: Design) -> Iterator[Column[int]]:
+    """Yield the column of the share of unknown outcome, which terminals have only if there is one."""
+    shares = [None if near is None else near.unknown for near in found.behind]
+    yield Column("unknown", shares.__getitem__, head="unknown\noutcome" if any(shares) else None, form=percent)
 
 
 def scan(found: Design) -> Table:
     """Return the table of the scan; of many values only some."""
-    unit, asked = f"\n[{found.unit}]" if found.unit else "", found.aim.metric
-    of_metric = f"\n[{asked.unit}]" if asked.unit else ""
     shown = np.unique(np.linspace(0, len(found.values) - 1, min(ROWS, len(found.values))).round().astype(int))
-    unknown = _some_unknown(found)
-    rows = []
-    for k in shown.tolist():
-        doubtful = [_doubtful(found.behind[k])] if unknown else []
-        rows.append([_value(float(found.values[k])), _metric(found, k), *doubtful, "yes" if found.met[k] else "no"])
-    heads = [found.field + unit, asked.name + of_metric, *(["unknown\noutcome"] if unknown else []), "holds"]
-    return Table("", heads, rows, numbers=range(len(heads) - 1))
-
-
-def _doubtful(near: Neighbours | None) -> str:
-    return ABSENT if near is None or near.unknown is None else percent(near.unknown)
+    return table_of("", _columns(found), shown.tolist())
 
 
 def answer(found: Design) -> str:
@@ -107,7 +103,8 @@ def answer(found: Design) -> str:
             f"to the end of the range tried, {end}."
         )
     ranges = [f"from {_with_unit(found, a)} to {_with_unit(found, b)}" for a, b in found.holds]
-    said = f"Judging by the {len(found.values)} values tried, {aim} holds for {found.field} {_listed(ranges)}"
+    listed = " and ".join([", ".join(ranges[:-1]), ranges[-1]] if len(ranges) > 1 else ranges)
+    said = f"Judging by the {len(found.values)} values tried, {aim} holds for {found.field} {listed}"
     if found.value is None:
         return f"{said}, but at neither end of the range tried, {low} to {high}."
     way = "upwards" if found.is_least else "downwards"
@@ -170,10 +167,6 @@ def _nearest(found: Design) -> str:
     best = there[(found.metric[there].argmin() if found.aim.op[0] == "<" else found.metric[there].argmax())]
     value, place = _metric(found, int(best)), _with_unit(found, found.values[best])
     return f"the {'smallest' if found.aim.op[0] == '<' else 'largest'} {found.aim.metric.name} is {value}, at {place}."
-
-
-def _listed(parts: Sequence[str]) -> str:
-    return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
 
 
 def _value(value: float) -> str:

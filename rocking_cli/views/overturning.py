@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,10 +12,11 @@ import numpy as np
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.names import OVERTURNS, UNKNOWN
+from rocking_cli.names import OVERTURNS, UNKNOWN, percent
 from rocking_cli.studies.overturning import FALLS, Comparison, OverturningMap, Region
 from rocking_cli.studies.under_pulses import PulsedModel, Reals
-from rocking_cli.views.view import ABSENT, Table, View
+from rocking_cli.views.column import Column, rounded, table_of
+from rocking_cli.views.view import ABSENT, Table, View, number
 
 ROWS = 9  # of a table: the curves themselves are in --out and --json
 FROM_KINEMATICS = " (from kinematics, not measured)"
@@ -37,21 +39,25 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
         Whether to show the map against omega and a; otherwise against the period in s and the amplitude in g.
     """
     unit = 1.0 if dimensionless else found.accelerations[0] / found.a[0]
-    across = found.omega if dimensionless else found.periods
-    doubtful = found.least(Region.UNKNOWN)
-    curves = [found.least(*FALLS), found.least(Region.WITHOUT_IMPACT), found.safe_again]
-    some_unknown = not np.isnan(doubtful).all()
     what, amplitude = ("omega", "a") if dimensionless else ("T [s]", "a_g [g]")
-    heads = [what, "overturns\nfrom", "without\nimpact from", "survives\nagain at"]
-    if some_unknown:
-        curves.append(doubtful)
-        heads.append("unknown\nfrom")
-    rows = [[f"{across[k]:.3g}", *(_cell(unit * curve[k]) for curve in curves)] for k in _some(across.size)]
+    curves = {
+        "overturns\nfrom": found.least(*FALLS),
+        "without\nimpact from": found.least(Region.WITHOUT_IMPACT),
+        "survives\nagain at": found.safe_again,
+    }
+    doubtful = found.least(Region.UNKNOWN)
+    if some_unknown := not np.isnan(doubtful).all():
+        curves["unknown\nfrom"] = doubtful
+    across = (found.omega if dimensionless else found.periods).tolist()
+    columns = [
+        Column[int]("", across.__getitem__, head=what, form=rounded(3), text=True),
+        *(Column[int]("", (unit * curve).item, head=head, form=rounded(3)) for head, curve in curves.items()),
+    ]
     source = "" if found.structure.eta_given else FROM_KINEMATICS
     shares = ", ".join(f"{region.label} {100 * share:.1f} %" for region, share in found.shares.items() if share)
     parts: list[Table | str] = [
         f"{map_title(found)}{source}: amplitudes {amplitude} against {what}",
-        Table("", heads, rows, numbers=range(1, len(heads))),
+        table_of("", columns, _some(len(across))),
         f"Shares of the pulses on the map: {shares}.",
     ]
     if some_unknown:
@@ -165,33 +171,34 @@ def _some(count: int) -> list[int]:
     return sorted({round(place) for place in np.linspace(0, count - 1, min(ROWS, count)).tolist()})
 
 
-def _cell(value: float) -> str:
-    return ABSENT if value != value else f"{value:.3g}"
-
-
 def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
     """Show the least amplitudes that overturn each of several structures, and which overturns first."""
     firsts = _firsts(found)
-    rows = [
-        [
-            f"{found.periods[k]:.3g}",
-            *(_span(*ends) for ends in zip(found.possible[:, k], found.least[:, k], strict=True)),
-            UNKNOWN if found.undecided[k] else _goes_first(firsts[k]),
-        ]
-        for k in _some(found.periods.size)
+
+    def first(k: int) -> str | None:
+        if found.undecided[k]:
+            return UNKNOWN
+        return "several equal" if len(firsts[k]) > 1 else firsts[k][0] if firsts[k] else None
+
+    columns = [
+        Column[int]("", found.periods.item, head="T [s]", form=rounded(3), text=True),
+        *(
+            Column[int]("", partial(_span, *ends), head=each.name.replace(" ", "\n"))
+            for each, *ends in zip(found.structures, found.possible, found.least, strict=True)
+        ),
+        Column[int]("", first, head="overturns first", text=True),
     ]
-    heads = [each.name.replace(" ", "\n") for each in found.structures]
     parts: list[Table | str] = [
         f"Least a_g [g] that overturns: {comparison_title(found)}",
-        Table("", ["T [s]", *heads, "overturns first"], rows, numbers=range(1, len(heads) + 1)),
+        table_of("", columns, _some(found.periods.size)),
     ]
     counts = Counter(tuple(together) for together in firsts if together)
     shares = [
-        f"{_together(tied)} at {100 * counts[tied] / len(firsts):.0f} %"
+        f"{' and '.join(tied)}{' together' * (len(tied) > 1)} at {percent(counts[tied] / len(firsts))}"
         for tied in sorted(counts, key=lambda tied: len(tied) > 1)
     ]
     if found.undecided.any():
-        shares.append(f"{UNKNOWN} at {100 * found.undecided.mean():.0f} %")
+        shares.append(f"{UNKNOWN} at {percent(float(found.undecided.mean()))}")
     if shares:
         parts.append(f"Overturned by the smallest amplitude: {', '.join(shares)} of the periods.")
     if found.doubtful.any():
@@ -272,16 +279,9 @@ def _joints(structures: Sequence[PulsedModel], mechanisms: Sequence[Mechanism]) 
     ]
 
 
-def _span(possible: float, least: float) -> str:
+def _span(possible: Reals, least: Reals, k: int) -> str:
     """Format the least amplitude that overturns: a number, the range in which it lies, or a lower bound."""
-    if possible != possible or possible >= least:
-        return _cell(least)
-    return f">= {_cell(possible)}" if least != least else f"{_cell(possible)} to {_cell(least)}"
-
-
-def _together(names: Sequence[str]) -> str:
-    return names[0] if len(names) == 1 else f"{' and '.join(names)} together"
-
-
-def _goes_first(names: Sequence[str]) -> str:
-    return (names[0] if len(names) == 1 else "several equal") if names else ABSENT
+    low, high = possible[k], least[k]
+    if np.isnan(low) or low >= high:
+        return number(high, 3)
+    return f">= {low:.3g}" if np.isnan(high) else f"{low:.3g} to {high:.3g}"

@@ -2,21 +2,69 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from math import isnan
-from typing import Any
+from typing import Any, TypeVar
 
 from rocking_cli import names
 from rocking_cli.dynamics.exact import ExactResponse
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.pulse_response import CONDITIONS, ClosedForm
 from rocking_cli.names import percent
+from rocking_cli.views.column import Column, data_of, of
 from rocking_cli.views.view import ABSENT, Table, View, number
 
+R = TypeVar("R")
 LINEAR_BLOCK = (
     "The linear block is the equivalent block of any structure: a = a_g/(g lambda), omega = omega_g/p, tau = p t."
 )
 YES_NO = {True: "yes", False: "no", None: ABSENT}
+
+
+def _condition(name: str) -> Column[ClosedForm]:
+    holds = YES_NO.__getitem__
+    return Column("", lambda closed: closed.conditions[name], "", "  condition", holds, words=CONDITIONS[name])
+
+
+CLOSED: tuple[Column[ClosedForm], ...] = (
+    Column("D0", of("D0"), "", "closed form D0*", number, words="energy of the free motion after the pulse (Eq. 42)"),
+    Column(
+        "max_ratio", of("max_ratio"), "", "  max ratio", number, words="peak of the first rebound over phi_cr (Eq. 41)"
+    ),
+    Column("overturns", of("overturns"), "", "  overturns", YES_NO.__getitem__, words="eta^2 (1 - D0*) >= 1"),
+    *map(_condition, CONDITIONS),
+)
+EXACT: tuple[Column[ExactResponse], ...] = (
+    Column("max_ratio", of("peak_ratio"), "", "exact max ratio", number, words="largest rotation over phi_cr"),
+    Column(
+        "first_excursion", of("first_excursion"), "", "  first excursion", number, words="peak before the first impact"
+    ),
+    Column("first_rebound", of("first_rebound"), "", "  first rebound", number, words="peak after the first impact"),
+    Column("overturns", of("fell"), "", "  overturns", YES_NO.__getitem__),
+    Column(
+        "impacts_before_overturning", lambda exact: impacts_before(exact), "", "  impacts", words="before it overturns"
+    ),
+    Column("uplift", of("uplift_time"), "", "  uplift", number, words="tau = p t from the start of the pulse"),
+    Column(
+        "pulse_end",
+        lambda exact: exact.pulse_end - exact.uplift_time,
+        "",
+        "  end of pulse",
+        number,
+        words="tau from uplift",
+    ),
+    Column(
+        "first_impact",
+        lambda exact: exact.first_impact - exact.uplift_time,
+        "",
+        "  first impact",
+        number,
+        words="tau from uplift",
+    ),
+    Column("impact_during_pulse", lambda exact: exact.first_impact < exact.pulse_end),
+)
+"""Of the exact solution; times count from uplift, but for uplift itself."""
 
 
 def view(shape: str, a: float, omega: float, eta: float, closed: ClosedForm | None, exact: ExactResponse) -> View:
@@ -27,16 +75,20 @@ def view(shape: str, a: float, omega: float, eta: float, closed: ClosedForm | No
         "omega": omega,
         "eta": eta,
         "closed_form": None if closed is None else closed_data(closed, exact),
-        "exact": exact_data(exact),
+        "exact": data_of(EXACT, exact),
     }
     title = "Full sine" if shape == "sine" else shape.replace("_", " ").capitalize()
     table = Table(
         f"{title} pulse: a = {a:g}, omega = {omega:g}, eta = {eta:g}",
         ["", "value", "meaning"],
-        [*(_closed_rows(closed) if closed is not None else []), *_exact_rows(exact)],
+        [*(_rows(CLOSED, closed) if closed is not None else []), *_rows(EXACT, exact)],
         numbers=[1],
     )
     return View(data, [table, _verdict(a, closed, exact), LINEAR_BLOCK])
+
+
+def _rows(columns: Sequence[Column[R]], found: R) -> list[list[str]]:
+    return [[each.head, each.cell(found), each.words] for each in columns if each.head is not None]
 
 
 def closed_data(closed: ClosedForm, exact: ExactResponse) -> dict[str, Any]:
@@ -73,42 +125,6 @@ def how_far_off(closed: ClosedForm, exact: ExactResponse) -> str:
 
 def _fate(overturns: bool | None) -> str:
     return names.outcome(uplifts=True, overturned=bool(overturns))
-
-
-def _closed_rows(closed: ClosedForm) -> list[list[str]]:
-    return [
-        ["closed form D0*", number(closed.D0), "energy of the free motion after the pulse (Eq. 42)"],
-        ["  max ratio", number(closed.max_ratio), "peak of the first rebound over phi_cr (Eq. 41)"],
-        ["  overturns", YES_NO[closed.overturns], "eta^2 (1 - D0*) >= 1"],
-        *(["  condition", YES_NO[holds], CONDITIONS[name]] for name, holds in closed.conditions.items()),
-    ]
-
-
-def exact_data(exact: ExactResponse) -> dict[str, Any]:
-    """Return the exact solution as plain data; times count from uplift."""
-    return {
-        "max_ratio": exact.peak_ratio,
-        "first_excursion": exact.first_excursion,
-        "first_rebound": exact.first_rebound,
-        "overturns": exact.fell,
-        "impacts_before_overturning": impacts_before(exact),
-        "first_impact": exact.first_impact - exact.uplift_time,
-        "impact_during_pulse": exact.first_impact < exact.pulse_end,
-        "uplift": exact.uplift_time,
-        "pulse_end": exact.pulse_end - exact.uplift_time,
-    }
-
-
-def _exact_rows(exact: ExactResponse) -> list[list[str]]:
-    return [
-        ["exact max ratio", number(exact.peak_ratio), "largest rotation over phi_cr"],
-        ["  first excursion", number(exact.first_excursion), "peak before the first impact"],
-        ["  first rebound", number(exact.first_rebound), "peak after the first impact"],
-        ["  overturns", YES_NO[exact.fell], after_impacts(exact)],
-        ["  uplift", number(exact.uplift_time), "tau = p t from the start of the pulse"],
-        ["  end of pulse", number(exact.pulse_end - exact.uplift_time), "tau from uplift"],
-        ["  first impact", number(exact.first_impact - exact.uplift_time), "tau from uplift"],
-    ]
 
 
 def impacts_before(outcome: OneOutcome) -> int | None:

@@ -7,8 +7,20 @@ from typing import Any
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulse_fit import CRITERIA, PulseFit
+from rocking_cli.views.column import Column, lines_of, of, rounded
 from rocking_cli.views.response import fit_data, pulse_data
-from rocking_cli.views.view import Table, number
+from rocking_cli.views.view import Table
+
+COLUMNS: tuple[Column[PulseFit], ...] = (
+    Column("", lambda fit: 100 * fit.captured, "%", "energy captured", form="{:.1f}".format),
+    Column("", lambda fit: fit.pulse.amplitude / STANDARD_GRAVITY, "g", "a_p", rounded(4)),
+    Column("", of("pulse.period"), "s", "T_p", rounded(4)),
+    Column("", of("start"), "s", "start", rounded(4)),
+    Column("", of("centre"), "s", "centre", rounded(4)),
+    Column("", of("sign"), "", "sign", "{:+d}".format),
+    Column("", lambda fit: pulse_data(fit.pulse).get("phase"), "deg", "phase", rounded(4)),
+    Column("", lambda fit: pulse_data(fit.pulse).get("cycles"), "", "cycles", rounded(4)),
+)
 
 
 def fits_data(fits: Sequence[PulseFit]) -> dict[str, Any]:
@@ -23,23 +35,7 @@ def parts(name: str, fits: Sequence[PulseFit]) -> Iterator[Table | str]:
     """Yield a table for each criterion, with a column for each shape, and a sentence on what is maximised."""
     for criterion in CRITERIA:
         one = [fit for fit in fits if fit.criterion == criterion]
-        columns = ["", *(fit.pulse.name for fit in one), "unit"]
-        yield Table(f"{name}: pulses fitted in {criterion}", columns, _rows(one), numbers=range(1, len(one) + 1))
+        heads = ["", *(fit.pulse.name for fit in one), "unit"]
+        numbers = range(1, len(one) + 1)
+        yield Table(f"{name}: pulses fitted in {criterion}", heads, lines_of(COLUMNS, one), numbers)
     yield "Energy captured: 1 - sum (r - s)^2 / sum r^2, r of the record and s of the pulse."
-
-
-def _rows(fits: Sequence[PulseFit]) -> list[list[str]]:
-    def each(values: list[float | None]) -> list[str]:
-        return [number(value, 4) for value in values]
-
-    further = [pulse_data(fit.pulse) for fit in fits]
-    return [
-        ["energy captured", *(f"{100 * fit.captured:.1f}" for fit in fits), "%"],
-        ["a_p", *each([fit.pulse.amplitude / STANDARD_GRAVITY for fit in fits]), "g"],
-        ["T_p", *each([fit.pulse.period for fit in fits]), "s"],
-        ["start", *each([fit.start for fit in fits]), "s"],
-        ["centre", *each([fit.centre for fit in fits]), "s"],
-        ["sign", *(f"{fit.sign:+d}" for fit in fits), ""],
-        ["phase", *each([pulse.get("phase") for pulse in further]), "deg"],
-        ["cycles", *each([pulse.get("cycles") for pulse in further]), ""],
-    ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
 from math import isnan
 from typing import Any
@@ -19,7 +19,7 @@ from rocking_cli.studies.experiments.score import (
     Scored,
     Stated,
 )
-from rocking_cli.studies.experiments.scores import DRAWS, CalibrationBin, RuleScore, ScoreEstimate
+from rocking_cli.studies.experiments.scores import DRAWS, CalibrationBin, ScoreEstimate
 from rocking_cli.text import one_line
 from rocking_cli.views.column import Column, data_of, frame_of, of, rounded, table_of
 from rocking_cli.views.view import ABSENT, Table, View
@@ -78,10 +78,14 @@ def reason(each: Stated) -> str | None:
 def _parts(found: Scored, file: str) -> Iterator[Table | str]:
     kept, tests = found.observed, found.tests
     structures, records = ({getattr(each.test, name) for each in tests} for name in ("structure", "record"))
+    drawn = found.drawn or {found.around: []}
+    deviations = " and ".join(
+        f"{around.words} ({', '.join(each)})" if len(drawn) > 1 else around.words for around, each in drawn.items()
+    )
     yield (
         f"{file}: {_count(len(tests), 'test')} of {_count(len(structures), 'structure')} under "
         f"{_count(len(records), 'motion')}. {found.around.count} neighbouring motions are simulated for each, "
-        f"{_deviations(found)}; the stated share is that of the neighbours that overturn."
+        f"{deviations}; the stated share is that of the neighbours that overturn."
     )
     if commanded := sum(each.test.commanded for each in tests):
         yield (
@@ -108,31 +112,20 @@ def _parts(found: Scored, file: str) -> Iterator[Table | str]:
         yield f"{_count(len(found.failed), 'test')} could not be simulated, and no score includes what they showed."
 
 
-def _deviations(found: Scored) -> str:
-    """Return the standard deviations of the neighbours, with the structures if these have different ones."""
-    drawn = found.drawn or {found.around: []}
-    return " and ".join(
-        f"{around.words} ({', '.join(structures)})" if len(drawn) > 1 else around.words
-        for around, structures in drawn.items()
-    )
-
-
 def _scores(found: Scored, count: int) -> Iterator[Table | str]:
     unknown = any(each.unknown for each in found.observed)
     shown = {name: each for name, each in found.scores.items() if name != WITH_UNKNOWN or unknown}
-    heads = ["rule", "tests", "Brier", "tool less\nrule", "log loss", "right", "area"]
-    rows = [
-        [
-            NAMES.get(name, name),
-            str(each.tests),
-            _cell(each.brier),
-            _cell(found.differences.get(name)),
-            *map(_cell, (each.log_loss, each.right, each.auc)),
-        ]
-        for name, each in shown.items()
-    ]
     overturned = sum(bool(each.test.overturned) for each in found.observed)
-    yield Table(f"Scores of {_count(count, 'test')} in {_count(found.clusters, 'cluster')}", heads, rows, range(1, 7))
+    rules = (
+        Column[str]("", lambda name: NAMES.get(name, name), head="rule", text=True),
+        Column[str]("", lambda name: shown[name].tests, head="tests"),
+        _estimate("Brier", lambda name: shown[name].brier),
+        _estimate("tool less\nrule", found.differences.get),
+        _estimate("log loss", lambda name: shown[name].log_loss),
+        _estimate("right", lambda name: shown[name].right),
+        _estimate("area", lambda name: shown[name].auc),
+    )
+    yield table_of(f"Scores of {_count(count, 'test')} in {_count(found.clusters, 'cluster')}", rules, shown)
     yield (
         f"{overturned} of these tests overturned. 'Brier' is the mean squared difference of stated share and outcome: "
         "smaller is better. 'Tool less rule' is the Brier score of the tool less that of the rule: negative if the "
@@ -213,7 +206,11 @@ def _data(found: Scored) -> dict[str, Any]:
     return {
         "neighbours": _neighbours(found),
         "tests": tests,
-        "scores": {name: _score(each) for name, each in found.scores.items()},
+        "scores": {
+            rule: {"tests": each.tests}
+            | {name: _list(getattr(each, name)) for name in ("brier", "log_loss", "right", "auc")}
+            for rule, each in found.scores.items()
+        },
         "differences": {name: _list(each) for name, each in found.differences.items()},
         "calibration": [data_of(BINS, each) for each in found.bins],
         "mean_gap": _number(found.mean_gap),
@@ -241,13 +238,6 @@ def _neighbours(found: Scored) -> dict[str, Any]:
     return same | {"drawn": each}
 
 
-def _score(each: RuleScore) -> dict[str, Any]:
-    return {
-        "tests": each.tests,
-        **{name: _list(getattr(each, name)) for name in ("brier", "log_loss", "right", "auc")},
-    }
-
-
 def _list(each: ScoreEstimate) -> list[float | None]:
     return [_number(value) for value in each]
 
@@ -256,11 +246,13 @@ def _number(value: float) -> float | None:
     return None if isnan(value) else value
 
 
-def _cell(each: ScoreEstimate | None) -> str:
-    """Format an estimate in two lines: the value, and its interval."""
-    if each is None or isnan(each.value):
-        return ABSENT
-    return f"{each.value:.3f}\n{_range(each.low, each.high)}"
+def _estimate(head: str, of_rule: Callable[[str], ScoreEstimate | None]) -> Column[str]:
+    """Return the column of an estimate of each rule in two lines: the value, and its interval."""
+
+    def form(each: ScoreEstimate) -> str:
+        return ABSENT if isnan(each.value) else f"{each.value:.3f}\n{_range(each.low, each.high)}"
+
+    return Column("", of_rule, head=head, form=form)
 
 
 def _range(low: float | None, high: float | None) -> str:

@@ -16,6 +16,7 @@ from rocking_cli.names import NO_UPLIFT, OVERTURNS, ROCKS, UNKNOWN
 from rocking_cli.studies.spectrum import Spectrum
 from rocking_cli.studies.under_pulses import Integers, Reals
 from rocking_cli.views import processing
+from rocking_cli.views.column import Column, rounded, table_of
 from rocking_cli.views.overturning import FROM_KINEMATICS, NO_JOINTS, numbers
 from rocking_cli.views.view import ABSENT, Table, View
 
@@ -190,38 +191,12 @@ def _peak(value: float, least: float = np.nan) -> str:
     return OVERTURNS if np.isinf(value) else f"{value:.3g}"
 
 
-def _fractile(each: Spectrum, q: float) -> list[str]:
-    """Format a fractile at each size: unknown if unknown outcomes decide whether it overturns."""
-    certain = each.fractile_overturns(q)
-    return [
-        UNKNOWN if np.isinf(value) and not falls else _peak(value)
-        for value, falls in zip(each.fractile(q), certain, strict=True)
-    ]
-
-
 def _curve(results: ShownSpectra, each: Spectrum) -> Iterator[Table | str]:
     """Yield the table of a shape, below its heading."""
     structure = each.shape.structure
     shown = sorted({round(k) for k in np.linspace(0, each.scales.size - 1, min(ROWS, each.scales.size)).tolist()})
     if each.given is not None and each.given not in shown:
         shown = sorted([*shown, each.given])
-    heads = ["2 pi/p\n[s]", "scale" if each.shape.slenderness is None else "R\n[m]"]
-    columns = [[f"{value:.3g}" for value in values] for values in (each.periods, each.scales)]
-    if each.given is not None:
-        columns[1][each.given] = "as given"
-    if results.one:
-        heads.append("peak\nphi/phi_cr")
-        least = np.broadcast_to(each.lower_bound, each.peak_ratio.shape)[0]
-        columns.append([_peak(*both) for both in zip(each.peak_ratio[0], least, strict=True)])
-    else:
-        heads += ["median" if q == 0.5 else f"{100 * q:g} %" for q in results.fractiles]
-        columns += [_fractile(each, q) for q in results.fractiles]
-        heads.append("overturned")
-        columns.append([f"{value} of {of}" for value, of in zip(each.overturned, each.followed, strict=True)])
-        if each.unknown.any():
-            heads.append(UNKNOWN)
-            columns.append([str(value) for value in each.doubtful])
-    rows = [[column[k] for column in columns] for k in shown]
     side = "" if structure.symmetric else f" ({structure.direction.label})"
     yield (
         f"{structure.name}{side}, {structure.model.name}: uplift at {structure.lambda_:.4g} g, eta = "
@@ -238,7 +213,26 @@ def _curve(results: ShownSpectra, each: Spectrum) -> Iterator[Table | str]:
             f" Except for the median they are '{ABSENT}' under fewer than {FEWEST} motions, of which one decides them."
         )  # fmt: skip
         yield f"Median and fractiles of the peak phi/phi_cr; an overturning motion ranks above every finite peak.{few}"
-    yield Table("", heads, rows, numbers=range(len(heads)))
+    yield table_of("", _columns(results, each), shown)
+
+
+def _columns(results: ShownSpectra, each: Spectrum) -> Iterator[Column[int]]:
+    """Yield the columns of the table of a shape, whose rows are its sizes."""
+    yield Column("", each.periods.item, head="2 pi/p\n[s]", form=rounded(3))
+    scales = ["as given" if k == each.given else f"{scale:.3g}" for k, scale in enumerate(each.scales)]
+    yield Column("", scales.__getitem__, head="scale" if each.shape.slenderness is None else "R\n[m]")
+    if results.one:
+        least = np.broadcast_to(each.lower_bound, each.peak_ratio.shape)[0]
+        yield Column("", lambda k: _peak(each.peak_ratio[0, k], least[k]), head="peak\nphi/phi_cr")
+        return
+    for q in results.fractiles:
+        falls, peaks = each.fractile_overturns(q), [_peak(value) for value in each.fractile(q)]
+        # Unknown outcomes count as overturning in a fractile: where only they make it overturn, it is not known.
+        cells = [UNKNOWN if peak == OVERTURNS and not known else peak for peak, known in zip(peaks, falls, strict=True)]
+        yield Column("", cells.__getitem__, head="median" if q == 0.5 else f"{100 * q:g} %")
+    yield Column("", lambda k: f"{each.overturned[k]} of {each.followed[k]}", head="overturned")
+    if each.unknown.any():
+        yield Column("", each.doubtful.item, head=UNKNOWN)
 
 
 def _verdict(results: ShownSpectra, each: Spectrum) -> str:
