@@ -81,9 +81,9 @@ def _own_mechanisms() -> dict[str, str]:
 
     Mechanisms of other packages are in `mechanisms`, by name.
     """
-    from rocking_cli.plugins.points import entry_points
+    from importlib.metadata import entry_points
 
-    own = [point for point in entry_points("rocking.mechanisms") if point.package.startswith("rocking-cli ")]
+    own = [point for point in entry_points(group="rocking.mechanisms") if point.value.startswith("mechanisms.")]
     return {point.value.partition(":")[2]: point.name for point in own}
 
 

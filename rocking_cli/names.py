@@ -38,6 +38,8 @@ def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False, unk
     return ROCKS if uplifts else NO_UPLIFT
 
 
+FEWEST, FEWEST_OF_MEDIAN = 20, 5
+"""Motions from which on a quantile is told, and the median: of fewer, a single motion decides it."""
 HALF_UP = 1e-9  # of a per cent: a share that ends in .5 is rounded up, whatever its last bit
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from importlib.metadata import EntryPoint
 from textwrap import dedent
 
 import numpy as np
@@ -21,8 +22,7 @@ from rocking_cli.core.hung.elements import ConstantForce, Spring, SpringBed
 from rocking_cli.core.hung.ties import Laws, Tie, laws
 from rocking_cli.errors import MechanismError
 from rocking_cli.plugins import registry
-from rocking_cli.plugins.installed import load
-from rocking_cli.plugins.points import Point
+from rocking_cli.plugins.registry import load
 from rocking_cli.testing import check_law
 from tests.conftest import EXAMPLES, PROJECT
 from tests.stiffening import Cubic
@@ -50,7 +50,7 @@ STIFFENING = WALL + "    law: stiffening\n    cubic: 4e6\n"
 def law(monkeypatch):
     """The law `stiffening` is installed, as by another package."""
     find = registry.find
-    point = Point("stiffening", "tests.stiffening:Stiffening", "rocking.laws")
+    point = EntryPoint("stiffening", "tests.stiffening:Stiffening", "rocking.laws")
     monkeypatch.setattr(registry, "find", lambda of: {"stiffening": [point]} if of == "rocking.laws" else find(of))
     laws.cache_clear()
     yield
@@ -323,7 +323,7 @@ class Nameless(Tie):
 )
 def test_what_is_no_law_is_named_with_its_package(value, said):
     with pytest.raises(MechanismError, match=re.escape(said)):
-        Laws.accept(load(Point("odd", value, "rocking.laws")), Point("odd", value, "rocking.laws"))
+        Laws.accept(load(EntryPoint("odd", value, "rocking.laws")), EntryPoint("odd", value, "rocking.laws"))
 
 
 def test_without_such_a_package_a_law_is_no_field(tmp_path):

@@ -6,6 +6,7 @@ import json
 import re
 import tomllib
 from dataclasses import replace
+from importlib.metadata import EntryPoint, entry_points
 from math import atan, isnan, sin
 from typing import ClassVar
 
@@ -17,7 +18,6 @@ from rocking_cli.engines import Engine, engine, engine_of, respond
 from rocking_cli.engines.exact import Exact
 from rocking_cli.engines.installed import Engines, engines
 from rocking_cli.errors import InputError, MechanismError, PluginError
-from rocking_cli.plugins.points import Point, entry_points
 from rocking_cli.structure import Structure
 from tests.conftest import EXAMPLES, PROJECT
 from tests.test_cli import run, run_json
@@ -139,10 +139,10 @@ def install(monkeypatch):
             if isinstance(value, type):
                 monkeypatch.setattr(value, "name", name)
                 value = f"{__name__}:{value.__name__}"
-            points.append(Point(name, value, Engines.group))
+            points.append(EntryPoint(name, value, Engines.group))
         monkeypatch.setattr(
-            "rocking_cli.plugins.installed.entry_points",
-            lambda group: [*real(group), *(points if group == Engines.group else ())],
+            "rocking_cli.plugins.registry.entry_points",
+            lambda group: [*real(group=group), *(points if group == Engines.group else ())],
         )
         engines.cache_clear()
 

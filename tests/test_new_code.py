@@ -10,6 +10,7 @@ import subprocess
 import sys
 import sysconfig
 import tomllib
+from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 
 import pytest
@@ -19,7 +20,6 @@ import rocking_cli as rk
 from rocking_cli import core
 from rocking_cli.cli.new_plugin import CODE, IMPORTED, LONGEST, loaded, package
 from rocking_cli.io.yaml_file import parse
-from rocking_cli.plugins.points import Point, entry_points
 from rocking_cli.studies import verification
 from rocking_cli.studies.verification.code import Code
 from rocking_cli.studies.verification.site_file import site_of
@@ -121,10 +121,10 @@ class TestNames:
 
     def test_an_installed_code_is_refused(self, monkeypatch):
         real = entry_points
-        point = Point("uni_test", "json:dumps", "rocking.codes")
+        point = EntryPoint("uni_test", "json:dumps", "rocking.codes")
         more = {"rocking.codes": [point]}
         monkeypatch.setattr(
-            "rocking_cli.plugins.installed.entry_points", lambda group: [*real(group), *more.get(group, [])]
+            "rocking_cli.plugins.registry.entry_points", lambda group: [*real(group=group), *more.get(group, [])]
         )
         text = run("new", "--plugin", "uni_test", "--code", code=2).stderr
         assert "the code uni_test already exists, in unknown package" in text and there(".") == []

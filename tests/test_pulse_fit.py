@@ -13,7 +13,6 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, PulseFit, _PulseSearch, fit_pulse, fit_pulses
 from rocking_cli.excitation.pulses.shapes import MavroeidisPapageorgiou, Ricker, Sine
 from rocking_cli.excitation.records import read_record
-from rocking_cli.excitation.simplex import maximise
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
 
 RINALDI = RECORDS / "Rinaldi228.AT2"
@@ -217,30 +216,6 @@ class TestEdges:
             fit_pulse(GroundMotion("none", 0.01, np.zeros(500)), "sine", "velocity")
         with pytest.raises(InputError, match="20 samples are too few"):
             fit_pulse(GroundMotion("short", 0.01, np.ones(20)), "sine", "acceleration")
-
-
-class TestSimplex:
-    def test_it_climbs_a_bent_ridge(self):
-        def ridge(p):
-            return -((1 - p[0]) ** 2) - 100 * (p[1] - p[0] ** 2) ** 2
-
-        most, where = maximise(ridge, np.array([-1.2, 1.0]), [0.5, 0.5], within=1e-9)
-        assert most == pytest.approx(0, abs=1e-12)
-        np.testing.assert_allclose(where, [1, 1], atol=1e-6)
-
-    def test_it_stops_at_a_wall(self):
-        most, where = maximise(lambda p: p[0] if p[0] <= 2 else -np.inf, np.zeros(1), [0.3], within=1e-9)
-        assert most == pytest.approx(2, abs=1e-6) and where[0] <= 2
-
-    def test_it_gives_up_after_so_many_steps(self):
-        calls = []
-        maximise(lambda p: calls.append(0) or float(p.sum()), np.zeros(2), [1.0, 1.0], within=1e-9, most=10)
-        assert len(calls) <= 3 + 10 * 4
-
-    def test_it_shrinks_where_nothing_else_helps(self):
-        calls = []
-        most, where = maximise(lambda p: calls.append(0) or -float(p.any()), np.zeros(2), [1.0, 1.0], within=1e-6)
-        assert most == 0 and not where.any() and len(calls) < 150
 
 
 def test_coarser_levels_are_the_same_record_at_the_same_times():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import FrozenInstanceError, dataclass, fields
+from importlib.metadata import EntryPoint
 
 import numpy as np
 import pytest
@@ -22,7 +23,6 @@ from rocking_cli.excitation.pulses.shapes import (
     Ricker,
     Sine,
 )
-from rocking_cli.plugins.points import Point
 from tests.test_cli import run_json
 
 A, T = 3.0, 0.8
@@ -295,8 +295,8 @@ class Incomplete(Pulse):
 
 
 def install(monkeypatch, *points):
-    entries = [Point(name=name, value=value, group=PulseShapes.group) for name, value in points]
-    monkeypatch.setattr("rocking_cli.plugins.installed.entry_points", lambda group: entries)
+    entries = [EntryPoint(name=name, value=value, group=PulseShapes.group) for name, value in points]
+    monkeypatch.setattr("rocking_cli.plugins.registry.entry_points", lambda group: entries)
 
 
 class TestPlugins:

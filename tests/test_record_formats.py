@@ -571,7 +571,7 @@ def test_the_readers_come_in_through_entry_points():
 
 
 def test_without_entry_points_there_is_no_reader(monkeypatch):
-    monkeypatch.setattr("rocking_cli.plugins.installed.entry_points", lambda group: [])
+    monkeypatch.setattr("rocking_cli.plugins.registry.entry_points", lambda group: [])
     assert load_readers() == {}
 
 
@@ -626,11 +626,11 @@ def test_a_file_of_no_format_lists_what_was_tried(write):
 
 
 def test_a_broken_reader_is_named(monkeypatch):
-    point = SimpleNamespace(name="odd", value="elsewhere:odd", package="odd 1", load=lambda: SimpleNamespace(sniff=len))
+    point = SimpleNamespace(name="odd", value="elsewhere:odd", dist=None, load=lambda: SimpleNamespace(sniff=len))
     monkeypatch.setattr(
-        "rocking_cli.plugins.installed.entry_points", lambda group: [point] if group == Readers.group else []
+        "rocking_cli.plugins.registry.entry_points", lambda group: [point] if group == Readers.group else []
     )
-    monkeypatch.setattr("rocking_cli.plugins.installed._LEFT_OUT", set())
+    monkeypatch.setattr("rocking_cli.plugins.registry._LEFT_OUT", set())
     why = r"elsewhere:odd.* is not a record reader: it has no read, TITLE, SIGN"
     with pytest.warns(PluginWarning, match=f"{why}; it is left out"):
         readers = load_readers()

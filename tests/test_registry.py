@@ -8,6 +8,7 @@ import os
 import re
 import subprocess
 import sys
+from importlib.metadata import EntryPoint
 from math import atan
 
 import pytest
@@ -16,8 +17,7 @@ from mechanisms.block import Block
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry, conformance
 from rocking_cli.errors import InputError, MechanismError
-from rocking_cli.plugins.installed import load
-from rocking_cli.plugins.points import Point
+from rocking_cli.plugins.registry import load
 from rocking_cli.testing import CHECKS
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
@@ -462,7 +462,7 @@ def test_printing_from_other_threads_is_kept_out_of_the_results():
 
 
 def entry(value, name="odd"):
-    return Point(name=name, value=value, group=Registry.group)
+    return EntryPoint(name=name, value=value, group=Registry.group)
 
 
 def test_a_plugin_that_cannot_be_imported_says_whose_it_is():
@@ -518,14 +518,14 @@ def test_a_name_that_differs_from_the_entry_point_is_a_fault():
 
 def test_a_name_claimed_twice_is_an_error_that_names_both(monkeypatch):
     points = [entry("mechanisms.block:Block", "block"), entry("elsewhere:Block", "block")]
-    monkeypatch.setattr("rocking_cli.plugins.installed.entry_points", lambda group: points)
+    monkeypatch.setattr("rocking_cli.plugins.registry.entry_points", lambda group: points)
     with pytest.raises(MechanismError, match=r"mechanisms\.block:Block.*elsewhere:Block"):
         Registry()["block"]
 
 
 def test_the_same_entry_listed_twice_is_one(monkeypatch):
     monkeypatch.setattr(
-        "rocking_cli.plugins.installed.entry_points", lambda group: [entry("mechanisms.block:Block", "block")] * 2
+        "rocking_cli.plugins.registry.entry_points", lambda group: [entry("mechanisms.block:Block", "block")] * 2
     )
     assert Registry()["block"] is Block
 

@@ -7,6 +7,7 @@ import math
 import re
 import sys
 from dataclasses import replace
+from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from textwrap import dedent
 from typing import Literal
@@ -16,7 +17,6 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.core import quantity
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.plugins.points import Point, entry_points
 from rocking_cli.studies.verification import Code, Formula, Method, Number, Site, Verified, governing
 from rocking_cli.studies.verification.installed import Codes, codes
 from rocking_cli.testing import CodeContract
@@ -224,16 +224,16 @@ def beside(monkeypatch, *points):
     real = entry_points
 
     def also(group):
-        return [*real(group), *(points if group == Codes.group else ())]
+        return [*real(group=group), *(points if group == Codes.group else ())]
 
-    monkeypatch.setattr("rocking_cli.plugins.installed.entry_points", also)
+    monkeypatch.setattr("rocking_cli.plugins.registry.entry_points", also)
     codes.cache_clear()
 
 
 @pytest.fixture
 def installed(monkeypatch):
     """Beside the Italian code, those of this file that can be listed."""
-    beside(monkeypatch, *(Point(each.key, f"{MODULE}:{each.__name__}", Codes.group) for each in EVERY))
+    beside(monkeypatch, *(EntryPoint(each.key, f"{MODULE}:{each.__name__}", Codes.group) for each in EVERY))
     yield
     codes.cache_clear()
 
@@ -540,7 +540,7 @@ class TestStarter:
     def test_its_name_is_completed_without_loading_it(self, monkeypatch):
         from rocking_cli.cli import complete
 
-        monkeypatch.setattr(Point, "load", lambda point: pytest.fail("loaded"))
+        monkeypatch.setattr(EntryPoint, "load", lambda point: pytest.fail("loaded"))
         assert [each.value for each in complete.codes(None, None, "U")] == ["UNI-demo"]
         assert "NTC2018" in [each.value for each in complete.codes(None, None, "")]
 
@@ -570,14 +570,14 @@ class TestBadCodes:
         ("point", "said"),
         [
             (
-                Point("bad", f"{MODULE}:NoKey", Codes.group),
+                EntryPoint("bad", f"{MODULE}:NoKey", Codes.group),
                 "is not a code: it needs key = 'bad', a name and an edition",
             ),
             (
-                Point("bad", f"{MODULE}:DemoSite", Codes.group),
+                EntryPoint("bad", f"{MODULE}:DemoSite", Codes.group),
                 "is not a code: it must derive from Code and be complete",
             ),
-            (Point("bad", f"{MODULE}:Lost", "rocking.codes"), "cannot be loaded: AttributeError"),
+            (EntryPoint("bad", f"{MODULE}:Lost", "rocking.codes"), "cannot be loaded: AttributeError"),
         ],
     )
     def test_what_is_no_code_is_refused_and_leaves_the_others(self, point, said, demo, monkeypatch):
@@ -647,7 +647,7 @@ class TestGuide:
         )
         (tmp_path / "rocking_guide.py").write_text(f"{code}\n{sheet}", encoding="utf-8")
         monkeypatch.syspath_prepend(tmp_path)
-        yield lambda name: beside(monkeypatch, Point("UNI-demo", f"rocking_guide:{name}", Codes.group))
+        yield lambda name: beside(monkeypatch, EntryPoint("UNI-demo", f"rocking_guide:{name}", Codes.group))
         sys.modules.pop("rocking_guide", None)
 
     def test_its_code_verifies(self, guide, demo):

@@ -45,7 +45,7 @@ def listed(words: Sequence[str]) -> Completer:
 
 def _plugins(group: str, *, more: Sequence[str] = (), ending: str = "") -> Completer:
     def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-        from rocking_cli.plugins.installed import find
+        from rocking_cli.plugins.registry import find
 
         names = (name + ending for name in sorted({*find(group), *more}))
         return [CompletionItem(name) for name in names if name.startswith(incomplete)]

@@ -92,7 +92,7 @@ def command(
         return
     from rocking_cli.core.registry import Registry
     from rocking_cli.errors import InputError, Problem, RockingError
-    from rocking_cli.plugins.installed import find
+    from rocking_cli.plugins.registry import find
     from rocking_cli.structure_file import parse_structure
     from rocking_cli.views.template import template
 

@@ -15,7 +15,6 @@ import numpy as np
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.errors import MechanismError, StructureError
-from rocking_cli.median import median
 
 JUMP = 1e-5  # of the size of a coefficient: what its derivative may miss of its change from one rotation to the next
 
@@ -130,9 +129,9 @@ def check_continuous(mechanism: str, direction: Direction, at: Coefficients, in_
         If V, G, B or I changes between two rotations by what its derivative there does not explain; a `StructureError`
         if the file of the structure gives its motion.
     """
-    moment = median(np.abs(at.G) + np.abs(at.B))  # its size: m R, and V has the same unit
+    moment = np.median(np.abs(at.G) + np.abs(at.B))  # its size: m R, and V has the same unit
     pairs = {"V": (at.V, at.G, moment), "G": (at.G, at.dG, moment), "B": (at.B, at.dB, moment)}
-    pairs["I"] = (at.I, 2 * at.J, median(at.I))
+    pairs["I"] = (at.I, 2 * at.J, np.median(at.I))
     found = {name: jump(at.phi, *pair) for name, pair in pairs.items()}
     first = min((phi, name) for name, phi in found.items())
     where = f"jumps at phi = {first[0]:.4g} rad in the {direction.label} direction"

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from importlib.metadata import EntryPoint
 from typing import cast
 
 from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError, MechanismError
-from rocking_cli.plugins.installed import origin
-from rocking_cli.plugins.points import Point
-from rocking_cli.plugins.registry import Plugins
+from rocking_cli.plugins.registry import Plugins, origin
 
 
 class UnknownMechanismError(InputError, KeyError):
@@ -33,7 +32,7 @@ class Registry(Plugins[type[Mechanism]]):
     unknown = UnknownMechanismError
 
     @staticmethod
-    def accept(loaded: object, point: Point) -> type[Mechanism]:
+    def accept(loaded: object, point: EntryPoint) -> type[Mechanism]:
         """Return the loaded object if it fulfils the contract of `Mechanism`."""
         if faults := conformance(loaded, point.name):
             raise MechanismError(f"{origin(point)} is not a mechanism: " + "; ".join(faults))

@@ -20,13 +20,14 @@ from pathlib import Path
 from types import FunctionType
 from typing import Any
 
-from rocking_cli import cache
 from rocking_cli.errors import CacheWarning, InputError
 
 
 def cache_folder() -> Path:
     """Return the folder of compiled kernels."""
-    return Path(os.environ.get("NUMBA_CACHE_DIR") or cache.folder() / "numba")
+    from platformdirs import user_cache_path
+
+    return Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_path("rocking-cli") / "numba")
 
 
 @functools.cache

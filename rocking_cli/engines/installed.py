@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
 from functools import cache
+from importlib.metadata import EntryPoint
 from typing import get_args
 
 from rocking_cli.dynamics.history import RTOL, TAIL, History
@@ -13,9 +14,7 @@ from rocking_cli.engines.exact import Exact
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plugins.errors import blame
-from rocking_cli.plugins.installed import origin
-from rocking_cli.plugins.points import Point
-from rocking_cli.plugins.registry import Plugins
+from rocking_cli.plugins.registry import Plugins, origin
 from rocking_cli.structure import Structure
 from rocking_cli.text import did_you_mean
 
@@ -37,7 +36,7 @@ class Engines(Plugins[Engine]):
     kind = "engine"
 
     @staticmethod
-    def accept(loaded: object, point: Point) -> Engine:
+    def accept(loaded: object, point: EntryPoint) -> Engine:
         """Return the loaded object if it is a complete engine with the name of its entry point."""
         if not (isinstance(loaded, type) and issubclass(loaded, Engine)):
             raise MechanismError(f"{origin(point)} is not an engine: it must be a class derived from Engine")

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.measures import Measures
-from rocking_cli.median import median
 
 COARSE = 0.1  # s between samples; strong-motion records have 0.02 or less
 PLAUSIBLE = (0.002, 4.0)  # g; the strongest ground motions on record have some 2.5
@@ -181,7 +180,7 @@ def _dropouts(motion: GroundMotion) -> list[Doubt]:
     if not changes.size:
         return []
     sizes = np.abs(steps[changes])
-    jumps = sizes > max(JUMP * peak, STEP * median(sizes))
+    jumps = sizes > max(JUMP * peak, STEP * np.median(sizes))
     level = np.abs(a[changes[1:]]) < peak  # at the peak it is clipped
     lost = np.flatnonzero((np.diff(changes) >= DROPOUT) & jumps[:-1] & jumps[1:] & level)
     if not lost.size:

@@ -21,7 +21,6 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses.base import Pulse
 from rocking_cli.excitation.pulses.shapes import MavroeidisPapageorgiou, Ricker, Sine
-from rocking_cli.excitation.simplex import maximise
 
 Reals = NDArray[np.float64]
 Criterion = Literal["acceleration", "velocity"]
@@ -212,27 +211,33 @@ class _PulseSearch:
     def _refine(self, shape: str, place: _Place, size: float, within: float, enough: int) -> tuple[float, _Place]:
         """Refine start, period and cycles by the simplex method; return the captured share and the result.
 
-        The variables are the middle of the pulse and the logarithms of period and cycles. `size` is the size of the
-        first simplex and `within` that of the last, in steps of the grid.
+        The variables are the middle of the pulse and the logarithms of period and cycles, in steps of the grid. `size`
+        is the size of the first simplex and `within` that of the last.
         """
-        steps = size * np.array([1 / ENOUGH[0] / 2, log(2) / PER_OCTAVE, 0.15])[: 3 if shape == "mavroeidis" else 2]
+        from scipy.optimize import minimize
+
+        steps = np.array([1 / ENOUGH[0] / 2, log(2) / PER_OCTAVE, 0.15])[: 3 if shape == "mavroeidis" else 2]
         middle = _middle(shape, place)
         level = self.level(place.period, enough)
 
         def there(u: Reals) -> _Place:
+            u = u * steps
             period, cycles = place.period * float(np.exp(u[1])), place.cycles * float(np.exp(u[2:].sum()))
             start = middle + float(u[0]) * place.period - _span(shape, cycles) * period / 2
             return _Place(start, period, cycles)
 
-        def captured(u: Reals) -> float:
+        def missed(u: Reals) -> float:
             here = there(u)
-            near = abs(u[1]) <= 1 and 0 <= _middle(shape, here) <= self.longest  # a pulse of the record, and resolved
+            # A pulse of the record, and resolved.
+            near = abs(u[1] * steps[1]) <= 1 and 0 <= _middle(shape, here) <= self.longest
             if not (near and self.shortest <= here.period <= self.longest and RANGE[0] <= here.cycles <= RANGE[1]):
-                return -np.inf
-            return self.fit(shape, here, level)[0]
+                return np.inf
+            return -self.fit(shape, here, level)[0]
 
-        most, u = maximise(captured, np.zeros(steps.size), steps.tolist(), within=within / size)
-        return most, there(u)
+        corners = size * np.eye(steps.size + 1, steps.size, -1)
+        options = {"initial_simplex": corners, "xatol": within, "fatol": np.inf}
+        found = minimize(missed, corners[0], method="Nelder-Mead", options=options)
+        return -float(found.fun), there(found.x)
 
     def _places(self, shape: str) -> list[_Place]:
         """Return the best points of a grid of start, period and cycles, without points near better ones."""

@@ -16,7 +16,7 @@ from matplotlib.ticker import MaxNLocator, PercentFormatter
 from numpy.typing import NDArray
 
 from rocking_cli import names
-from rocking_cli.median import FEWEST
+from rocking_cli.names import FEWEST
 from rocking_cli.plotting import style
 from rocking_cli.studies.spectrum import Spectrum
 from rocking_cli.studies.under_pulses import Reals

@@ -1,17 +1,62 @@
-"""Plugins of one kind by name: mechanisms, record readers, pulse shapes, intensity measures, codes or engines."""
+"""Plugins of installed packages, found by their entry points and looked up by name.
+
+Mechanisms, record readers, pulse shapes, intensity measures, laws of ties, codes of practice and engines are all
+plugins of one kind each.
+"""
 
 from __future__ import annotations
 
+import warnings
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping
+from importlib.metadata import EntryPoint, entry_points
 from typing import ClassVar, TypeVar
 
-from rocking_cli.errors import InputError
-from rocking_cli.plugins.installed import find, load, only
-from rocking_cli.plugins.points import Point
+from rocking_cli.errors import InputError, MechanismError, PluginWarning
+from rocking_cli.plugins.errors import blame
 from rocking_cli.text import did_you_mean
 
 T = TypeVar("T")
+
+
+def find(group: str) -> dict[str, list[EntryPoint]]:
+    """Find the entry points of a group by name; several of one name are a conflict for the caller to report."""
+    points: dict[str, list[EntryPoint]] = {}
+    for point in entry_points(group=group):
+        same_name = points.setdefault(point.name, [])
+        # An editable and a normal install of one package list the same entry twice.
+        if all(point.value != other.value for other in same_name):
+            same_name.append(point)
+    return points
+
+
+def package_of(point: EntryPoint) -> str:
+    """Return the name and version of the package of a plugin."""
+    return f"{point.dist.name} {point.dist.version}" if point.dist is not None else "unknown package"
+
+
+def origin(point: EntryPoint) -> str:
+    """Return the plugin and its package, for a message."""
+    return f"plugin {point.name} of {package_of(point)} ({point.value})"
+
+
+def load(point: EntryPoint) -> object:
+    """Load the object of an entry point."""
+    with blame(f"{origin(point)} cannot be loaded", point.value.partition(":")[0]):
+        loaded: object = point.load()
+    return loaded
+
+
+_LEFT_OUT: set[str] = set()
+
+
+def leave_out(error: MechanismError) -> None:
+    """Warn, once in this process, that a plugin is left out; the others are used."""
+    if str(error) not in _LEFT_OUT:
+        _LEFT_OUT.add(str(error))
+        warning = PluginWarning(f"{error}; it is left out")
+        warning.__cause__ = error
+        warnings.warn(warning, stacklevel=2)
 
 
 class Plugins(Mapping[str, T]):
@@ -50,14 +95,17 @@ class Plugins(Mapping[str, T]):
         if name not in self._points:
             hint = did_you_mean(name, list(self._points))
             raise self.unknown(f"unknown {self.kind}: {name}" + (f" ({hint})" if hint else ""))
-        point = only(self.kind, name, self._points[name])
+        point, *others = self._points[name]
+        if others:
+            claims = " and ".join(f"{package_of(each)} ({each.value})" for each in (point, *others))
+            raise MechanismError(f"{self.kind} {name} is claimed by two packages, {claims}: uninstall one of them")
         return self.accept(load(point), point)
 
     def package_of(self, name: str) -> str:
         """Return the distribution and version of a plugin."""
-        return ", ".join(point.package for point in self._points[name])
+        return ", ".join(package_of(point) for point in self._points[name])
 
     @staticmethod
     @abstractmethod
-    def accept(loaded: object, point: Point) -> T:
+    def accept(loaded: object, point: EntryPoint) -> T:
         """Return the loaded object if it is valid; otherwise raise a `MechanismError` with all that is missing."""

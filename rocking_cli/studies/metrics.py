@@ -10,7 +10,7 @@ from math import nan
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plugins.errors import blame
-from rocking_cli.plugins.installed import leave_out
+from rocking_cli.plugins.registry import leave_out
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 from rocking_cli.studies.verification.check import verify

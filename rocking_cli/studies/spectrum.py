@@ -16,7 +16,7 @@ from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.median import FEWEST
+from rocking_cli.names import FEWEST
 from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.sizes import Sizes
 from rocking_cli.studies.under_pulses import Integers, Progress, PulsedModel, Reals, parse_shape, pulsed_model, uplift

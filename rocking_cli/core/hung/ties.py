@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
+from importlib.metadata import EntryPoint
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self, cast
 
@@ -14,9 +15,7 @@ from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import Element
 from rocking_cli.core.hung.elements import Spring, SpringBed
 from rocking_cli.errors import MechanismError
-from rocking_cli.plugins.installed import origin
-from rocking_cli.plugins.points import Point
-from rocking_cli.plugins.registry import Plugins
+from rocking_cli.plugins.registry import Plugins, origin
 from rocking_cli.text import did_you_mean
 
 LATER = {
@@ -218,7 +217,7 @@ class Laws(Plugins[type[Tie]]):
     kind = "law"
 
     @staticmethod
-    def accept(loaded: object, point: Point) -> type[Tie]:
+    def accept(loaded: object, point: EntryPoint) -> type[Tie]:
         """Return the loaded class of ties. Raises `MechanismError` if it is none, or its `law` is not its name."""
         if not (isinstance(loaded, type) and issubclass(loaded, Tie)):
             raise MechanismError(f"{origin(point)} is not a law: it must be a class derived from Tie")

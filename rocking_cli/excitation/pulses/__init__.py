@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import re
 from dataclasses import fields
+from importlib.metadata import EntryPoint
 
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses.base import COARSE, Pulse, Segment
 from rocking_cli.excitation.records.record_units import UNITS
 from rocking_cli.patterns import regex
-from rocking_cli.plugins.installed import origin
-from rocking_cli.plugins.points import Point
-from rocking_cli.plugins.registry import Plugins
+from rocking_cli.plugins.registry import Plugins, origin
 
 __all__ = ["COARSE", "Pulse", "PulseShapes", "Segment", "parse_pulse"]
 
@@ -35,7 +34,7 @@ class PulseShapes(Plugins[type[Pulse]]):
     kind = "pulse"
 
     @staticmethod
-    def accept(loaded: object, point: Point) -> type[Pulse]:
+    def accept(loaded: object, point: EntryPoint) -> type[Pulse]:
         """Return the loaded object if it is a complete pulse shape with the name of its entry point."""
         if not (isinstance(loaded, type) and issubclass(loaded, Pulse)) or loaded.__abstractmethods__:
             raise MechanismError(f"{origin(point)} is not a pulse shape: it must derive from Pulse and be complete")

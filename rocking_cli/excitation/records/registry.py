@@ -8,14 +8,13 @@ file instead of its text. A reader with `TAKES_WANTED = True` can read other val
 
 from __future__ import annotations
 
+from importlib.metadata import EntryPoint
 from typing import Any, Protocol, cast
 
 from rocking_cli.errors import InputError, MechanismError, PluginError, Problem, RockingError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plugins.errors import blame
-from rocking_cli.plugins.installed import leave_out, origin
-from rocking_cli.plugins.points import Point
-from rocking_cli.plugins.registry import Plugins
+from rocking_cli.plugins.registry import Plugins, leave_out, origin
 
 FALLBACK = "text"
 """The reader that is asked last: delimited text takes nearly anything with numbers in it."""
@@ -99,7 +98,7 @@ class Readers(Plugins[Reader]):
     kind = "record reader"
 
     @staticmethod
-    def accept(loaded: object, point: Point) -> Reader:
+    def accept(loaded: object, point: EntryPoint) -> Reader:
         """Return the loaded object, wrapped so that its errors name it, if it is a reader."""
         missing = [word for word in ("sniff", "read") if not callable(getattr(loaded, word, None))]
         missing += [word for word in ("TITLE", "SIGN") if not isinstance(getattr(loaded, word, None), str)]
@@ -133,7 +132,7 @@ class _Broken:
 class _Guarded:
     """A reader wrapped so that its own errors are reported as errors of its package."""
 
-    def __init__(self, reader: Reader, point: Point) -> None:
+    def __init__(self, reader: Reader, point: EntryPoint) -> None:
         self.TITLE, self.SIGN, self.BINARY = reader.TITLE, reader.SIGN, takes_bytes(reader)
         self.TAKES_WANTED = takes_wanted(reader)
         self._reader, self._point = reader, point

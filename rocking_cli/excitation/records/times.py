@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.excitation.base import Doubt
-from rocking_cli.median import median
 
 SPARSE = 10  # times as many samples as were recorded, that an even grid may have
 _LEAST = 1e-9  # s
@@ -63,7 +62,7 @@ def even_interval(time: NDArray[np.float64]) -> float:
     if dt < _LEAST:
         hint = "the first column must be the time, in seconds"
         raise UnevenTimeError(f"the times give a sample interval of {dt:g} s", hint, None)
-    usual = median(steps)
+    usual = np.median(steps)
 
     def odd(rounding: NDArray[np.float64]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
         # Rounding moves each time by up to half its last digit: a step, or a time against the ends, by a whole one.
@@ -120,7 +119,7 @@ def on_grid(time: NDArray[np.float64], values: NDArray[np.float64]) -> tuple[flo
     steps = np.diff(time)
     if not (steps > 0).all():
         return None
-    dt = float(f"{median(steps):.6g}")  # a clock ticks in a number that people write
+    dt = float(f"{np.median(steps):.6g}")  # a clock ticks in a number that people write
     longest = int(steps.argmax())
     count = (time[-1] - time[0]) / dt * (1 + 1e-9)
     if not count < SPARSE * len(time):

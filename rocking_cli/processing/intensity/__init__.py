@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from functools import cache
+from importlib.metadata import EntryPoint
 
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.plugins.errors import blame
-from rocking_cli.plugins.installed import leave_out, origin
-from rocking_cli.plugins.points import Point
-from rocking_cli.plugins.registry import Plugins
+from rocking_cli.plugins.registry import Plugins, leave_out, origin
 from rocking_cli.processing.intensity.base import Measure, MotionMeasure, Reference, RelativeMeasure, RunMeasure
 from rocking_cli.text import cut, did_you_mean
 
@@ -45,7 +44,7 @@ class IntensityMeasures(Plugins[type[Measure]]):
     kind = "measure"
 
     @staticmethod
-    def accept(loaded: object, point: Point) -> type[Measure]:
+    def accept(loaded: object, point: EntryPoint) -> type[Measure]:
         """Return the loaded object if it is a complete measure with the name of its entry point."""
         kinds = (MotionMeasure, RelativeMeasure, RunMeasure)
         if not (isinstance(loaded, type) and issubclass(loaded, kinds)) or loaded.__abstractmethods__:

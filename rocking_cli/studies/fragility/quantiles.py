@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli import median
+from rocking_cli import names
 from rocking_cli.studies.fragility.definition import Definition
 from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.studies.fragility.plan import Plan
@@ -22,7 +22,7 @@ from rocking_cli.studies.fragility.tally import UNSEEN, Tally, endings_of, sampl
 
 Reals = NDArray[np.float64]
 SHARES = (0.16, 0.5, 0.84)
-FEWEST = (median.FEWEST, median.FEWEST_OF_MEDIAN, median.FEWEST)
+FEWEST = (names.FEWEST, names.FEWEST_OF_MEDIAN, names.FEWEST)
 """Records from which on each quantile is told."""
 ROUNDING = 1e-9  # of a number of runs
 

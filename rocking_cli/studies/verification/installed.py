@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
+from importlib.metadata import EntryPoint
 
 from rocking_cli.errors import MechanismError
 from rocking_cli.plugins.errors import blame
-from rocking_cli.plugins.installed import origin
-from rocking_cli.plugins.points import Point
-from rocking_cli.plugins.registry import Plugins
+from rocking_cli.plugins.registry import Plugins, origin
 from rocking_cli.studies.verification.code import Code, Number
 from rocking_cli.studies.verification.site_file import Site
 
@@ -29,7 +28,7 @@ class Codes(Plugins[Code]):
     kind = "code"
 
     @staticmethod
-    def accept(loaded: object, point: Point) -> Code:
+    def accept(loaded: object, point: EntryPoint) -> Code:
         """Return an instance of a loaded class if it is a complete code of its name. Raises `MechanismError` if not."""
         if not (isinstance(loaded, type) and issubclass(loaded, Code)) or loaded.__abstractmethods__:
             raise MechanismError(f"{origin(point)} is not a code: it must derive from Code and be complete")
