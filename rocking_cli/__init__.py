@@ -29,7 +29,7 @@ _HOME = {
     "ask.draw": ["draw"],
     "ask.equiv": ["equiv"],
     "ask.equivalent": ["equivalent"],
-    "ask.error": ["error", "linearisation"],
+    "ask.error": ["error"],
     "ask.fragility": ["fragility"],
     "ask.margin": ["margin"],
     "ask.overturning": ["overturning"],

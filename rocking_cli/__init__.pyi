@@ -22,7 +22,6 @@ from rocking_cli.ask.draw import draw as draw
 from rocking_cli.ask.equiv import equiv as equiv
 from rocking_cli.ask.equivalent import equivalent as equivalent
 from rocking_cli.ask.error import error as error
-from rocking_cli.ask.error import linearisation as linearisation
 from rocking_cli.ask.fragility import fragility as fragility
 from rocking_cli.ask.margin import margin as margin
 from rocking_cli.ask.motions import correct as correct

@@ -142,7 +142,7 @@ ANSWERS = {
     "verification": lambda: rk.verify(
         rk.Block(width=0.6, height=8.0), {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
     ),
-    "linearisation": lambda: rk.linearisation(rk.Wall(thickness=0.3, height=3.0), at=(0.2, 0.5)),
+    "error": lambda: rk.error(rk.Wall(thickness=0.3, height=3.0), at=(0.2, 0.5)),
     "equivalent": lambda: rk.equivalent([EXAMPLES / "block.yaml", EXAMPLES / "wall.yaml"], "sine:0.6g:0.5s"),
 }
 

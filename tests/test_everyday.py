@@ -88,20 +88,9 @@ class TestDefaults:
         (tmp_path / "rocking.toml").write_text("tail = 10.0\n", encoding="utf-8")
         assert "defaults:" not in run(*PULSE).stderr
 
-    def test_an_option_that_is_gone_is_not_passed_over(self, monkeypatch):
-        monkeypatch.setenv("ROCKING_WITHIN_RESTITUTION", "0.02")
-        assert (
-            "ROCKING_WITHIN_RESTITUTION: this option is gone give restitution-deviation, a standard deviation"
-            in " ".join(run(*PULSE, code=2).stderr.split())
-        )
-
     @pytest.mark.parametrize(
         ("text", "words"),
         [
-            (
-                "within-amplitude = '3%'",
-                "rocking.toml: within-amplitude: this option is gone give amplitude-deviation, a standard deviation",
-            ),
             ("neighbors = 2", "rocking.toml: neighbors: this option cannot have a default did you mean neigh"),
             ("out = 'a.csv'", "rocking.toml: out: this option cannot have a default"),
             ("model = 'linear1'", "rocking.toml: model: this option cannot have a default its meaning differs between"),

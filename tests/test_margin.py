@@ -321,8 +321,6 @@ class TestCommand:
             (("--record", "x", "--slenderness-deviation", "100%"), "from 0 up to, but not including, 1"),
             (("--record", "x", "--restitution-deviation", -1), "from 0"),
             (("--record", "x", "--opening", 1001), "from 0 to 1000"),
-            (("--record", "x", "--within-amplitude", 0.02), "give --amplitude-deviation"),
-            (("--record", "x", "--within-restitution", 0.02), "give --restitution-deviation"),
             (("--record", "no.AT2"), "no such file"),
         ],
     )

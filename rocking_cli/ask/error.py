@@ -77,9 +77,6 @@ def error(
     return Answer("linearisation", found, shown, partial(_columns, found), figure)
 
 
-linearisation = error
-
-
 def _columns(found: Sequence[Linearisation]) -> Columns:
     return {
         "direction": [each.direction.label for each in found for _ in each.amplitude],

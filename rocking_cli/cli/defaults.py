@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -31,8 +31,7 @@ EVERYWHERE = (
 """Options with one meaning in all commands; none that choose the question, the input or the output."""
 IN_TABLES = ("polarity", "model", "eta", "kappa", "shape")
 """Options whose meaning differs between commands: only the table of a command may set them."""
-GONE = {"within-amplitude": "amplitude-deviation", "within-restitution": "restitution-deviation"}
-"""Options that no longer exist, and what to give instead: their values had another meaning."""
+DIFFERS = "its meaning differs between commands: put it in the table of a command, such as [respond]"
 OTHERS = ("DEBUG", "BROWSER", "KERNELS")
 """Other variables of the environment that the program reads."""
 
@@ -79,22 +78,41 @@ def in_force(commands: tuple[str, ...]) -> list[Default]:
     Raises
     ------
     InputError
-        With every key that cannot have a default, table that is not a command, removed option, and value that is
-        neither a text nor a number nor a list of them.
+        With every key that cannot have a default, table that is not a command, and value that is neither a text nor a
+        number nor a list of them.
     """
     found = [
         Default(option, None, value, variable, variable)
         for option in EVERYWHERE
-        if (value := os.environ.get(variable := PREFIX + option.upper().replace("-", "_")))
+        if (value := os.environ.get(variable := _variable(option)))
     ]
-    variables = {PREFIX + old.upper().replace("-", "_"): old for old in GONE}
-    problems = [
-        Problem("this option is gone", name, hint=_instead(old))
-        for name, old in variables.items()
-        if name in os.environ
-    ]
+    problems: list[Problem] = []
     for file in files():
-        found += _of_file(file, commands, problems)
+        shown, data = one_line(str(file)), _read(file)
+        tables: dict[str | None, Any] = {key: value for key, value in data.items() if isinstance(value, dict)}
+        for command in [each for each in tables if each not in commands]:
+            hint = did_you_mean(str(command), list(commands))
+            word = cut(str(command))
+            problems.append(Problem(f"{word} is not a command", shown, field=f"[{word}]", hint=hint))
+            del tables[command]
+        tables[None] = {key: value for key, value in data.items() if not isinstance(value, dict)}
+        for command, pairs in tables.items():
+            known = [*EVERYWHERE, *(IN_TABLES if command else ())]
+            for key, value in pairs.items():
+                option, place = key.replace("_", "-"), f"[{command}] {key}" if command else key
+                values = value if isinstance(value, list) else [value]
+                if option not in known:
+                    hint = DIFFERS if option in IN_TABLES else did_you_mean(option, known)
+                    what = "this option cannot have a default"
+                    problems.append(Problem(what, shown, field=cut(one_line(place)), hint=hint))
+                elif not values or any(
+                    isinstance(each, bool) or not isinstance(each, str | int | float) for each in values
+                ):
+                    what = "the value is neither a text nor a number, nor a list of them"
+                    problems.append(Problem(what, shown, field=place))
+                else:
+                    typed = ",".join(map(str, values))
+                    found.append(Default(option, command, typed, shown, f"{shown}: {place}"))
     if problems:
         raise InputError(*problems)
     return found
@@ -102,7 +120,7 @@ def in_force(commands: tuple[str, ...]) -> list[Default]:
 
 def unknown_variables() -> list[str]:
     """Return variables of the environment with our prefix that the program does not read."""
-    known = {PREFIX + each.upper().replace("-", "_") for each in EVERYWHERE} | {PREFIX + each for each in OTHERS}
+    known = {*map(_variable, EVERYWHERE), *(PREFIX + each for each in OTHERS)}
     return sorted(each for each in os.environ if each.startswith(PREFIX) and each not in known)
 
 
@@ -160,50 +178,8 @@ def whose(message: str, context: click.Context | None) -> str:
     return "".join(f" --{each.option} {each.value} was not typed; it is a default from {each.key}." for each in named)
 
 
-def _of_file(file: Path, commands: tuple[str, ...], problems: list[Problem]) -> Iterator[Default]:
-    """Yield the defaults of a file, the tables of commands first; add what is wrong to the problems."""
-    shown = one_line(str(file))
-    data = _read(file)
-    tables = {key: value for key, value in data.items() if isinstance(value, dict)}
-    for table, pairs in tables.items():
-        if table not in commands:
-            problems.append(Problem(f"{cut(table)} is not a command", shown, field=f"[{cut(table)}]",
-                                    hint=did_you_mean(table, list(commands))))  # fmt: skip
-            continue
-        for key, value in pairs.items():
-            yield from _one(shown, table, key, value, (*EVERYWHERE, *IN_TABLES), problems)
-    for key in data.keys() - tables.keys():
-        yield from _one(shown, None, key, data[key], EVERYWHERE, problems)
-
-
-def _one(
-    file: str, command: str | None, key: str, value: Any, known: tuple[str, ...], problems: list[Problem]
-) -> Iterator[Default]:
-    option = key.replace("_", "-")
-    place = f"[{command}] {key}" if command else key
-    if option not in known:
-        only = option in IN_TABLES
-        hint = (
-            "its meaning differs between commands: put it in the table of a command, such as [respond]"
-            if only
-            else None
-        )
-        if option in GONE:
-            problems.append(Problem("this option is gone", file, field=place, hint=_instead(option)))
-            return
-        problems.append(Problem("this option cannot have a default", file, field=cut(one_line(place)),
-                                hint=hint or did_you_mean(option, list(known))))  # fmt: skip
-        return
-    values = value if isinstance(value, list) else [value]
-    if not values or any(isinstance(each, bool) or not isinstance(each, (str, int, float)) for each in values):
-        problems.append(Problem("the value is neither a text nor a number, nor a list of them", file, field=place))
-        return
-    yield Default(option, command, ",".join(map(str, values)), file, f"{file}: {place}")
-
-
-def _instead(old: str) -> str:
-    """Return what to give instead of an option that is gone."""
-    return f"give {GONE[old]}, a standard deviation"
+def _variable(option: str) -> str:
+    return PREFIX + option.upper().replace("-", "_")
 
 
 def _read(file: Path) -> dict[str, Any]:

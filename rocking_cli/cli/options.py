@@ -353,12 +353,6 @@ def sized_pulse(*polarities: str, required: bool = False) -> Decorator:
     )
 
 
-def _was_within(ctx: click.Context, parameter: click.Parameter, value: object) -> None:
-    if value is not None and parameter.name is not None:
-        new = f"--{parameter.name.removeprefix('within_')}-deviation"
-        raise click.UsageError(f"--{parameter.name.replace('_', '-')} is gone: give {new}, a standard deviation.")
-
-
 def _note_opening(ctx: click.Context, parameter: click.Parameter, value: float | None) -> None:
     if value is not None and not 0 <= value <= 1000:
         raise click.BadParameter("must be from 0 to 1000, as a share or in %.", ctx, parameter)
@@ -400,8 +394,6 @@ around: Decorator = in_order(
         callback=share,
         help="Standard deviation of restitution; by default that of the file, 0.03 of a given value, or 0.05.",
     ),
-    click.option("--within-amplitude", hidden=True, expose_value=False, metavar="SHARE", callback=_was_within),
-    click.option("--within-restitution", hidden=True, expose_value=False, metavar="ETA", callback=_was_within),
 )
 """The neighbours of a motion: `neighbours` and the three deviations."""
 
