@@ -13,10 +13,11 @@ from rocking_cli import GroundMotion, Runs, respond_many
 from rocking_cli.core import Direction
 from rocking_cli.core.contacts import MASONRY
 from rocking_cli.core.reactions import reactions
-from rocking_cli.dynamics.holding import joints_in_words, why_unknown
 from rocking_cli.dynamics.resting import first_failure, resting
 from rocking_cli.structure import build_models
 from rocking_cli.studies.contact import Contacts, _states
+from rocking_cli.views.neighbours import neighbours_in_words
+from rocking_cli.views.verdict import joints_in_words, why_unknown
 from tests.conftest import EXAMPLES
 from tests.following import respond
 from tests.test_cli import run, run_json
@@ -382,6 +383,6 @@ def test_neighbours_that_fall_out_of_step_count_though_no_joint_is_checked():
     (near,) = answer.neighbours.values()
     assert answer["nonlinear"].check is None and near.unknown > 0
     assert (answer.conclusion.share.lowest, answer.conclusion.share.highest) == (near.overturned, near.at_most)
-    assert f"the outcome under {round(20 * near.unknown)}" in str(near)
+    assert f"the outcome under {round(20 * near.unknown)}" in neighbours_in_words(near)
     two = rk.respond(rk.SymmetricFrame(**COLONNADE, columns=2), "sine:0.8g:0.6s", models="nonlinear", neighbours=20)
     assert all(each.unknown is None for each in two.neighbours.values())

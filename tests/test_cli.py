@@ -17,6 +17,7 @@ from rocking_cli.cli.main import COMMANDS, main
 from rocking_cli.core.registry import Registry
 from rocking_cli.structure_file import parse_structure
 from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.views.neighbours import deviations
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
 
 ACCEL = str(EXAMPLES / "accel.csv")
@@ -97,7 +98,7 @@ class TestNeighbours:
         for near in said:
             assert [near[name] for name in DRAWN] == [200, 0.04, 0.05, 0.1]
             around = Neighbourhood(200, amplitude=0.04, restitution=0.05, slenderness=0.1)
-            assert f"Of 200 neighbouring motions ({around.words}), {shares(near)}" in text
+            assert f"Of 200 neighbouring motions ({deviations(around)}), {shares(near)}" in text
 
     def test_none_if_none_are_requested(self):
         words = ("respond", FRAME, "--record", ACCEL, "--neighbours", 0)

@@ -19,7 +19,8 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting.equivalent_pulses import draw_equivalent
 from rocking_cli.structure_file import load_structure, parse_structure
-from rocking_cli.studies.equivalent_pulses import equivalent, judge
+from rocking_cli.studies.equivalent_pulses import equivalent
+from rocking_cli.views.equivalent_pulses import judge
 from tests.conftest import EXAMPLES
 from tests.following import respond
 from tests.pulses import exact_pulse

@@ -12,10 +12,11 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.checked import checked_joints
-from rocking_cli.dynamics.holding import joints_in_words
 from rocking_cli.dynamics.resting import FEET
 from rocking_cli.structure import build_models
 from rocking_cli.studies.contact import Contacts
+from rocking_cli.views.animation import verdict_of
+from rocking_cli.views.verdict import joints_in_words
 from tests.conftest import EXAMPLES
 from tests.following import respond
 from tests.test_cli import run, run_json
@@ -94,7 +95,7 @@ def test_what_needs_more_friction_than_masonry_has_is_not_called_valid(pulse, tm
     assert whole.count(assumes) == 1 and not VALID.search(whole)
     assert assumes in answer.to_dict()["verdict"]
     film = rk.animate(SQUAT, pulse, str(tmp_path / "x.html"), neighbours=0).film
-    assert assumes in film.verdict and not VALID.search(film.verdict)
+    assert assumes in verdict_of(film) and not VALID.search(verdict_of(film))
     assert replace(found, friction=10.0).assumed_friction is None
 
 

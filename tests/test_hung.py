@@ -14,7 +14,6 @@ from PIL import Image
 from mechanisms.block import Block
 from mechanisms.symmetric_frame import SymmetricFrame
 from rocking_cli.core import Direction
-from rocking_cli.dynamics.verdict import verdict
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting import hung, style
 from rocking_cli.plotting.history import draw_history
@@ -23,6 +22,7 @@ from rocking_cli.plotting.structure import NO_CRITICAL, draw_structure
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.movements import Watched
 from rocking_cli.studies.picture import NODES, picture
+from rocking_cli.views.verdict import verdict
 from tests.following import respond
 from tests.test_cli import run, run_json
 
@@ -304,7 +304,7 @@ class TestRespond:
         assert one.ends_at_limit == (True, False)
         assert one.peak_negative > one.peak_positive > 0
         assert one.reference == "critical rotation" and one.furthest == one.peak_negative
-        assert f"{one.peak_negative:.4g} rad, {one.peak_ratio:.4g} of its critical" in verdict({"nonlinear": one})
+        assert f"{one.peak_negative:.4g} rad, {one.peak_ratio:.4g} of its critical" in verdict({"nonlinear": one}, {})
 
 
 @pytest.fixture(scope="module")

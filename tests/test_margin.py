@@ -18,8 +18,9 @@ from rocking_cli.plotting.margin import draw_margins
 from rocking_cli.structure import Structure, build_models
 from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.studies import margin as margins
-from rocking_cli.studies.margin import FACTORS, LEVELS, Margin, in_words, margin
+from rocking_cli.studies.margin import FACTORS, LEVELS, Margin, margin
 from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.views.margin import in_words
 from tests.conftest import EXAMPLES
 from tests.following import build_model
 from tests.test_cli import run, run_json

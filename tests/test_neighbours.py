@@ -28,6 +28,7 @@ from rocking_cli.studies.neighbours import (
     least_uplift,
     neighbours,
 )
+from rocking_cli.views.neighbours import deviations, neighbours_in_words
 from tests.conftest import EXAMPLES
 from tests.following import build_model, respond
 
@@ -277,16 +278,16 @@ NEAR = "(standard deviations 4 % of amplitude, 10 % of slenderness, 0.05 of rest
 class TestWords:
     def test_where_nothing_can_lift_it(self):
         found = neighbours(build_model(BLOCK, "nonlinear"), parse_pulse("sine:0.1g:1s").sampled())
-        assert str(found) == f"None of 200 neighbouring motions {NEAR[:-1]} uplifts the structure."
+        assert neighbours_in_words(found) == f"None of 200 neighbouring motions {NEAR[:-1]} uplifts the structure."
 
     def sentence(self, overturned, peaks, unknown=0.0):
         around = Neighbourhood(restitution=0.05, slenderness=0.10)
-        return str(Neighbours(around, "nonlinear", overturned, peaks, 1.0, unknown=unknown))
+        return neighbours_in_words(Neighbours(around, "nonlinear", overturned, peaks, 1.0, unknown=unknown))
 
     def test_deviations_that_are_not_given_are_those_of_the_structure(self):
         own = "and those of the structure for its"
-        assert Neighbourhood().words == f"standard deviations 4 % of amplitude, {own} slenderness and restitution"
-        assert Neighbourhood(20, 0.01, 0.02).words == (
+        assert deviations(Neighbourhood()) == f"standard deviations 4 % of amplitude, {own} slenderness and restitution"
+        assert deviations(Neighbourhood(20, 0.01, 0.02)) == (
             f"standard deviations 1 % of amplitude, 0.02 of restitution, {own} slenderness"
         )
 
@@ -343,8 +344,8 @@ class TestWords:
         amplitude, slender, eta = around.drawn(model)
         runs = Runs.of(0, 0, scale=amplitude, slender=slender, eta=eta)
         fallen = respond_many([model], [motion], runs).fell.mean()
-        said = str(neighbours(model, motion, around))
-        words = around.of(model).words
+        said = neighbours_in_words(neighbours(model, motion, around))
+        words = deviations(around.of(model))
         if not can_lift(model, motion, (amplitude / slender).max()):
             assert said == f"None of 400 neighbouring motions ({words}) uplifts the structure." and fallen == 0
             return

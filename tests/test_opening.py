@@ -16,11 +16,11 @@ from rocking_cli.core import Direction
 from rocking_cli.core.released import Undetermined, impulses, released
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.holding import joints_in_words
 from rocking_cli.dynamics.joints import _calm
 from rocking_cli.dynamics.modes import modes
 from rocking_cli.dynamics.outcome import OUTCOME
 from rocking_cli.structure import build_models
+from rocking_cli.views.verdict import joints_in_words
 from tests.conftest import EXAMPLES, SHARED
 from tests.following import respond
 from tests.oracle.openings import openings

@@ -24,6 +24,7 @@ from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.studies.under_pulses import parse_shape
 from rocking_cli.views.column import data_of
+from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.parameters import PARAMETERS
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, PROJECT, RECORDS
 from tests.following import respond
@@ -181,7 +182,7 @@ class TestContent:
             "50 % at 0.2 (10 g) and 90 % at 0.2 (10 g)" in said
         )
         around = Neighbourhood(20, slenderness=0.1, restitution=0.05)  # its restitution is not given
-        assert f"Of 20 neighbouring motions ({around.words}), all overturn the structure." in said
+        assert f"Of 20 neighbouring motions ({deviations(around)}), all overturn the structure." in said
         assert any("scaled by large factors" in each for each in found["doubts"])
 
     @pytest.mark.rest

@@ -28,7 +28,7 @@ from rocking_cli.plotting.spectrum import draw_spectra
 from rocking_cli.structure import Structure
 from rocking_cli.structure_file import load_structure
 from rocking_cli.studies import under_pulses
-from rocking_cli.studies.equivalent_pulses import equivalent, judge
+from rocking_cli.studies.equivalent_pulses import equivalent
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.overturning import FALLS, Comparison, Region, compare, overturning_map
 from rocking_cli.studies.picture import picture
@@ -36,6 +36,8 @@ from rocking_cli.studies.sampled_pulse import COARSEST, _alike, sampled_history
 from rocking_cli.studies.spectrum import Spectrum, _worst, blocks_of, shape_of, spectra
 from rocking_cli.studies.under_pulses import outcomes, parse_shape, pulsed_model
 from rocking_cli.views import spectrum as spectrum_views
+from rocking_cli.views.animation import why_it_ends
+from rocking_cli.views.equivalent_pulses import judge
 from rocking_cli.views.overturning import NO_JOINTS, comparison_view, map_table, map_view
 from tests.conftest import EXAMPLES
 from tests.following import respond
@@ -336,10 +338,9 @@ class TestFilm:
         history = histories["nonlinear"]
         film = Film(picture(PORTAL), history, RECORD)
         assert history.known_to - 2 * RECORD.dt < film.end <= history.known_to < 4
-        assert film.ending == f"The film ends at {history.known_to:.4g} s, up to which the outcome is known."
-        assert film.ending in animation_page(film, "portal") and film.as_dict(0.1)["ending"] == film.ending
+        assert f"{history.known_to:.4g} s" in why_it_ends(film) and why_it_ends(film) in animation_page(film, "portal")
         known = Film(picture(PORTAL), histories["linear2"], RECORD)
-        assert known.ending == "" and known.end > 4
+        assert why_it_ends(known) == "" and known.end > 4
 
     def test_curves_of_no_model_go_further(self, histories):
         until = histories["nonlinear"].known_to

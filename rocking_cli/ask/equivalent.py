@@ -102,7 +102,7 @@ def equivalent(
     scaling: Literal[1, 2] = 1 if str(kappa) == "1" else 2
     found = study.equivalent(mechanisms, pulse, polarity=int(polarity), kappa=scaling, eta=eta)
     warn_misleading(ready, watch)
-    shown = views.view(found, " ".join(study.judge(found)))
+    shown = views.view(found)
     return Answer("equivalent pulses", found, shown, partial(views.table, found), partial(_figure, found))
 
 

@@ -15,7 +15,6 @@ from typing import Literal
 
 from rocking_cli.core.equivalence import Equivalence, EquivalentBlock
 from rocking_cli.core.kinematics import Direction
-from rocking_cli.names import percent
 
 # The paper finds small errors with either kappa for walls of alpha < 0.2: lambda_lin/lambda = 0.2/tan(0.2) there.
 SLENDER = 0.2 / tan(0.2)
@@ -63,11 +62,6 @@ def uplift_error(equivalence: Equivalence) -> float:
     return max(errors, key=abs)
 
 
-def uplift_in_words(error: float) -> str:
-    """Return the error of an uplift acceleration in words, which follow "its uplift acceleration is"."""
-    return f"{percent(abs(error))} too {'low' if error < 0 else 'high'}"
-
-
 @dataclass(frozen=True)
 class Advice:
     """Preferred scaling of an equivalent block, judged by its uplift acceleration alone.
@@ -78,28 +72,16 @@ class Advice:
         The scaling to use.
     ratio : float
         lambda_lin/lambda, the paper's measure of effective slenderness: 1 for a slender structure.
-    why : str
-        The reason, in a sentence.
     kappa1 : Grade
         Grade of kappa1 by its uplift acceleration.
     """
 
     prefer: Literal["kappa2", "either"]
     ratio: float
-    why: str
     kappa1: Grade
 
 
 def preferred_kappa(block: EquivalentBlock) -> Advice:
     """Return which kappa to use for an equivalent block, judged by the uplift of the linearised mechanism."""
     ratio = block.lambda_lin / block.lambda_
-    error, found = ratio - 1, grade(ratio - 1)
-    off = f"with kappa1 the uplift acceleration is {uplift_in_words(error)}, with kappa2 it is kept"
-    prefer: Literal["kappa2", "either"] = "kappa2"
-    if SLENDER <= ratio <= 1 / SLENDER:
-        prefer, said = "either", f"effectively slender, either kappa is adequate; {off}"
-    elif found is Grade.DISREGARD:
-        said = f"disregard kappa1; {off}"
-    else:
-        said = f"by the uplift prefer kappa2; {off}"
-    return Advice(prefer, ratio, f"lambda_lin/lambda = {ratio:.4g}: {said}.", found)
+    return Advice("either" if SLENDER <= ratio <= 1 / SLENDER else "kappa2", ratio, grade(ratio - 1))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import isclose
 
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.hung.attached import PointMass
@@ -64,20 +63,3 @@ def why_none(eta: float) -> str:
         f"the mass inner product of its motions before and after, <t+, t->, is {product}, so that no rocking the other "
         "way follows the impact"
     )
-
-
-def restitution_in_words(etas: Sequence[float], *, given: bool) -> str:
-    """Return a sentence on the restitution that a time history used, and where it comes from.
-
-    Parameters
-    ----------
-    etas : sequence of float
-        Restitution of the impacts that end positive and negative motion.
-    given : bool
-        Whether the user gave it.
-    """
-    one, other = etas
-    values, source = f"{one:.4g}", "as given" if given else "from rigid-body kinematics, not measured"
-    if not isclose(one, other, rel_tol=1e-9):
-        values += f" at impacts that end clockwise rotation and {other:.4g} at the others"
-    return f"Coefficient of restitution eta = {values}, {source}."

@@ -14,13 +14,11 @@ from markupsafe import Markup, escape
 from matplotlib.figure import Figure
 
 from rocking_cli.core import Angle, Length
-from rocking_cli.core.advice import preferred_kappa
 from rocking_cli.documents.figures import inline_svg
 from rocking_cli.documents.hung import hung_on
 from rocking_cli.documents.sheet_page import parts
 from rocking_cli.documents.verified import VerifiedReport
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.verdict import SENSE
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
 from rocking_cli.plotting.linearisation import draw_linearisation
@@ -38,8 +36,10 @@ from rocking_cli.studies.verification.results import Verification
 from rocking_cli.text import printable
 from rocking_cli.views import assessment_words as words
 from rocking_cli.views.contact import contact_columns
-from rocking_cli.views.equivalent_block import EquivalentSide, is_symmetric, sentence, sides_of
+from rocking_cli.views.equivalent_block import EquivalentSide, is_symmetric, kappa_in_words, sentence, sides_of
+from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.parameters import PARAMETERS
+from rocking_cli.views.verdict import SENSE
 
 BINS = 6000  # of all motions together: each curve has some two samples for a bin
 FEWEST, MOST = 300, 2500  # of one motion
@@ -103,7 +103,7 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         over=_over(content),
         parameters=_parameters(content),
         advice=_advice(content),
-        trust=_greek(content.trust),
+        trust=_greek(words.trust_of_block(content)),
         geometry=_geometry(content),
         responses=[_response(content, each, k, bins) for k, each in enumerate(content.results)],
         contacts=[
@@ -121,6 +121,7 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         if content.results
         else None,
         around=content.results[0].margin.around if content.results else None,
+        deviations=deviations(content.results[0].margin.around) if content.results else "",
         maps=[_map(each, k) for k, each in enumerate(content.maps)],
         errors=_still(draw_linearisation(content.curves, content.asked, ""), "errors") if content.curves else None,
         error_tables=[
@@ -226,7 +227,7 @@ def _without_block(shown: Sequence[EquivalentSide]) -> list[dict[str, Any]]:
 def _advice(content: Assessment) -> list[str]:
     shown = _shown(content)
     labels = [""] if len(shown) == 1 else [f"{side.direction.label}: " for side in shown]
-    said = [preferred_kappa(side.block).why if side.block is not None else sentence(side) for side in shown]
+    said = [kappa_in_words(side.block) if side.block is not None else sentence(side) for side in shown]
     if not content.has_block:
         said = [f"{each[0].upper()}{each[1:]}" for each in said]
     return [_greek(f"{label}{each}") for label, each in zip(labels, said, strict=True)]

@@ -15,11 +15,6 @@ from rocking_cli.errors import InputError
 
 # How many cycles they last, and their phase at the start: those of `rocking_cli.excitation.pulses`, without its numpy.
 SHAPES = {"sine": (1.0, 0.0), "cosine": (1.0, pi / 2), "half_sine": (0.5, 0.0), "rectangular": (1.0, pi / 2)}
-CONDITIONS = {
-    "uplift": "the pulse lifts the block (a > 1)",
-    "first_impact_after_pulse": "the first impact comes after the pulse",
-    "no_overturning_without_impact": "the block does not overturn before its first impact",
-}
 LARGEST = 1e6  # a or omega, and 1/omega
 LONG = 690.0  # exp of more, with a factor of omega^2, overflows
 
@@ -56,12 +51,6 @@ class ClosedForm:
     def valid(self) -> bool:
         """Whether every condition of the closed form holds."""
         return all(self.conditions.values())
-
-    @property
-    def reason(self) -> str | None:
-        """Reason why the closed form cannot be used, in words; None if it can."""
-        failed = [CONDITIONS[name] for name, holds in self.conditions.items() if holds is False]
-        return None if self.valid else f"it holds only where {' and '.join(failed)}"
 
     def off(self, exact: float) -> float | None:
         """Return Eq. 41 as printed minus an exact peak phi/phi_cr; None if Eq. 41 gives no value."""

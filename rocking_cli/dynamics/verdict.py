@@ -1,28 +1,27 @@
-"""Verdict on the time histories of a structure in words, and how well its equivalent blocks agree with them."""
+"""What decides the verdict on time histories: how well equivalent blocks agree, until when results are valid.
+
+No words: `rocking_cli.views.verdict` has them.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
 from rocking_cli import names
-from rocking_cli.core import Direction
-from rocking_cli.core.advice import Grade, grade, uplift_in_words
+from rocking_cli.core.advice import Grade, grade
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.holding import NO_JOINTS, joints_in_words
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.names import percent
 
 CLOSE = 0.8  # phi/phi_cr from which a motion is close to overturning
 # Of two motions, the rms of the difference over that of the nonlinear one, up to which the other agrees with it, and
 # serves a first estimate. Two motions of one size that have nothing to do with each other differ by 1.4 of it.
 FOLLOWS, STRAYS = 0.25, 0.5
-TOGETHER = 1e-2  # s within which two motions are at one time
 ANOTHER = 1.0  # p times the time between two peaks, or overturnings, beyond which they are not the same one
 PEAK = 0.999  # of its largest sample: when a motion first comes so far it has its peak, rounding apart
-SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
 
 
 @dataclass(frozen=True)
@@ -120,127 +119,20 @@ def disagree(histories: Mapping[ModelName, History]) -> bool:
     return len({run.fell for run in fit}) > 1
 
 
-def verdict(histories: Mapping[ModelName, History], assumed_friction: float | None = None) -> str:
-    """Return whether a structure uplifts, how far it rocks, whether it overturns, and which model to trust, in words.
+def remedy(history: History) -> str:
+    """Return what to do about an unknown outcome: a value of `NextStep`."""
+    check = history.check
+    if check is not None and not history.apart:
+        if check.reason == "slides":
+            return "hold_joint"
+        if check.reason == "opens" and not check.alone:
+            return "hinge_at_joint"
+    return "assume_overturning"
 
-    Parameters
-    ----------
-    histories : mapping of str to History
-        Histories of one or more models of the same structure and motion.
-    assumed_friction : float, optional
-        Friction that the result assumes, see `joints_in_words`.
 
-    Returns
-    -------
-    str
-        A few sentences.
+def known_until(histories: Mapping[ModelName, History]) -> float:
+    """Return the time until which the histories of one structure are valid [s]; infinite if the outcome is known.
+
+    After that time the histories of the equivalent blocks are not valid either, as these have no joints.
     """
-    best: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
-    run = histories[best]
-    by = "" if best == "nonlinear" or len(histories) == 1 else f"By {best} the"
-    said = [] if run.unknown else [f"{by or 'The'} structure {_ends(run)}."]
-    if run.unknown or (best == "nonlinear" and run.check is not None):
-        said += filter(None, [joints_in_words(run, assumed_friction)])
-    if run.unknown and len(histories) > 1:
-        said.append(NO_JOINTS)
-    else:
-        said += bearing(histories, {name: name for name in histories})
-    if not run.unknown and disagree(histories):
-        said.append("Do not trust any of them alone: run weaker and stronger motions as well.")
-    elif not run.fell and not run.unknown and run.peak_ratio > CLOSE and not any(run.ends_at_limit):
-        said.append("This is close to overturning: run weaker and stronger motions before relying on it.")
-    still = [name for name, each in histories.items() if each.still_rocking]
-    if still:
-        said.append(
-            f"{', '.join(still)}: {names.STILL_ROCKING} long after the end of the record, and certain not to overturn."
-        )
-    return " ".join(said)
-
-
-def _ends(run: History) -> str:
-    """Return the outcome of the structure in words, which follow "it" or its name."""
-    if run.unknown:
-        return f"has an {names.UNKNOWN} outcome"
-    if run.fell:
-        return f"{names.OVERTURNS} {SENSE[Direction(run.fell_to)]}"
-    if not run.peak_ratio:
-        return names.NO_UPLIFT
-    if run.peak_ratio > 1:
-        return (
-            f"{names.ROCKS}: it exceeds its critical rotation, reaching {run.peak_ratio:.4g} times it, and is brought "
-            "back"
-        )
-    if any(run.ends_at_limit):
-        return f"{names.ROCKS} to {run.furthest:.4g} rad, {run.peak_ratio:.4g} of its {run.reference}"
-    return f"{names.ROCKS} to {run.peak_ratio:.4g} of its critical rotation phi_cr"
-
-
-def bearing(histories: Mapping[ModelName, History], called: Mapping[ModelName, str]) -> list[str]:
-    """Return a sentence on each equivalent block: its grade under this motion, and the numbers behind this.
-
-    Parameters
-    ----------
-    histories : mapping of str to History
-        Histories of one or more models of the same structure and motion.
-    called : mapping of str to str
-        Names of the models in the sentences.
-    """
-    agreed = agreements(histories)
-    if not agreed:
-        return _without_the_structure(histories, called)
-    best = histories["nonlinear"]
-    said = [_bears(called[name], agreement, histories[name], best) for name, agreement in agreed.items()]
-    if any(
-        agreement.peak_error is not None and agreement.grade is not Grade.DISREGARD for agreement in agreed.values()
-    ):
-        said.append(
-            "This holds for this ground motion only; under another one the equivalent block may be more or less "
-            "accurate."
-        )
-    return said
-
-
-def _bears(name: str, found: Agreement, run: History, best: History) -> str:
-    beside = _beside(found, run, best)
-    if found.unfit:
-        return f"Disregard {name}: its uplift acceleration is {uplift_in_words(found.uplift_error)}; here {beside}."
-    if found.same_fate and found.grade is Grade.DISREGARD:
-        return f"Disregard {name} here: {beside}."
-    if not found.same_fate:
-        return f"{name} disagrees: {beside}."
-    return f"{name} {'agrees' if found.grade is Grade.AGREES else 'is good for a first estimate'}: {beside}."
-
-
-def _beside(found: Agreement, run: History, best: History) -> str:
-    """Return in words how the motion of a block differs from that of the nonlinear model."""
-    if not found.same_fate:
-        return f"it {_ends(run)}"
-    if best.fell:
-        way = " too" if run.fell_to == best.fell_to else " the other way"
-        return f"it {names.OVERTURNS}{way}, {_later(found.peak_delay or 0.0)}"
-    if found.peak_error is None:
-        return f"it {names.NO_UPLIFT} either"
-    size = percent(abs(found.peak_error))
-    size = "the same" if size == percent(0) else f"{size} {'higher' if found.peak_error > 0 else 'lower'}"
-    if found.difference is None or found.peak_delay is None:
-        return f"its peak is {size}"
-    late = f" and {_later(found.peak_delay)}" if abs(found.peak_delay) * best.p > ANOTHER else ""
-    return f"its peak is {size}{late}, and its rotation history differs by {percent(found.difference)} (rms)"
-
-
-def _later(delay: float) -> str:
-    if abs(delay) < TOGETHER:
-        return "at the same time"
-    return f"{abs(delay):.3g} s {'later' if delay >= 0 else 'earlier'}"
-
-
-def _without_the_structure(histories: Mapping[ModelName, History], called: Mapping[ModelName, str]) -> list[str]:
-    """Return sentences on blocks without a nonlinear history: the outcomes after the first, and which are unfit."""
-    _, *others = histories
-    said = [f"By {called[name]} it {_ends(histories[name])}." for name in others]
-    said += [
-        f"Disregard {called[name]}: its uplift acceleration is {uplift_in_words(run.uplift_error)}."
-        for name, run in histories.items()
-        if grade(run.uplift_error) is Grade.DISREGARD
-    ]
-    return said
+    return min((run.known_to for run in histories.values() if run.unknown), default=inf)

@@ -34,6 +34,7 @@ from rocking_cli.plotting.structure import colour, draw_ground, draw_scale, weig
 from rocking_cli.plotting.thinning import visible
 from rocking_cli.studies.film import Film
 from rocking_cli.text import printable
+from rocking_cli.views.animation import why_it_ends
 
 Reals = NDArray[np.float64]
 DOTS = 100  # an inch of a frame
@@ -179,7 +180,7 @@ class _Stage:
         now = f"t = {time:6.2f} s    {over} = {round(ratio, self._digits) + 0.0:+.{self._digits}f}"
         pen.text((frame.width - 12, 30), now, fill=style.INK, font=_font(13), anchor="ra")
         if time >= end:
-            pen.text((12, 46), self._film.ending, fill=style.CURSOR, font=_font(13, bold=True))
+            pen.text((12, 46), why_it_ends(self._film), fill=style.CURSOR, font=_font(13, bold=True))
         return frame
 
     def _draw_structure(self, rotation: float) -> list[tuple[str, complex]]:

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import FELT, History
-from rocking_cli.dynamics.holding import known_until
 from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.verdict import known_until
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style

@@ -12,8 +12,7 @@ from matplotlib.ticker import PercentFormatter
 from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
-from rocking_cli.studies.linearisation import Linearisation
-from rocking_cli.studies.trust import preferred
+from rocking_cli.studies.linearisation import Linearisation, preferred
 
 Reals = NDArray[np.float64]
 PREFERRED, OTHER = {"linestyle": "-", "linewidth": 2.0}, {"linestyle": "--", "linewidth": 1.3}

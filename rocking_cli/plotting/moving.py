@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.holding import known_until
 from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.verdict import known_until
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.io.json_text import json_text
@@ -20,6 +20,7 @@ from rocking_cli.plotting import style
 from rocking_cli.plotting.structure import colour
 from rocking_cli.plotting.thinning import BINS, visible
 from rocking_cli.studies.film import Film
+from rocking_cli.views.animation import verdict_of, why_it_ends
 
 Reals = NDArray[np.float64]
 TALLEST = 1.6  # phi/phi_cr shown at most: what goes further overturns, or nearly does
@@ -70,7 +71,11 @@ def moving(
             direction.label: [colour(picture, k, direction) for k in range(len(picture.parts))]
             for direction in picture.directions
         },
-        "film": film.as_dict(max(FINEST, film.end / MOST)),
+        "film": {
+            **film.as_dict(max(FINEST, film.end / MOST)),
+            "ending": why_it_ends(film),
+            "verdict": verdict_of(film),
+        },
         "charts": list(charts),
         "ratio": style.over(film.history.ends_at_limit),
         "label": label,

@@ -35,7 +35,6 @@ from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 from rocking_cli.studies.overturning import OverturningMap, Region, overturning_map
 from rocking_cli.studies.picture import Picture, picture
 from rocking_cli.studies.response import concluded
-from rocking_cli.studies.trust import trust
 from rocking_cli.studies.under_pulses import outcomes, parse_shape, pulsed_model
 
 AMPLITUDES, ACCELERATIONS = (0.25, 0.5, 0.75), (1.5, 2.0, 4.0)  # at which the error of the block is said
@@ -216,8 +215,8 @@ class Assessment:
         The drawing of the structure.
     curves, asked : tuple of Linearisation
         Error of the equivalent block over the whole range, and at the amplitudes of the table; empty if there is none.
-    trust : str
-        A sentence on this error, or on why it does not exist.
+    no_error : str
+        Why there is no such error; empty if there is one.
     results : tuple of MotionResult
         The response to each ground motion.
     maps : tuple of PulseMap
@@ -233,7 +232,7 @@ class Assessment:
     picture: Picture
     curves: tuple[Linearisation, ...]
     asked: tuple[Linearisation, ...]
-    trust: str
+    no_error: str
     results: tuple[MotionResult, ...]
     maps: tuple[PulseMap, ...]
     title: TitleBlock
@@ -299,7 +298,7 @@ def gather(
     """
     done = progress or (lambda count: None)
     mechanism = structure.mechanism
-    curves, asked, said = _error_of_block(structure)
+    curves, asked, why = _error_of_block(structure)
     done(1)
     results = []
     for each in given:
@@ -313,7 +312,7 @@ def gather(
         picture=picture(mechanism),
         curves=tuple(curves),
         asked=tuple(asked),
-        trust=said,
+        no_error=why,
         results=tuple(results),
         maps=tuple(maps),
         title=title,
@@ -322,17 +321,13 @@ def gather(
 
 
 def _error_of_block(structure: Structure) -> tuple[Sequence[Linearisation], Sequence[Linearisation], str]:
-    """Return the error of the equivalent block over its range and at some amplitudes, and a verdict on it."""
-    if structure.why_no_block is not None:
-        why = structure.why_no_block.removeprefix(f"{structure.name}: ")
-        return [], [], f"No equivalent block exists here, so there is no error to report: {why}."
-    if (refused := structure.refuses("linear models")) is not None:
-        return [], [], f"The error of the equivalent block is left out: {refused}."
+    """Return the error of the equivalent block over its range and at some amplitudes, or why it does not exist."""
+    if why := structure.why_no_block or structure.refuses("linear models"):
+        return [], [], why.removeprefix(f"{structure.name}: ")
     try:
-        curves, asked = compare(structure, AMPLITUDES, ACCELERATIONS)
-        return curves, asked, trust(curves, asked)
+        return *compare(structure, AMPLITUDES, ACCELERATIONS), ""
     except SolverError as error:  # the rest of the report stands without it
-        return [], [], f"The error of the equivalent block is left out: {error}."
+        return [], [], str(error)
 
 
 def versions(mechanism: Mechanism) -> dict[str, str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import isnan
@@ -13,7 +12,6 @@ from numpy.typing import NDArray
 
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.verdict import verdict
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.picture import Picture, box_around
 
@@ -62,18 +60,6 @@ class Film:
         first = self.history.uplift_time
         return 0.0 if isnan(first) else max(0.0, first - BEFORE)
 
-    @property
-    def ending(self) -> str:
-        """A note on why the animation ends before the ground motion does; empty if the outcome is known."""
-        if not self.history.unknown:
-            return ""
-        return f"The film ends at {self.history.known_to:.4g} s, up to which the outcome is known."
-
-    @property
-    def verdict(self) -> str:
-        """The outcome, in words."""
-        return verdict({self.history.model: self.history}, self.assumed_friction)
-
     def rotation(self, time: Reals) -> Reals:
         """Return the signed rotation at some times, shape (n,) [rad]; after the end the last rotation simulated."""
         moving = slice(0, self._moving)
@@ -95,16 +81,14 @@ class Film:
         hung = [z for turn in views for z in self.picture.held(float(turn))]
         return box_around([np.array([*self.picture.reach, *hung]), *outlines])
 
-    def as_dict(self, step: float) -> Mapping[str, Any]:
-        """Return the data of an animation on a page: rotations [rad] every `step` [s], times [s] and words."""
+    def as_dict(self, step: float) -> dict[str, Any]:
+        """Return the data of an animation on a page: rotations [rad] every `step` [s], and times [s]."""
         time = np.arange(0.0, self.end + step, step)
         return {
             "step": step,
             "end": self.end,
             "start": self.start,
             "rotation": [float(f"{value:.5g}") for value in self.rotation(time).tolist()],
-            "ending": self.ending,
-            "verdict": self.verdict,
             "low": [self.box[0].real, self.box[0].imag],
             "high": [self.box[1].real, self.box[1].imag],
         }

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
+from rocking_cli.core.advice import Grade, grade, preferred_kappa
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.structure import Structure
 
@@ -161,6 +162,52 @@ def compare(
         return [linearisation(mechanism, each, ratios, times, equivalence=equivalence) for each in directions]
 
     return of(r, a), of(amplitudes, accelerations)
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Largest errors of an equivalent block at the requested amplitudes, in the worse of the two directions.
+
+    Parameters
+    ----------
+    uplift : float
+        Relative error of the uplift acceleration, with its sign.
+    period, overturning : float
+        Absolute relative errors of the free period and of the overturning time; infinite if the block never uplifts.
+    """
+
+    uplift: float
+    period: float
+    overturning: float
+
+    @property
+    def grade(self) -> Grade:
+        """Grade the block by its largest error."""
+        return max(grade(self.uplift), grade(self.period), grade(self.overturning))
+
+
+def errors(asked: Sequence[Linearisation], kappa: int) -> Errors:
+    """Return the largest errors of the block with kappa1 or kappa2."""
+    uplifts = [getattr(each, f"uplift_ratio{kappa}") - 1 for each in asked]
+    return Errors(
+        max(uplifts, key=abs),
+        max(float(np.abs(each.period_ratio - 1).max()) for each in asked),
+        max(float(np.abs(getattr(each, f"overturning_ratio{kappa}") - 1).max()) for each in asked),
+    )
+
+
+def preferred(asked: Sequence[Linearisation]) -> int | None:
+    """Return which kappa to prefer at the requested amplitudes: 1, 2, 0 if either will do, None if neither does.
+
+    The kappa with the better grade is preferred; if both have the same grade, `preferred_kappa` decides by the uplift
+    acceleration.
+    """
+    one, two = (errors(asked, kappa).grade for kappa in (1, 2))
+    if one is two is Grade.DISREGARD:
+        return None
+    if one is not two:
+        return 1 if one < two else 2
+    return 2 if any(preferred_kappa(each.block).prefer == "kappa2" for each in asked) else 0
 
 
 def velocity_ratios(block: EquivalentBlock, gravity: float) -> tuple[float, float]:

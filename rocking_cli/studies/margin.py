@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from math import inf
 
 import numpy as np
@@ -18,7 +17,6 @@ from rocking_cli.dynamics.model import Model
 from rocking_cli.engines import respond
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.names import percent
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import LEAST_SHARE, Conclusion, NeighbourShare
 from rocking_cli.studies.neighbours import Draws, Neighbourhood, follow, least_uplift
@@ -202,63 +200,3 @@ def conclusion(structure: Structure, motion: GroundMotion, polarities: Sequence[
     from_factor = found.possible(LEAST_SHARE)
     ratio = inf if from_factor is None else from_factor
     return replace(concluded(runs, {}, motion.name), share=found.share, ratio=ratio)
-
-
-def in_words(found: Margin, pga: float) -> str:
-    """Describe a margin in a few sentences, of which the first one governs: unknown outcomes count as overturning.
-
-    Parameters
-    ----------
-    found : Margin
-        The margin, with at least one factor.
-    pga : float
-        Peak ground acceleration at a factor of 1 [standard gravity].
-    """
-    doubt = bool(found.unknown.any())
-    at = partial(_at, pga)
-    does = "overturn the structure, or have an unknown outcome," if doubt else "overturn the structure"
-    said = _reached(found, found.at_most, does, pga)
-    if not doubt:
-        return said
-    first = float(found.factors[(found.unknown > 0).argmax()])
-    said += (
-        f" From a factor of {at(first)} on, some outcomes are unknown, as the model no longer holds (see `rocking "
-        "respond`): there, the structure may overturn."
-    )
-    known = [f"{percent(level)} from {at(least)}" for level in LEVELS if (least := found.first(level)) is not None]
-    if known:
-        return f"{said} Shares known to overturn it: {', '.join(known)}."
-    few = f"At no factor tried are {percent(LEVELS[0])} or more known to overturn it"
-    return f"{said} {few}; this does not prove that it stands."
-
-
-def _reached(found: Margin, shares: Reals, does: str, pga: float) -> str:
-    """Return in words at which factors the shares of neighbours that do something first reach each level."""
-    at = partial(_at, pga)
-    low, high = found.factors[[0, -1]]
-    reached = [(level, float(found.factors[(shares >= level).argmax()])) for level in LEVELS if (shares >= level).any()]
-    if not reached:
-        return (
-            f"At no scale factor from {low:.2g} to {high:.2g} (PGA from {low * pga:.3g} g to {high * pga:.3g} g) do "
-            f"{percent(LEVELS[0])} or more of the neighbouring motions {does.removesuffix(',')}."
-        )
-    (level, first), *others = reached
-    parts = [f"{percent(level)} of the neighbouring motions first {does} at a factor of {at(first, 'PGA ')}"]
-    parts += [f"{percent(level)} at {at(first)}" for level, first in others]
-    parts += [f"{percent(level)} at none up to {high:.2g}" for level in LEVELS[len(reached) :]]
-    said = f"At least {', '.join(parts[:-1])} and {parts[-1]}"
-    if found.factors.size > 2:
-        said += f"; the factors tried are {percent(float(np.median(found.factors[1:] / found.factors[:-1])) - 1)} apart"
-    for level, first in reached:
-        above = found.factors > first
-        least = float(shares[above].min(initial=1.0))
-        if least < level:
-            factor = float(found.factors[above][shares[above].argmin()])
-            again = f"only {percent(least)} do" if least else "none does"
-            said += f". A stronger motion is not always worse: at a factor of {at(factor)} {again}"
-            break
-    return f"{said}."
-
-
-def _at(pga: float, factor: float, what: str = "") -> str:
-    return f"{factor:.3g} ({what}{factor * pga:.3g} g)"

@@ -20,13 +20,12 @@ from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError, Problem, SolverError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.names import peaks_over, percent
+from rocking_cli.names import peaks_over
 
 Reals = NDArray[np.float64]
 
 FRACTILES = (0.16, 0.50, 0.84)
 AGREEMENT = 0.9  # share that must end as the history itself, else its answer is sensitive
-ENOUGH = 20  # neighbours from which on the peaks of 16 and 84 % are told: of fewer, one or two decide them
 LEAST_ETA = 1e-3  # a restitution drawn below that is this: an impact leaves some motion
 MOST = 1_000_000  # neighbours; more take minutes
 SEED = 1963
@@ -102,16 +101,6 @@ class Neighbourhood:
             restitution=restitution if self.restitution is None else self.restitution,
             slenderness=slenderness if self.slenderness is None else self.slenderness,
         )
-
-    @property
-    def words(self) -> str:
-        """The standard deviations of the neighbours, in words."""
-        given = [f"{percent(self.amplitude)} of amplitude"]
-        given += [f"{percent(self.slenderness)} of slenderness"] if self.slenderness is not None else []
-        given += [f"{self.restitution:g} of restitution"] if self.restitution is not None else []
-        fields = {"slenderness": self.slenderness, "restitution": self.restitution}
-        own = " and ".join(name for name, value in fields.items() if value is None)
-        return f"standard deviations {', '.join(given)}{f', and those of the structure for its {own}' if own else ''}"
 
     def drawn(self, model: Model) -> Draws:
         """Draw the neighbours of a model."""
@@ -194,40 +183,6 @@ class Neighbours:
     def at_most(self) -> float:
         """The share that overturns if all neighbours of unknown outcome do."""
         return self.overturned + (self.unknown or 0.0)
-
-    def __str__(self) -> str:
-        near = f"{self.around.count} neighbouring motions ({self.around.words})"
-        if not self.lifted:
-            return f"None of {near} uplifts the structure."
-        said = [f"Of {near}, {self._shares()}"]
-        low, median, high = self.peak_ratio
-        if high == 0:
-            return f"{said[0]}; at most one in six uplifts it."
-        enough = self.around.count >= ENOUGH
-        if median == 0 or (low == 0 and enough):
-            said.append(f"{'half' if median == 0 else '16 %'} do not uplift it")
-        if 0 < median < np.inf:
-            said.append(f"the median peak is {median:.2g} {self.over}")
-        # The highest of these peaks that is known.
-        part, most = ("84 %", high) if high < np.inf else ("16 %", low if np.isinf(median) else 0.0)
-        if enough and 0 < most < np.inf:
-            said.append(f"{part} stay below {most:.2g} {self.over}")
-        return f"{'; '.join(said)}."
-
-    def _shares(self) -> str:
-        """Return how many neighbours overturn, and of how many the outcome is unknown, in words."""
-        if self.overturned in (0, 1):
-            none = "none is known to overturn the structure" if self.unknown else "none overturns the structure"
-            said = "all overturn the structure" if self.overturned else none
-        else:
-            many = f"{self._number(self.overturned)} overturn"
-            said = f"{many if round(self.overturned * self.around.count) != 1 else many + 's'} the structure"
-        if not self.unknown:
-            return said
-        return f"{said}, and the outcome under {'all' if self.unknown == 1 else self._number(self.unknown)} is unknown"
-
-    def _number(self, share: float) -> str:
-        return f"{round(share * self.around.count)} ({percent(share)})"
 
 
 def neighbours(

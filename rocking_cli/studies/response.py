@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.holding import remedy
 from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.verdict import remedy
 from rocking_cli.engines import respond
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from rocking_cli.dynamics.holding import why_unknown
 from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.structure import Structure
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.neighbours import Neighbours
-from rocking_cli.views.response import ending, known_data, neighbours_data, not_checked
+from rocking_cli.views.neighbours import neighbours_cells, neighbours_data, neighbours_in_words
+from rocking_cli.views.response import ending, known_data, not_checked
 from rocking_cli.views.restitution import restitution_data, restitution_used
-from rocking_cli.views.several import neighbours_cells
+from rocking_cli.views.verdict import verdict, why_unknown
 from rocking_cli.views.view import ABSENT, Table, View, heading
 
 
@@ -33,19 +33,20 @@ def view(
         **known_data(history),
         "restitution": restitution_data(structure),
         "neighbours": neighbours_data(near) if near is not None else None,
-        "verdict": film.verdict,
+        "verdict": verdict_of(film),
         "start": film.start,
         "end": film.end,
         **file,
     }
-    said = [film.verdict, film.ending, *([str(near)] if near is not None else []), restitution_used(structure)]
+    neighbours = neighbours_in_words(near) if near is not None else ""
+    said = [verdict_of(film), why_it_ends(film), neighbours, restitution_used(structure)]
     return View(data, [*filter(None, said), *not_checked(structure.mechanism, [history])])
 
 
 def row(film: Film, near: Neighbours | None) -> list[str]:
     """Return the table row of one of several motions: name, outcome, and shares of its neighbours."""
     run = film.history
-    fate = f"{UNKNOWN} after {run.known_to:.4g} s, as {why_unknown(run)}" if run.unknown else film.verdict
+    fate = f"{UNKNOWN} after {run.known_to:.4g} s, as {why_unknown(run)}" if run.unknown else verdict_of(film)
     return [film.motion.name, fate, *neighbours_cells(near)[:2]]
 
 
@@ -56,3 +57,15 @@ def several(structure: Structure, film: Film, rows: Sequence[Sequence[str]]) -> 
         heads, rows = heads[:-1], [each[:-1] for each in rows]
     table = Table(heading(structure.mechanism), heads, rows, numbers=range(2, len(heads)))
     return View({}, [table, restitution_used(structure), *not_checked(structure.mechanism, [film.history])])
+
+
+def verdict_of(film: Film) -> str:
+    """Return the outcome of an animated history in words."""
+    return verdict({film.history.model: film.history}, {}, film.assumed_friction)
+
+
+def why_it_ends(film: Film) -> str:
+    """Return a note on why an animation ends before the ground motion does; empty if the outcome is known."""
+    if not film.history.unknown:
+        return ""
+    return f"The film ends at {film.history.known_to:.4g} s, up to which the outcome is known."

@@ -57,7 +57,7 @@ def view(content: Assessment, verified: Verification | None = None) -> View:
             }
             for each, said in zip(content.results, verdicts, strict=True)
         ],
-        "linearisation": content.trust,
+        "linearisation": words.trust_of_block(content),
         **({"verification": verification.data(verified)} if verified is not None else {}),
         **content.title.known,
         "command": content.title.command,

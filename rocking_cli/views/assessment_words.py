@@ -12,18 +12,19 @@ from rocking_cli.core.advice import Grade
 from rocking_cli.core.equivalence import AGREEMENT
 from rocking_cli.core.size import doubts as doubts_about_size
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.holding import REMEDIES, joints_in_words, remedy, unknown_after, why_unknown
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.dynamics.verdict import SENSE, agreements, bearing, disagree
+from rocking_cli.dynamics.verdict import agreements, disagree, remedy
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.assessment import Assessment, MotionResult
-from rocking_cli.studies.margin import in_words
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.conclusion import governing, headline, of_verification
 from rocking_cli.views.contact import contact_words
+from rocking_cli.views.error import trust
+from rocking_cli.views.margin import in_words
+from rocking_cli.views.neighbours import neighbours_cells, neighbours_in_words
 from rocking_cli.views.restitution import restitution_source, restitution_used
-from rocking_cli.views.several import neighbours_cells
+from rocking_cli.views.verdict import REMEDIES, SENSE, blocks_in_words, joints_in_words, unknown_after, why_unknown
 
 MODELS: Mapping[ModelName, str] = {
     "nonlinear": "nonlinear model",
@@ -299,7 +300,7 @@ def _closeness(content: Assessment, result: MotionResult) -> str:
             said.append("It may rotate further afterwards.")
         if best.peak_ratio > 1:
             said.append("It exceeds this rotation and is brought back only by the subsequent ground motion.")
-    said.append(str(result.neighbours[result.polarity]))
+    said.append(neighbours_in_words(result.neighbours[result.polarity]))
     said.append(in_words(found, result.pga_of_ground))
     return " ".join(said)
 
@@ -352,7 +353,7 @@ def _trusted(content: Assessment, result: MotionResult) -> str:
     else:
         first = "The nonlinear model."
         itself = "It simulates the structure without linearisation; its results are quoted here."
-    said = [first, itself, *(text[0].upper() + text[1:] for text in bearing(runs, called))]
+    said = [first, itself, *(text[0].upper() + text[1:] for text in blocks_in_words(runs, agreements(runs), called))]
     if disagree(runs):
         said.append("Run weaker and stronger motions as well before relying on any of them.")
     return " ".join(said)
@@ -363,6 +364,14 @@ def why_alone(content: Assessment) -> str:
     why = content.structure.why_no_block or content.structure.misleading or ""
     why = why.removeprefix(f"{content.name}: ")
     return f"{why[0].upper()}{why[1:]}."
+
+
+def trust_of_block(content: Assessment) -> str:
+    """Return the error of the equivalent block in words, or why there is none."""
+    if content.asked:
+        return trust(content.curves, content.asked)
+    none = "No equivalent block exists here, so there is no error to report"
+    return f"{'The error of the equivalent block is left out' if content.has_block else none}: {content.no_error}."
 
 
 def _doubts(result: MotionResult) -> list[str]:

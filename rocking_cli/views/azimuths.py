@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli import names
-from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
 from rocking_cli.studies.azimuths import AzimuthResponses, sectors
+from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View, heading
 
 Flags = NDArray[np.bool_]

@@ -8,7 +8,6 @@ from math import isfinite
 from typing import Any
 
 from rocking_cli import names
-from rocking_cli.dynamics.holding import REMEDIES
 from rocking_cli.names import percent
 from rocking_cli.studies.conclusion import (
     LEAST_SHARE,
@@ -21,6 +20,7 @@ from rocking_cli.studies.conclusion import (
 )
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.studies.verification.told import Told
+from rocking_cli.views.verdict import REMEDIES
 
 MOST_DIGITS = 9
 WAYS = {1: "as given", -1: "reversed"}

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from rocking_cli import names
-from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.names import percent
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.studies.design import Design
@@ -17,6 +16,8 @@ from rocking_cli.studies.metrics import Excitation
 from rocking_cli.text import one_line
 from rocking_cli.views.column import Column, frame_of, table_of
 from rocking_cli.views.conclusion import conclusion_data
+from rocking_cli.views.neighbours import deviations
+from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View
 
 ROWS = 11  # of the scan in the table, at most
@@ -132,8 +133,8 @@ def doubts(found: Design, excitation: Excitation | None) -> list[str]:
     if found.aim.metric.shaken and excitation is not None:
         said.append(
             f"One time history is one sample: at each value, {excitation.around.count} neighbouring motions are "
-            f"simulated, {excitation.around.words}. The metric is based on a share of them, which changes in steps of "
-            f"{percent(1 / excitation.around.count)}."
+            f"simulated, {deviations(excitation.around)}. The metric is based on a share of them, which changes in "
+            f"steps of {percent(1 / excitation.around.count)}."
         )
         said += _not_known(found)
         if len(excitation.motions) > 1:

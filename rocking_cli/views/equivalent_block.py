@@ -7,7 +7,7 @@ from math import degrees, isclose, nan
 from typing import Any, NamedTuple
 
 from rocking_cli.core import Direction, EquivalentBlock, Mechanism, Statics, one_block
-from rocking_cli.core.advice import preferred_kappa
+from rocking_cli.core.advice import Grade, preferred_kappa
 from rocking_cli.core.equivalence import AGREEMENT, alike
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.structure import Structure
@@ -16,6 +16,7 @@ from rocking_cli.views.column import data_of
 from rocking_cli.views.hung import hung_data, hung_in_words
 from rocking_cli.views.parameters import PARAMETERS
 from rocking_cli.views.restitution import restitution_source, restitution_used
+from rocking_cli.views.verdict import uplift_in_words
 from rocking_cli.views.view import Table, View, heading, number
 
 
@@ -139,10 +140,23 @@ def _extras(mechanism: Mechanism, side: EquivalentSide) -> dict[str, float]:
     return {each.key: each.value for each in mechanism.found(side.direction)}
 
 
+def kappa_in_words(block: EquivalentBlock) -> str:
+    """Return a sentence on which kappa to prefer for a block, by its uplift acceleration alone."""
+    advice = preferred_kappa(block)
+    if advice.prefer == "either":
+        said = "effectively slender, either kappa is adequate"
+    else:
+        said = "disregard kappa1" if advice.kappa1 is Grade.DISREGARD else "by the uplift prefer kappa2"
+    return (
+        f"lambda_lin/lambda = {advice.ratio:.4g}: {said}; with kappa1 the uplift acceleration is "
+        f"{uplift_in_words(advice.ratio - 1)}, with kappa2 it is kept."
+    )
+
+
 def sentence(side: EquivalentSide) -> str:
     """Return a sentence on which kappa to prefer in a direction; without a block, on why there is none."""
     if side.block is not None:
-        return f"critical rotation {degrees(side.block.phi_cr):.4g} deg. {preferred_kappa(side.block).why}"
+        return f"critical rotation {degrees(side.block.phi_cr):.4g} deg. {kappa_in_words(side.block)}"
     statics = side.statics
     grows = "increases" if statics.stiffening > 0 else "decreases"
     ends = (

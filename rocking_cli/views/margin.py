@@ -4,17 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
+from functools import partial
 from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rocking_cli.core import Mechanism
-from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.names import peaks_over, percent
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion
-from rocking_cli.studies.margin import LEVELS, Margin, in_words
+from rocking_cli.studies.margin import LEVELS, Margin
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.conclusion import conclusion_data, of_margin
+from rocking_cli.views.neighbours import deviations
+from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import FEW, Table, View, heading, number
 
 MAY = "overturn or unknown"  # name of the row that governs
@@ -46,9 +51,9 @@ def view(
     }[polarity]
     parts: list[Table | str] = [
         f"{heading(mechanism)}. {of_margin(end, over)}",
-        f"Scale factors on {either}; at each, {around.count} neighbouring motions, {around.words}. 'First at' is the "
-        "smallest factor at which so many of them overturn the structure; 'always from' the smallest from which on no "
-        "factor tried (up to 5) has fewer.",
+        f"Scale factors on {either}; at each, {around.count} neighbouring motions, {deviations(around)}. 'First at' is "
+        "the smallest factor at which so many of them overturn the structure; 'always from' the smallest from which on "
+        "no factor tried (up to 5) has fewer.",
         Table("", heads, cells, numbers=range(1, len(heads))),
         *_doubtful(rows),
     ]
@@ -126,3 +131,63 @@ def margin_data(found: Margin) -> dict[str, Any]:
             for level in LEVELS
         },
     }
+
+
+def in_words(found: Margin, pga: float) -> str:
+    """Describe a margin in a few sentences, of which the first one governs: unknown outcomes count as overturning.
+
+    Parameters
+    ----------
+    found : Margin
+        The margin, with at least one factor.
+    pga : float
+        Peak ground acceleration at a factor of 1 [standard gravity].
+    """
+    doubt = bool(found.unknown.any())
+    at = partial(_at, pga)
+    does = "overturn the structure, or have an unknown outcome," if doubt else "overturn the structure"
+    said = _reached(found, found.at_most, does, pga)
+    if not doubt:
+        return said
+    first = float(found.factors[(found.unknown > 0).argmax()])
+    said += (
+        f" From a factor of {at(first)} on, some outcomes are unknown, as the model no longer holds (see `rocking "
+        "respond`): there, the structure may overturn."
+    )
+    known = [f"{percent(level)} from {at(least)}" for level in LEVELS if (least := found.first(level)) is not None]
+    if known:
+        return f"{said} Shares known to overturn it: {', '.join(known)}."
+    few = f"At no factor tried are {percent(LEVELS[0])} or more known to overturn it"
+    return f"{said} {few}; this does not prove that it stands."
+
+
+def _reached(found: Margin, shares: NDArray[np.float64], does: str, pga: float) -> str:
+    """Return in words at which factors the shares of neighbours that do something first reach each level."""
+    at = partial(_at, pga)
+    low, high = found.factors[[0, -1]]
+    reached = [(level, float(found.factors[(shares >= level).argmax()])) for level in LEVELS if (shares >= level).any()]
+    if not reached:
+        return (
+            f"At no scale factor from {low:.2g} to {high:.2g} (PGA from {low * pga:.3g} g to {high * pga:.3g} g) do "
+            f"{percent(LEVELS[0])} or more of the neighbouring motions {does.removesuffix(',')}."
+        )
+    (level, first), *others = reached
+    parts = [f"{percent(level)} of the neighbouring motions first {does} at a factor of {at(first, 'PGA ')}"]
+    parts += [f"{percent(level)} at {at(first)}" for level, first in others]
+    parts += [f"{percent(level)} at none up to {high:.2g}" for level in LEVELS[len(reached) :]]
+    said = f"At least {', '.join(parts[:-1])} and {parts[-1]}"
+    if found.factors.size > 2:
+        said += f"; the factors tried are {percent(float(np.median(found.factors[1:] / found.factors[:-1])) - 1)} apart"
+    for level, first in reached:
+        above = found.factors > first
+        least = float(shares[above].min(initial=1.0))
+        if least < level:
+            factor = float(found.factors[above][shares[above].argmin()])
+            again = f"only {percent(least)} do" if least else "none does"
+            said += f". A stronger motion is not always worse: at a factor of {at(factor)} {again}"
+            break
+    return f"{said}."
+
+
+def _at(pga: float, factor: float, what: str = "") -> str:
+    return f"{factor:.3g} ({what}{factor * pga:.3g} g)"

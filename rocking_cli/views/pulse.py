@@ -10,12 +10,17 @@ from typing import Any, TypeVar
 from rocking_cli import names
 from rocking_cli.dynamics.exact import ExactResponse
 from rocking_cli.dynamics.outcome import OneOutcome
-from rocking_cli.dynamics.pulse_response import CONDITIONS, ClosedForm
+from rocking_cli.dynamics.pulse_response import ClosedForm
 from rocking_cli.names import percent
 from rocking_cli.views.column import Column, data_of, of
 from rocking_cli.views.view import ABSENT, Table, View, number
 
 R = TypeVar("R")
+CONDITIONS = {
+    "uplift": "the pulse lifts the block (a > 1)",
+    "first_impact_after_pulse": "the first impact comes after the pulse",
+    "no_overturning_without_impact": "the block does not overturn before its first impact",
+}
 LINEAR_BLOCK = (
     "The linear block is the equivalent block of any structure: a = a_g/(g lambda), omega = omega_g/p, tau = p t."
 )
@@ -96,10 +101,16 @@ def closed_data(closed: ClosedForm, exact: ExactResponse) -> dict[str, Any]:
     return {
         **asdict(closed),
         "valid": closed.valid,
-        "reason": closed.reason,
+        "reason": why_not_valid(closed),
         "off_first_rebound": closed.off(exact.first_rebound),
         "off_peak_ratio": closed.off(exact.peak_ratio),
     }
+
+
+def why_not_valid(closed: ClosedForm) -> str | None:
+    """Return the reason why a closed form cannot be used, in words; None if it can."""
+    failed = [CONDITIONS[name] for name, holds in closed.conditions.items() if holds is False]
+    return None if closed.valid else f"it holds only where {' and '.join(failed)}"
 
 
 def how_far_off(closed: ClosedForm, exact: ExactResponse) -> str:
@@ -152,7 +163,7 @@ def _verdict(a: float, closed: ClosedForm | None, exact: ExactResponse) -> str:
         trust = "No closed form exists for this shape: Eqs. 41-42 apply to a full sine"
     else:
         use = "All conditions are met: the closed form can be used"
-        trust = use if closed.valid else f"Do not use the closed form here: {closed.reason}"
+        trust = use if closed.valid else f"Do not use the closed form here: {why_not_valid(closed)}"
         if closed.valid and exact.first_excursion > 1 and isnan(exact.first_rebound):
             trust += "; the block passes its critical rotation before its first impact"
         else:

@@ -8,13 +8,11 @@ from typing import Any
 
 from rocking_cli import names
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.core.advice import Grade, grade, uplift_error, uplift_in_words
+from rocking_cli.core.advice import Grade, grade, uplift_error
 from rocking_cli.dynamics.exact import ExactResponse
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.holding import NO_JOINTS, joints_in_words
 from rocking_cli.dynamics.outcome import OneOutcome
-from rocking_cli.dynamics.pulse_response import CONDITIONS, ClosedForm
-from rocking_cli.dynamics.verdict import SENSE
+from rocking_cli.dynamics.pulse_response import ClosedForm
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
@@ -23,9 +21,18 @@ from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.pulse_on_structure import KAPPAS, Answer, outcome, scaled
 from rocking_cli.studies.sampled_pulse import SampledHistory
 from rocking_cli.views.conclusion import conclusion_data
-from rocking_cli.views.pulse import YES_NO, after_impacts, closed_data, how_far_off, impacts_before
+from rocking_cli.views.pulse import (
+    CONDITIONS,
+    YES_NO,
+    after_impacts,
+    closed_data,
+    how_far_off,
+    impacts_before,
+    why_not_valid,
+)
 from rocking_cli.views.response import known_data, model_heads, not_checked, pulse_data
 from rocking_cli.views.restitution import restitution_data, restitution_used
+from rocking_cli.views.verdict import NO_JOINTS, SENSE, joints_in_words, uplift_in_words
 from rocking_cli.views.view import ABSENT, Table, View, heading, in_degrees, number
 
 
@@ -210,7 +217,7 @@ def _trust(closed: ClosedForm, exact: ExactResponse) -> str:
     if not closed.conditions["uplift"]:
         return f"it {names.NO_UPLIFT} (a <= 1)."
     use = "all conditions are met, so the closed form can be used"
-    said = use if closed.valid else f"do not use the closed form here, because {closed.reason}"
+    said = use if closed.valid else f"do not use the closed form here, because {why_not_valid(closed)}"
     return f"{said}{how_far_off(closed, exact)}."
 
 

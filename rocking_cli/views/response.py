@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, fields
-from math import isinf, nan
+from dataclasses import fields
+from math import nan, sqrt
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -14,24 +14,25 @@ from numpy.typing import NDArray
 from rocking_cli import names
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.history import FELT, History
-from rocking_cli.dynamics.holding import unchecked, why_unknown
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import OneOutcome
-from rocking_cli.dynamics.verdict import SENSE, agreements, verdict
-from rocking_cli.dynamics.vertical import vertical_notes
+from rocking_cli.dynamics.verdict import agreements
+from rocking_cli.dynamics.vertical import contact_lost
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.structure import Structure
 from rocking_cli.studies.contact import ContactDemand
 from rocking_cli.studies.movements import Movements, Watched
-from rocking_cli.studies.neighbours import FRACTILES, Neighbours
+from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.studies.response import Histories, Question, Response, Runs, concluded
 from rocking_cli.views import processing
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.conclusion import conclusion_data, governing_polarity, headline, next_in_words
 from rocking_cli.views.contact import contact_data, contact_words
+from rocking_cli.views.neighbours import neighbours_data, neighbours_in_words
 from rocking_cli.views.restitution import restitution_data, restitution_used
+from rocking_cli.views.verdict import SENSE, unchecked, verdict, why_unknown
 from rocking_cli.views.view import ABSENT, Table, View, force_unit, in_degrees, number
 
 Reals = NDArray[np.float64]
@@ -135,7 +136,7 @@ def runs_data(
             "responses": histories_data(histories, shown, polarity),
             "agreement": agreement_data(histories),
             "neighbours": neighbours_data(near[polarity]) if polarity in near else None,
-            "verdict": verdict(histories, shown.assumed_friction(polarity)),
+            "verdict": verdict(histories, agreements(histories), shown.assumed_friction(polarity)),
         }
         for polarity, histories in runs.items()
     }
@@ -148,18 +149,6 @@ def histories_data(histories: Histories, shown: HistoryDetails = NOTHING_MORE, p
     """Return the response of each model as plain data."""
     return {
         name: {**_history_data(run, shown), "contact": shown.contact(polarity, name)} for name, run in histories.items()
-    }
-
-
-def neighbours_data(near: Neighbours) -> dict[str, Any]:
-    """Return the outcomes of the neighbours of a motion as plain data; peaks of overturning are null."""
-    peaks = zip(FRACTILES, near.peak_ratio, strict=True)
-    return {
-        **asdict(near.around),
-        "overturned": near.overturned,
-        "unknown": near.unknown,
-        "peak_ratio": {f"{100 * share:.0f}": None if isinf(peak) else peak for share, peak in peaks},
-        "sensitive": near.sensitive,
     }
 
 
@@ -297,7 +286,7 @@ def view(
     """
     mechanism, given = structure.mechanism, found.given
     shown = HistoryDetails(Watched(mechanism), structure.etas if impacts else None, found.contacts, mechanism)
-    notes = vertical_notes(found.first, mechanism.gravity) if found.first is not None else []
+    notes = vertical_notes(found.first, mechanism.gravity)
     data: dict[str, Any] = {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
         "record": record_data(given.motion, given.factor, polarity, given.pulse) if given else None,
@@ -337,6 +326,36 @@ def apart(watched: Watched | None, runs: Runs) -> Iterator[str]:
         )
 
 
+def vertical_notes(motion: GroundMotion | None, gravity: float) -> list[str]:
+    """Return sentences on what a vertical component means for results: the range of g, and where contact is lost.
+
+    Parameters
+    ----------
+    motion : GroundMotion or None
+        The ground motion, as scaled.
+    gravity : float
+        Acceleration of gravity [m/s2].
+    """
+    if motion is None or motion.vertical is None:
+        return []
+    v = motion.vertical.acceleration / gravity
+    low, high = 1 + min(float(v.min()), 0.0), 1 + max(float(v.max()), 0.0)
+    swing = f"{sqrt(low):.2f} to {sqrt(high):.2f} times" if low > 0 else f"nothing to {sqrt(high):.2f} times"
+    said = [
+        f"Vertical ground motion: gravity as the structure feels it, g + v_g'', goes from {low:.3g} g to {high:.3g} g. "
+        "All histories take it into account, at uplift and in the restoring force. The parameters of the equivalent "
+        f"block are those of constant g: its frequency parameter p would go from {swing} the value given, which closed "
+        "forms and spectra over p leave out."
+    ]
+    lost = contact_lost(motion, gravity)
+    if lost is not None:
+        said.append(
+            f"Contact is lost: at {lost:.4g} s v_g'' comes down to -g and nothing holds the structure to the ground. "
+            "It may fly, which no model here follows: do not trust the response from then on."
+        )
+    return said
+
+
 def runs_view(title: str, runs: Runs, mechanism: Mechanism, contacts: Mapping[int, ContactDemand]) -> View:
     """Show responses without neighbours, in one polarity or both."""
     shown = HistoryDetails(Watched(mechanism), contacts=contacts, mechanism=mechanism)
@@ -353,8 +372,15 @@ def _tables(
         of = f"{title}, polarity {polarity}" if len(runs) > 1 else title
         end = concluded({polarity: histories}, near)
         heading = f"{of} ({headline(end)})"
-        parts += [_table(heading, histories, shown, polarity), verdict(histories, shown.assumed_friction(polarity))]
-        parts += [f"{near[polarity]} {'' if end.remedy else next_in_words(end)}".rstrip()] if polarity in near else []
+        parts += [
+            _table(heading, histories, shown, polarity),
+            verdict(histories, agreements(histories), shown.assumed_friction(polarity)),
+        ]
+        parts += (
+            [f"{neighbours_in_words(near[polarity])} {'' if end.remedy else next_in_words(end)}".rstrip()]
+            if polarity in near
+            else []
+        )
         parts += shown.contact_words(polarity)
         if shown.etas is not None:
             for name, run in histories.items():

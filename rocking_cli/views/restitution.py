@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from math import isclose
 from typing import Any
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.restitution import restitution_in_words
-from rocking_cli.dynamics.verdict import SENSE
 from rocking_cli.structure import Structure
+from rocking_cli.views.verdict import SENSE
 
 ROUNDING = 1e-9
 ELASTIC = 0.97  # a restitution from kinematics above which tests found less
@@ -47,7 +47,11 @@ def restitution_used(structure: Structure) -> str:
             f"The structure rocks {only}. After an impact on them, its angular velocity is "
             f"{structure.etas[0]:.4g} of that before (the rebound, {how})."
         )
-    said = restitution_in_words(structure.etas, given=source == "given")
+    positive, negative = structure.etas
+    values, how = f"{positive:.4g}", "as given" if source == "given" else "from rigid-body kinematics, not measured"
+    if not isclose(positive, negative, rel_tol=ROUNDING):
+        values += f" at impacts that end clockwise rotation and {negative:.4g} at the others"
+    said = f"Coefficient of restitution eta = {values}, {how}."
     if source == "kinematics" and ELASTIC < max(structure.etas) < 1 + ROUNDING:
         said += " Tests of such bodies found less, about 0.95."
     return said

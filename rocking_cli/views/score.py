@@ -22,6 +22,7 @@ from rocking_cli.studies.experiments.score import (
 from rocking_cli.studies.experiments.scores import DRAWS, CalibrationBin, ScoreEstimate
 from rocking_cli.text import one_line
 from rocking_cli.views.column import Column, data_of, frame_of, of, rounded, table_of
+from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.view import ABSENT, Table, View
 
 FEW_CLUSTERS = 10
@@ -79,13 +80,14 @@ def _parts(found: Scored, file: str) -> Iterator[Table | str]:
     kept, tests = found.observed, found.tests
     structures, records = ({getattr(each.test, name) for each in tests} for name in ("structure", "record"))
     drawn = found.drawn or {found.around: []}
-    deviations = " and ".join(
-        f"{around.words} ({', '.join(each)})" if len(drawn) > 1 else around.words for around, each in drawn.items()
+    said = " and ".join(
+        f"{deviations(around)} ({', '.join(each)})" if len(drawn) > 1 else deviations(around)
+        for around, each in drawn.items()
     )
     yield (
         f"{file}: {_count(len(tests), 'test')} of {_count(len(structures), 'structure')} under "
         f"{_count(len(records), 'motion')}. {found.around.count} neighbouring motions are simulated for each, "
-        f"{deviations}; the stated share is that of the neighbours that overturn."
+        f"{said}; the stated share is that of the neighbours that overturn."
     )
     if commanded := sum(each.test.commanded for each in tests):
         yield (

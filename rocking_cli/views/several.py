@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import isinf
 
 from rocking_cli import names
 from rocking_cli.core.contacts import MASONRY
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.holding import unchecked, unknown_after
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.names import digits_apart, peaks_over, percent
+from rocking_cli.names import digits_apart, peaks_over
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion
 from rocking_cli.studies.contact import ContactDemand
@@ -22,9 +20,11 @@ from rocking_cli.text import in_short
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.conclusion import governing
 from rocking_cli.views.contact import contact_words
+from rocking_cli.views.neighbours import deviations, neighbours_cells
 from rocking_cli.views.response import apart, model_heads, models_used
 from rocking_cli.views.restitution import restitution_used
-from rocking_cli.views.view import ABSENT, Table, heading, number
+from rocking_cli.views.verdict import unchecked, unknown_after
+from rocking_cli.views.view import Table, heading, number
 
 NAMED = 6  # motions that a sentence names
 CLAUSES = {
@@ -118,7 +118,7 @@ class Several:
             yield f"Not counted: {lost} of {self._asked} motions{named}, which could not be used."
         yield Table(self._title, heads, rows, numbers=range(1, len(heads)))
         if self._around is not None:
-            yield f"Neighbours: {self._around.count} neighbouring motions for each motion, {self._around.words}."
+            yield f"Neighbours: {self._around.count} neighbouring motions for each motion, {deviations(self._around)}."
         yield from self._joints()
         yield from models_used(self._models)
         yield self._restitution
@@ -173,15 +173,6 @@ class Several:
             return f"{each}; the {there:g} {of} is enough under all"
         assumed = ": the results assume that nothing slides" if given is None else ""
         return f"{each}; it is more than the {there:g} {of} under {in_short(more, most=NAMED)}{assumed}"
-
-
-def neighbours_cells(near: Neighbours | None) -> list[str]:
-    """Return the shares of the neighbours of a motion that overturn and are of unknown outcome, and the median peak."""
-    if near is None:
-        return [ABSENT] * 3
-    none = names.OVERTURNS if near.half_overturn else names.UNKNOWN
-    peak = none if isinf(near.peak_ratio[1]) else f"{near.peak_ratio[1]:.3g}"
-    return [percent(near.overturned), ABSENT if near.unknown is None else percent(near.unknown), peak]
 
 
 def _fate(history: History) -> str:

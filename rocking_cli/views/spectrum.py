@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.names import FEWEST, NO_UPLIFT, OVERTURNS, ROCKS, UNKNOWN
 from rocking_cli.studies.spectrum import Spectrum
@@ -17,6 +16,7 @@ from rocking_cli.studies.under_pulses import Integers, Reals
 from rocking_cli.views import processing
 from rocking_cli.views.column import Column, rounded, table_of
 from rocking_cli.views.overturning import FROM_KINEMATICS, NO_JOINTS, numbers
+from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View
 
 ROWS = 12  # of a table, besides the structure itself: the curves themselves are in --out and --json

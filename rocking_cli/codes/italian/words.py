@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from rocking_cli.codes.italian.remarks import TEXTS
 from rocking_cli.codes.italian.results import Dynamic, ItalianVerified
 from rocking_cli.codes.italian.rules import OF_STATE
-from rocking_cli.dynamics.holding import unchecked
 from rocking_cli.studies.verification.told import Told
+from rocking_cli.views.verdict import unchecked
 
 SAME = 0.005  # of an a_g: methods that differ by less agree
 ORDINAL = {True: "With FC", False: "Without FC (`rocking respond` uses none)"}

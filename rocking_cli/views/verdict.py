@@ -1,16 +1,22 @@
-"""Whether the joints of a structure hold in a time history, and until when its result is valid, in words."""
+"""The time histories of a structure in words: outcomes, how well its equivalent blocks agree, and its joints."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import inf, isfinite, isnan
+from math import isfinite, isnan
 
+from rocking_cli import names
+from rocking_cli.core import Direction
+from rocking_cli.core.advice import Grade, grade
 from rocking_cli.core.contacts import MASONRY
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.joints import JointCheck
 from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.verdict import ANOTHER, CLOSE, Agreement, disagree, remedy
 from rocking_cli.names import percent
 
+SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
+TOGETHER = 1e-2  # s within which two motions are at one time
 ASSUMED = (
     "The friction required, {:.3g}, is more than the {:g} usual for masonry: the result assumes that nothing slides."
 )
@@ -77,17 +83,6 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
     return " ".join([bear, *slides, *taken])
 
 
-def remedy(history: History) -> str:
-    """Return what to do about an unknown outcome: a key of `REMEDIES`."""
-    check = history.check
-    if check is not None and not history.apart:
-        if check.reason == "slides":
-            return "hold_joint"
-        if check.reason == "opens" and not check.alone:
-            return "hinge_at_joint"
-    return "assume_overturning"
-
-
 def _opens(history: History, check: JointCheck, *, valid: bool) -> Iterator[str]:
     """Yield by how much a joint opens, less than the limit, and what this means for outcome and peak."""
     uncertain = 0 < history.peak_ratio < SMALL_PEAK and check.largest > SMALL_PEAK_OPENING * check.reach
@@ -102,14 +97,6 @@ def _opens(history: History, check: JointCheck, *, valid: bool) -> Iterator[str]
             f"The peak is uncertain by some {percent(SMALL_PEAK_ERROR)}, as it is below {SMALL_PEAK:g} of the "
             f"{history.reference} and the opening is above {percent(SMALL_PEAK_OPENING)} of D_cr."
         )
-
-
-def known_until(histories: Mapping[ModelName, History]) -> float:
-    """Return the time until which the histories of one structure are valid [s]; infinite if the outcome is known.
-
-    After that time the histories of the equivalent blocks are not valid either, as these have no joints.
-    """
-    return min((run.known_to for run in histories.values() if run.unknown), default=inf)
 
 
 def why_unknown(history: History) -> str | None:
@@ -152,3 +139,126 @@ def _until(history: History) -> str:
 
 def _small(value: float, unit: str) -> str:
     return f"{value:.3g} {unit}" if value >= 0.5 else f"{1000 * value:.3g} m{unit}"
+
+
+def verdict(
+    histories: Mapping[ModelName, History],
+    agreed: Mapping[ModelName, Agreement],
+    assumed_friction: float | None = None,
+) -> str:
+    """Return whether a structure uplifts, how far it rocks, whether it overturns, and which model to trust, in words.
+
+    Parameters
+    ----------
+    histories : mapping of str to History
+        Histories of one or more models of the same structure and motion.
+    agreed : mapping of str to Agreement
+        The agreement of the equivalent blocks, see `rocking_cli.dynamics.verdict.agreements`.
+    assumed_friction : float, optional
+        Friction that the result assumes, see `joints_in_words`.
+
+    Returns
+    -------
+    str
+        A few sentences.
+    """
+    best: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
+    run = histories[best]
+    by = "" if best == "nonlinear" or len(histories) == 1 else f"By {best} the"
+    said = [] if run.unknown else [f"{by or 'The'} structure {ends(run)}."]
+    if run.unknown or (best == "nonlinear" and run.check is not None):
+        said += filter(None, [joints_in_words(run, assumed_friction)])
+    if run.unknown and len(histories) > 1:
+        said.append(NO_JOINTS)
+    else:
+        said += blocks_in_words(histories, agreed, {name: name for name in histories})
+    if not run.unknown and disagree(histories):
+        said.append("Do not trust any of them alone: run weaker and stronger motions as well.")
+    elif not run.fell and not run.unknown and run.peak_ratio > CLOSE and not any(run.ends_at_limit):
+        said.append("This is close to overturning: run weaker and stronger motions before relying on it.")
+    still = [name for name, each in histories.items() if each.still_rocking]
+    if still:
+        said.append(
+            f"{', '.join(still)}: {names.STILL_ROCKING} long after the end of the record, and certain not to overturn."
+        )
+    return " ".join(said)
+
+
+def ends(run: History) -> str:
+    """Return the outcome of the structure in words, which follow "it" or its name."""
+    if run.unknown:
+        return f"has an {names.UNKNOWN} outcome"
+    if run.fell:
+        return f"{names.OVERTURNS} {SENSE[Direction(run.fell_to)]}"
+    if not run.peak_ratio:
+        return names.NO_UPLIFT
+    if run.peak_ratio > 1:
+        return (
+            f"{names.ROCKS}: it exceeds its critical rotation, reaching {run.peak_ratio:.4g} times it, and is brought "
+            "back"
+        )
+    if any(run.ends_at_limit):
+        return f"{names.ROCKS} to {run.furthest:.4g} rad, {run.peak_ratio:.4g} of its {run.reference}"
+    return f"{names.ROCKS} to {run.peak_ratio:.4g} of its critical rotation phi_cr"
+
+
+def blocks_in_words(
+    histories: Mapping[ModelName, History], agreed: Mapping[ModelName, Agreement], called: Mapping[ModelName, str]
+) -> list[str]:
+    """Return a sentence on each equivalent block: its grade under this motion, and the numbers behind this.
+
+    Parameters
+    ----------
+    histories, agreed
+        See `verdict`.
+    called : mapping of str to str
+        Names of the models in the sentences.
+    """
+    if not agreed:  # without a nonlinear history: the outcomes after the first, and which blocks are unfit
+        said = [f"By {called[name]} it {ends(run)}." for name, run in list(histories.items())[1:]]
+        return said + [
+            f"Disregard {called[name]}: its uplift acceleration is {uplift_in_words(run.uplift_error)}."
+            for name, run in histories.items()
+            if grade(run.uplift_error) is Grade.DISREGARD
+        ]
+    said = [_agrees(called[name], found, histories[name], histories["nonlinear"]) for name, found in agreed.items()]
+    if any(found.peak_error is not None and found.grade is not Grade.DISREGARD for found in agreed.values()):
+        said.append(
+            "This holds for this ground motion only; under another one the equivalent block may be more or less "
+            "accurate."
+        )
+    return said
+
+
+def _agrees(name: str, found: Agreement, run: History, best: History) -> str:
+    beside = _beside(found, run, best)
+    if found.unfit:
+        return f"Disregard {name}: its uplift acceleration is {uplift_in_words(found.uplift_error)}; here {beside}."
+    if not found.same_fate:
+        return f"{name} disagrees: {beside}."
+    if found.grade is Grade.DISREGARD:
+        return f"Disregard {name} here: {beside}."
+    return f"{name} {'agrees' if found.grade is Grade.AGREES else 'is good for a first estimate'}: {beside}."
+
+
+def _beside(found: Agreement, run: History, best: History) -> str:
+    """Return in words how the motion of a block differs from that of the nonlinear model."""
+    if not found.same_fate:
+        return f"it {ends(run)}"
+    delay = found.peak_delay or 0.0
+    later = "at the same time" if abs(delay) < TOGETHER else f"{abs(delay):.3g} s {'later' if delay > 0 else 'earlier'}"
+    if best.fell:
+        return f"it {names.OVERTURNS}{' too' if run.fell_to == best.fell_to else ' the other way'}, {later}"
+    if found.peak_error is None:
+        return f"it {names.NO_UPLIFT} either"
+    size = percent(abs(found.peak_error))
+    size = "the same" if size == percent(0) else f"{size} {'higher' if found.peak_error > 0 else 'lower'}"
+    if found.difference is None:
+        return f"its peak is {size}"
+    late = f" and {later}" if abs(delay) * best.p > ANOTHER else ""
+    return f"its peak is {size}{late}, and its rotation history differs by {percent(found.difference)} (rms)"
+
+
+def uplift_in_words(error: float) -> str:
+    """Return the error of an uplift acceleration in words, which follow "its uplift acceleration is"."""
+    return f"{percent(abs(error))} too {'low' if error < 0 else 'high'}"

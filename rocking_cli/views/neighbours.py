@@ -1,0 +1,81 @@
+"""The neighbours of a ground motion in words, as plain data and as cells of a table."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from math import inf, isinf
+from typing import Any
+
+from rocking_cli import names
+from rocking_cli.names import percent
+from rocking_cli.studies.neighbours import FRACTILES, Neighbourhood, Neighbours
+from rocking_cli.views.view import ABSENT
+
+ENOUGH = 20  # neighbours from which on the peaks of 16 and 84 % are told: of fewer, one or two decide them
+
+
+def deviations(around: Neighbourhood) -> str:
+    """Return the standard deviations of neighbours in words."""
+    given = [f"{percent(around.amplitude)} of amplitude"]
+    given += [f"{percent(around.slenderness)} of slenderness"] if around.slenderness is not None else []
+    given += [f"{around.restitution:g} of restitution"] if around.restitution is not None else []
+    fields = {"slenderness": around.slenderness, "restitution": around.restitution}
+    own = " and ".join(name for name, value in fields.items() if value is None)
+    return f"standard deviations {', '.join(given)}{f', and those of the structure for its {own}' if own else ''}"
+
+
+def neighbours_in_words(near: Neighbours) -> str:
+    """Return how many neighbours overturn, or are of unknown outcome, and the peaks of the others in a sentence."""
+    of = f"{near.around.count} neighbouring motions ({deviations(near.around)})"
+    if not near.lifted:
+        return f"None of {of} uplifts the structure."
+    said = [f"Of {of}, {_shares(near)}"]
+    low, median, high = near.peak_ratio
+    if high == 0:
+        return f"{said[0]}; at most one in six uplifts it."
+    enough = near.around.count >= ENOUGH
+    if median == 0 or (low == 0 and enough):
+        said.append(f"{'half' if median == 0 else '16 %'} do not uplift it")
+    if 0 < median < inf:
+        said.append(f"the median peak is {median:.2g} {near.over}")
+    # The highest of these peaks that is known.
+    part, most = ("84 %", high) if high < inf else ("16 %", low if isinf(median) else 0.0)
+    if enough and 0 < most < inf:
+        said.append(f"{part} stay below {most:.2g} {near.over}")
+    return f"{'; '.join(said)}."
+
+
+def _shares(near: Neighbours) -> str:
+    def number(share: float) -> str:
+        return f"{round(share * near.around.count)} ({percent(share)})"
+
+    if near.overturned in (0, 1):
+        none = "none is known to overturn the structure" if near.unknown else "none overturns the structure"
+        said = "all overturn the structure" if near.overturned else none
+    else:
+        does = "overturns" if round(near.overturned * near.around.count) == 1 else "overturn"
+        said = f"{number(near.overturned)} {does} the structure"
+    if not near.unknown:
+        return said
+    return f"{said}, and the outcome under {'all' if near.unknown == 1 else number(near.unknown)} is unknown"
+
+
+def neighbours_data(near: Neighbours) -> dict[str, Any]:
+    """Return the outcomes of the neighbours of a motion as plain data; peaks of overturning are null."""
+    peaks = zip(FRACTILES, near.peak_ratio, strict=True)
+    return {
+        **asdict(near.around),
+        "overturned": near.overturned,
+        "unknown": near.unknown,
+        "peak_ratio": {f"{100 * share:.0f}": None if isinf(peak) else peak for share, peak in peaks},
+        "sensitive": near.sensitive,
+    }
+
+
+def neighbours_cells(near: Neighbours | None) -> list[str]:
+    """Return the shares of the neighbours of a motion that overturn and are of unknown outcome, and the median peak."""
+    if near is None:
+        return [ABSENT] * 3
+    none = names.OVERTURNS if near.half_overturn else names.UNKNOWN
+    peak = none if isinf(near.peak_ratio[1]) else f"{near.peak_ratio[1]:.3g}"
+    return [percent(near.overturned), ABSENT if near.unknown is None else percent(near.unknown), peak]
