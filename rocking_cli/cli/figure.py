@@ -97,15 +97,14 @@ def command(
 
 
 def _motion(record: str | None, reading: ReadingOptions) -> GroundMotion:
-    """Return the record of Figure 14: the user's, or the shipped example, which is elsewhere in a checkout."""
+    """Return the record of Figure 14: the user's, or the shipped example."""
     from rocking_cli.ask.ground_motions import Motions
     from rocking_cli.excitation.records import read_record
+    from rocking_cli.io.files import shipped
 
     if record is not None:
         return Motions((Path(record),), *reading.readings).one(0.0).motion
-    package = Path(__file__).parents[1]
-    shipped = package / "data" / "accel.csv"
-    return read_record(shipped if shipped.exists() else package.parent / "examples" / "accel.csv")
+    return read_record(shipped("accel.csv"))
 
 
 def _compute(number: int, motion: GroundMotion | None) -> PaperFigure:

@@ -54,7 +54,7 @@ def command(
     Italian code, or with --code CODE of any installed code of practice.
 
     With --plugin, the command writes a package for a mechanism of your own, called NAME: a working mechanism with
-    comments for you to change, its tests, a structure file and its drawing. `pip install` makes it available like the
+    comments for you to change, its tests, and a structure file. `pip install` makes it available like the
     built-in mechanisms. With --plugin and --code, it writes such a package for a code of practice of your own.
 
     \b
