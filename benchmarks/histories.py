@@ -16,17 +16,18 @@ from statistics import median
 
 import numpy as np
 from by_solve_ivp import BySolveIvp
+from numba import njit
 
 from rocking_cli import GroundMotion, Model, Runs, build_models, load_structure, read_record, respond_many
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import kernels as at
-from rocking_cli.dynamics import ways
-from rocking_cli.dynamics.calling import HISTORIES
-from rocking_cli.dynamics.compiled import compile_kernel
 from rocking_cli.dynamics.deck import lay_out, run_deck
 from rocking_cli.dynamics.history import RTOL, follow
 
 PROJECT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(PROJECT / "scripts"))
+from by_numba import OPTIONS, compiled  # noqa: E402
+
 ACCEL = PROJECT / "examples" / "accel.csv"
 CASES = [("block", 0.3), ("block", 0.5), ("block", 0.7), ("frame", 0.5)]
 WANTED = 1e-8  # relative error of the peak at which solvers are compared
@@ -79,11 +80,11 @@ class Prepared:
         return float((self.marks[0, at.PEAK : at.PEAK + 2] / self.model.phi_cr).max())
 
 
-_MADE = ways.compiled_module(HISTORIES.module)  # by numba: a function of a benchmark is not shipped
+_MADE = compiled(at)  # by numba: a function of a benchmark is not shipped
 law_of, nystrom = _MADE["law_of"], _MADE["nystrom"]
 
 
-@compile_kernel
+@njit(**OPTIONS)
 def bare_loop(forces, numbers, u, dt):
     """One step of the pair a sample and nothing else: no impacts, no error control, no samples kept."""
     law = law_of(False, numbers, 0)

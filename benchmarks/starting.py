@@ -1,4 +1,4 @@
-"""What starting costs, and how fast the three ways run a kernel: ratios within one run.
+"""What starting costs, and how fast both ways run a kernel: ratios within one run.
 
     python benchmarks/starting.py
 
@@ -20,7 +20,7 @@ from statistics import median
 PROJECT = Path(__file__).resolve().parents[1]
 PAGE = PROJECT / "docs" / "performance.md"
 BEGIN, END = "<!-- measured -->\n", "<!-- /measured -->"
-ROUNDS, PAIRS = 7, 15
+ROUNDS, PAIRS = 7, 3
 RESPOND = ("-m", "rocking_cli", "respond", "examples/frame.yaml", "--record", "examples/accel.csv")
 PROCESSES = {
     "`python -c pass`": ("-c", "pass"),
@@ -35,10 +35,10 @@ FIRST = {"`rocking respond`": RESPOND, "`rocking respond --plot`": PROCESSES["`r
 """Commands as the first ones on a machine, whose caches are empty."""
 
 
-def spent(arguments: tuple[str, ...], folder: str, kernels: str = "ready") -> float:
+def spent(arguments: tuple[str, ...], folder: str) -> float:
     """Processor time of a process whose caches are in a folder [s]."""
-    caches = dict.fromkeys(("XDG_CACHE_HOME", "MPLCONFIGDIR", "NUMBA_CACHE_DIR"), folder)
-    environment = {**os.environ, **caches, "ROCKING_KERNELS": kernels, "OPENBLAS_NUM_THREADS": "1"}
+    caches = dict.fromkeys(("XDG_CACHE_HOME", "MPLCONFIGDIR"), folder)
+    environment = {**os.environ, **caches, "ROCKING_KERNELS": "ready", "OPENBLAS_NUM_THREADS": "1"}
     environment.pop("PYTHONDONTWRITEBYTECODE", None)  # as users have it: the bytecode is there after the first run
     before = _of_children()
     command = [sys.executable, *(each.format(folder=folder) for each in arguments)]
@@ -66,18 +66,14 @@ def starts() -> list[list[str]]:
                 times[name].append(spent(PROCESSES[name], kept))
         for name, arguments in FIRST.items():
             times[f"{name}, first on a machine"] = [_empty(arguments) for _ in range(ROUNDS)]
-        times["`rocking respond`, first, compiled by numba"] = [_empty(RESPOND, "jit")]
-        times["`rocking respond`, later, compiled by numba"] = [_empty(RESPOND, "jit", again=True)]
     least = {name: min(each) for name, each in times.items()}
     python, later = least["`python -c pass`"], least["`rocking respond`, later"]
     return [[name, f"{each:.3f}", f"{each / python:.0f}", f"{each / later:.2f}"] for name, each in least.items()]
 
 
-def _empty(arguments: tuple[str, ...], kernels: str = "ready", *, again: bool = False) -> float:
+def _empty(arguments: tuple[str, ...]) -> float:
     with tempfile.TemporaryDirectory() as folder:
-        if again:
-            spent(arguments, folder, kernels)
-        return spent(arguments, folder, kernels)
+        return spent(arguments, folder)
 
 
 def speeds() -> list[list[str]]:
@@ -101,11 +97,10 @@ def speeds() -> list[list[str]]:
 
     shipped = run("ready", 200)
     rows = [["shipped", f"{1e3 * shipped:.3f}", "1"]]
-    for way, name, scales, pairs in (("jit", "compiled by numba", 200, PAIRS), ("python", "in Python", 2, 3)):
-        run(way, scales)
-        times = [(run(way, scales), run("ready", scales)) for _ in range(pairs)]
-        ratio = median(theirs / ours for theirs, ours in times)
-        rows.append([name, f"{1e3 * median(theirs for theirs, _ in times):.3g}", f"{ratio:.3g}"])
+    run("python", 2)
+    times = [(run("python", 2), run("ready", 2)) for _ in range(PAIRS)]
+    ratio = median(theirs / ours for theirs, ours in times)
+    rows.append(["in Python", f"{1e3 * median(theirs for theirs, _ in times):.3g}", f"{ratio:.3g}"])
     os.environ.pop(ways.CHOSEN)
     return rows
 

@@ -164,8 +164,8 @@ class PluginWarning(UserWarning):
     """Warning of a plugin that cannot be used and is left out; the others remain available."""
 
 
-class CacheWarning(UserWarning):
-    """Warning of compiled kernels that cannot be used and are compiled again."""
+class BrokenKernels(ImportError):
+    """Shipped kernels of this system that are damaged, missing or do not load."""
 
 
 class KernelWarning(UserWarning):

@@ -20,7 +20,6 @@ import sys
 import tempfile
 from importlib.metadata import version
 from pathlib import Path
-from types import FunctionType
 from typing import Any
 
 PROJECT = Path(__file__).resolve().parents[1]
@@ -31,6 +30,7 @@ for _name in [each for each in os.environ if each.startswith("NUMBA_")]:
 os.environ["NUMBA_CPU_NAME"], os.environ["NUMBA_CPU_FEATURES"] = "generic", ""
 
 import llvmlite.binding as llvm  # noqa: E402
+from by_numba import OPTIONS, compiled  # noqa: E402
 from llvmlite import ir  # noqa: E402
 from numba import njit, types  # noqa: E402
 from numba.extending import intrinsic  # noqa: E402
@@ -38,10 +38,9 @@ from numba.np.arrayobj import populate_array  # noqa: E402
 
 from rocking_cli.dynamics import shipped  # noqa: E402
 from rocking_cli.dynamics.calling import FUNCTIONS, SETS, KernelSet, Layout, symbol  # noqa: E402
-from rocking_cli.dynamics.compiled import OPTIONS  # noqa: E402
 
 # Without numba's runtime: what would allocate memory or count references does not compile.
-AHEAD = {**OPTIONS, "_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+AHEAD = {"_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 SYSTEMS = {
     "linux-x86_64.so": ("x86_64-unknown-linux-musl", "x86_64-linux-musl"),
     "linux-aarch64.so": ("aarch64-unknown-linux-musl", "aarch64-linux-musl"),
@@ -132,27 +131,16 @@ class Writing:
         return f"__array_of_{layout[0]}(__at(places, {self.places - 1}), ({shape}))"
 
 
-def code_of(function: Any) -> Any:
-    """The code of a function as if the file were in no folder: the library keeps where an error would be raised."""
-    return function.__code__.replace(co_filename=f"{function.__module__.rpartition('.')[2]}.py")
-
-
 def entry_of(kernel: KernelSet) -> Any:
     """The compiled entry of a set, as numba has it."""
-    module = importlib.import_module(kernel.module)
-    namespace = dict(vars(module))
-    for function in module.SOURCE:
-        twin = FunctionType(code_of(function), namespace, function.__name__)
-        twin.__module__, twin.__qualname__ = function.__module__, function.__qualname__
-        inline = {"forceinline": True} if function in module.INLINE else {}
-        namespace[function.__name__] = njit(**AHEAD, **inline)(twin)
+    namespace = compiled(importlib.import_module(kernel.module), **AHEAD)
     writing = Writing()
     arguments = ", ".join(map(writing.argument, kernel.arguments))
     source = f"def entry(whole, real, places):\n    {kernel.function}({arguments})\n    return 0\n"
     space = {**namespace, "__at": element, "__array_of_R": array_of("R"), "__array_of_I": array_of("I")}
     exec(source, space)
     signature = types.int64(POINTERS["I"], POINTERS["R"], POINTERS["I"])
-    return njit(signature, **AHEAD)(space["entry"]).overloads[signature.args]
+    return njit(signature, **OPTIONS, **AHEAD)(space["entry"]).overloads[signature.args]
 
 
 def module_of(kernel: KernelSet) -> llvm.ModuleRef:

@@ -87,7 +87,6 @@ ONCE = (
 FOR_KEYS = (
     "info --json",
     "selfcheck --quick --json",
-    "warm --json",
     "completion bash --json",
     "new block --json",
     "figure 14 --json",

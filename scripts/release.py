@@ -74,6 +74,17 @@ def at2(record: Path, to: Path) -> None:
     to.write_text(head + "".join(f"{float(value):.7E}\n" for _, value in rows), encoding="utf-8")
 
 
+def under_musl(library: Path, functions: list[str], folder: Path) -> list[float] | None:
+    """What a shipped library computes under musl, another library of C; None if there is no `musl-gcc` here.
+
+    The functions are those of C that it calls.
+    """
+    if shutil.which("musl-gcc") is None:
+        return None
+    run(["musl-gcc", "-O1", PROJECT / "scripts" / "under_musl.c", "-o", folder / "under_musl"], folder)
+    return [float(each) for each in run([folder / "under_musl", library, *functions], folder).split()]
+
+
 def tried(wheel: Path, version: str, folder: Path) -> int:
     """Install the wheel in an empty environment and run what the README shows; how many commands."""
     environment, place = folder / "environment", folder / "place"
@@ -90,6 +101,10 @@ def tried(wheel: Path, version: str, folder: Path) -> int:
         raise SystemExit(f"not what was installed is run, but {where}")
     if (said := run([bin_ / f"rocking{suffix}", "--version"], place).split()[-1]) != version:
         raise SystemExit(f"it says version {said}, and pyproject.toml {version}")
+    asked = "from rocking_cli.dynamics import shipped; print(shipped.place(), *shipped.FUNCTIONS, sep=chr(10))"
+    library, *functions = run([python, "-c", asked], place).splitlines()
+    if under_musl(Path(library), functions, folder) is None:
+        print(f"no musl-gcc here: {Path(library).name} was not tried under musl")
     readme = (PROJECT / "README.md").read_text(encoding="utf-8")
     lines = commands(readme)
     for words in lines:

@@ -205,11 +205,11 @@ WITHOUT_HISTORY = (
     "record R --plot p.svg",
 )  # fmt: skip
 AS_TEXT = ("record R --fit-pulse --plot p.svg", "figure 14 --record R --format svg", "equiv A N --csv")
-# These follow no history; `figure` follows those of the paper's structures, `selfcheck` those of its blocks, and `warm`
-# those that compile the kernels. `calibrate` judges no structure: the outcomes of its tests were observed.
+# These follow no history; `figure` follows those of the paper's structures, `selfcheck` those of its blocks.
+# `calibrate` judges no structure: the outcomes of its tests were observed.
 WITHOUT = {
     "calibrate", "draw", "equiv", "collapse", "error", "record", "select", "figure", "mechanisms", "measures", "new",
-    "info", "selfcheck", "warm", "completion",
+    "info", "selfcheck", "completion",
 }  # fmt: skip
 BARE = re.compile(r"\bkN\b|\[N\]|\bN m\b|\d N[ ,.;<]")
 """A force that is not per unit mass."""

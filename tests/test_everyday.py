@@ -8,7 +8,6 @@ import re
 import shutil
 import subprocess
 import sys
-from contextlib import suppress
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
@@ -19,7 +18,7 @@ from click.testing import CliRunner
 from rocking_cli.ask.fragility import workers_of
 from rocking_cli.cli import defaults
 from rocking_cli.cli.main import COMMANDS, main
-from rocking_cli.dynamics import compiled, ways
+from rocking_cli.dynamics import shipped
 from rocking_cli.errors import InputError
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
@@ -159,70 +158,13 @@ class TestDefaults:
         assert "--neighbours 5  # --neighbours from ROCKING_NEIGHBOURS" in Path("r.html").read_text(encoding="utf-8")
 
 
-@pytest.mark.kernels
-class TestCompiling:
-    MAP = ("-m", "rocking_cli", "overturning", "--points", "6", "--json")
-
-    def test_ahead_says_what_it_did_and_then_has_nothing_to_do(self):
-        assert [each["kernel"] for each in run_json("warm")["kernels"]] == ["histories", "exact_pulses"]
-        again = run_json("warm")
-        assert all(each["compiled_before"] and each["seconds"] < 5 for each in again["kernels"])
-        assert "histories: already compiled" in run("warm").stdout
-
-    def test_ahead_is_refused_where_nothing_can_be_kept(self, tmp_path, monkeypatch):
-        (tmp_path / "cache").touch()
-        monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
-        compiled.unwritable.cache_clear()
-        assert "already compiled" in run("warm").stdout  # as shipped nothing has to be kept
-        monkeypatch.setenv("ROCKING_KERNELS", "jit")
-        ways.forget()
-        said = run("warm", code=1).stderr
-        compiled.unwritable.cache_clear()
-        monkeypatch.undo()
-        ways.forget()
-        assert f"{tmp_path / 'cache'}: cannot be written to" in said and "NUMBA_CACHE_DIR" in said
-
-    @pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminals")
-    def test_something_moves_on_a_terminal_and_a_damaged_cache_is_mended(self, tmp_path):
-        cache = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "TERM": "xterm", "ROCKING_KERNELS": "jit"}
-        shown = on_a_terminal([sys.executable, *self.MAP], cache)
-        assert "compiling the exact response to pulses, about five seconds, once" in shown
-        assert "compiling 0:00:01" in shown and shown.count("compiling 0:00:0") > 5
-        piped = subprocess.run([sys.executable, *self.MAP], env=cache, capture_output=True, text=True, check=True)
-        assert "compil" not in piped.stderr
-        for half in (tmp_path / "cache").rglob("*.nbi"):
-            half.write_bytes(half.read_bytes()[:100])
-        for times in (1, 0):
-            mended = subprocess.run([sys.executable, *self.MAP], env=cache, capture_output=True, text=True, check=True)
-            assert mended.stderr.count("is damaged and is compiled again") == times and "Traceback" not in mended.stderr
-            assert mended.stdout == piped.stdout
-        ready = {**cache, "ROCKING_KERNELS": "ready"}
-        shipped = subprocess.run([sys.executable, *self.MAP], env=ready, capture_output=True, text=True, check=True)
-        assert shipped.stdout == piped.stdout and "compil" not in on_a_terminal([sys.executable, *self.MAP], ready)
-
-
-def on_a_terminal(arguments, environment):
-    """All that a program shows on a terminal of its own."""
-    import pty
-
-    shown = b""
-    here, there = pty.openpty()
-    with subprocess.Popen(arguments, env=environment, stdin=there, stdout=there, stderr=there):
-        os.close(there)
-        with suppress(OSError):  # of Linux, at the end
-            while piece := os.read(here, 4096):
-                shown += piece
-    os.close(here)
-    return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", shown.decode())
-
-
 class TestInfo:
     def test_it_knows_the_versions_the_extras_and_the_plugins(self, monkeypatch):
         from rocking_cli.studies import installation
 
         found = run_json("info")
         assert found["version"] == version("rocking-cli") and found["libraries"]["numpy"] == version("numpy")
-        assert {"cluster", "docx", "parquet", "seismo"} == set(found["extras"]) - {"jit"}
+        assert {"cluster", "docx", "parquet", "seismo"} == set(found["extras"])
         names = {kind: {each["name"] for each in plugins} for kind, plugins in found["plugins"].items()}
         assert "arch" in names["mechanisms"] and "peer_at2" in names["records"] and "ricker" in names["pulses"]
         assert found["processors"] >= found["threads"] >= 1
@@ -242,20 +184,14 @@ class TestInfo:
         assert "rocking.toml: tial: this option cannot have a default" in run_json("info")["defaults"]["problem"]
         assert "The environment variable ROCKING_TAILS is not used by rocking" in run("info").stdout
 
-    def test_it_knows_where_compiled_code_is_and_whether_it_is(self, tmp_path, monkeypatch):
-        monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
-        compiled.unwritable.cache_clear()
-        found = run_json("info")
-        (tmp_path / "file").touch()
-        monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "file"))
-        compiled.unwritable.cache_clear()
-        refused = run_json("info")
-        compiled.unwritable.cache_clear()
-        assert found["cache"] == str(tmp_path / "cache") and found["unwritable"] is None
-        assert found["compiled"] == {"histories": True, "exact_pulses": True}  # as shipped
-        monkeypatch.setenv("ROCKING_KERNELS", "jit")
-        assert run_json("info")["compiled"] == {"histories": False, "exact_pulses": False}
-        assert refused["unwritable"] and refused["cache"] == str(tmp_path / "file")
+    def test_it_knows_what_runs_the_kernels(self, monkeypatch):
+        monkeypatch.delenv("ROCKING_KERNELS", raising=False)
+        assert run_json("info")["slow_kernels"] is None
+        monkeypatch.setattr(shipped, "LIBRARIES", ())
+        shipped.library.cache_clear()
+        assert run_json("info")["slow_kernels"].startswith("no kernels are shipped for ")
+        monkeypatch.setenv("ROCKING_KERNELS", "python")
+        assert "sixty times slower: ROCKING_KERNELS is python" in run("info").stdout
 
 
 class TestCompletion:

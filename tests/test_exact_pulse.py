@@ -4,9 +4,6 @@ The reference below knows only phi.. = p^2 (phi - phi_cr - s kappa u_g''/g), in 
 impacts phi is the sum of a sine, e^pt and e^-pt. It walks in small steps and looks for changes of sign.
 """
 
-import os
-import subprocess
-import sys
 from dataclasses import replace
 from itertools import pairwise, product
 from math import exp, isnan, log, pi
@@ -595,30 +592,6 @@ def test_progress_is_told_and_adds_up():
     )
     assert sum(told) == len(amplitudes)
     assert len(told) > 1
-
-
-@pytest.mark.kernels
-def test_a_second_process_finds_the_machine_code(tmp_path):
-    code = (
-        "from rocking_cli.dynamics.exact_batch import exact_many; from rocking_cli.dynamics import ways;"
-        "from rocking_cli import Registry, equivalent_block;"
-        "from rocking_cli.excitation.pulses import parse_pulse;"
-        "e = equivalent_block(Registry()['block'](width=0.7, height=2.8));"
-        "exact_many(e, parse_pulse('sine:0.4g:1s'), [4.0], [1.0], kappa=2, gravity=9.81);"
-        "many = ways.compiled_module('rocking_cli.dynamics.pulse_motion')['many'];"
-        "print(sum(many.stats.cache_hits.values()), sum(many.stats.cache_misses.values()))"
-    )
-    said = [
-        subprocess.run(
-            [sys.executable, "-c", code],
-            capture_output=True,
-            text=True,
-            check=True,
-            env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "ROCKING_KERNELS": "jit"},
-        ).stdout.split()
-        for _ in range(2)
-    ]
-    assert said == [["0", "1"], ["1", "0"]]
 
 
 # Wrong input

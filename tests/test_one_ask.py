@@ -25,7 +25,6 @@ WITHOUT = {
     "measures": "lists plugins",
     "new": "prints starters",
     "info": "describes the installation",
-    "warm": "compiles kernels",
     "completion": "prints a script for a shell",
 }
 """Commands that ask nothing about a structure or a motion."""

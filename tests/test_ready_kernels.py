@@ -13,6 +13,7 @@ import sys
 import threading
 import warnings
 from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ from rocking_cli.dynamics import calling, kernels, pulse_motion, shipped, ways
 from rocking_cli.dynamics.calling import FUNCTIONS, HISTORIES, PULSES, SETS, TIED
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.dynamics.history import follow
-from rocking_cli.errors import InputError, KernelWarning
+from rocking_cli.errors import BrokenKernels, InputError, KernelWarning
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.structure import Structure
 from rocking_cli.structure_file import load_structure
@@ -89,7 +90,7 @@ class TestWhatIsShipped:
     def test_each_system_finds_its_own(self, monkeypatch, system, machine, name):
         monkeypatch.setattr(shipped.sys, "platform", system)
         monkeypatch.setattr(shipped.platform, "machine", lambda: machine)
-        assert shipped.place().name == name and shipped.is_there()
+        assert shipped.place().name == name and shipped.place().is_file()
 
 
 def missing(content):
@@ -171,7 +172,7 @@ def _bits(way):
 def bits_of_shipped(choose):
     choose("ready")
     found = _bits("ready")
-    assert {ways.way(each) for each in SETS.values()} == {"ready"}
+    assert ways.way() == "ready"
     return found
 
 
@@ -182,16 +183,21 @@ class TestSameBits:
     def test_shipped_and_in_python(self, choose):
         shipped_bits = bits_of_shipped(choose)
         choose("python")
-        assert {ways.way(each) for each in SETS.values()} == {"python"}
+        assert ways.way() == "python"
         assert (bits_of_histories(), bits_of_pulses()) == shipped_bits
 
     @pytest.mark.kernels
-    def test_shipped_and_compiled_here(self, choose):
+    def test_shipped_and_compiled_here(self, choose, monkeypatch):
         pytest.importorskip("numba")
+        monkeypatch.syspath_prepend(PROJECT / "scripts")
+        compiled = import_module("by_numba").compiled
         shipped_bits = bits_of_shipped(choose)
-        choose("jit")
-        assert {ways.way(each) for each in SETS.values()} == {"jit"}
-        assert (bits_of_histories(), bits_of_pulses()) == shipped_bits
+        made = {each.module: compiled(import_module(each.module)) for each in SETS.values()}
+        by_name = {name: made[each.module][each.function] for name, each in SETS.items()}
+        monkeypatch.setattr(ways, "_choose", lambda: ("numba", by_name))
+        found = bits_of_histories(), bits_of_pulses()
+        monkeypatch.undo()
+        assert found == shipped_bits
 
 
 BLOCK = (
@@ -208,33 +214,29 @@ class TestWays:
         done = subprocess.run([sys.executable, "-c", BLOCK], capture_output=True, text=True, env=environment)
         assert (done.stdout, done.stderr) == ("False\n", "")
 
-    def test_numba_comes_next(self, choose, monkeypatch):
-        pytest.importorskip("numba")
+    @pytest.mark.parametrize("why", ["no library here", "no ctypes"])
+    def test_python_comes_next_and_says_so_once(self, choose, monkeypatch, why):
         choose()
-        monkeypatch.setattr(shipped, "FOLDER", PROJECT / "nowhere")
-        taken = ways.way(PULSES)
-        monkeypatch.undo()
-        assert taken == "jit"
-
-    def test_python_comes_last_and_says_so_once(self, choose, monkeypatch):
-        choose()
-        monkeypatch.setattr(shipped, "load", lambda of: refuse())
-        monkeypatch.setitem(ways.MAKE, "jit", lambda of: refuse(ImportError))
-        ways._say_slow.cache_clear()
-        with pytest.warns(KernelWarning, match=r"some sixty times longer \(no library here\)") as said:
-            assert [ways.way(each) for each in SETS.values()] == ["python"] * 3
+        if why == "no ctypes":
+            monkeypatch.setitem(sys.modules, "rocking_cli.dynamics.shipped", None)
+            monkeypatch.delattr("rocking_cli.dynamics.shipped")
+            why = "halted"
+        else:
+            monkeypatch.setattr(shipped, "load", refuse)
+        with pytest.warns(KernelWarning, match=rf"some sixty times longer \(.*{why}") as said:
+            assert ways.way() == "python" and all(map(ways.kernel, SETS.values()))
         assert len(said) == 1
-        ways._say_slow.cache_clear()
+        monkeypatch.undo()
 
     def test_one_that_is_chosen_is_the_only_one(self, choose, monkeypatch):
         choose("ready")
-        monkeypatch.setattr(shipped, "load", lambda of: refuse())
+        monkeypatch.setattr(shipped, "load", refuse)
         with pytest.raises(InputError, match="ROCKING_KERNELS is 'ready', but no library here"):
             ways.kernel(HISTORIES)
 
     def test_a_wrong_choice_is_named(self, choose):
         choose("fast")
-        with pytest.raises(InputError, match="ROCKING_KERNELS is 'fast': give one of ready, jit, python"):
+        with pytest.raises(InputError, match="ROCKING_KERNELS is 'fast': give one of ready, python"):
             ways.kernel(HISTORIES)
 
     def test_python_chosen_says_nothing(self, choose):
@@ -244,8 +246,8 @@ class TestWays:
             ways.kernel(PULSES)
 
 
-def refuse(kind=shipped.Unusable):
-    raise kind("no library here")
+def refuse(of):
+    raise ImportError("no library here")
 
 
 class TestLibrary:
@@ -266,19 +268,18 @@ class TestLibrary:
     ])  # fmt: skip
     def test_a_damaged_one(self, folder, spoil):
         shipped.place().write_bytes(spoil(shipped.place().read_bytes()))
-        with pytest.raises(shipped.Unusable, match="damaged"):
+        with pytest.raises(BrokenKernels, match="damaged"):
             shipped.load(PULSES)
 
     def test_one_that_is_not_there(self, folder):
         shipped.place().unlink()
-        with pytest.raises(shipped.Unusable, match=f"{shipped.place().name} is missing, reinstall"):
+        with pytest.raises(BrokenKernels, match=f"{shipped.place().name} is missing, reinstall"):
             shipped.load(PULSES)
-        assert not shipped.is_there()
 
     def test_a_folder_in_its_place(self, folder):
         shipped.place().unlink()
         shipped.place().mkdir()
-        with pytest.raises(shipped.Unusable, match="is missing, reinstall"):
+        with pytest.raises(BrokenKernels, match="is missing, reinstall"):
             shipped.load(PULSES)
 
     @pytest.mark.parametrize("manifest", [None, "", "{", "[1]", "{}", '{"source": 1, "made_by": 2, "files": 3}'])
@@ -287,7 +288,7 @@ class TestLibrary:
             (folder / shipped.MANIFEST).unlink()
         else:
             (folder / shipped.MANIFEST).write_text(manifest, encoding="utf-8")
-        with pytest.raises(shipped.Unusable, match="cannot be read"):
+        with pytest.raises(BrokenKernels, match="cannot be read"):
             shipped.load(PULSES)
 
     @pytest.mark.parametrize("other", [b"no library", "another system"])
@@ -299,24 +300,13 @@ class TestLibrary:
         shipped.place().write_bytes(other)
         manifest["files"][shipped.place().name] = hashlib.sha256(other).hexdigest()
         (folder / shipped.MANIFEST).write_text(json.dumps(manifest), encoding="utf-8")
-        with pytest.raises(shipped.Unusable, match="cannot be loaded"):
+        with pytest.raises(BrokenKernels, match="cannot be loaded"):
             shipped.load(PULSES)
 
     def test_a_function_of_c_that_is_missing(self, folder, monkeypatch):
         monkeypatch.setattr(shipped, "FUNCTIONS", (*FUNCTIONS, "no_function_of_c"))
-        with pytest.raises(shipped.Unusable, match="no_function_of_c"):
+        with pytest.raises(BrokenKernels, match="no_function_of_c"):
             shipped.load(PULSES)
-
-    def test_a_python_without_ctypes(self, choose, monkeypatch):
-        choose()
-        monkeypatch.setitem(sys.modules, "rocking_cli.dynamics.shipped", None)
-        monkeypatch.delattr("rocking_cli.dynamics.shipped")
-        monkeypatch.setitem(ways.MAKE, "jit", lambda of: refuse(ImportError))
-        ways._say_slow.cache_clear()
-        with pytest.warns(KernelWarning, match="some sixty times longer"):
-            assert ways.way(PULSES) == "python"
-        ways._say_slow.cache_clear()
-        monkeypatch.undo()
 
     def test_threads_load_one(self, choose):
         choose("ready")
@@ -332,11 +322,21 @@ class TestLibrary:
         """A home that is not there, and cannot be made, is no hindrance."""
         (tmp_path / "file").touch()
         nowhere = str(tmp_path / "file" / "home")
-        environment = {**os.environ, "HOME": nowhere, "XDG_CACHE_HOME": nowhere, "NUMBA_CACHE_DIR": nowhere}
+        environment = {**os.environ, "HOME": nowhere, "XDG_CACHE_HOME": nowhere}
         environment.pop(ways.CHOSEN, None)
         done = subprocess.run([sys.executable, "-c", BLOCK], capture_output=True, text=True, env=environment)
         assert (done.stdout, done.stderr) == ("False\n", "")
         assert [each.name for each in tmp_path.iterdir()] == ["file"]
+
+
+@pytest.mark.skipif(shutil.which("musl-gcc") is None or not sys.platform.startswith("linux"), reason="no musl here")
+def test_the_library_of_this_linux_loads_under_musl_too(monkeypatch, tmp_path):
+    monkeypatch.syspath_prepend(PROJECT / "scripts")
+    found = import_module("release").under_musl(shipped.place(), list(FUNCTIONS), tmp_path)
+    side, results = pulse_motion.Side(2.0, 1.0, 0.5, 0.9), np.empty((2, 6))
+    segments = np.array([[0.0, 1.0, -1.0, 2 * np.pi, 0.0]])
+    ways.as_shipped(PULSES)((side, side), segments, np.array([1.2, 3.0]), np.array([1.0, 2.0]), 0, 2, results)
+    assert found == pytest.approx(results.ravel(), rel=1e-12)
 
 
 class TestArguments:

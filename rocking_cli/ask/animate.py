@@ -133,7 +133,6 @@ def animate(
     ready = structure_of(structure, opening)
     own = ready.model(name)
     given = Motions.of(motion, options).one(ready.growth, watch)
-    watch.compile()
     scaled = given.motion.scaled(signs[0] * given.factor)
     history = engine_of(ready).follow(ready, scaled, model=name)
     assumed = Contacts(ready.mechanism).check(history, scaled).assumed_friction if name == "nonlinear" else None

@@ -127,7 +127,6 @@ def calibrate(
     from rocking_cli.studies.experiments.region import joint_region
     from rocking_cli.views.calibrate import region_columns, region_view
 
-    watch.compile()
     with watch.progress(len(kept), "tests") as advance:
         found = joint_region(
             kept, ready, motions_of(table, readings, options), around, *grid,

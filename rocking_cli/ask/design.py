@@ -106,8 +106,6 @@ def design(
     where = site_of(site) if site is not None else None
     shaken = [each.motion.scaled(each.factor) for each in given.gather(ready.growth, watch)] if given else []
     excitation = Excitation(shaken, signs, around, where) if given or where is not None else None
-    if shaken:
-        watch.compile()
     with watch.progress(points, "values") as advance:
         found = study(ready, span.field, ends, aim, excitation, points=points, progress=advance)
     return Answer("design", found, view(found, excitation), partial(columns, found), partial(_figure, found))

@@ -97,7 +97,6 @@ def equivalent(
         pulse = parse_pulse(pulse)
     read = partial(structure_of, opening=opening)
     ready = told_apart([read(structures[0]), *structures_of(structures[1:], watch, read)])
-    watch.compile()
     mechanisms = [each.mechanism for each in ready]
     scaling: Literal[1, 2] = 1 if str(kappa) == "1" else 2
     found = study.equivalent(mechanisms, pulse, polarity=int(polarity), kappa=scaling, eta=eta)

@@ -163,7 +163,6 @@ def _bring_up_to_date(
             watch.note(f"{prepared.finished} of {plan.total} runs are in the store already")
         if prepared.finished == plan.total:
             return
-        watch.compile()
         hands = hands or stack.enter_context(workers)
         with watch.progress(plan.total, "runs", done=prepared.finished, failed=prepared.failed) as advance:
             run(prepared, store, hands, advance)

@@ -96,7 +96,7 @@ def margin(
     model = ready.model("nonlinear")
     chosen = Motions.of(motions, options).gather(ready.growth, watch)
     rows = []
-    with watch.histories((study.FACTORS.size + 1) * neighbours * len(signs) * len(chosen)) as advance:
+    with watch.progress((study.FACTORS.size + 1) * neighbours * len(signs) * len(chosen), "histories") as advance:
         for each in chosen:
             scaled = each.motion.scaled(each.factor)
             found = study.margin(model, scaled, signs, around=around, progress=advance)

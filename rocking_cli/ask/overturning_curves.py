@@ -88,7 +88,7 @@ def overturning_curves(
     periods = np.geomspace(*(period or study.usual_periods(subjects)), points)
     highest = study.usual_amplitudes(subjects)[1] if top is None else top
     count = study.count_scans(subjects, periods.size, signs)
-    with watch.histories(count, exact=model != "nonlinear" and bool(form.segments())) as progress:
+    with watch.progress(count, "histories") as progress:
         found = study.compare(subjects, form, periods, highest, polarities=signs, progress=progress)
     shown = views.comparison_view(found, [each.mechanism for each in ready])
     return Answer("overturning curves", found, shown, partial(views.comparison_table, found), partial(_figure, found))

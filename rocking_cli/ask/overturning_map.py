@@ -109,7 +109,7 @@ def overturning_map(
         columns = subject.period(np.linspace(*(period or study.usual_periods([subject])), points))
         rows = np.linspace(*(ag or study.usual_amplitudes([subject])), points) * STANDARD_GRAVITY / subject.unit
     count = study.count_histories([subject], columns.size * rows.size, signs)
-    with watch.histories(count, exact=model != "nonlinear" and bool(form.segments())) as progress:
+    with watch.progress(count, "histories") as progress:
         found = study.overturning_map(subject, form, columns, rows, polarities=signs, progress=progress)
     shown = views.map_view(found, mechanism, dimensionless=bare)
     table, figure = partial(views.map_table, found, mechanism), partial(_figure, found, dimensionless=bare)

@@ -105,7 +105,6 @@ def pulse(
     from rocking_cli.views.pulse_on_structure import view
 
     signs, sized, ready = signs_of(polarity), sized_pulse(shape, ag, period), structure_of(structure, opening)
-    watch.compile()
     found = with_conclusion(sized, {sign: _answers(ready, sized, sign, watch) for sign in signs})
     shown = view(ready, sized, found, closed_forms(ready, sized))
     return MappingAnswer("pulse", found, shown, partial(_columns, found), partial(structure_figure, ready.mechanism))

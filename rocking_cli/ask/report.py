@@ -132,7 +132,6 @@ def report(
     origin = origin or SheetOrigin.of("rocking_cli.report(...)", ready)
     title = Head(project, place, author, logo).block(origin)
     chosen = given.gather(ready.growth, watch) if given else []
-    watch.compile()
     verified = None
     if verify is not None and site is not None:
         histories = Histories([each.motion.scaled(each.factor) for each in chosen], signs, state, on_floor)

@@ -160,7 +160,6 @@ def respond(
     )
     chosen = models_of(models) if models is not None else usual_models(ready, watch)
     ready.models(chosen)
-    watch.compile()
     response = response_of(ready, chosen, given, question)
     if (fit := response.fit) is not None:
         watch.note(

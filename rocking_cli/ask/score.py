@@ -97,7 +97,6 @@ def score(
     table = tests_of(tests)
     structures = _structures(table, checked(opening))
     motion_of = motions_of(table, readings, options)
-    watch.compile()
     with watch.progress(len(table.tests), "tests") as advance:
         found = score_tests(
             table.tests, partial(_known, structures), motion_of, around, threads=threads, progress=advance

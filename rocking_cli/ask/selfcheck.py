@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING
@@ -43,12 +42,6 @@ def selfcheck(*, quick: bool = False, watch: Watcher = SILENT) -> Answer[SelfChe
     from rocking_cli.views.selfcheck import columns, view
 
     began = monotonic()
-    with suppress(Exception):  # what is wrong shows in the checks
-        from rocking_cli.studies.selfcheck.checks import another_way
-
-        if not another_way():
-            watch.compile()
-            watch.compile(exact=True)
     with watch.progress(len(CHECKS), "checks") as advance:
         found = run_checks(CHECKS, quick=quick, progress=advance, began=began)
     return Answer("selfcheck", found, view(found), partial(columns, found), _figure)

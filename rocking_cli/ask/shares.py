@@ -103,7 +103,6 @@ def shares(
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     given = Motions.of(motion, options).one(ready.growth, watch)
     model = ready.model("nonlinear")
-    watch.compile()
     found = [neighbours_of(model, given.motion.scaled(sign * given.factor), around) for sign in signs_of(polarity)]
     overturned = sum(each.overturned for each in found) / len(found)
     unknown = sum(each.unknown or 0.0 for each in found) / len(found)

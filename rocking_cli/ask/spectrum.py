@@ -114,7 +114,7 @@ def spectrum(
     smallest = min([float(periods[0]), *(each.period for each in shapes if each.slenderness is None)])
     chosen = asked.gather(2 * pi / smallest, watch, "the smallest size")
     scaled = [each.motion.scaled(each.factor) for each in chosen]
-    with watch.histories(study.count_histories(shapes, periods, len(chosen), signs)) as progress:
+    with watch.progress(study.count_histories(shapes, periods, len(chosen), signs), "histories") as progress:
         found = study.spectra(shapes, periods, scaled, polarities=signs, threads=jobs, progress=progress)
     results = views.ShownSpectra(found, chosen, tuple(sorted({*fractiles, 0.5})), str(polarity))
     if unfollowed := views.lost(results):

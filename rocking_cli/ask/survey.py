@@ -97,8 +97,6 @@ def survey(
     signs, most, where = signs_of(polarity), checked(opening), site_of(site) if site is not None else None
     entries, given = _entries(structures, watch), Motions.of(motions, options)
     shaken = [each.motion.scaled(each.factor) for each in given.gather(0.0, watch)] if given else []
-    if shaken:
-        watch.compile()
     count = _processes(len(entries), bool(shaken) or where is not None) if processes else None
     with watch.progress(len(entries), "structures") as advance:
         found = study(
@@ -130,11 +128,10 @@ def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
 
 def _processes(rows: int, shaken: bool) -> int | None:
     """Return the number of processes that share the work; None if threads are as fast."""
-    from rocking_cli.dynamics.compiled import unwritable
     from rocking_cli.dynamics.processes import MOST
 
     count = min(os.cpu_count() or 1, MOST)
-    if count < 2 or rows < (LONG_SHAKEN if shaken else LONG) or (shaken and unwritable() is not None):
+    if count < 2 or rows < (LONG_SHAKEN if shaken else LONG):
         return None
     return count
 

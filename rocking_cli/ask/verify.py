@@ -121,7 +121,6 @@ def verify(
     chosen: list[Scaled] = []
     if given:
         chosen = given.gather(ready.growth, watch)
-        watch.compile()
         with watch.progress(len(chosen), "records") as advance:
             scaled = [each.motion.scaled(each.factor) for each in chosen]
             found = with_histories(found, ready, known, Histories(scaled, signs, state, on_floor, advance))

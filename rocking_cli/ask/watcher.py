@@ -38,9 +38,6 @@ class Watcher:
     def incomplete(self, text: str) -> None:
         """Take a sentence on what the answer lacks, such as motions that could not be simulated."""
 
-    def compile(self, *, exact: bool = False) -> None:
-        """Prepare for time histories, or for exact responses to pulses: their kernel may have to be compiled."""
-
     def progress(
         self, total: int, what: str, *, done: int = 0, failed: int = 0
     ) -> AbstractContextManager[Advance]:  # fmt: skip
@@ -49,11 +46,6 @@ class Watcher:
         Of these, `done` were done before, and `failed` of them could not be.
         """
         return nullcontext(_count_nothing)
-
-    def histories(self, total: int, *, exact: bool = False) -> AbstractContextManager[Advance]:
-        """Begin this many time histories, or exact responses to pulses, and compile their kernel first."""
-        self.compile(exact=exact)
-        return self.progress(total, "histories")
 
 
 def _count_nothing(count: int, failed: int = 0) -> None:

@@ -47,7 +47,6 @@ def show(
     factor = motions.factor(one, measure(one.of_ground))
     if factor != 1:
         watch.note(f"scaled by {factor:.6g}: PGA = {abs(factor) * one.of_ground.pga_g:.4g} g at 0 degrees")
-    watch.compile()
     given = {name: question[name] for name in ("models", "release", "rtol")}
     output.show(respond_around(structure, one, other, scale=factor, **given))
 

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 # The numbers are repeated here so that `--help` needs no numpy; a test compares them.
 NUMBERS = ("3", "5", "6", "7", "8", "10", "11", "12", "13", "14", "15")
-OF_HISTORIES = {14, 15}
 
 
 @click.command(cls=Command, short_help="Recompute the figures of the paper: plots and data.")
@@ -79,10 +78,6 @@ def command(
 
     wanted = [int(each) for each in (NUMBERS if number == "all" else [number])]
     place = make_folder(out)
-    if OF_HISTORIES & {*wanted}:
-        from rocking_cli.cli.waiting import compile_first
-
-        compile_first()
     made: list[tuple[int, list[str]]] = []
     with terminal.progress(len(wanted), "figures") as advance:
         for each in wanted:

@@ -16,7 +16,7 @@ OURS = ("ROCKING_", "NUMBA_")
 @click.command(short_help="Show the installation: versions, plugins, cache, defaults.")
 @options.as_json
 def command(as_json: bool) -> None:
-    """Show the installation: versions, extras, plugins and their faults, compiled code, and your defaults.
+    """Show the installation: versions, extras, plugins and their faults, kernels, and your defaults.
 
     The command works even if parts of the installation are broken. Put its output at the head of a bug report.
 

@@ -22,7 +22,7 @@ COMMANDS = (
     "draw", "equiv", "collapse", "error", "record", "select", "respond", "margin", "verify", "survey", "design",
     "score", "calibrate", "animate", "pulse", "overturning", "spectrum", "equivalent", "fragility",
     "results", "report", "figure", "mechanisms", "measures", "new", "info", "selfcheck",
-    "warm", "completion",
+    "completion",
 )  # fmt: skip
 DO_WITHOUT = ("info", "selfcheck")
 """Commands that run even if the user's defaults are invalid."""

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TextIO
 import click
 
 from rocking_cli.cli.prose import wrapped
-from rocking_cli.errors import CacheWarning, KernelWarning, PluginWarning
+from rocking_cli.errors import KernelWarning, PluginWarning
 from rocking_cli.io.json_text import json_text
 from rocking_cli.text import printable
 
@@ -56,10 +56,10 @@ def plugins_apart() -> Iterator[None]:
 
 
 def _show(otherwise: Callable[..., None]) -> Callable[..., None]:
-    """Show warnings about plugins and the cache of compiled code as the other warnings of this program."""
+    """Show warnings about plugins and slow kernels as the other warnings of this program."""
 
     def show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
-        if not issubclass(category, (PluginWarning, CacheWarning, KernelWarning)):
+        if not issubclass(category, (PluginWarning, KernelWarning)):
             otherwise(message, category, *where, **more)
             return
         warning(str(message))

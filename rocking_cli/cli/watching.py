@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from rocking_cli.ask.watcher import Advance, Watcher
-from rocking_cli.cli import terminal, waiting
+from rocking_cli.cli import terminal
 from rocking_cli.errors import INCOMPLETE, InputError, RockingError
 
 
@@ -40,10 +40,6 @@ class OnTerminal(Watcher):
         """Print an error, and count it."""
         terminal.error(text)
         self.left_out += 1
-
-    def compile(self, *, exact: bool = False) -> None:
-        """Compile the kernel if this machine has not yet."""
-        waiting.compile_first(exact=exact)
 
     def progress(
         self, total: int, what: str, *, done: int = 0, failed: int = 0

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.dynamics import compiled, kernels, ways
+from rocking_cli.dynamics import kernels, ways
 from rocking_cli.dynamics.calling import HISTORIES, TIED, KernelSet
 from rocking_cli.dynamics.joints import laid_out
 from rocking_cli.dynamics.model import Model
@@ -58,7 +58,6 @@ def run_deck(
         np.empty(4 * most, np.int64),
     )
     run(first, len(runs) if stop is None else stop, runs, deck, rtol, most_impacts, brief, samples, marks, room)
-    ways.has_run(compiled.HISTORIES)
 
 
 def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.core import Direction, Equivalence
-from rocking_cli.dynamics import compiled, pulse_motion, ways
+from rocking_cli.dynamics import pulse_motion, ways
 from rocking_cli.dynamics.calling import PULSES
 from rocking_cli.dynamics.exact import polarity_of, segments_of, sides_of
 from rocking_cli.dynamics.outcome import UNCHECKED, Outcome, Outcomes
@@ -76,7 +76,6 @@ def exact_many(
             many(sides, segments, factors, stretches, first, stop, results)
 
         in_parts(follow, n, UNIT, threads, progress)
-        ways.has_run(compiled.PULSES)
     status, side, impacts, uplift_time, *ratios = results.T
     overturned = status == pulse_motion.OVERTURNED
     fell_to = np.where(overturned, 1 - 2 * side, 0).astype(np.int64)

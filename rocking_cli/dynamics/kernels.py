@@ -10,9 +10,8 @@ so two tables describe a mechanism, and Nystrom's methods for q.. = f(t, q) appl
 motion a third one says how much of the first, Q/g, does not follow g + v_g''. The linear model is q = phi; without
 vertical ground motion it is advanced in closed form.
 
-All of it stands in one file because the compiled code is kept by file: a function elsewhere could go stale. It is one
-source for three uses (`rocking_cli.dynamics.ways`): compiled ahead, compiled by numba, and run by Python as it stands.
-Nothing in it allocates memory or raises: code that is compiled ahead has no other library to call than that of C.
+It is one source for two uses (`rocking_cli.dynamics.ways`): compiled ahead, and run by Python as it stands. Nothing in
+it allocates memory or raises: code that is compiled ahead has no other library to call than that of C.
 """
 
 from __future__ import annotations
@@ -53,9 +52,7 @@ GAP, GAP_RATE, SLIP, SLIP_RATE, GAP_ACC, SLIP_ACC, START_ACC, HALF_ACC = 0, 2, 4
 KEPT = 20
 MOVING, FRESH, SO_FAR, SINCE, SEEN = 0, 1, 2, 4, 5
 NOTES = 6
-# Factors of a force: of 1, u_g'', q.^2 and v_g''; powers 0 to 3 of each, and of the compliance.
-FACTORS, POWERS = 4, 4
-OF_ROW = POWERS * (FACTORS + 1)
+OF_ROW = 20  # of `rows`: powers 0 to 3 of the factors of 1, u_g'', q.^2 and v_g'' in a force, and of its compliance
 # How a motion ends; it is left where its joints have opened so far that nothing is known any longer.
 AT_REST, OVERTURNED, STILL_ROCKING, STALLED, LEFT = range(5)
 # How a flight over part of a sample interval ends.

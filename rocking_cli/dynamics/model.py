@@ -15,6 +15,21 @@ from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.statics import Statics
 from rocking_cli.core.uncertainty import Uncertainty
 from rocking_cli.dynamics.joints import JointTables, joints_of
+from rocking_cli.dynamics.kernels import (
+    COLUMNS,
+    ETA,
+    GRAVITY,
+    HELD,
+    KAPPA_G,
+    LAMBDA,
+    ONE_SIDED,
+    PER_CELL,
+    Q_CR,
+    Q_END,
+    RATE,
+    REST,
+    P,
+)  # fmt: skip
 from rocking_cli.dynamics.tables import DirectionTable, tabulate
 
 Reals = NDArray[np.float64]
@@ -24,9 +39,6 @@ MODELS: tuple[ModelName, ...] = ("nonlinear", "linear1", "linear2")
 
 FALLEN = 1e6  # rad: no acceleration turns a linear block back from there; without weight one might, beyond all meaning
 ALIKE = 1e-9  # of the largest: tables of two directions that differ by rounding alone
-# Columns of `numbers`: the kernel's own names, which numba would have to be loaded for.
-LAMBDA, Q_CR, ETA, RATE, REST, Q_END, PER_CELL, P, KAPPA_G, GRAVITY, HELD, ONE_SIDED = range(12)
-COLUMNS = 12
 KINEMATIC, MEASURED = 0.05, 0.03  # deviation of a restitution that follows from the shape, and of one that is given
 SLENDERNESS = 0.10  # deviation of ln slenderness
 REST_RATE = 1e-6  # post-impact rate over p phi_cr below which a structure is at rest: it would rock to 5e-13 phi_cr

@@ -8,7 +8,7 @@ and tau = p t of that direction, and the ground acceleration over that of uplift
 whose solution is a sum of cosh, sinh and sin. An impact hands eta phi. over to the other direction, whose p, phi_cr,
 kappa and eta may be others.
 
-Plain floats and tuples, one source for two uses: Python runs it as it stands, without numpy, and numba compiles it
+Plain floats and tuples, one source for two uses: Python runs it as it stands, without numpy, and it is compiled ahead
 for maps (`exact_batch`). Sequences are indexed and never unpacked, so that a list and an array will both do.
 """
 

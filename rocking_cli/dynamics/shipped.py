@@ -1,8 +1,8 @@
 """Kernels shipped as machine code, one library in the folder `ready` for each kind of system.
 
 `scripts/make_kernels.py` writes the libraries. A library depends on no other one: when it is loaded, it is given the
-addresses of the C functions that kernels call. These are the functions of this process, so that every way to run a
-kernel uses the same ones. If a library cannot be used, the kernels are run in another way.
+addresses of the C functions that kernels call. These are the functions of this process, so that Python, which runs
+the kernels if a library cannot be used, calls the same ones. A library for Linux loads under any library of C.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ import json
 import platform
 import struct
 import sys
-import threading
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rocking_cli.dynamics.calling import ARRAYS, FUNCTIONS, SETS, KernelSet, Layout, symbol
+from rocking_cli.dynamics.calling import ARRAYS, FUNCTIONS, KernelSet, Layout, symbol
+from rocking_cli.errors import BrokenKernels
 
 FOLDER = Path(__file__).with_name("ready")
 MANIFEST = "manifest.json"
@@ -36,15 +36,6 @@ LIBRARIES = (
 )  # fmt: skip
 """The libraries that belong to the package."""
 _ROWS = (ctypes.POINTER(ctypes.c_int64), ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_int64))
-_LOADING = threading.Lock()
-
-
-class Unusable(ImportError):
-    """Error: a shipped kernel cannot be used, with the reason."""
-
-
-class Broken(Unusable):
-    """Error: the kernels for this system, which belong to the package, are damaged or missing, or do not load."""
 
 
 def source_hash() -> str:
@@ -61,7 +52,7 @@ def manifest() -> dict[str, Any]:
         found = json.loads((FOLDER / MANIFEST).read_text(encoding="utf-8"))
         return {"source": str(found["source"]), "made_by": dict(found["made_by"]), "files": dict(found["files"])}
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise Broken(f"{FOLDER / MANIFEST} cannot be read, reinstall rocking-cli: {error}") from error
+        raise BrokenKernels(f"{FOLDER / MANIFEST} cannot be read, reinstall rocking-cli: {error}") from error
 
 
 def place() -> Path:
@@ -71,58 +62,32 @@ def place() -> Path:
     return FOLDER / f"{sys.platform}-{PROCESSORS.get(machine, machine)}.{ending}"
 
 
-def is_there() -> bool:
-    """Return whether the library for this system exists, damaged or not."""
-    try:
-        return place().is_file()
-    except OSError:  # a folder that may not be read
-        return False
-
-
-def is_broken() -> bool:
-    """Return whether the kernels for this system, which belong to the package, cannot be used."""
-    try:
-        for each in SETS.values():
-            load(each)
-    except ImportError as error:
-        return isinstance(error, Broken)
-    return False
-
-
-@functools.cache
 def load(kernel: KernelSet) -> Any:
-    """Return the function of a kernel. Raises `Unusable` if its library cannot be used."""
-    with _LOADING:
-        try:
-            return ctypes.CFUNCTYPE(ctypes.c_int32, *_ROWS)((symbol(kernel.name), _library()))
-        except (AttributeError, OSError, ValueError) as error:  # whatever the system says of a library
-            raise Broken(f"{place()} cannot be loaded, reinstall rocking-cli: {error}") from error
-
-
-def forget() -> None:
-    """Forget the loaded libraries, for tests."""
-    load.cache_clear()
-    _library.cache_clear()
+    """Return the function of a kernel. Raises `ImportError` if its library cannot be used."""
+    return ctypes.CFUNCTYPE(ctypes.c_int32, *_ROWS)((symbol(kernel.name), library()))
 
 
 @functools.cache
-def _library() -> ctypes.CDLL:
-    """Load the library for this system, and give it the C functions that it calls."""
+def library() -> ctypes.CDLL:
+    """Load the library for this system, and give it the C functions that it calls. Raises as `load`."""
     at = place()
     listed = manifest()["files"].get(at.name)
     if struct.calcsize("P") != 8 or at.name not in LIBRARIES:
-        raise Unusable(f"no kernels are shipped for {at.stem}")
-    if not is_there():
-        raise Broken(f"{at} is missing, reinstall rocking-cli")
+        raise ImportError(f"no kernels are shipped for {at.stem}")
+    if not at.is_file():
+        raise BrokenKernels(f"{at} is missing, reinstall rocking-cli")
     # The system would load half a file as well, and end the process in the missing half.
     if hashlib.sha256(at.read_bytes()).hexdigest() != listed:
-        raise Broken(f"{at} is damaged, reinstall rocking-cli")
-    library = ctypes.CDLL(str(at))
-    c = ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None)
-    for name in FUNCTIONS:
-        address = ctypes.cast(getattr(c, name), ctypes.c_void_p).value
-        ctypes.c_void_p.in_dll(library, symbol(name)).value = address
-    return library
+        raise BrokenKernels(f"{at} is damaged, reinstall rocking-cli")
+    try:
+        found = ctypes.CDLL(str(at))
+        c = ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None)
+        for name in FUNCTIONS:
+            address = ctypes.cast(getattr(c, name), ctypes.c_void_p).value
+            ctypes.c_void_p.in_dll(found, symbol(name)).value = address
+    except (AttributeError, OSError, ValueError) as error:  # whatever the system says of a library
+        raise BrokenKernels(f"{at} cannot be loaded, reinstall rocking-cli: {error}") from error
+    return found
 
 
 def call(entry: Any, kernel: KernelSet, arguments: Sequence[Any]) -> None:

@@ -1,8 +1,7 @@
-"""The three ways to run a kernel, and the choice between them.
+"""The two ways to run a kernel, and the choice between them.
 
-The kernels have one source. The first way that works is taken: the machine code that is shipped (`shipped`); numba
-(`compiled`), an extra for authors of kernels; or Python, which takes some sixty times longer and gives a warning. All
-ways give the same numbers.
+The kernels have one source. The machine code that is shipped (`shipped`) runs them; if it cannot be used, Python does,
+which takes some sixty times longer and gives a warning. Both give the same numbers.
 """
 
 from __future__ import annotations
@@ -13,22 +12,18 @@ import os
 import threading
 import warnings
 from collections.abc import Callable
-from contextlib import suppress
-from importlib.metadata import PackageNotFoundError, version
-from importlib.util import find_spec
+from math import ceil
 from types import FunctionType
 from typing import Any
 
-from rocking_cli.dynamics import compiled
-from rocking_cli.dynamics.calling import HISTORIES, PULSES, SETS, TIED, KernelSet
+import numpy as np
+
+from rocking_cli.dynamics.calling import SETS, KernelSet
 from rocking_cli.errors import InputError, KernelWarning
 
 CHOSEN = "ROCKING_KERNELS"
 """The variable of the environment that names a way, and then no other one is tried."""
-READY, JIT, PYTHON = "ready", "jit", "python"
-WAYS = (READY, JIT, PYTHON)
-OF_FILE = {compiled.HISTORIES: (HISTORIES, TIED), compiled.PULSES: (PULSES,)}
-"""The sets of each kernel that commands call."""
+READY, PYTHON = "ready", "python"
 
 Kernel = Callable[..., None]
 _LOCK = threading.RLock()
@@ -36,44 +31,52 @@ _LOCK = threading.RLock()
 
 def kernel(of: KernelSet) -> Kernel:
     """Return the function of a kernel, with the arguments that it has in its source."""
-    return _chosen(of.name)[1]
+    with _LOCK:  # the threads of a batch come at once
+        return _choose()[1][of.name]
 
 
-def way(of: KernelSet) -> str:
-    """Return the way in which a kernel is run: `READY`, `JIT` or `PYTHON`."""
-    return _chosen(of.name)[0]
+def way() -> str:
+    """Return the way in which kernels are run: `READY` or `PYTHON`."""
+    with _LOCK:
+        return _choose()[0]
 
 
 def forget() -> None:
-    """Forget the chosen way, for tests with another environment or another cache."""
+    """Forget the chosen way, for tests with another environment."""
     from rocking_cli.dynamics import shipped
 
     _choose.cache_clear()
-    shipped.forget()
-
-
-def _chosen(name: str) -> tuple[str, Kernel]:
-    with _LOCK:  # the threads of a batch come at once
-        return _choose(name)
+    shipped.library.cache_clear()
 
 
 @functools.cache
-def _choose(name: str) -> tuple[str, Kernel]:
-    of, asked = SETS[name], os.environ.get(CHOSEN) or None
-    if asked is not None and asked not in WAYS:
-        raise InputError(f"{CHOSEN} is {asked!r}: give one of {', '.join(WAYS)}")
-    reasons: list[str] = []
-    for each in (asked,) if asked else WAYS:
-        if each == PYTHON and reasons:
-            _say_slow(reasons[0])
-        try:
-            return each, MAKE[each](of)
-        except ImportError as error:
-            reasons.append(str(error))
-    raise InputError(f"{CHOSEN} is {asked!r}, but {'; '.join(reasons)}: leave it out")
+def _choose() -> tuple[str, dict[str, Kernel]]:
+    asked = os.environ.get(CHOSEN) or None
+    if asked not in (None, READY, PYTHON):
+        raise InputError(f"{CHOSEN} is {asked!r}: give one of {READY}, {PYTHON}")
+    if asked != PYTHON:
+        fault = fault_of_shipped()
+        if fault is None:
+            return READY, {name: as_shipped(of) for name, of in SETS.items()}
+        if asked == READY:
+            raise InputError(f"{CHOSEN} is {asked!r}, but {fault}: leave it out") from fault
+        text = f"time histories are computed by Python itself, which takes some sixty times longer ({fault})"
+        warnings.warn(KernelWarning(text), stacklevel=2)
+    return PYTHON, {name: in_python(of) for name, of in SETS.items()}
 
 
-def _ready(of: KernelSet) -> Kernel:
+def fault_of_shipped() -> ImportError | None:
+    """Return why the shipped kernels cannot be used, a `BrokenKernels` if they should be usable; None if they can."""
+    try:
+        for of in SETS.values():
+            as_shipped(of)
+    except ImportError as error:
+        return error
+    return None
+
+
+def as_shipped(of: KernelSet) -> Kernel:
+    """Return a kernel of the shipped library. Raises `ImportError` if it cannot be used."""
     from rocking_cli.dynamics import shipped  # not every Python has ctypes
 
     entry = shipped.load(of)
@@ -84,35 +87,14 @@ def _ready(of: KernelSet) -> Kernel:
     return run
 
 
-@functools.cache
-def compiled_module(module: str) -> dict[str, Any]:
-    """Return the functions of a kernel module, compiled by numba, by name."""
-    source = importlib.import_module(module)
-    return compiled.compile_source(source.SOURCE, inline=source.INLINE)
-
-
-def _jit(of: KernelSet) -> Kernel:
-    function: Kernel = compiled_module(of.module)[of.function]
-    return function
-
-
-@functools.cache
-def _say_slow(why: str) -> None:
-    """Warn that kernels are slow, once in this process."""
-    text = f"time histories are computed by Python itself, which takes some sixty times longer ({why})"
-    warnings.warn(KernelWarning(f"{text}; rocking-cli[jit] would compile them"), stacklevel=2)
-
-
 def in_python(of: KernelSet) -> Kernel:
     """Return a kernel as a Python function that computes like machine code.
 
     Integers are truncated like those of machine code, and floating-point errors such as a division by zero raise
     nothing.
     """
-    import numpy as np
-
     module = importlib.import_module(of.module)
-    namespace = {**vars(module), "int": _truncated, "ceil": _raised}
+    namespace = {**vars(module), "int": _like_machine_code(int), "ceil": _like_machine_code(ceil)}
     for each in module.SOURCE:
         twin = FunctionType(each.__code__, namespace, each.__name__, each.__defaults__)
         namespace[each.__name__] = twin
@@ -129,65 +111,11 @@ LEAST = -(2**63)
 """What a processor makes of a number that is too large for a whole one, or of none."""
 
 
-def _truncated(value: float) -> int:
-    try:
-        return int(value)
-    except (ValueError, OverflowError):
-        return LEAST
+def _like_machine_code(rounded: Callable[[float], int]) -> Callable[[float], int]:
+    def whole(value: float) -> int:
+        try:
+            return rounded(value)
+        except (ValueError, OverflowError):
+            return LEAST
 
-
-def _raised(value: float) -> int:
-    from math import ceil
-
-    try:
-        return ceil(value)
-    except (ValueError, OverflowError):
-        return LEAST
-
-
-MAKE = {READY: _ready, JIT: _jit, PYTHON: in_python}
-
-
-def needs_compiling(file: str = compiled.HISTORIES) -> bool:
-    """Return whether numba will compile a kernel at its next call, which takes some seconds."""
-    return way(OF_FILE[file][0]) == JIT and compiled.needs_compiling(file)
-
-
-def is_ready(file: str) -> bool:
-    """Return whether a kernel can be used without being compiled first."""
-    asked = os.environ.get(CHOSEN)
-    for each in (asked,) if asked else WAYS:
-        if each == READY and _is_shipped():
-            return True
-        if each == JIT and find_spec("numba") is not None:
-            return not compiled.needs_compiling(file)
-    return True
-
-
-def _is_shipped() -> bool:
-    try:
-        from rocking_cli.dynamics import shipped
-    except ImportError:
-        return False
-    return shipped.is_there()
-
-
-def versions() -> dict[str, str]:
-    """Return the versions of the installed packages that compile kernels, by name."""
-    found = {}
-    for name in ("llvmlite", "numba"):
-        with suppress(PackageNotFoundError):
-            found[name] = version(name)
-    return found
-
-
-def prepare(file: str) -> None:
-    """Compile what a kernel may need, whichever of its functions is called first."""
-    for each in OF_FILE[file]:
-        kernel(each)
-
-
-def has_run(file: str) -> None:
-    """Record for later processes that a kernel is compiled."""
-    if way(OF_FILE[file][0]) == JIT:
-        compiled.has_run(file)
+    return whole

@@ -13,7 +13,6 @@ import numpy as np
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
-from rocking_cli.dynamics import ways
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import CLOSE, disagree
@@ -338,7 +337,6 @@ def versions(mechanism: Mechanism) -> dict[str, str]:
         f"mechanism {name}": registry.package_of(name) if name in registry else "not installed as a plugin",
         "Python": platform.python_version(),
         **{package: version(package) for package in PACKAGES},
-        **ways.versions(),
     }
 
 

@@ -13,14 +13,12 @@ from typing import Any
 from rocking_cli.core.hung.ties import Laws
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import ways
-from rocking_cli.dynamics.compiled import cache_folder, unwritable
 from rocking_cli.engines.installed import Engines
 from rocking_cli.errors import RockingError
 from rocking_cli.excitation.pulses import PulseShapes
 from rocking_cli.excitation.records.registry import Readers
 from rocking_cli.plugins.registry import Plugins
 from rocking_cli.processing.intensity import IntensityMeasures
-from rocking_cli.studies.compiling import CALLED
 from rocking_cli.studies.verification.installed import Codes
 
 OURS = "rocking-cli"
@@ -60,12 +58,8 @@ class Installation:
     plugins : mapping of str to tuple of Plugin
         Plugins by kind: `mechanisms`, `records`, `pulses`, `measures` and `codes`; `laws` and `engines` only if other
         packages provide some.
-    cache : str
-        The folder of the compiled kernels.
-    unwritable : str or None
-        Why the folder cannot be written to; None if it can.
-    compiled : mapping of str to bool
-        Whether each kernel is compiled already, by the names of `compiling.CALLED`.
+    slow_kernels : str or None
+        Why Python runs the kernels, which takes some sixty times longer; None if the shipped machine code is used.
     processors, threads : int
         Number of processors of the machine, and of threads that this process may use.
     """
@@ -76,9 +70,7 @@ class Installation:
     libraries: Mapping[str, str | None]
     extras: Mapping[str, Mapping[str, str | None]]
     plugins: Mapping[str, tuple[Plugin, ...]]
-    cache: str
-    unwritable: str | None
-    compiled: Mapping[str, bool]
+    slow_kernels: str | None
     processors: int
     threads: int
 
@@ -100,12 +92,17 @@ def examine() -> Installation:
             "codes": _plugins(Codes()),
             **{name: others for name, of in (("laws", Laws()), ("engines", Engines())) if (others := _plugins(of))},
         },
-        str(cache_folder()),
-        unwritable(),
-        {name: ways.is_ready(kernel) for kernel, name in CALLED.items()},
+        _why_slow(),
         os.cpu_count() or 1,
         len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1,
     )
+
+
+def _why_slow() -> str | None:
+    if os.environ.get(ways.CHOSEN) == ways.PYTHON:
+        return f"{ways.CHOSEN} is {ways.PYTHON}"
+    fault = ways.fault_of_shipped()
+    return None if fault is None else str(fault)
 
 
 def _packages() -> tuple[dict[str, str | None], dict[str, dict[str, str | None]]]:

@@ -22,7 +22,7 @@ def view(found: Installation, defaults: Mapping[str, Any]) -> View:
         `option`, `command`, `value` and `place`; `environment`, variables that change what commands do; `unknown`,
         variables without meaning; and `problem`, what is wrong with a file, or None.
     """
-    data = {**asdict(found), "defaults": defaults}
+    data, slow = {**asdict(found), "defaults": defaults}, found.slow_kernels
     rows = [
         [OURS, found.version],
         ["Python", found.python],
@@ -31,7 +31,7 @@ def view(found: Installation, defaults: Mapping[str, Any]) -> View:
         *([name, version or "missing"] for name, version in found.libraries.items()),
         *(_extra(name, packages) for name, packages in found.extras.items()),
         *(row for kind, plugins in found.plugins.items() for row in _plugins(kind, plugins)),
-        ["compiled code", _cache(found)],
+        ["kernels", "shipped machine code" if slow is None else f"in Python, some sixty times slower: {slow}"],
         ["own defaults", ", ".join(defaults["files"]) or f"none; create {defaults['user_file']} to set some"],
     ]
     if defaults["environment"]:
@@ -65,12 +65,3 @@ def _plugins(kind: str, plugins: Sequence[Plugin]) -> list[list[str]]:
         packages.setdefault(each.package, []).append(each.name)
     rows = [[kind, f"{', '.join(names)} ({package})"] for package, names in packages.items()]
     return rows + [[f"broken: {each.name}", each.broken] for each in plugins if each.broken is not None]
-
-
-def _cache(found: Installation) -> str:
-    if found.unwritable is not None:
-        return f"{found.cache} is not writable ({found.unwritable}): every process recompiles"
-    missing = [name.replace("_", " ") for name, ready in found.compiled.items() if not ready]
-    return f"{found.cache}: " + (
-        f"{' and '.join(missing)} not compiled: run `rocking warm`" if missing else "all kernels compiled"
-    )

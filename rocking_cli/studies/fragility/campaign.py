@@ -13,7 +13,6 @@ from rocking_cli import __version__
 from rocking_cli.core import Mechanism, NoEquivalentBlock, both_statics, equivalent_block
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.restitution import why_none
-from rocking_cli.dynamics import ways
 from rocking_cli.dynamics.dispatch import NO_REBOUND, kernel_for
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.processing.intensity import all_measures, parse_measure
@@ -231,7 +230,6 @@ def libraries() -> dict[str, str]:
     return {
         "python": platform.python_version(),
         **{name: version(name) for name in ("numpy", "scipy")},
-        **ways.versions(),
     }
 
 

@@ -137,7 +137,7 @@ def _of(name: str, quick: bool) -> float:
     """Call a function of the module of checks, which is imported in the check: even this may fail."""
     checks = import_module(f"{__name__}.checks")
     if name not in NO_KERNEL and checks.another_way():
-        raise NotRun("the machine code is broken, see `kernels`: numba or Python would compute this instead")
+        raise NotRun("the machine code is broken, see `kernels`: Python would compute this instead")
     found: float = getattr(checks, name)(quick)
     return found
 

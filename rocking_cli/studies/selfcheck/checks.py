@@ -24,14 +24,14 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import batch, exact_batch, pulse_motion, ways
 from rocking_cli.dynamics import kernels as source
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.calling import PULSES, SETS, KernelSet
+from rocking_cli.dynamics.calling import PULSES, KernelSet
 from rocking_cli.dynamics.deck import lay_out, run_deck
 from rocking_cli.dynamics.exact import segments_of, sides_of
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME, Outcomes
-from rocking_cli.errors import RockingError
+from rocking_cli.errors import BrokenKernels, RockingError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses.shapes import Sine
 from rocking_cli.excitation.records import read_record
@@ -514,19 +514,8 @@ def _wrong(one: Outcomes, other: Outcomes) -> int:
 
 
 def another_way() -> bool:
-    """Return whether kernels run in another way as the shipped ones are broken, and not as the user chose it.
-
-    They might first be compiled, for half a minute.
-    """
-    return _is_broken() and not os.environ.get(ways.CHOSEN)
-
-
-def _is_broken() -> bool:
-    try:
-        from rocking_cli.dynamics import shipped
-    except ImportError:  # not every Python has ctypes
-        return False
-    return shipped.is_broken()
+    """Return whether Python runs the kernels because the shipped ones are broken, and not as the user chose it."""
+    return isinstance(ways.fault_of_shipped(), BrokenKernels) and not os.environ.get(ways.CHOSEN)
 
 
 def kernels(quick: bool) -> float:
@@ -539,14 +528,12 @@ def kernels(quick: bool) -> float:
     RockingError
         If the library for this system is damaged or missing, or does not load.
     """
-    try:
-        for of in SETS.values():
-            ways.MAKE[ways.READY](of)
-    except ImportError as error:
-        if _is_broken():
-            raise RockingError(str(error)) from error
-        raise NotRun(f"{error}; histories are computed by numba if it is installed, or by Python") from error
-    arrays = (_computed(kernel_of, quick) for kernel_of in (ways.MAKE[ways.READY], ways.MAKE[ways.PYTHON]))
+    fault = ways.fault_of_shipped()
+    if isinstance(fault, BrokenKernels):
+        raise RockingError(str(fault)) from fault
+    if fault is not None:
+        raise NotRun(f"{fault}; Python computes histories") from fault
+    arrays = (_computed(kernel_of, quick) for kernel_of in (ways.as_shipped, ways.in_python))
     return sum(different_values(*pair) for pair in zip(*arrays, strict=True))
 
 
