@@ -17,7 +17,7 @@ from tests.stores import WAITS, is_sound, shown, write
 
 LEVELS = 500
 RESTARTED = 3  # one in so many is started with `--restart`, on a store with all runs
-EXCHANGING = 6  # one in so many of all is killed as it puts its new store in the place of that one
+EXCHANGING = 6  # one in so many of all is killed as it puts that store aside
 PATIENCE = 120.0  # s
 
 
@@ -56,7 +56,7 @@ def kill(whole: Whole, folder: Path, number: int) -> str:
     -------
     str
         How much of the study its store held when it was run again: "none", "some" or "all" of the runs; whether the
-        process that was killed had to restart it, and whether it left a new store that was not in place yet.
+        process that was killed had to restart it.
 
     Raises
     ------
@@ -73,14 +73,14 @@ def kill(whole: Whole, folder: Path, number: int) -> str:
     process = _ready(folder, *arguments, *(["--restart"] if restart else []))
     (folder / "go").touch()
     if number % EXCHANGING == EXCHANGING - 1:
-        while process.poll() is None and not any(folder.glob("store.new*")):
+        while process.poll() is None and not any(folder.glob("store.before*")):
             time.sleep(0.0002)
     else:
         time.sleep(random.Random(number).uniform(0, whole.seconds))
     process.kill()  # on Windows `terminate` is the same
     said = process.communicate()[1]
     assert "Traceback" not in said, said
-    kept, new = [*folder.glob("store.before*.db")], [*folder.glob("store.new*")]
+    kept = [*folder.glob("store.before*.db")]
     assert len(kept) <= 1, kept
     assert kept or not restart or place.stat().st_ino == before, "the runs from before the restart are lost"
 
@@ -96,4 +96,4 @@ def kill(whole: Whole, folder: Path, number: int) -> str:
     assert not left, left
     had = re.search(r"(\d+) of (\d+) runs are in the store already", again.stderr)
     how_many = "none" if had is None else "all" if had[1] == had[2] else "some"
-    return how_many + ", restarted" * restart + ", new store left" * bool(new)
+    return how_many + ", restarted" * restart

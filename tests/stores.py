@@ -17,6 +17,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
@@ -43,7 +44,7 @@ hazard: {{points: [[0.1, 0.01], [1, 0.0001]]}}
 seed: SEED
 """
 PAGE = 4096
-ANEW = ("not the store of a study", "later version")  # files that are not taken for a damaged store, whatever is asked
+OTHERS = ("not the store of a study", "another database")  # files that `--restart` leaves alone
 
 
 def write(folder: Path, seed: int = 0, name: str = "study", levels: int = 12) -> Path:
@@ -106,11 +107,6 @@ def pages(content: bytearray, rng: random.Random) -> None:
     content[start : start + PAGE] = bytes(PAGE)
 
 
-def sectors(content: bytearray, rng: random.Random) -> None:
-    start = 512 * rng.randrange(len(content) // 512)
-    content[start : start + 512] = rng.randbytes(512)
-
-
 def swapped(content: bytearray, rng: random.Random) -> None:
     one, other = (PAGE * k for k in rng.sample(range(1, len(content) // PAGE), 2))
     content[one : one + PAGE], content[other : other + PAGE] = (
@@ -127,72 +123,37 @@ def cut(content: bytearray, rng: random.Random) -> None:
     del content[rng.choice([rng.randrange(len(content)), PAGE * rng.randrange(len(content) // PAGE)]) :]
 
 
-def longer(content: bytearray, rng: random.Random) -> None:
-    content += rng.randbytes(rng.randrange(1, 2 * PAGE))
-
-
 # What somebody may do with another program; K is the number of a run, C a column, V a value.
 RUNS = (
     "UPDATE run SET C = V WHERE id = K",
-    "UPDATE run SET C = C * 1.001 WHERE id = K",
-    "UPDATE run SET C = V",
     "UPDATE run SET C = NULL WHERE id = K",
     "UPDATE run SET C = 'nonsense' WHERE id = K",
     "UPDATE run SET C = x'00ff' WHERE id = K",
     "UPDATE run SET C = C + 1 WHERE id % 7 = K % 7",
-    "UPDATE run SET outcome = 0",
-    "UPDATE run SET outcome = 1 - outcome WHERE id = K",
     "UPDATE run SET checksum = checksum + 1 WHERE id = K",
     "UPDATE run SET id = id + 1000000 WHERE id = K",
     "UPDATE run SET id = -id - 1 WHERE id = K",
-    "DELETE FROM run WHERE id = K",
     "DELETE FROM run WHERE id > K",
-    "DELETE FROM run",
     "DELETE FROM run WHERE id = K + 1; UPDATE run SET id = K + 1 WHERE id = K",
-    "CREATE TEMP TABLE x AS SELECT * FROM run WHERE id = 3; UPDATE x SET id = K; INSERT OR REPLACE INTO run"
-    " SELECT * FROM x",
-    "CREATE TEMP TABLE x AS SELECT * FROM run; UPDATE x SET id = id + 5000; INSERT INTO run SELECT * FROM x",
     "ATTACH 'OTHER' AS other; INSERT OR REPLACE INTO run SELECT * FROM other.run; DETACH other",
     "ATTACH 'OTHER' AS other; INSERT OR REPLACE INTO sample SELECT * FROM other.sample; DETACH other",
     "ATTACH 'OTHER' AS other; INSERT OR REPLACE INTO study SELECT * FROM other.study; DETACH other",
     "UPDATE sample SET p = p * 1.01",
-    "UPDATE sample SET phi_cr_positive = 'wide' WHERE id = 1",
-    "UPDATE sample SET structure = 'valley bridge'",
     "UPDATE sample SET drawn = '{' WHERE id = 2",
-    "UPDATE sample SET reason = 'tired' WHERE id = 2",
-    "UPDATE record SET pga = 2 * pga WHERE id = 1",
-    "UPDATE record SET name = 'another' WHERE id = 1",
-    "UPDATE record SET pgv = NULL",
-    "UPDATE level SET value = value * 1.01 WHERE id = 3",
     "UPDATE level SET value = 'high'",
-    "UPDATE polarity SET value = 7",
-    "UPDATE eta SET value = 0.5",
-    "DELETE FROM level WHERE id = 11",
     "DELETE FROM level",
-    "DELETE FROM sample",
     "INSERT INTO level VALUES (12, 1.3)",
-    "UPDATE study SET value = replace(value, 'overturning', 'uplift') WHERE key = 'definition'",
     "UPDATE study SET value = '3' WHERE key = 'hash'",
-    "UPDATE study SET value = '{}' WHERE key = 'description'",
-    "UPDATE study SET value = replace(value, 'PGA', 'PGV') WHERE key = 'description'",
-    "UPDATE study SET value = '[[1, 2], [3, 4]]' WHERE key = 'hazard'",
-    "UPDATE study SET value = 'null' WHERE key = 'seal'",
     "UPDATE study SET value = '[' WHERE key = 'definition'",
-    "DELETE FROM study WHERE key = 'definition'",
     "DELETE FROM study WHERE key = 'seal'",
     "DELETE FROM study",
     "DROP VIEW runs; DROP TABLE run",
-    "DROP VIEW runs; DROP TABLE sample",
     "DROP VIEW runs; DROP TABLE study",
-    "DROP VIEW runs; ALTER TABLE run DROP COLUMN checksum",
-    "DROP VIEW runs; ALTER TABLE run DROP COLUMN checksum; PRAGMA user_version = 1",
     "DROP VIEW runs; ALTER TABLE run DROP COLUMN C",
     "DROP VIEW runs; ALTER TABLE run RENAME COLUMN peak_positive TO x; ALTER TABLE run RENAME COLUMN peak_negative TO"
     " peak_positive; ALTER TABLE run RENAME COLUMN x TO peak_negative",
     "DROP VIEW runs",
-    "PRAGMA user_version = 0",
     "PRAGMA user_version = 1",
-    "PRAGMA user_version = 99",
     "PRAGMA application_id = 0",
     "CREATE TABLE another (x); INSERT INTO another VALUES (1)",
     "PRAGMA journal_mode = wal; UPDATE run SET C = V WHERE id = K",
@@ -244,7 +205,7 @@ def journal(place: Path, rng: random.Random, sound: Sound) -> str:
 
 
 DAMAGES = (
-    *map(_bytes, (flips, flips, headers, pages, sectors, swapped, copied, cut, longer)),
+    *map(_bytes, (flips, flips, headers, pages, swapped, copied, cut)),
     *(sql, sql, sql, sql, foreign, journal),
 )  # fmt: skip
 
@@ -252,7 +213,7 @@ DAMAGES = (
 def attack(sound: Sound, folder: Path, number: int, statement: str | None = None) -> str:
     """Damage a copy of a store in one way, and see what becomes of it.
 
-    Returns what was said of it: "sound" where nothing that counts was hit, "word", "mended" or "refused".
+    Returns "sound" if nothing that counts was hit, "fewer" if runs are missing, or "refused".
 
     Raises
     ------
@@ -269,32 +230,28 @@ def attack(sound: Sound, folder: Path, number: int, statement: str | None = None
 
     looked = command("results", place, "--json")
     _no_traceback(looked, told)
-    found = shown(looked.stdout) if looked.stdout else None
     if looked.exit_code == 0:
-        assert found == sound.shown, f"{told}: other results without a word"
-    elif found is not None:
-        assert looked.exit_code == 5, told
-        said = "damaged" in looked.stderr or "without checksums" in looked.stderr
-        assert said or found["finished"] < found["runs"], told
+        assert shown(looked.stdout) == sound.shown, f"{told}: other results without a word"
+    elif looked.exit_code == 5:
+        found = shown(looked.stdout)
+        assert found["finished"] < found["runs"], told
     else:
-        assert looked.stderr, told
+        assert looked.exit_code in (1, 2) and looked.stderr and not looked.stdout, told
 
     run = command("fragility", sound.study, "--store", place, "--json")
     _no_traceback(run, told)
-    kept = [each.read_bytes() for each in folder.glob("store.before*.db")]
-    restored = journal.__name__ in how or "wal" in how  # SQLite has put back what it took for interrupted
+    assert not [*folder.glob("store.before*")], told
     if run.exit_code == 0:
         assert shown(run.stdout) == sound.shown, f"{told}: other results after it was run again"
-        assert ("is damaged" not in run.stderr and "are damaged" not in run.stderr) or len(kept) == 1, told
-        assert restored or not kept or kept == [content], f"{told}: the damaged file was not kept"
         is_sound(place, sound.store, told)
-        return "mended" if kept else ("sound" if looked.exit_code == 0 else "word")
-    assert run.exit_code in (1, 2) and run.stderr and not kept, told
+        return "sound" if looked.exit_code == 0 else "fewer"
+    restored = journal.__name__ in how or "wal" in how  # SQLite has put back what it took for interrupted
+    assert run.exit_code in (1, 2) and run.stderr, told
     assert restored or place.read_bytes() == content, f"{told}: a file that was refused has changed"
     again = command("fragility", sound.study, "--store", place, "--restart", "--json")
     _no_traceback(again, told)
     if again.exit_code:
-        assert any(each in again.stderr for each in ANEW), f"{told}: {again.stderr}"
+        assert any(each in again.stderr for each in OTHERS), f"{told}: {again.stderr}"
         assert restored or place.read_bytes() == content, told
         return "refused"
     assert shown(again.stdout) == sound.shown, told
@@ -312,10 +269,10 @@ def _no_traceback(result: Any, told: str) -> None:
 def is_sound(place: Path, sound: Path, told: str) -> None:
     """Check that a store is not damaged and has the runs of another, all once."""
     with Store.reading(place) as one, Store.reading(sound) as other:
-        assert not one.doubts(), told
         size = one.plan().size
         mine, theirs = one.runs(0, size), other.runs(0, size)
-        assert (mine.checksums(0) == theirs.checksums(0)).all(), told
+    for name in mine.columns:
+        assert np.array_equal(getattr(mine, name), getattr(theirs, name), equal_nan=True), (told, name)
 
 
 WAITS = """
@@ -361,7 +318,7 @@ def race(sound: Sound, folder: Path, *more: str) -> list[int]:
         if code == 0:
             assert shown(out) == sound.shown
         else:
-            assert "another process" in said and ("wait for it" in said or "the same command goes on" in said), said
+            assert "another process" in said and ("wait for it" in said or "run the same command again" in said), said
     codes = sorted(code for *_, code in ended)
     assert codes[0] == 0, ended
     is_sound(place, sound.store, "race")

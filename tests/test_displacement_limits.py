@@ -15,7 +15,7 @@ from rocking_cli.studies.fragility import reached
 from rocking_cli.studies.fragility.campaign import prepare
 from rocking_cli.studies.fragility.displacements import FACT, is_quantity, kept, metres, spelt
 from rocking_cli.studies.fragility.reached import first_reached, of_a_structure
-from rocking_cli.studies.fragility.store import FAILED, Store
+from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
 from rocking_cli.studies.fragility.tally import count, exceeds
 from rocking_cli.studies.movements import Watched
@@ -212,13 +212,3 @@ def test_a_top_that_is_held_is_warned_of(tmp_path):
         said = " ".join(found.stderr.split())
         assert found.exit_code == 0 and ("limits such as 10 mm are of the top" in said) == warned
         assert "bridge: its top" not in said
-
-
-def test_damaged_runs_are_left_out_of_them_too(whole):
-    _, prepared, place = whole
-    with Store.reading(place) as store:
-        (sound,) = store.endings(0, prepared.plan.size)
-        store.damaged = [3]
-        (found,) = store.endings(0, prepared.plan.size)
-    np.testing.assert_array_equal(found.peaks, sound.peaks)
-    assert not (sound.outcome == FAILED).any()

@@ -536,14 +536,6 @@ class TestOtherFiles:
         assert result.exit_code == 2 and "no such store" in result.stderr
         assert not (tmp_path / "none.db").exists()
 
-    def test_a_store_of_a_later_version(self, whole, tmp_path):
-        place = tmp_path / "study.db"
-        place.write_bytes(whole[2].read_bytes())
-        connection = sqlite3.connect(place)
-        connection.execute("PRAGMA user_version = 99")
-        connection.close()
-        assert "later version" in CliRunner().invoke(main, ["results", str(place)]).stderr
-
     @pytest.mark.parametrize("name", [".", "..", ""])
     def test_a_folder_is_no_study(self, name):
         result = CliRunner().invoke(main, ["fragility", name])
@@ -668,7 +660,6 @@ def test_what_is_counted_does_not_depend_on_how_it_is_read(whole, monkeypatch):
         plan, seen = kept.plan(), []
         once = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ALWAYS, ladders=True, counted=seen.append)
         monkeypatch.setattr(store, "READ", 7)
-        kept.damaged = [31]
         piecewise = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ALWAYS, ladders=True, counted=seen.append)
     assert sum(seen) == 2 * 120
     np.testing.assert_array_equal(piecewise.runs, once.runs)

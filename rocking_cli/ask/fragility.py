@@ -147,7 +147,7 @@ def _bring_up_to_date(
     with ExitStack() as stack:
         # The old store gives way only when there is somebody to run the study anew.
         hands = stack.enter_context(workers) if restart else None
-        store = stack.enter_context(Store.writing(place, anew=restart, say=watch.note if restart else watch.warn))
+        store = stack.enter_context(Store.writing(place, anew=restart, say=watch.note))
         with watch.progress(steps(study, rank_measures=rank_measures), "records and structures") as advance:
             prepared = prepare(study, store, advance, rank_measures=rank_measures)
         plan = prepared.plan

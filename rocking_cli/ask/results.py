@@ -74,7 +74,7 @@ def results(
     rank_measures : bool
         Whether to rank the intensity measures, by how well they predict the outcome.
     watch : Watcher
-        Told what is doubtful about the store, and how far the counting, the fits and the ranking are.
+        Told how far the counting, the fits and the ranking are.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def results(
     Raises
     ------
     InputError
-        If the file is not a store of this version.
+        If the file is not a store of this version, or is damaged.
     """
     from rocking_cli.studies.fragility.quantiles import all_quantiles
     from rocking_cli.studies.fragility.ranking import rank
@@ -95,11 +95,6 @@ def results(
 
     place = Path(store)
     with Store.reading(place) as kept:
-        for doubt in kept.doubts():
-            watch.warn(f"{place}: {doubt}")
-        harmed = bool(kept.damaged) or kept.unreadable
-        if harmed:
-            watch.note("run `rocking fragility STUDY.yaml` to keep the undamaged runs and repeat the others")
         plan, definition = kept.plan(), _definition(kept)
         finished, failed = kept.count()
         curves, surfaces, outcomes = _fitted(kept, plan, definition, watch)
@@ -125,7 +120,7 @@ def results(
         quantiles=spread,
         rankings=rankings,
         failed=failed,
-        complete=finished == plan.total and not failed and not left_out(plan) and not harmed,
+        complete=finished == plan.total and not failed and not left_out(plan),
     )
 
 
