@@ -69,7 +69,7 @@ class SingleBody(Mechanism):
         name = self.bodies()[0].name
         return Joint("O" + direction.prime, self.pivot(direction), (name,), roll=self.rolls(direction))
 
-    def critical_rotation(self, direction: Direction) -> float:
+    def critical_rotation_alone(self, direction: Direction) -> float:
         return self.alpha(direction)  # the centroid stands over the pivot
 
     def outlines(self) -> Sequence[Outline]:

@@ -262,9 +262,6 @@ class Assembly(LinkedBodies):
     def _members(self) -> Mapping[str, Member]:
         return {name: shape.member(name, self.density, self.depth) for name, shape in self.blocks.items()}
 
-    def _shapes(self) -> Sketch:
-        return Sketch()  # its bodies have their outlines, and its hinges follow from its loads and ties
-
     @cached_property
     def _blocks(self) -> Sequence[analysis.AssemblyBlock]:
         return [

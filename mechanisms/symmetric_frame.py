@@ -189,7 +189,7 @@ class SymmetricFrame(Mechanism):
             return "its beam has no mass and loads no column"
         return "give spacing and beam_depth"
 
-    def critical_rotation(self, direction: Direction) -> float:
+    def critical_rotation_alone(self, direction: Direction) -> float:
         return atan2(self.column_width, self.column_height)  # Eq. 37
 
     @property

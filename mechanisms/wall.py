@@ -75,7 +75,7 @@ class Wall(Mechanism):
     def contacts(self, direction: Direction) -> Sequence[Contact]:
         return of_joints(self.joints(direction), self.friction)
 
-    def critical_rotation(self, direction: Direction) -> float:
+    def critical_rotation_alone(self, direction: Direction) -> float:
         return atan2(2 * self.thickness, self.height)  # alpha: both pivots and the mid hinge are in line
 
     def sketch(self) -> Sketch:

@@ -8,7 +8,6 @@ import re
 import shutil
 import sys
 from contextlib import contextmanager
-from dataclasses import replace
 from functools import cache
 from math import log, pi, sqrt
 from pathlib import Path
@@ -43,14 +42,26 @@ EVERY = {name: each for name, each in vars(formulas).items() if isinstance(each,
 }
 
 
+class Grip:
+    """Something attached that holds the structure back by more than its weight, and is moved with it."""
+
+    name = "grip"
+
+    def act(self, total, direction, follow):
+        for each, factor in ((total.G, 1.1), (total.dG, 1.1), (total.B, 1.2), (total.dB, 1.2)):
+            each *= factor
+
+    def forces(self, direction, follow):
+        return ()
+
+
 class Springy(Block):
-    """A block that says itself that more holds it back, and that more is moved, than its weight."""
+    """A block that a grip of its own holds."""
 
     mechanism: ClassVar[str] = "springy"
 
-    def coefficients(self, phi, direction):
-        own = super().coefficients(phi, direction)
-        return replace(own, G=own.G * 1.1, dG=own.dG * 1.1, B=own.B * 1.2, dB=own.dB * 1.2)
+    def carries(self):
+        return (Grip(),)
 
 
 LARGE = "mechanism: block\nname: large\nwidth: 20\nheight: 160\n"

@@ -113,7 +113,7 @@ def test_the_installed_plugin_keeps_the_contract(installed_plugin):
 
 ODD = """
 import sys
-from math import pi
+from math import atan, pi
 from rocking_cli.core import Body, Mechanism, box, length, rotation
 
 print("printed on import")
@@ -157,8 +157,8 @@ class NoExample(Odd):
 class Doubled(Odd):
     mechanism = "doubled"
 
-    def potential_energy(self, phi, direction):
-        return 2 * super().potential_energy(phi, direction)
+    def critical_rotation_alone(self, direction):
+        return 1.0001 * atan(1 / 4)
 """
 READER = """
 TITLE, SIGN = "an odd format", "ODD on its first line"
@@ -374,7 +374,11 @@ class TestPluginsThatGoWrong:
         ("name", "failing", "said"),
         [
             ("odd", set(), ""),
-            ("doubled", {"coefficients_are_those_of_the_bodies"}, "potential_energy"),
+            (
+                "doubled",
+                {"stands_and_can_overturn", "closed_forms_agree_with_the_solvers", "may_lean_on_side_walls"},
+                "critical_rotation_alone",
+            ),
             ("no_example", {"makes_a_structure"}, "load must be a number in m, got nothing"),
             ("leaver", {"loads"}, "SystemExit: 0"),
             ("breaker", {"loads"}, "ZeroDivisionError"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self, final
 
 from pydantic import Field, SerializeAsAny, ValidationError, model_validator
 
@@ -162,11 +162,13 @@ class Given(Described):
     # As pydantic marks its own: files and copies are validated without it, and place their errors themselves.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
+    @final
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Return a copy with some fields changed, validated again, without values derived from the old fields."""
         kept = {key: getattr(self, key) for key in self.model_fields_set}
         return type(self).from_fields({**kept, **(update or {})})
 
+    @final
     @classmethod
     def from_fields(cls, fields: Mapping[str, Any], folder: Path | None = None) -> Self:
         """Make a structure of this mechanism from its fields.

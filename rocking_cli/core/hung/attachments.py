@@ -18,7 +18,7 @@ from rocking_cli.core.hung.interlock import Interlock
 from rocking_cli.core.hung.loads import Load
 from rocking_cli.core.hung.ties import Tie
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
-from rocking_cli.core.sketch import Outline, Sketch
+from rocking_cli.core.sketch import Outline
 from rocking_cli.text import did_you_mean
 
 OUTSIDE = 1e-6  # of the size of a body: how far outside it a point may be by rounding
@@ -78,24 +78,7 @@ class Carrier:
     bodies: Mapping[str, Body]
     outlines: Mapping[str, Sequence[Outline]]
     alike: Mapping[str, int]
-    piece: Callable[[str, complex], str] = lambda body, at: body
-
-    @classmethod
-    def of(
-        cls,
-        bodies: Sequence[Body],
-        sketch: Sketch,
-        alike: Mapping[str, int],
-        piece: Callable[[str, complex], str] = lambda body, at: body,
-    ) -> Carrier:
-        """Return the carrier of a mechanism; outlines from its sketch count only if its bodies are uniform plates."""
-        shapes = {body.name: [body.outline] for body in bodies if body.outline}
-        return cls(
-            {body.name: body for body in bodies},
-            {**(sketch.outlines if sketch.uniform else {}), **shapes},
-            alike,
-            piece,
-        )
+    piece: Callable[[str, complex], str]
 
     def body(self, name: str | None, loc: Loc) -> str:
         """Return the body that a load or tie refers to. Raises `RefusedFields`."""

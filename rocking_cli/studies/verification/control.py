@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.hung.attachments import Carrier, RefusedFields
+from rocking_cli.core.hung.attachments import RefusedFields
 from rocking_cli.errors import InputError, Problem
 
 
@@ -19,9 +19,8 @@ class Control:
 
 def control_at(mechanism: Mechanism, x: float, y: float, body: str | None) -> Control:
     """Return a control point of a body; one body may be left out. Raises `InputError` if the point is not on it."""
-    carrier = Carrier.of(mechanism.bodies(), mechanism.sketch(), mechanism.alike(), mechanism.piece)
     try:
-        spot = carrier.spot(body, complex(x, y), (), "control")
+        spot = mechanism.carrier.spot(body, complex(x, y), (), "control")
     except RefusedFields as error:
         raise InputError(Problem(f"`control`: {error.reason}")) from None
     return Control(spot.at, spot.body)

@@ -1,0 +1,177 @@
+"""What a mechanism answers: its drawing, its kinematics, and its joints as contacts.
+
+A plugin defines what has no default, and may override everything else here.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import ClassVar, final
+
+from rocking_cli.core.bodies import Body, area_of, weighed
+from rocking_cli.core.collapse import CollapseMechanism
+from rocking_cli.core.contacts import Contact, Piece, of_joints
+from rocking_cli.core.extras import Extra
+from rocking_cli.core.given import Given
+from rocking_cli.core.hung.attached import Attached
+from rocking_cli.core.hung.attachments import RefusedFields
+from rocking_cli.core.joints import Joint
+from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
+from rocking_cli.core.sketch import Sketch
+
+
+class Drawn:
+    """Drawing of a mechanism."""
+
+    def sketch(self) -> Sketch:
+        """Return what a drawing shows beside the bodies and their motion; by default nothing."""
+        return Sketch()
+
+
+class Kinematics(Drawn, Given, ABC):
+    """Bodies of a mechanism and their motion, without loads and ties."""
+
+    title: ClassVar[str]
+    """What it is, in a few words."""
+    source: ClassVar[str]
+    """The publication and its equations."""
+    verified: ClassVar[str] = ""
+    """What its numbers were checked against; empty means nobody has, and the tool says so."""
+    caution: ClassVar[str] = ""
+    """A sentence or two, which the tool shows, on where its answers are unsafe or mean less than they seem."""
+    jumps: ClassVar[str] = ""
+    """Cause of a jump of the motion, with a remedy, if the structure's file gives the motion; empty by default."""
+    starter: ClassVar[tuple[str, ...]] = ()
+    """Optional fields that a first file needs all the same, such as one of two ways to give the masses."""
+
+    @abstractmethod
+    def bodies(self) -> Sequence[Body]:
+        """Return the rigid bodies, each rigid in both directions of rocking."""
+
+    @abstractmethod
+    def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
+        """Return the motion of each body, in the order of `bodies`, over rotations `phi`, shape (n,) [rad, >= 0]."""
+
+    @abstractmethod
+    def limit(self, direction: Direction) -> float:
+        """Return the rotation phi [rad] at which the mechanism ends, because it lies on the ground or locks."""
+
+    def critical_rotation_alone(self, direction: Direction) -> float | None:
+        """Return phi_cr without masses, loads and ties in closed form [rad]; by default None, for the solver."""
+        return None
+
+    def rebound_from_impacts(self) -> float | None:
+        """Return the rebound from a theory of impacts in sequence; by default None, as there is none for the shape."""
+        return None
+
+    def alike(self) -> Mapping[str, int]:
+        """Return the number of identical bodies that a body represents, by name, if more than one; by default none."""
+        return {}
+
+    def piece(self, body: str, at: complex) -> str:
+        """Return the name of the part of a cracked body on which a point lies; by default that of the body."""
+        return body
+
+    def carries(self) -> Sequence[Attached]:
+        """Return what the mechanism's own fields attach beside loads and ties, such as a floor; by default nothing."""
+        return ()
+
+    def bearing(self, direction: Direction) -> Mapping[str, float]:
+        """Return the normal force at rest of each joint that `crushing` moves, by name [N]; empty if it can move none.
+
+        This method is called on the structure without crushing. A mechanism that returns joints here moves them by
+        `inwards`.
+        """
+        return {}
+
+    def extras(self, direction: Direction) -> Sequence[Extra]:
+        """Return further results of interest to users, such as the height of the hinge; shown by `equiv`."""
+        return ()
+
+    def own_caution(self) -> str:
+        """Return a caution on the results of this structure in particular; by default an empty text."""
+        return ""
+
+    def collapse(self, direction: Direction) -> CollapseMechanism | None:
+        """Return the weakest mechanism of a direction, if the structure searches for it; by default None."""
+        return None
+
+    def volume(self) -> float:
+        """Return the volume to which `density` applies [m3]: by default the area of the outlines times `depth`."""
+        deep, sketch = self.given_depth, self.sketch()
+        area = 0.0
+        for body in self.bodies():
+            shapes = body.shapes(sketch.outlines if sketch.uniform else {})
+            if not shapes:
+                raise RefusedFields((), "density", f"the shape of its {body.name} is not known: give its mass instead")
+            area += sum(abs(area_of(shape)) for shape in shapes)
+        return area * deep
+
+    def total_mass(self) -> float | None:
+        """Return the given mass of the structure [kg]; None if not given, or if `bodies` have their own masses."""
+        if self.mass is not None or self.density is None:
+            return self.mass
+        return self.density * self.volume()
+
+    @cached_property
+    def _mass_factor(self) -> float:
+        """Factor on the masses of `bodies` that gives the total mass."""
+        total = self.total_mass()
+        return 1.0 if total is None else total / sum(body.mass for body in self.bodies())
+
+    @final
+    def weighed(self) -> Sequence[Body]:
+        """Return the bodies with the given masses of the structure."""
+        return weighed(self.bodies(), self._mass_factor)
+
+
+class Jointed(Kinematics):
+    """Joints of a mechanism, which time histories are checked against."""
+
+    def joints(self, direction: Direction) -> Sequence[Joint]:
+        """Return the joints between bodies and with the ground, for the check of time histories; by default none."""
+        return ()
+
+    def pieces(self, direction: Direction) -> Sequence[Piece]:
+        """Return the rigid blocks between all joints, also those that stay closed; by default the bodies."""
+        return [Piece(body, body.name) for body in self.weighed()]
+
+    def piece_at(self, body: str, at: complex, direction: Direction) -> str:
+        """Return the name of the piece on which a point of a body lies; by default that of the body."""
+        return body
+
+    def contacts(self, direction: Direction) -> Sequence[Contact] | None:
+        """Return the joints between pieces, and with the ground, in a direction; None if they are not known.
+
+        Time histories are checked against them. By default they are the `joints` of a structure of one body; of several
+        bodies it is not known which joints stay closed, so that their histories are not checked.
+        """
+        joints = self.joints(direction)
+        return of_joints(joints, self.friction) if joints and len(self.bodies()) == 1 else None
+
+    def contacts_at_rest(self) -> Sequence[Contact] | None:
+        """Return the joints of a structure at rest; by default those of all its directions, None if not known.
+
+        A joint of two directions is given twice, with the points at which it touches in each.
+        """
+        each = [self.contacts(direction) for direction in self.directions]
+        return [contact for contacts in each for contact in contacts or ()] if all(each) else None
+
+    @property
+    def unchecked(self) -> str:
+        """Why `contacts` are not known, or what to give so that they are, in words."""
+        return "it does not say which of them stay closed"
+
+    @property
+    def propped(self) -> bool:
+        """Whether another of its bodies keeps a structure from rocking the other way; by default False."""
+        return False
+
+    def asserted(self) -> Sequence[str]:
+        """Return the joints that are assumed to hold without a check, in words: by default, supports."""
+        each = [contact for direction in self.directions for contact in self.contacts(direction) or ()]
+        held = [contact for contact in each if contact.held == "slide" and not contact.pressed_by]
+        stops = [] if self.rocks_both_ways or self.propped or len(self.bodies()) == 1 else ["what it leans on"]
+        return [*dict.fromkeys(contact.support for contact in held), *stops]
