@@ -12,7 +12,7 @@ _UNSEEN = re.compile(
 )
 LISTED = 8  # names of a row, before the rest is counted
 LONGEST = 60  # characters of a value that is quoted
-BEFORE, AFTER = 50, 70  # characters of a line that is quoted, on either side of what is wrong with it
+BEFORE, AFTER = 30, 40  # characters of a line that is quoted, on either side of what is wrong with it
 
 
 def printable(text: str) -> str:

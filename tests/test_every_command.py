@@ -29,11 +29,13 @@ from rocking_cli.studies import assessment
 from rocking_cli.text import printable
 from tests.conftest import EXAMPLES, PROJECT
 from tests.test_hostile_text import HARMFUL
-from tests.test_widths import WIDTHS, fits, words
+from tests.test_widths import fits, words
 
 with pytest.MonkeyPatch.context() as patch:
     patch.syspath_prepend(PROJECT / "scripts")
     outputs = import_module("outputs")
+
+WIDTHS = (40, 60, 80, 100)
 
 # --- a command, run once
 

@@ -6,7 +6,7 @@ from importlib import import_module
 import click
 from click.testing import CliRunner
 
-from rocking_cli.cli.help import OF_RECORDS, OPTIONS
+from rocking_cli.cli.help import OF_RECORDS, OPTIONS, RecordOption
 from rocking_cli.cli.main import COMMANDS, main
 from rocking_cli.cli.options import CORRECTIONS
 
@@ -91,7 +91,7 @@ def test_options_of_records_have_a_heading_of_their_own():
         rows = re.findall(r"^  \S+", own + after, re.MULTILINE)
         wrong += [f"{name}: {row} is not an option" for row in rows if not row.startswith("  -")]
         for _, option, each in (found for found in EVERY_OPTION if found[0] == name):
-            of_records = getattr(each, "heading", OPTIONS) == OF_RECORDS
+            of_records = isinstance(each, RecordOption)
             listed = re.compile(rf"^  (-\w, )?{option}\b(?!-)", re.MULTILINE)
             if bool(listed.search(after)) != of_records or bool(listed.search(before)) == of_records:
                 wrong.append(f"{name} {option} is listed under the wrong heading")
@@ -101,8 +101,6 @@ def test_options_of_records_have_a_heading_of_their_own():
 def test_every_command_that_reads_records_has_the_same_options_for_that():
     listed = {}
     for name, option, each in EVERY_OPTION:
-        if getattr(each, "heading", None) == OF_RECORDS and not option.startswith(
-            ("--vertical", "--scale", "--target")
-        ):
+        if isinstance(each, RecordOption) and not option.startswith(("--vertical", "--scale", "--target")):
             listed.setdefault(name, []).append(option)
     assert len(listed) > 10 and len({tuple(each) for each in listed.values()}) == 1, listed

@@ -14,7 +14,6 @@ import click
 
 from rocking_cli import __version__
 from rocking_cli.cli import defaults, endings, terminal
-from rocking_cli.cli.help import Context
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.text import cut, one_line, printable
 
@@ -29,7 +28,7 @@ DO_WITHOUT = ("info", "selfcheck")
 LATEST = 11  # digits of SOURCE_DATE_EPOCH, up to the year 5138
 
 
-class _Context(Context):
+class _Context(click.Context):
     """Context of a command: its options have the user's defaults, and only results go to standard output."""
 
     def __init__(self, *args: Any, **more: Any) -> None:
@@ -65,8 +64,6 @@ def _check_environment() -> None:
 
 class LazyGroup(click.Group):
     """Group of commands, each in a module of its name; errors of the package become a message and an exit code."""
-
-    context_class = Context
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names in the order in which a newcomer needs them."""
@@ -145,7 +142,7 @@ class LazyGroup(click.Group):
             terminal.detail(f"took {monotonic() - began:.2f} s")
 
 
-@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(__version__, prog_name="rocking")
 @click.option(
     "-v", "--verbose", is_flag=True, help="Show more detail: where inputs come from and how long each step takes."

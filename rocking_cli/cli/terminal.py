@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TextIO
 
 import click
 
-from rocking_cli.cli.prose import wrapped
+from rocking_cli.cli.layout import grid, stacked, wrapped
 from rocking_cli.errors import KernelWarning, PluginWarning
 from rocking_cli.io.json_text import json_text
 from rocking_cli.text import printable
@@ -269,16 +269,14 @@ def table(
     numbers : collection of int
         Indices of columns to align to the right; these and the first never wrap.
     """
-    from rocking_cli.cli.tables import drawn, grid, stacked
-
     room, columns = width(), [printable(each) for each in columns]
     rows = [[printable(cell) for cell in row] for row in rows]
     if title:
         click.echo(click.style(wrapped(printable(title), room), bold=True), file=_results)
-    found = grid(columns, rows, numbers, room)
+    encoding = getattr(_results or sys.stdout, "encoding", None) or "utf-8"
+    found = grid(columns, rows, numbers, room, "─" if encoding.lower().startswith("utf") else "-")
     if found is not None:
-        encoding = getattr(_results or sys.stdout, "encoding", None) or "utf-8"
-        heads, body = drawn(*found, numbers, "─" if encoding.lower().startswith("utf") else "-")
+        heads, body = found
         click.echo("\n".join([*(click.style(line, bold=True) for line in heads), *body]), file=_results)
     else:
         assert room is not None  # else everything fits
