@@ -10,7 +10,7 @@ import click
 from rocking_cli.cli import inputs, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.quantities import Finite
+from rocking_cli.cli.quantities import POSITIVE
 from rocking_cli.errors import RockingError
 
 # The names of the models stand here again so that `--help` needs no numpy.
@@ -28,11 +28,11 @@ MODELS = ("nonlinear", "linear1", "linear2")
     what="Output file: an animated GIF (.gif), or a self-contained page with a slider (.html).",
 )  # fmt: skip
 @click.option(
-    "--speed", type=Finite(positive=True), metavar="TIMES",
+    "--speed", type=POSITIVE, metavar="TIMES",
     help="Playback speed: seconds of motion per second.  [default: 1; a GIF is sped up to last at most 20 s]",
 )  # fmt: skip
 @click.option(
-    "--fps", type=Finite(positive=True), default=20.0, show_default=True, metavar="FRAMES",
+    "--fps", type=POSITIVE, default=20.0, show_default=True, metavar="FRAMES",
     help="Frames per second of a GIF.",
 )  # fmt: skip
 @options.around

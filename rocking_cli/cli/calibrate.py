@@ -11,7 +11,7 @@ from rocking_cli.cli import complete, options
 from rocking_cli.cli.defaults import from_default
 from rocking_cli.cli.groups import Output, ReadingOptions
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.quantities import QuantityKind, Range
+from rocking_cli.cli.quantities import QuantityKind, range_of
 
 if TYPE_CHECKING:
     from rocking_cli.studies.experiments.trace import Trace
@@ -43,13 +43,13 @@ ETA = QuantityKind("restitution", "", "0.8", "0.8:0.99", 1e-3, 1.0)
 )
 @click.option(
     "--slenderness",
-    type=Range(FACTOR),
+    type=range_of(FACTOR),
     metavar="LOW:HIGH",
     help="With --tests: range of the factor on the slenderness.  [default: 0.7:1.3]",
 )
 @click.option(
     "--restitution",
-    type=Range(ETA),
+    type=range_of(ETA),
     metavar="LOW:HIGH",
     help="With --tests: range of the restitution.  [default: 0.7:0.99]",
 )

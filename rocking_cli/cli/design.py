@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import click
@@ -13,16 +12,16 @@ from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import Parsed
 
 
-def _span() -> Callable[[str], Any]:
+def _span(text: str) -> Any:
     from rocking_cli.studies.design import Span
 
-    return Span.parse
+    return Span.parse(text)
 
 
-def _aim() -> Callable[[str], Any]:
+def _aim(text: str) -> Any:
     from rocking_cli.studies.design import Aim
 
-    return Aim.parse
+    return Aim.parse(text)
 
 
 @click.command(cls=Command, short_help="Find the values of a field that meet a requirement.")

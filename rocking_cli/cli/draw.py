@@ -8,13 +8,13 @@ import click
 
 from rocking_cli.cli import options
 from rocking_cli.cli.groups import Output
-from rocking_cli.cli.quantities import Finite
+from rocking_cli.cli.quantities import NUMBER
 
 
 @click.command(short_help="Draw a structure at rest and displaced, with dimensions.")
 @click.argument("file", required=False, type=click.Path())
 @click.option(
-    "--at", type=Finite(), metavar="RATIO",
+    "--at", type=NUMBER, metavar="RATIO",
     help="Rotation to draw, as a multiple of phi_cr, or of the kinematic limit if there is no phi_cr.  "
     "[default: 1, 0.1]",
 )  # fmt: skip

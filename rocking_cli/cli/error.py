@@ -9,17 +9,17 @@ import click
 from rocking_cli.cli import options
 from rocking_cli.cli.groups import Output
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.quantities import Finite
+from rocking_cli.cli.quantities import NUMBER
 
 
 @click.command(cls=Command, short_help="Compute the errors of the equivalent block.")
 @click.argument("file", required=False, type=click.Path())
 @click.option(
-    "--at", type=Finite(), multiple=True, default=(0.5,), show_default="0.5", metavar="RATIO",
+    "--at", type=NUMBER, multiple=True, default=(0.5,), show_default="0.5", metavar="RATIO",
     help="Amplitude phi/phi_cr at which to evaluate the error. Repeatable.",
 )  # fmt: skip
 @click.option(
-    "--a", type=Finite(), multiple=True, default=(2.0,), show_default="2",
+    "--a", type=NUMBER, multiple=True, default=(2.0,), show_default="2",
     metavar="RATIO",
     help="Constant acceleration, as a multiple of the uplift acceleration. Repeatable.",
 )  # fmt: skip

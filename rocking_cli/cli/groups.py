@@ -12,7 +12,7 @@ from rocking_cli.cli import options, terminal
 from rocking_cli.cli.defaults import from_default
 from rocking_cli.cli.options import Placed
 from rocking_cli.cli.pictures import write_picture
-from rocking_cli.cli.quantities import Azimuth
+from rocking_cli.cli.quantities import ALL
 
 if TYPE_CHECKING:
     from rocking_cli.ask.answer import Answer
@@ -60,7 +60,7 @@ class ReadingOptions:
     @property
     def all_azimuths(self) -> bool:
         """Whether a pair of components is rotated into all directions."""
-        return self.azimuth == Azimuth.ALL
+        return self.azimuth == ALL
 
     @property
     def reading(self) -> Reading:

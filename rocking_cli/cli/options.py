@@ -14,16 +14,16 @@ from rocking_cli.cli import complete
 from rocking_cli.cli.help import RecordOption
 from rocking_cli.cli.quantities import (
     AMPLITUDE,
+    AZIMUTH,
     INTERVAL,
+    NUMBER,
     PERIOD,
     PGA,
     PGV,
-    Azimuth,
-    Finite,
+    SHARE,
     Parsed,
-    Quantity,
-    Share,
     Unit,
+    quantity_of,
 )
 
 STANDARD_OUTPUT = "-"
@@ -206,30 +206,26 @@ def _placed(ctx: click.Context, param: click.Parameter, value: tuple[Any, ...]) 
     return Placed(place, value[0])
 
 
-def _parser_of(name: str) -> Callable[[], Callable[[str], Any]]:
-    def fetch() -> Callable[[str], Any]:
+def _correction(name: str, metavar: str, what: str) -> Decorator:
+    def parse(text: str) -> Any:
         from rocking_cli.processing.steps import STEPS
 
-        return STEPS[name].parse
+        return STEPS[name].parse(text)
 
-    return fetch
-
-
-def _correction(name: str, metavar: str, what: str) -> Decorator:
-    kind = Parsed(name, _parser_of(name))
+    kind = Parsed(name, parse)
     return record_option(f"--{name}", multiple=True, type=kind, metavar=metavar, callback=_placed, help=what)
 
 
-def _gain() -> Callable[[str], Any]:
+def _gain(text: str) -> Any:
     from rocking_cli.excitation.records.sensor import Gain
 
-    return Gain.parse
+    return Gain.parse(text)
 
 
-def _floor() -> Callable[[str], Any]:
+def _floor(text: str) -> Any:
     from rocking_cli.processing.floor import Floor
 
-    return Floor.parse
+    return Floor.parse(text)
 
 
 CORRECTIONS = ("baseline", "highpass", "lowpass", "taper", "trim", "resample")
@@ -250,7 +246,7 @@ corrections: Decorator = in_order(
 reading: Decorator = in_order(
     record_option("--units", type=Unit(), help="Unit of the record, if the file does not state it."),
     record_option(
-        "--dt", type=Quantity(INTERVAL), metavar="TIME", help="Sampling interval in s, if the file has no times."
+        "--dt", type=quantity_of(INTERVAL), metavar="TIME", help="Sampling interval in s, if the file has no times."
     ),
     record_option("--channel", metavar="CHANNEL", help="Channel or column to read: its number, from 1, or its name."),
     record_option(
@@ -270,7 +266,7 @@ reading: Decorator = in_order(
         "--with-channel", "other_channel", metavar="CHANNEL", help="Channel of the second component in its file."
     ),
     record_option(
-        "--azimuth", type=Azimuth(), metavar="DEGREES",
+        "--azimuth", type=AZIMUTH, metavar="DEGREES",
         help="Azimuth of the structure's plane, in degrees: 0 is the record, 90 is --with. `respond` also accepts all.",
     ),
     corrections,
@@ -299,16 +295,16 @@ def scaling(*polarities: str, default: str = "1") -> Decorator:
     The user may give one of the first three.
     """
     return in_order(
-        record_option("--scale", type=Finite(), metavar="FACTOR", help="Scale factor on the motion.  [default: 1]"),
+        record_option("--scale", type=NUMBER, metavar="FACTOR", help="Scale factor on the motion.  [default: 1]"),
         record_option(
             "--target-pga",
-            type=Quantity(PGA),
+            type=quantity_of(PGA),
             metavar="ACCELERATION",
             help="Peak ground acceleration to scale the motion to, in g.",
         ),
         record_option(
             "--target-pgv",
-            type=Quantity(PGV),
+            type=quantity_of(PGV),
             metavar="VELOCITY",
             help="Peak ground velocity to scale the motion to, in m/s.",
         ),
@@ -343,11 +339,11 @@ def sized_pulse(*polarities: str, required: bool = False) -> Decorator:
         click.option(
             "--ag",
             required=required,
-            type=Quantity(AMPLITUDE),
+            type=quantity_of(AMPLITUDE),
             metavar="AMPLITUDE",
             help=HELP["ag"],
         ),
-        click.option("--period", required=required, type=Quantity(PERIOD), metavar="PERIOD", help=HELP["period"]),
+        click.option("--period", required=required, type=quantity_of(PERIOD), metavar="PERIOD", help=HELP["period"]),
         shape,
         polarity(*polarities),
     )
@@ -373,7 +369,7 @@ around: Decorator = in_order(
     ),
     click.option(
         "--amplitude-deviation",
-        type=Share(),
+        type=SHARE,
         default=0.04,
         show_default=True,
         metavar="SHARE",
@@ -382,14 +378,14 @@ around: Decorator = in_order(
     ),
     click.option(
         "--slenderness-deviation",
-        type=Share(),
+        type=SHARE,
         metavar="SHARE",
         callback=share,
         help="Standard deviation of ln slenderness; by default that of the file, or 10 %.",
     ),
     click.option(
         "--restitution-deviation",
-        type=Finite(),
+        type=NUMBER,
         metavar="ETA",
         callback=share,
         help="Standard deviation of restitution; by default that of the file, 0.03 of a given value, or 0.05.",
@@ -399,7 +395,7 @@ around: Decorator = in_order(
 
 opening: Decorator = click.option(
     "--opening",
-    type=Share(),
+    type=SHARE,
     metavar="SHARE",
     expose_value=False,
     callback=_note_opening,

@@ -7,14 +7,14 @@ from typing import Any
 import click
 
 from rocking_cli.cli import options, terminal
-from rocking_cli.cli.quantities import Finite
+from rocking_cli.cli.quantities import POSITIVE
 
 
 @click.command(short_help="Compute the response to a pulse.")
 @click.argument("file", required=False, type=click.Path())
 @options.sized_pulse("1", "-1", "both")
-@click.option("--a", type=Finite(positive=True), help=options.HELP["a"])
-@click.option("--omega", type=Finite(positive=True), help=options.HELP["omega"])
+@click.option("--a", type=POSITIVE, help=options.HELP["a"])
+@click.option("--omega", type=POSITIVE, help=options.HELP["omega"])
 @click.option("--eta", type=click.FloatRange(0, 1, min_open=True), help=f"{options.HELP['eta']}  [default: 0.9]")
 @options.opening
 @options.as_json

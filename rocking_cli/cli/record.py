@@ -14,7 +14,7 @@ from rocking_cli.cli import options, terminal
 from rocking_cli.cli.groups import Output, ReadingOptions, Scaling
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.pictures import write_picture
-from rocking_cli.cli.quantities import PERIOD, Range, Share
+from rocking_cli.cli.quantities import PERIOD, SHARE, range_of
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.views.view import View
 
@@ -60,9 +60,9 @@ if TYPE_CHECKING:
     help="Write the response spectrum of each record; --plot draws it and --json includes it.  - is standard output.",
 )
 @click.option(
-    "--period", type=Range(PERIOD), metavar="LOW:HIGH", help="Periods of the spectrum, in s.  [default: 0.02:10]"
+    "--period", type=range_of(PERIOD), metavar="LOW:HIGH", help="Periods of the spectrum, in s.  [default: 0.02:10]"
 )
-@click.option("--damping", type=Share(), callback=options.share, help=f"{options.HELP['damping']}  [default: 5%]")
+@click.option("--damping", type=SHARE, callback=options.share, help=f"{options.HELP['damping']}  [default: 5%]")
 @options.plot("Plot one record, or the spectra")
 @options.as_json
 @click.pass_context

@@ -10,7 +10,7 @@ import click
 from rocking_cli.cli import complete, inputs, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, Output
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.quantities import INTERVAL, TAIL, Finite, Quantity, Tilt
+from rocking_cli.cli.quantities import INTERVAL, POSITIVE, TAIL, TILT, quantity_of
 from rocking_cli.errors import RockingError
 from rocking_cli.views.view import View, heading
 
@@ -47,7 +47,7 @@ def _models(ctx: click.Context, param: click.Parameter, value: str | None) -> tu
 )
 @options.record_option(
     "--vertical-dt",
-    type=Quantity(INTERVAL),
+    type=quantity_of(INTERVAL),
     metavar="TIME",
     help="Sampling interval of the vertical component in s, if its file has no times.",
 )
@@ -62,7 +62,7 @@ def _models(ctx: click.Context, param: click.Parameter, value: str | None) -> tu
 )
 @click.option(
     "--release",
-    type=Tilt(),
+    type=TILT,
     metavar="TILT",
     help="Initial tilt of a release from rest: a fraction of phi_cr, or an angle such as 0.05rad; negative is "
     "anticlockwise.",
@@ -77,7 +77,7 @@ def _models(ctx: click.Context, param: click.Parameter, value: str | None) -> tu
 )
 @click.option(
     "--tail",
-    type=Quantity(TAIL),
+    type=quantity_of(TAIL),
     default=10.0,
     show_default=True,
     metavar="TIME",
@@ -85,7 +85,7 @@ def _models(ctx: click.Context, param: click.Parameter, value: str | None) -> tu
 )
 @click.option(
     "--rtol",
-    type=Finite(positive=True),
+    type=POSITIVE,
     default=1e-9,
     show_default=True,
     metavar="TOLERANCE",

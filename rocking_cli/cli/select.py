@@ -11,7 +11,7 @@ import click
 from rocking_cli.cli import complete, options
 from rocking_cli.cli.groups import Output, ReadingOptions
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.quantities import PERIOD, QuantityKind, Range, Share
+from rocking_cli.cli.quantities import PERIOD, SHARE, QuantityKind, range_of
 
 RATIO = QuantityKind("ratio", "", "0.9", "0.9:1.3", 1e-3, 1e3)
 FACTOR = QuantityKind("factor", "", "0.5", "0.5:3", 1e-6, 1e6)
@@ -31,14 +31,14 @@ MOST = 1000  # records of a set
 @click.option(
     "--band",
     required=True,
-    type=Range(PERIOD),
+    type=range_of(PERIOD),
     metavar="FROM:TO",
     help="Period range over which the mean must match, in s.",
 )
 @click.option("--count", required=True, type=click.IntRange(1, MOST), metavar="N", help="Number of records to select.")
 @click.option(
     "--within",
-    type=Range(RATIO),
+    type=range_of(RATIO),
     default="0.9:1.3",
     show_default=True,
     metavar="LOW:HIGH",
@@ -46,7 +46,7 @@ MOST = 1000  # records of a set
 )
 @click.option(
     "--damping",
-    type=Share(),
+    type=SHARE,
     default="5%",
     show_default=True,
     callback=options.share,
@@ -55,7 +55,7 @@ MOST = 1000  # records of a set
 )
 @click.option(
     "--factors",
-    type=Range(FACTOR),
+    type=range_of(FACTOR),
     default="0.2:5",
     show_default=True,
     metavar="LOW:HIGH",

@@ -9,40 +9,31 @@ import click
 from rocking_cli.cli import motion_files, options
 from rocking_cli.cli.groups import GroundMotions, Output
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.quantities import Finite, Share, SizeRange
+from rocking_cli.cli.quantities import NUMBER, Parsed, QuantityKind, angle, share, span
 
 MODELS = ("nonlinear", "linear1", "linear2")
 SIZES, MOST = 60, 2000  # of a curve: by default, and at most
+SIZE = QuantityKind("period", "s", "0.8s", "1s:10s", 1e-3, 1e4)  # blocks of 0.2 um to 19,000 km
 
 
-class Slenderness(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
-    """Angles, separated by commas, in rad unless they have a unit."""
-
-    name = "angles"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
-        """Return the angles of a text [rad], or fail naming the option."""
-        if isinstance(value, tuple):
-            return value
-        from rocking_cli.units import UnitError, read, split
-
-        try:
-            parts = [(word, split(word)) for word in value.split(",")]
-            return tuple(float(word) if of is not None and not of[1] else read(word, "rad") for word, of in parts)
-        except UnitError as error:
-            self.fail(f"{error}.", param, ctx)
+def _slenderness(text: str) -> tuple[float, ...]:
+    """Return angles [rad], separated by commas, in rad unless they have a unit."""
+    return tuple(angle(word, "rad") for word in text.split(","))
 
 
-class Shares(Share):
-    """Fractions, separated by commas."""
+def _shares(text: str) -> tuple[float, ...]:
+    """Return fractions, separated by commas."""
+    return tuple(map(share, text.split(",")))
 
-    name = "shares"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the numbers of a text, or fail naming the option."""
-        if isinstance(value, tuple):
-            return value
-        return tuple(super(Shares, self).convert(word, param, ctx) for word in value.split(","))
+def _sizes(text: str) -> tuple[float, float, int]:
+    """Return two periods in s, the smaller first, and the number of sizes between them."""
+    *ends, last = text.split(":")
+    if len(ends) != 2:
+        return *span(SIZE, text), SIZES
+    if not (last.strip().isdecimal() and 2 <= int(last) <= MOST):
+        raise ValueError(f"{last!r} is not a number of sizes from 2 to {MOST}: give a range such as 1:10:60")
+    return *span(SIZE, ":".join(ends)), int(last)
 
 
 @click.command(cls=Command, short_help="Compute the rocking spectrum: peak rotation against size.")
@@ -50,28 +41,28 @@ class Shares(Share):
 @options.ground_motions
 @click.option(
     "--slenderness",
-    type=Slenderness(),
+    type=Parsed("angles", _slenderness),
     default=(),
     metavar="A,B,...",
     help="Slendernesses of rectangular blocks to compute as well: alpha = atan(b/h) in rad, such as 0.1,0.2, or 10deg.",
 )
 @click.option(
     "--sizes",
-    type=SizeRange(SIZES, MOST),
+    type=Parsed("sizes", _sizes),
     metavar="FROM:TO[:COUNT]",
     help="Sizes, as 2 pi/p in s, such as 1:10:60.  [default: FILE scaled by 0.1 to 10; 1:10 for blocks alone]",
 )
 @click.option("--model", type=click.Choice(MODELS), default="nonlinear", show_default=True, help=options.HELP["model"])
 @click.option(
     "--eta",
-    type=Finite(),
+    type=NUMBER,
     help=f"{options.HELP['eta']}  [default: that of the structure or block]",
 )
 @options.reading
 @options.scaling("1", "-1", "both")
 @click.option(
     "--fractiles",
-    type=Shares(),
+    type=Parsed("shares", _shares),
     default=(0.16, 0.84),
     show_default="0.16,0.84",
     metavar="Q,Q",
