@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from itertools import count
 
 # Control characters, marks that turn the direction of writing, line ends of other kinds, and what is no character at
 # all. Tabs and line feeds are let through: they do no harm.
@@ -53,6 +54,19 @@ def is_one_line(text: str) -> bool:
 def cut(text: str, most: int = LONGEST) -> str:
     """Shorten a text to at most `most` characters, with dots at the end if it was longer."""
     return text if len(text) <= most else f"{text[: most - 3]}..."
+
+
+def numbered(name: str, suffix: str, taken: Collection[str]) -> str:
+    """Return the first of `name.csv`, `name-2.csv`, ... that is not taken, also where case does not count.
+
+    Examples
+    --------
+    >>> numbered("a", ".csv", ["A.csv", "b.csv"])
+    'a-2.csv'
+    """
+    known = {each.casefold() for each in taken}
+    names = (f"{name}{f'-{k}' if k > 1 else ''}{suffix}" for k in count(1))
+    return next(each for each in names if each.casefold() not in known)
 
 
 def in_short(names: Sequence[str], between: str = ", ", most: int = LISTED) -> str:

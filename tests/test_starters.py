@@ -6,7 +6,7 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from rocking_cli.cli.new import STARTERS
+from rocking_cli.cli.new import STARTERS, STUDY
 from rocking_cli.core import both_statics
 from rocking_cli.dynamics.history import follow
 from rocking_cli.excitation.base import GroundMotion
@@ -31,7 +31,7 @@ def test_a_starter_is_a_structure_that_rocks(name):
 
 def test_every_starter_is_a_file_of_the_package_and_none_is_forgotten():
     there = {entry.name.removesuffix(".yaml") for entry in (files("rocking_cli") / "data" / "starters").iterdir()}
-    assert there == set(STARTERS)
+    assert there == {*STARTERS, STUDY}
     assert json.loads(run("new", "facade", "--json").stdout)["starter"] == "facade"
 
 

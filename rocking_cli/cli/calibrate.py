@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -12,9 +12,7 @@ from rocking_cli.cli.defaults import from_default
 from rocking_cli.cli.groups import Output, ReadingOptions
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import QuantityKind, range_of
-
-if TYPE_CHECKING:
-    from rocking_cli.studies.experiments.trace import Trace
+from rocking_cli.cli.written import read_table
 
 FACTOR = QuantityKind("factor", "", "0.8", "0.8:1.2", 1e-3, 1e3)
 ETA = QuantityKind("restitution", "", "0.8", "0.8:0.99", 1e-3, 1.0)
@@ -99,26 +97,17 @@ def command(file: str, reading: ReadingOptions, output: Output, **question: Any)
     from rocking_cli.ask.calibrate import calibrate
     from rocking_cli.cli import structures
     from rocking_cli.cli.watching import OnTerminal
+    from rocking_cli.studies.experiments.trace import parse_trace
 
     output.keep_apart(file, question["free"], question["tests"])
     watch = OnTerminal()
     readings = reading.readings
-    if question["free"] is not None:  # defaults of a user have no effect on a trace, and are no error
+    if question["free"] is not None:
+        # Defaults of a user have no effect on a trace, and are no error.
         question |= {name: None for name in ("points", "neighbours") if from_default(name)}
-    question["free"] = _trace(question["free"])
+        question["free"] = read_table(question["free"], parse_trace)
     answer = calibrate(structures.prepared([file]), out=output.out, watch=watch, readings=readings, **question)
     if output.out is not None:
         watch.note(f"wrote {output.out}")
     replace(output, out=None).show(answer)
     watch.end()
-
-
-def _trace(file: str | None) -> Trace | str | None:
-    """Return the trace of standard input, or the file of a trace."""
-    if file != options.STANDARD_OUTPUT:
-        return file
-    from rocking_cli.excitation.records.opening import name_of, original
-    from rocking_cli.io.spreadsheet import parse_sheet
-    from rocking_cli.studies.experiments.trace import parse_trace
-
-    return parse_trace(parse_sheet(original(file), name_of(file)))

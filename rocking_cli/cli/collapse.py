@@ -26,7 +26,7 @@ def command(file: str | None, plot: Path | None, as_json: bool) -> None:
     """
     from rocking_cli.ask.collapse import collapse
     from rocking_cli.cli import structures, waiting
-    from rocking_cli.cli.pictures import write_picture
+    from rocking_cli.cli.written import write_picture
     from rocking_cli.io.files import check_writable, keep_apart
 
     keep_apart([("--plot", plot)], [file])

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 import click
 from click.shell_completion import CompletionItem
 
-CODES = "rocking.codes"
-"""Entry-point group of codes of practice, as in `studies.verification.installed`, which takes long to import."""
+CODES, MECHANISMS, PULSES = "rocking.codes", "rocking.mechanisms", "rocking.pulses"
+"""Entry-point groups, as in the modules of the plugins, which take long to import."""
 Completer = Callable[[click.Context, click.Parameter, str], list[CompletionItem]]
 
 
@@ -17,19 +17,20 @@ def files(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[C
     return [CompletionItem(incomplete, type="file")]
 
 
-def mechanisms(*more: str) -> Completer:
-    """Return a completer for the names of installed mechanisms, and the names in `more`."""
-    return _plugins("rocking.mechanisms", more=more)
+def plugins(group: str, *more: str, ending: str = "") -> Completer:
+    """Return a completer for the names of the plugins of a group and those in `more`, each with a suffix."""
+
+    def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        from rocking_cli.plugins.registry import find
+
+        names = (name + ending for name in sorted({*find(group), *more}))
+        return [CompletionItem(name) for name in names if name.startswith(incomplete)]
+
+    return complete
 
 
-def shapes(ending: str = "") -> Completer:
-    """Complete names of installed pulse shapes, each with a suffix."""
-    return _plugins("rocking.pulses", ending=ending)
-
-
-def codes(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    """Complete names of installed codes of practice."""
-    return _plugins(CODES)(ctx, param, incomplete)
+codes = plugins(CODES)
+"""Complete names of installed codes of practice."""
 
 
 def listed(words: Sequence[str]) -> Completer:
@@ -39,15 +40,5 @@ def listed(words: Sequence[str]) -> Completer:
         before, comma, begun = incomplete.rpartition(",")
         there = before.split(",")
         return [CompletionItem(before + comma + each) for each in words if each.startswith(begun) and each not in there]
-
-    return complete
-
-
-def _plugins(group: str, *, more: Sequence[str] = (), ending: str = "") -> Completer:
-    def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-        from rocking_cli.plugins.registry import find
-
-        names = (name + ending for name in sorted({*find(group), *more}))
-        return [CompletionItem(name) for name in names if name.startswith(incomplete)]
 
     return complete

@@ -117,7 +117,7 @@ def _write(paper: PaperFigure, folder: Path, suffix: str) -> list[Path]:
     import csv
     import io
 
-    from rocking_cli.cli.pictures import save
+    from rocking_cli.cli.written import save
     from rocking_cli.io.files import check_writable, write_whole
     from rocking_cli.plotting.paper_figures import draw_paper_figure
 

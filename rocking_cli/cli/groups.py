@@ -11,8 +11,8 @@ import click
 from rocking_cli.cli import options, terminal
 from rocking_cli.cli.defaults import from_default
 from rocking_cli.cli.options import Placed
-from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import ALL
+from rocking_cli.cli.written import write_picture, write_table
 
 if TYPE_CHECKING:
     from rocking_cli.ask.answer import Answer
@@ -185,9 +185,7 @@ class Output:
     def write(self, answer: Answer[Any]) -> None:
         """Write the requested table and plot of an answer, make each only if needed, and report them."""
         if self.out is not None:
-            from rocking_cli.cli import table_files
-
-            table_files.write(self.out, answer.blocks() if answer.blocks is not None else [answer.columns()])
+            write_table(self.out, answer.blocks() if answer.blocks is not None else [answer.columns()])
         if self.plot is not None:
             write_picture(self.plot, answer.figure())
 

@@ -7,16 +7,21 @@ from typing import TYPE_CHECKING
 import click
 
 from rocking_cli.cli import complete, options, terminal
-
-# Additions to any mechanism, with fields of their own.
-PARTS = ("loads", "ties", "interlock", "strength", "crushing", "uncertainty")
+from rocking_cli.errors import InputError, MechanismError
 
 if TYPE_CHECKING:
+    from rocking_cli.core import Mechanism
+    from rocking_cli.core.contract import Verdict
     from rocking_cli.core.registry import Registry
+
+PARTS = ("loads", "ties", "interlock", "strength", "crushing", "uncertainty")
+"""Additions to any mechanism, with fields of their own."""
+LOADS = "The plugin can be loaded, and is a mechanism."
+MADE = "The file that `rocking new` prints is a structure."
 
 
 @click.command(short_help="List, describe or check the installed mechanisms.")
-@click.argument("name", required=False, shell_complete=complete.mechanisms())
+@click.argument("name", required=False, shell_complete=complete.plugins(complete.MECHANISMS))
 @click.argument("file", required=False, type=click.Path())
 @click.option(
     "--check",
@@ -49,8 +54,6 @@ def command(name: str | None, file: str | None, checked: bool, as_json: bool) ->
         raise click.UsageError("FILE requires --check.")
     registry = Registry()
     if name is not None and checked:
-        from rocking_cli.cli.mechanism_check import check
-
         check(name, file, registry, as_json)
     elif name in PARTS and name not in registry:
         from rocking_cli.views.mechanisms import part
@@ -65,7 +68,6 @@ def command(name: str | None, file: str | None, checked: bool, as_json: bool) ->
 
 
 def _all(registry: Registry, as_json: bool) -> None:
-    from rocking_cli.errors import MechanismError
     from rocking_cli.views.mechanisms import InstalledMechanism, installed
 
     found = []
@@ -78,3 +80,63 @@ def _all(registry: Registry, as_json: bool) -> None:
             title = None
         found.append(InstalledMechanism(name, title, registry.package_of(name)))
     terminal.show(installed(found), as_json=as_json)
+
+
+def check(name: str, file: str | None, registry: Registry, as_json: bool) -> None:
+    """Print which checks of the contract a mechanism passes; exit with the code of `MechanismError` if one fails.
+
+    Parameters
+    ----------
+    name : str
+        Name of the mechanism.
+    file : str or None
+        A structure of the mechanism; without one, its examples are checked.
+    registry : Registry
+        Registry of mechanisms.
+    as_json : bool
+        Whether to print one JSON object.
+
+    Raises
+    ------
+    InputError
+        If the mechanism does not exist, or the file is not a structure of it.
+    """
+    from rocking_cli.views.mechanisms import checked
+
+    verdicts = _verdicts(name, file, registry)
+    package = registry.package_of(name)
+    failed = [each for each in verdicts if not each.passed]
+    terminal.show(checked(name, package, file, verdicts), as_json=as_json)
+    if not as_json:
+        passes = f"fails {len(failed)} of {len(verdicts)} checks" if failed else f"passes all {len(verdicts)} checks"
+        terminal.note(f"{name} ({package}), {file or 'its examples'}: {passes}")
+    if failed:
+        click.get_current_context().exit(MechanismError.exit_code)
+
+
+def _verdicts(name: str, file: str | None, registry: Registry) -> list[Verdict]:
+    from rocking_cli.structure_file import load_structure, parse_structure
+    from rocking_cli.testing import contract, verdict
+    from rocking_cli.views.template import template
+
+    found: list[Mechanism] = []
+
+    def make() -> None:
+        if file is None:
+            text = template(registry[name])
+            found.append(parse_structure(text, f"rocking new {name}", name, registry))
+        else:
+            found.append(load_structure(file, registry))
+
+    if name not in registry:
+        registry[name]  # raises, with a guess
+    loads = verdict("loads", LOADS, lambda: registry[name])
+    if not loads.passed:
+        return [loads]
+    if file is None:
+        made = verdict("makes_a_structure", MADE, make)
+        return [loads, made, *(contract(found[0]) if found else [])]
+    make()
+    if found[0].mechanism != name:
+        raise InputError(f"{file} is a structure of the mechanism {found[0].mechanism}, not of {name}")
+    return [loads, *contract(found[0])]

@@ -23,7 +23,12 @@ SITE = "site"
 
 
 @click.command(short_help="Print a template file, or create a plugin package.")
-@click.argument("name", metavar="NAME", required=False, shell_complete=complete.mechanisms(STUDY, SITE, *STARTERS))
+@click.argument(
+    "name",
+    metavar="NAME",
+    required=False,
+    shell_complete=complete.plugins(complete.MECHANISMS, STUDY, SITE, *STARTERS),
+)
 @click.option("--plugin", is_flag=True, help="Create a package for a mechanism of your own, called NAME.")
 @click.option(
     "--code",
@@ -83,9 +88,7 @@ def command(
     if code is not None and name != SITE:
         raise click.UsageError("--code requires `site`, as in `rocking new site --code NTC2018`, or --plugin.")
     if name == STUDY:
-        from rocking_cli.cli.new_study import TEMPLATE
-
-        _print({"study": STUDY, "yaml": TEMPLATE}, as_json=as_json)
+        _print({"study": STUDY, "yaml": _starter(STUDY)}, as_json=as_json)
         return
     if name == SITE:
         _print_site(code, as_json=as_json)
@@ -98,8 +101,7 @@ def command(
 
     registry = Registry()
     if name in STARTERS and name not in registry:
-        text = (files("rocking_cli") / "data" / "starters" / f"{name}.yaml").read_text(encoding="utf-8")
-        _print({"starter": name, "yaml": text}, as_json=as_json)
+        _print({"starter": name, "yaml": _starter(name)}, as_json=as_json)
         return
     if name not in registry and name in find(complete.CODES):
         hint = f"`rocking new site --code {name}` prints a site file"
@@ -112,6 +114,10 @@ def command(
     except RockingError as error:
         _warn(f"the examples of the mechanism {name} are not a valid structure", error)
     _print({"mechanism": name, "yaml": text}, as_json=as_json)
+
+
+def _starter(name: str) -> str:
+    return (files("rocking_cli") / "data" / "starters" / f"{name}.yaml").read_text(encoding="utf-8")
 
 
 def _print_site(asked: str | None, *, as_json: bool) -> None:

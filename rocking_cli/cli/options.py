@@ -177,7 +177,8 @@ ground_motions: Decorator = in_order(
         help="Ground motion file, - for standard input, or a quoted pattern such as 'records/*.AT2'. Repeatable.",
     ),
     click.option(
-        "--pulse", "pulses", multiple=True, metavar="PULSE", shell_complete=complete.shapes(":"),
+        "--pulse", "pulses", multiple=True, metavar="PULSE",
+        shell_complete=complete.plugins(complete.PULSES, ending=":"),
         help="Pulse instead of a record, NAME:AMPLITUDE:PERIOD, such as sine:0.6g:0.8s. Repeatable.",
     ),
 )  # fmt: skip
@@ -328,7 +329,7 @@ shape: Decorator = click.option(
     default="sine",
     show_default=True,
     metavar="SHAPE",
-    shell_complete=complete.shapes(),
+    shell_complete=complete.plugins(complete.PULSES),
     help="Pulse shape: sine, cosine, half_sine, rectangular, ricker, ..., followed by its parameters if it has any.",
 )
 

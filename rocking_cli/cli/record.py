@@ -13,8 +13,8 @@ import click
 from rocking_cli.cli import options, terminal
 from rocking_cli.cli.groups import Output, ReadingOptions, Scaling
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.pictures import write_picture
 from rocking_cli.cli.quantities import PERIOD, SHARE, range_of
+from rocking_cli.cli.written import write_picture, write_table
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.views.view import View
 
@@ -187,7 +187,6 @@ def _make_room(out: Path | None, paths: Iterable[Path]) -> None:
 
 def _give_spectra(examined: Sequence[Examined], file: Path, plot: Path | None) -> None:
     """Write the spectra of all records into one file, and draw them in one plot."""
-    from rocking_cli.cli import table_files
     from rocking_cli.views.response_spectrum import table
 
     spectra: dict[str, ResponseSpectrum] = {}
@@ -199,7 +198,7 @@ def _give_spectra(examined: Sequence[Examined], file: Path, plot: Path | None) -
             *(f"{each.label} ({k})" for k in range(2, len(examined) + 2)),
         )
         spectra[next(name for name in names if name not in spectra)] = each.spectrum
-    table_files.write(file, [table(spectra)])
+    write_table(file, [table(spectra)])
     if plot is not None:
         from rocking_cli.plotting.response_spectrum import draw_response_spectra
 

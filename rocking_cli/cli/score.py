@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from rocking_cli.cli import options, terminal
 from rocking_cli.cli.groups import Output, ReadingOptions
 from rocking_cli.cli.help import Command
-
-if TYPE_CHECKING:
-    from rocking_cli.studies.experiments.table import TableOfTests
+from rocking_cli.cli.written import read_table
 
 NAMED = 20  # tests that cannot be simulated, named one by one
 
@@ -52,13 +50,13 @@ def command(ctx: click.Context, file: str, reading: ReadingOptions, output: Outp
     from rocking_cli.ask.score import score
     from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.excitation.records.opening import name_of
+    from rocking_cli.studies.experiments.table import parse_tests
     from rocking_cli.views.score import reason
 
     output.keep_apart(file)
     watch = OnTerminal()
-    answer = score(
-        _table(file), opening=ctx.meta.get(options.OPENING), watch=watch, readings=reading.readings, **around
-    )
+    table = read_table(file, lambda sheet: parse_tests(sheet, Path()))
+    answer = score(table, opening=ctx.meta.get(options.OPENING), watch=watch, readings=reading.readings, **around)
     failed = answer.failed
     for each in failed[:NAMED]:
         terminal.error(f"{name_of(file)}:{each.test.line}: {reason(each)}")
@@ -67,14 +65,3 @@ def command(ctx: click.Context, file: str, reading: ReadingOptions, output: Outp
     output.show(answer)
     watch.left_out += len(failed)
     watch.end()
-
-
-def _table(file: str) -> TableOfTests | str:
-    """Return the table of standard input, or the file of a table."""
-    if file != options.STANDARD_OUTPUT:
-        return file
-    from rocking_cli.excitation.records.opening import name_of, original
-    from rocking_cli.io.spreadsheet import parse_sheet
-    from rocking_cli.studies.experiments.table import parse_tests
-
-    return parse_tests(parse_sheet(original(file), name_of(file)), Path())

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rocking_cli.cli import terminal
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.text import one_line
+from rocking_cli.text import numbered, one_line
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
@@ -57,16 +57,13 @@ def write_set(folder_: Path, results: ShownSet, readings: Sequence[Reading | Non
 
 def _paths(place: Path, motions: list[GroundMotion]) -> list[Path]:
     """Return a file for each motion, after its name; if two names are equal, the second gets a number."""
-    taken: dict[str, Path] = {}
+    taken: list[str] = []
     for motion in motions:
         name, _, channel = motion.name.partition(" channel ")
         words = [Path(name).stem, *([channel] if channel else [])]
         stem = "-".join(re.sub(r"[^\w.+-]+", "-", word).strip("-") for word in words) or "record"
-        count = 1
-        while (file := f"{stem}{f'-{count}' if count > 1 else ''}.csv").casefold() in taken:
-            count += 1
-        taken[file.casefold()] = place / file
-    return list(taken.values())
+        taken.append(numbered(stem, ".csv", taken))
+    return [place / each for each in taken]
 
 
 def check_folder(folder_: Path, inputs: Sequence[Path]) -> None:

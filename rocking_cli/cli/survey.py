@@ -12,12 +12,11 @@ import click
 from rocking_cli.cli import complete, options, terminal
 from rocking_cli.cli.groups import GroundMotions
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.pictures import write_picture
+from rocking_cli.cli.written import read_table, write_picture, write_table
 from rocking_cli.errors import InputError, MechanismError
 
 if TYPE_CHECKING:
     from rocking_cli.ask.answer import Answer
-    from rocking_cli.studies.structure_table import StructureTable
     from rocking_cli.studies.survey import Survey
 
 NAMED = 20  # rows that cannot be used, named one by one
@@ -35,11 +34,10 @@ class SurveyOutput:
     def show(self, answer: Answer[Survey], file: str) -> None:
         """Write the requested files, and show the answer; a Parquet file has its texts as they are."""
         if self.out is not None:
-            from rocking_cli.cli import table_files
             from rocking_cli.io.tables import PARQUET
             from rocking_cli.views.survey import blocks
 
-            table_files.write(self.out, blocks(answer.result, for_spreadsheets=self.out.suffix.lower() != PARQUET))
+            write_table(self.out, blocks(answer.result, for_spreadsheets=self.out.suffix.lower() != PARQUET))
         if self.plot is not None:
             write_picture(self.plot, answer.figure())
         if self.page is not None:
@@ -105,14 +103,16 @@ def command(
     from rocking_cli.excitation.records.opening import name_of
     from rocking_cli.io.files import keep_apart
     from rocking_cli.io.tables import check_table
+    from rocking_cli.studies.structure_table import StructureTable
     from rocking_cli.views.survey import bad_lines
 
     check_table(results.out)
     motions, watch, opening = asked.motions, OnTerminal(), ctx.meta.get(options.OPENING)
     written = [("--out", results.out), ("--page", results.page), ("--plot", results.plot)]
     keep_apart(written, [file, *(str(each.path) for each in motions.records)])
+    table = read_table(file, lambda sheet: StructureTable(sheet, Path()))
     answer = survey(
-        _table(file), motions, polarity=asked.polarity, site=site, opening=opening, top=top, processes=True,
+        table, motions, polarity=asked.polarity, site=site, opening=opening, top=top, processes=True,
         watch=watch,
     )  # fmt: skip
     for line in bad_lines(answer.bad, name_of(file), NAMED):
@@ -123,14 +123,3 @@ def command(
     results.show(answer, name_of(file))
     watch.left_out += len(answer.bad)
     watch.end()
-
-
-def _table(file: str) -> StructureTable | str:
-    """Return the table of standard input, or the file of a table."""
-    if file != options.STANDARD_OUTPUT:
-        return file
-    from rocking_cli.excitation.records.opening import name_of, original
-    from rocking_cli.io.spreadsheet import parse_sheet
-    from rocking_cli.studies.structure_table import StructureTable
-
-    return StructureTable(parse_sheet(original(file), name_of(file)), Path())
