@@ -15,8 +15,7 @@ from rocking_cli.core import Equivalence, Mechanism, NoEquivalentBlock, Statics,
 from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.hung.element import Question
 from rocking_cli.core.statics import STRAIGHT
-from rocking_cli.dynamics.dispatch import build
-from rocking_cli.dynamics.model import MODELS, Model, ModelName
+from rocking_cli.dynamics.model import MODELS, Model, ModelName, build
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.dotted import copied, put, words

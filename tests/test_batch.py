@@ -16,7 +16,7 @@ from rocking_cli.core import Direction
 from rocking_cli.core.given import DirectionalRestitution
 from rocking_cli.dynamics import batch
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.dispatch import ELASTIC, KERNELS
+from rocking_cli.dynamics.deck import run_deck
 from rocking_cli.dynamics.model import MODELS
 from rocking_cli.dynamics.outcome import OUTCOME
 from rocking_cli.errors import InputError
@@ -203,12 +203,12 @@ def test_an_interruption_in_progress_stops_what_has_not_begun(monkeypatch, error
 
     def counted(*args, **options):
         begun.append(args[3])
-        return ELASTIC.run(*args, **options)
+        return run_deck(*args, **options)
 
     def interrupt(done):
         raise error
 
-    monkeypatch.setitem(KERNELS, "elastic", replace(ELASTIC, run=counted))
+    monkeypatch.setattr(batch, "run_deck", counted)
     monkeypatch.setattr(batch, "UNIT", 1)
     with pytest.raises(error):
         respond_many(every, motions(), runs, threads=1, progress=interrupt)

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.dynamics import kernels
-from rocking_cli.dynamics.deck import MOST_IMPACTS, read_marks
-from rocking_cli.dynamics.dispatch import KERNELS
+from rocking_cli.dynamics.deck import MOST_IMPACTS, lay_out, read_marks, run_deck
 from rocking_cli.dynamics.history import RTOL, check_rtol
 from rocking_cli.dynamics.in_step import out_of_step
 from rocking_cli.dynamics.model import Model
@@ -220,25 +219,15 @@ def respond_many(
     rows[:, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = etas
     marks = np.full((len(runs), kernels.MARKS), np.nan)  # a run that is never computed has failed
     most = DECISIVE - 1 if only_peaks else MOST_IMPACTS  # it is left after more than these
-    for name in dict.fromkeys(model.kernel for model in models):
-        kernel, own = KERNELS[name], [k for k, model in enumerate(models) if model.kernel == name]
-        # A slice is a view: runs of a single kernel are not copied.
-        mine = np.isin(runs.model, own) if len(own) < len(models) else slice(None)
-        its_rows, its_marks = rows[mine], marks[mine]
-        its_rows[:, kernels.STRUCTURE] = np.searchsorted(own, runs.model[mine])
-        deck = kernel.lay_out([models[k] for k in own], motions)
-        run = partial(kernel.run, deck, rtol=rtol, most_impacts=most, brief=True)
-        in_parts(partial(run, its_rows, its_marks), len(its_rows), UNIT, threads, progress)
-        loose = out_of_step(
-            [models[k] for k in own], motions, its_rows, its_marks, tilts[mine],
-            rtol=rtol, most_impacts=most, threads=threads,
-        )  # fmt: skip
-        if loose.any():
-            again, found = its_rows[loose], its_marks[loose]
-            again[:, kernels.LOOSE] = 1.0
-            in_parts(partial(run, again, found), len(again), UNIT, threads, None)
-            its_marks[loose] = found
-        marks[mine] = its_marks
+    rows[:, kernels.STRUCTURE] = runs.model
+    if len(runs):
+        run = partial(run_deck, lay_out(models, motions), rtol=rtol, most_impacts=most, brief=True)
+        in_parts(partial(run, rows, marks), len(rows), UNIT, threads, progress)
+        loose = out_of_step(models, motions, rows, marks, tilts, rtol=rtol, most_impacts=most, threads=threads)
+        again, found = rows[loose], marks[loose]
+        again[:, kernels.LOOSE] = 1.0
+        in_parts(partial(run, again, found), len(again), UNIT, threads, None)
+        marks[loose] = found
     reach = np.array([model.reach for model in models])
     phi_cr = np.array([model.phi_cr for model in models]).reshape(-1, 2)[runs.model]
     outcomes = read_marks(marks, phi_cr, reach[runs.model])

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.dynamics import kernels
-from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, read_marks
-from rocking_cli.dynamics.dispatch import KERNELS
+from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, lay_out, read_marks, run_deck
 from rocking_cli.dynamics.in_step import out_of_step
 from rocking_cli.dynamics.joints import JointCheck, check_of
 from rocking_cli.dynamics.model import Model, ModelName
@@ -143,9 +142,9 @@ def follow(
     runs[0, [kernels.FACTOR, kernels.V_FACTOR, kernels.SIZE, kernels.SLENDER]] = 1.0
     runs[0, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = eta
     runs[0, kernels.START] = model.q(release)
-    kernel = KERNELS[model.kernel]
-    deck = kernel.lay_out([model], [motion])
-    run = partial(kernel.run, deck, runs, marks, rtol=rtol, every=every, phi=phi, rate=rate, impacts=impacts)
+    run = partial(
+        run_deck, lay_out([model], [motion]), runs, marks, rtol=rtol, every=every, phi=phi, rate=rate, impacts=impacts
+    )
     run()
     tilts = np.array([release])
     if out_of_step([model], [motion], runs, marks, tilts, rtol=rtol, most_impacts=MOST_IMPACTS)[0]:

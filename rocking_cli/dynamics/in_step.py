@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.dynamics import kernels
-from rocking_cli.dynamics.deck import read_marks
-from rocking_cli.dynamics.dispatch import KERNELS
+from rocking_cli.dynamics.deck import lay_out, read_marks, run_deck
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.excitation.base import GroundMotion
@@ -62,9 +61,9 @@ def out_of_step(
             there[:, kernels.START] = [column.q(tilt) for tilt in tilts[mine].tolist()]
             for place, eta, of in zip((kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE), column.eta, model.eta, strict=True):
                 there[:, place] = np.clip(eta + there[:, place] - of, LEAST_ETA, 1.0)  # NaN stays
-            deck = KERNELS[column.kernel].lay_out([column], motions)
-            run = partial(KERNELS[column.kernel].run, deck, there, found, rtol=rtol, most_impacts=most_impacts)
-            in_parts(partial(run, brief=True), len(there), UNIT, threads, None)
+            deck = lay_out([column], motions)
+            run = partial(run_deck, deck, there, found, rtol=rtol, most_impacts=most_impacts, brief=True)
+            in_parts(run, len(there), UNIT, threads, None)
             alone, whole = (
                 read_marks(each, np.array([of.phi_cr]), np.array([of.reach]))
                 for each, of in ((found, column), (marks[mine], model))

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import nan, sqrt
+from math import isnan, nan, sqrt
 from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism
+from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, both_statics
 from rocking_cli.core.advice import uplift_error
+from rocking_cli.core.restitution import why_none
 from rocking_cli.core.statics import Statics
 from rocking_cli.core.uncertainty import Uncertainty
 from rocking_cli.dynamics.joints import JointTables, joints_of
@@ -31,6 +32,7 @@ from rocking_cli.dynamics.kernels import (
     P,
 )  # fmt: skip
 from rocking_cli.dynamics.tables import DirectionTable, tabulate
+from rocking_cli.errors import InputError, Problem
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -86,8 +88,6 @@ class Model:
         Uncertainty of restitution and slenderness of the structure.
     columns : tuple of Model
         Models of its columns, each alone, if three or more carry one beam.
-    kernel : str
-        Name of the kernel that simulates it, see `rocking_cli.dynamics.dispatch.KERNELS`.
     """
 
     name: ModelName
@@ -107,7 +107,6 @@ class Model:
     joints: JointTables | None = None
     scatter: Scatter = field(default_factory=lambda: Scatter(KINEMATIC, SLENDERNESS))
     columns: tuple[Model, ...] = ()
-    kernel: str = "elastic"
 
     @property
     def p(self) -> float:
@@ -162,8 +161,78 @@ class Model:
         return float(np.copysign(phi if self.tables is None else self.tables[side].q(phi), ratio))
 
 
-def completed(model: Model, mechanism: Mechanism) -> Model:
-    """Return a model with its scatter, and either made one-sided or, if it rocks both ways, with bounds of eta."""
+NO_REBOUND = Problem(
+    "is missing: a time history of a one-sided structure needs it, and only for a plain rectangle does it follow from "
+    "the shape",
+    field="rebound",
+    hint="give a measured value as rebound, a number in [0, 1)",
+)
+
+
+NEEDS = {"has_memory": "its past deformation (memory)", "has_rate": "its rate of deformation"}
+"""What the kernel does not follow, on which the force of an element may depend, by the attribute that states it."""
+
+
+def check_elements(mechanism: Mechanism) -> None:
+    """Raise `InputError`, with the names of the elements, if the kernel cannot simulate those of a structure."""
+    of, why = mechanism.name or mechanism.mechanism, "which no time-history kernel can simulate in this structure"
+    problems = [
+        Problem(f"{each.name} of {of}: its force depends on {need}, {why}: use an elastic element instead")
+        for each in mechanism.hung.elements
+        for attribute, need in NEEDS.items()
+        if getattr(each, attribute)
+    ]
+    if problems:
+        raise InputError(*problems)
+
+
+def build(
+    mechanism: Mechanism, statics: tuple[Statics, Statics], equivalence: Equivalence | None, name: ModelName
+) -> Model:
+    """Build one model of a structure.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    statics : tuple of Statics
+        Statics of both directions.
+    equivalence : Equivalence or None
+        Equivalent blocks, which the linear models require.
+    name : {"nonlinear", "linear1", "linear2"}
+        Equation of motion.
+
+    Raises
+    ------
+    InputError
+        If the restitution from kinematics is not positive, or the rebound of a one-sided structure is not known, so
+        that the motion after an impact is unknown; if the kernel cannot simulate an element of the structure, or one of
+        them has no linear model.
+    """
+    etas = mechanism.eta(mechanism.sides[0]), mechanism.eta(mechanism.sides[1])
+    if isnan(etas[0]):
+        raise InputError(NO_REBOUND)
+    for direction, eta in zip(mechanism.sides, etas, strict=True):
+        if eta <= 0 and mechanism.rocks_both_ways:
+            raise InputError(
+                Problem(
+                    f"{mechanism.name or 'structure'}: the kinematics give {eta:.4g} for an impact that ends "
+                    f"motion in the {direction.label} direction: {why_none(eta)}",
+                    field="restitution",
+                    hint="give a measured value as restitution, a number in (0, 1]",
+                )
+            )
+    if name == "nonlinear":
+        check_elements(mechanism)
+        columns = [build(each, both_statics(each), None, name) for each in mechanism.columns_alone()]
+        model = replace(nonlinear_model(mechanism, statics, etas), columns=tuple(columns))
+    else:
+        mechanism.hung.ask("linear models")
+        assert equivalence is not None
+        blocks = equivalence.positive, equivalence.negative
+        model = linear_model(mechanism.name or mechanism.mechanism, name, blocks, mechanism.gravity)
+        if mechanism.attached:
+            model = with_held(model, mechanism, blocks)
     model = replace(model, scatter=_scatter(mechanism))
     if not mechanism.rocks_both_ways:
         # It never uplifts in the other direction, and it rebounds at an impact.

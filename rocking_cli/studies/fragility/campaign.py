@@ -13,7 +13,7 @@ from rocking_cli import __version__
 from rocking_cli.core import Mechanism, NoEquivalentBlock, both_statics, equivalent_block
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.restitution import why_none
-from rocking_cli.dynamics.dispatch import NO_REBOUND, kernel_for
+from rocking_cli.dynamics.model import NO_REBOUND, check_elements
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.processing.intensity import all_measures, parse_measure
 from rocking_cli.studies.fragility.definition import SLIDING, Definition
@@ -239,7 +239,7 @@ def _trial(study: Study, sample: Sample) -> Trial:
     mechanism = sample.mechanism
     try:
         if study.definition.model == "nonlinear":
-            kernel_for(mechanism)  # raises if none simulates it
+            check_elements(mechanism)
         p, lambda_, rotations = _mechanics(mechanism, study.definition)
         least = min(mechanism.eta(side) for side in mechanism.directions)
         if study.definition.eta is None and isnan(least):
