@@ -144,17 +144,17 @@ class TestRespond:
         assert run("respond", FRAME, "--record", "bad.csv", "--record", "no.csv", code=2).stdout == ""
 
     def test_one_that_cannot_be_followed_is_left_out(self, records, monkeypatch):
-        from rocking_cli.engines import exact
+        from rocking_cli.dynamics import history
         from rocking_cli.errors import SolverError
 
-        whole = exact.follow
+        whole = history.follow
 
         def some_fail(model, motion, **more):
             if "north" in motion.name:
                 raise SolverError("too small steps")
             return whole(model, motion, **more)
 
-        monkeypatch.setattr(exact, "follow", some_fail)
+        monkeypatch.setattr(history, "follow", some_fail)
         for command in (("respond",), ("animate", "--out", "m.html")):
             result = run(*command, BLOCK, "--record", records, "--json", code=5)
             assert len(result.stdout.splitlines()) == 2 and "north.csv: too small steps" in result.stderr

@@ -121,7 +121,7 @@ def animate(
     >>> f"{answer.film.history.peak_ratio:.4g}"
     '0.1315'
     """
-    from rocking_cli.engines import engine_of
+    from rocking_cli.engines import follow
     from rocking_cli.studies.contact import Contacts
     from rocking_cli.studies.neighbours import neighbours as outcomes
     from rocking_cli.studies.picture import picture
@@ -134,7 +134,7 @@ def animate(
     own = ready.model(name)
     given = Motions.of(motion, options).one(ready.growth, watch)
     scaled = given.motion.scaled(signs[0] * given.factor)
-    history = engine_of(ready).follow(ready, scaled, model=name)
+    history = follow(ready, scaled, model=name)
     assumed = Contacts(ready.mechanism).check(history, scaled).assumed_friction if name == "nonlinear" else None
     film = Film(picture(ready.mechanism), history, scaled, assumed)
     if path.suffix.lower() == ".html":

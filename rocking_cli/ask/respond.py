@@ -18,7 +18,6 @@ from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.history import FINEST_RTOL, RTOL, TAIL, History
 from rocking_cli.dynamics.model import MODELS, ModelName
-from rocking_cli.engines import default_models, engine_of
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.structure import Structure
@@ -192,11 +191,9 @@ def _check(
 
 def usual_models(structure: Structure, watch: Watcher = SILENT) -> tuple[ModelName, ...]:
     """Return the models that do not mislead for a structure, with a note on the others."""
-    names = default_models(structure)
-    if len(names) < len(MODELS):
-        lacking = f"the engine {engine_of(structure).name} has no linear models"
-        watch.note(f"nonlinear history only: {structure.why_no_block or structure.misleading or lacking}")
-    return names
+    if len(structure.default_models) < len(MODELS):
+        watch.note(f"nonlinear history only: {structure.why_no_block or structure.misleading}")
+    return structure.default_models
 
 
 def _blocks(response: Response, structure: Structure) -> Iterator[dict[str, NDArray[np.float64]]]:

@@ -1,1 +1,1 @@
-"""Plugins of other packages: mechanisms, records, pulses, intensity measures, codes of practice and engines."""
+"""Plugins of other packages: mechanisms, records, pulses, intensity measures and codes of practice."""

@@ -16,7 +16,7 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import CLOSE, disagree
-from rocking_cli.engines import default_models, engine_of, respond
+from rocking_cli.engines import follow, respond
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import coarse_for, doubts
@@ -350,7 +350,7 @@ def _result(structure: Structure, given: Scaled, polarities: Sequence[int], arou
     found = [] if given.pulse is not None else doubts(ground, measure(ground))
     doubtful = [*found, *(coarse_for(given.motion, structure.p) if given.pulse is None else [])]
     under = {sign: given.motion.scaled(sign * given.factor) for sign in polarities}
-    names, model = default_models(structure), structure.model("nonlinear")
+    names, model = structure.default_models, structure.model("nonlinear")
     runs = {sign: respond(structure, motion, models=names) for sign, motion in under.items()}
     contacts = Contacts(structure.mechanism)
     scaled = given.motion.scaled(given.factor)
@@ -393,8 +393,8 @@ def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:
 def _alone(structure: Structure, fit: PulseFit, polarities: Sequence[int]) -> tuple[float, bool]:
     """Return the largest peak ratio under a pulse alone, NaN if the structure overturns, and whether it is unknown."""
     if structure.why_no_block or structure.refuses("sizes"):  # nothing measures a pulse here
-        alone, engine = fit.pulse.sampled(), engine_of(structure)
-        runs = [engine.follow(structure, alone.scaled(polarity * fit.sign)) for polarity in polarities]
+        alone = fit.pulse.sampled()
+        runs = [follow(structure, alone.scaled(polarity * fit.sign)) for polarity in polarities]
         if any(run.fell for run in runs):
             return nan, False
         return max(run.peak_ratio for run in runs), any(run.unknown for run in runs)

@@ -10,12 +10,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli import engines
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import History, follow
 from rocking_cli.dynamics.model import ModelName, linear_model
 from rocking_cli.dynamics.outcome import OneOutcome
-from rocking_cli.engines import engine_of
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
@@ -226,7 +226,7 @@ def _member(
     block = _equivalence(mechanism)[direction]
     own = replace(pulse, amplitude=a * mechanism.gravity * uplift(block, scaling), period=2 * pi / (omega * block.p))
     shaken = Structure(mechanism if eta is None else with_restitution(mechanism, eta))
-    history = engine_of(shaken).follow(shaken, own.sampled().scaled(polarity), tail=_tail(own, block.p))
+    history = engines.follow(shaken, own.sampled().scaled(polarity), tail=_tail(own, block.p))
     return PulsedStructure(
         _name(mechanism), mechanism.mechanism, block, own, block.eta if eta is None else eta, block.eta, history,
         mechanism.own_caution(),

@@ -13,7 +13,6 @@ from typing import Any
 from rocking_cli.core.hung.ties import Laws
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import ways
-from rocking_cli.engines.installed import Engines
 from rocking_cli.errors import RockingError
 from rocking_cli.excitation.pulses import PulseShapes
 from rocking_cli.excitation.records.registry import Readers
@@ -28,7 +27,7 @@ WITHOUT = ("dev", "docs", "bench", "release")
 
 @dataclass(frozen=True)
 class Plugin:
-    """An installed mechanism, record reader, pulse shape, measure of intensity, code of practice or engine.
+    """An installed mechanism, record reader, pulse shape, measure of intensity or code of practice.
 
     Parameters
     ----------
@@ -56,8 +55,8 @@ class Installation:
     extras : mapping of str to mapping
         For each extra of this package, the versions of its packages in the same way.
     plugins : mapping of str to tuple of Plugin
-        Plugins by kind: `mechanisms`, `records`, `pulses`, `measures` and `codes`; `laws` and `engines` only if other
-        packages provide some.
+        Plugins by kind: `mechanisms`, `records`, `pulses`, `measures` and `codes`; `laws` only if other packages
+        provide some.
     slow_kernels : str or None
         Why Python runs the kernels, which takes some sixty times longer; None if the shipped machine code is used.
     processors, threads : int
@@ -90,7 +89,7 @@ def examine() -> Installation:
             "pulses": _plugins(PulseShapes()),
             "measures": _plugins(IntensityMeasures()),
             "codes": _plugins(Codes()),
-            **{name: others for name, of in (("laws", Laws()), ("engines", Engines())) if (others := _plugins(of))},
+            **({"laws": laws} if (laws := _plugins(Laws())) else {}),
         },
         _why_slow(),
         os.cpu_count() or 1,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.engines import engine_of
+from rocking_cli.engines import follow
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.structure import Structure
@@ -60,10 +60,10 @@ def sampled_history(structure: Structure, model: ModelName, pulse: Pulse, polari
     With n samples to a period, the error of the motion is of order n^-4 of its peak, n^-3 if it only just uplifts: the
     last halving of the interval changes the result at least seven times as much as the error that remains.
     """
-    engine, before, per_period = engine_of(structure), None, COARSEST
+    before, per_period = None, COARSEST
     while True:
         motion = pulse.sampled(per_period).scaled(polarity)
-        history = engine.follow(structure, motion, model=model, tail=0.0)
+        history = follow(structure, motion, model=model, tail=0.0)
         converged = before is not None and _alike(before, history)
         if converged or per_period >= FINEST:
             return SampledHistory(history, motion, per_period, converged)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from math import sqrt
 
 from rocking_cli.codes.italian.capacity import ExactCurve
@@ -17,7 +16,7 @@ from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, Reco
 from rocking_cli.codes.italian.site import ItalianSite, floor_at
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History
-from rocking_cli.engines import engine_of
+from rocking_cli.engines import follow
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
@@ -59,10 +58,11 @@ def peaks(
         If a motion cannot be followed to its end.
     """
     under = [motion.scaled(sign) if sign != 1 else motion for sign in signs]
-    follow = partial(engine_of(structure).follow, structure)
-    own = [follow(curve) for curve in under]
+    own = [follow(structure, curve) for curve in under]
     factors = {curve.confidence for curve in curves.values()}
-    weaker = {FC: own if FC == 1 else [follow(with_confidence(curve, FC)) for curve in under] for FC in factors}
+    weaker = {
+        FC: own if FC == 1 else [follow(structure, with_confidence(curve, FC)) for curve in under] for FC in factors
+    }
     of_direction = {}
     for direction, curve in curves.items():
         d, known_to = _largest(curve, direction, own)
@@ -77,7 +77,7 @@ def with_histories(
 ) -> ItalianVerification:
     """Return a verification with time histories under a set of records; see `check.with_histories`."""
     taken = structure if found.mechanism is structure.mechanism else Structure(found.mechanism, structure.file)
-    checked = "joints" in engine_of(taken).knows and taken.model("nonlinear").joints is not None
+    checked = taken.model("nonlinear").joints is not None
     curves = {direction: each.exact for direction, each in found.directions.items()}
     state = _state_of_records(found, asked.state)
     what, moved = where_it_stands(asked, floor_at(site, state))

@@ -1,0 +1,100 @@
+"""Time histories of one structure: what may be requested of them, and which engine simulates them.
+
+There is one engine, that of one degree of freedom (`rocking_cli.dynamics.history`): the joints of the mechanism open
+and close, and all others are only checked. An engine for other structures is chosen in `follow`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isfinite
+
+from rocking_cli.dynamics import history
+from rocking_cli.dynamics.history import RTOL, TAIL, History, check_rtol
+from rocking_cli.dynamics.model import MODELS, ModelName
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.structure import Structure
+
+
+def follow(
+    structure: Structure,
+    motion: GroundMotion | None = None,
+    *,
+    model: ModelName = "nonlinear",
+    release: float | None = None,
+    tail: float = TAIL,
+    rtol: float = RTOL,
+) -> History:
+    """Simulate the motion of a structure under a ground motion, after a release from a tilt, or both.
+
+    Parameters
+    ----------
+    structure : Structure
+        The structure.
+    motion : GroundMotion, optional
+        Ground acceleration, linear between its samples and zero after the last. With its vertical component, g becomes
+        g + v_g''.
+    model : {"nonlinear", "linear1", "linear2"}
+        Equation of motion. Nonlinear: Eq. 8 by an error-controlled Runge-Kutta-Nystrom pair. Linear: Eq. 16, exact on
+        every ramp of the record; with a vertical component, whose g changes along the ramp, by the same pair.
+    release : float, optional
+        Start at rest from this fraction of phi_cr, between -1 and 1; negative in the negative direction.
+    tail : float
+        Time after the record for which samples are kept [s]. The motion is always simulated to its end.
+    rtol : float
+        Relative local error of a step of the nonlinear motion.
+
+    Returns
+    -------
+    History
+        Outcome of the motion, with its peaks, impacts and samples.
+
+    Raises
+    ------
+    InputError
+        If there is neither a motion nor a release, a value is out of range, or the structure has no such model.
+    SolverError
+        If the motion cannot be simulated to its end.
+    """
+    if not isinstance(motion, GroundMotion | None):
+        raise InputError(f"motion must be a GroundMotion, got {type(motion).__name__}")
+    if motion is None and release is None:
+        raise InputError("nothing to respond to: give a ground motion, a release, or both")
+    if release is not None and not 0 < abs(release) < 1:
+        raise InputError(f"release must be a fraction of phi_cr between 0 and 1 (or 0 and -1), got {release:g}")
+    of = structure.mechanism
+    if release is not None and not of.rocks_both_ways and release * of.directions[0] < 0:
+        supports = "release is against the supports that it leans on"
+        raise InputError(f"{supports}: it rocks in the {of.one_sided} direction only")
+    if not (isfinite(tail) and tail >= 0):
+        raise InputError(f"tail must be a time in seconds, 0 or more, got {tail:g}")
+    check_rtol(rtol)
+    return history.follow(structure.model(model), motion, release=release or 0.0, tail=tail, rtol=rtol)
+
+
+def respond(
+    structure: Structure,
+    motion: GroundMotion | None = None,
+    *,
+    models: Sequence[ModelName] = MODELS,
+    release: float | None = None,
+    tail: float = TAIL,
+    rtol: float = RTOL,
+) -> dict[ModelName, History]:
+    """Simulate models of a structure; other parameters and errors are those of `follow`.
+
+    Parameters
+    ----------
+    models : sequence of {"nonlinear", "linear1", "linear2"}
+        At least one model.
+
+    Returns
+    -------
+    dict of str to History
+        History of each model, in the order of `models`.
+    """
+    unknown = [name for name in models if name not in MODELS]
+    if unknown or not models:
+        raise InputError(f"models must be of {', '.join(MODELS)}, got {', '.join(unknown) or 'none'}")
+    return {name: follow(structure, motion, model=name, release=release, tail=tail, rtol=rtol) for name in models}
