@@ -249,7 +249,7 @@ class TestEachCheck:
 
     @pytest.mark.parametrize("name", SETS)
     def test_kernels_fail_if_one_value_of_a_set_differs(self, monkeypatch, name):
-        python = ways.MAKE[ways.PYTHON]
+        python = ways.in_python
 
         def spoilt(of):
             run = python(of)
@@ -262,7 +262,7 @@ class TestEachCheck:
 
             return kernel
 
-        monkeypatch.setitem(ways.MAKE, ways.PYTHON, spoilt)
+        monkeypatch.setattr(ways, "in_python", spoilt)
         found = checked("kernels")
         assert found.passed is False and found.found >= 1
 
