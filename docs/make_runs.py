@@ -14,6 +14,7 @@ import subprocess
 from collections.abc import Iterable, Iterator
 from contextlib import chdir, contextmanager
 from dataclasses import dataclass
+from importlib import import_module
 from itertools import chain
 from math import isclose
 from pathlib import Path
@@ -58,12 +59,15 @@ def run(commands: Iterable[str], folder: Path) -> dict[str, Run]:
 
 
 def ran(command: str) -> Run:
-    """Run a command in the current folder."""
-    _, *arguments = shlex.split(command)
+    """Run a command in the current folder: `rocking`, or a script of docs as a command of click."""
+    program, *arguments = shlex.split(command)
+    called = main
+    if program == "python":
+        called = import_module(Path(arguments.pop(0)).stem).main
     into = arguments[arguments.index(">") + 1] if ">" in arguments else None
     there = set(Path().rglob("*"))
     with noted_figures() as figures:
-        done = CliRunner().invoke(main, arguments[:-2] if into else arguments, env={"COLUMNS": str(WIDTH)})
+        done = CliRunner().invoke(called, arguments[:-2] if into else arguments, env={"COLUMNS": str(WIDTH)})
     if done.exit_code != 0:
         raise SystemExit(f"`{command}` ended with exit code {done.exit_code}:\n{done.output}")
     lines = [line.rstrip() for line in done.stdout.splitlines()]

@@ -165,7 +165,7 @@ def _spoil(draw, text: str) -> str:
             return text[: found.start()] + draw(JUNK) + text[found.end() :]
 
 
-SLOW = {"figure", "report", "animate", "fragility", "results"}  # a process of seconds, even on good input
+SLOW = {"report", "animate", "fragility", "results"}  # a process of seconds, even on good input
 GOOD = {
     "ag": "0.6g",
     "period": "0.8",
@@ -223,7 +223,7 @@ def command_lines(draw, structures, motions, outputs):
     words = [name]
     options = [each for each in command.params if isinstance(each, click.Option)]
     needed = [each for each in options if each.required]
-    if any(each.name == "record" for each in options) and name not in ("overturning", "figure"):
+    if any(each.name == "record" for each in options) and name != "overturning":
         needed += [each for each in options if each.name == draw(st.sampled_from(["record", "record", "pulse"]))]
     for argument in (each for each in command.params if isinstance(each, click.Argument)):
         count = draw(st.integers(1, 2)) if argument.nargs == -1 else 1

@@ -200,12 +200,6 @@ class TestOthers:
         assert run("report", "--neighbours", 20, BLOCK, "--record", "no*.csv", "-o", "r.html", code=2).stdout == ""
         assert not Path("r.html").exists()
 
-    def test_figure_14_is_of_one_record(self, records):
-        assert (
-            "uses a single record, but 2 are given"
-            in run("figure", "14", "--record", "r/east.csv", "--record", "r/west.csv", code=2).stderr
-        )
-
 
 def test_what_governs_is_over_the_limit_where_nothing_is_critical(tmp_path):
     """A tie that holds a block up to its limit: there is no phi_cr to speak of."""

@@ -23,10 +23,9 @@ DIFFERENT = {
     "--out": "the text names what is written",
     "--period": "of `record` it is that of a spectrum, of the others that of a pulse",
     "--plot": "the text names what is plotted",
-    "--record": "`figure` takes one, for Figure 14",
 }
 """Options whose meaning differs between commands, and why one text would be false."""
-ONCE = {*(f"--{name}" for name in CORRECTIONS), ("figure", "--record")}
+ONCE = {f"--{name}" for name in CORRECTIONS}
 """Options that are declared as multiple only to refuse a second one by themselves."""
 
 COMMANDS_BY_NAME = {name: import_module(f"rocking_cli.cli.{name}").command for name in COMMANDS}

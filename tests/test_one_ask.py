@@ -20,7 +20,6 @@ from tests.elsewhere import PROJECT
 from tests.test_cli import run, run_json
 
 WITHOUT = {
-    "figure": "recomputes the figures of the paper into a folder",
     "mechanisms": "lists plugins: `rk.mechanisms`",
     "measures": "lists plugins",
     "new": "prints starters",

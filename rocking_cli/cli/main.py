@@ -20,7 +20,7 @@ from rocking_cli.text import cut, one_line, printable
 COMMANDS = (
     "draw", "equiv", "collapse", "error", "record", "select", "respond", "margin", "verify", "survey", "design",
     "score", "calibrate", "animate", "pulse", "overturning", "spectrum", "equivalent", "fragility",
-    "results", "report", "figure", "mechanisms", "measures", "new", "info", "selfcheck",
+    "results", "report", "mechanisms", "measures", "new", "info", "selfcheck",
     "completion",
 )  # fmt: skip
 DO_WITHOUT = ("info", "selfcheck")
