@@ -29,7 +29,7 @@ from rocking_cli.structure_file import parse_structure
 from rocking_cli.studies.verification.check import site_in
 from rocking_cli.studies.verification.control import control_at
 from rocking_cli.studies.verification.working import Formula, as_written, in_plain, put
-from rocking_cli.views.sheet.document import Grid, Sentence, Steps
+from rocking_cli.views.sheet.document import Sentence, Steps
 from rocking_cli.views.verification import shown, view
 from rocking_cli.views.view import Table
 from tests.conftest import EXAMPLES
@@ -97,7 +97,7 @@ def steps(language, verified, site):
 
     def of(each):
         for item in each.items:
-            yield from (item.rows if isinstance(item, Steps) else item.rows if isinstance(item, Grid) else ())
+            yield from (item.rows if isinstance(item, Steps) else item.rows if isinstance(item, Table) else ())
         for below in each.parts:
             yield from of(below)
 
@@ -113,9 +113,9 @@ def outputs(name):
 
 
 def _is(formula, other):
-    """Whether one is the other, or a copy with the clause of a method."""
-    same = all(getattr(formula, key) == getattr(other, key) for key in ("symbol", "text", "numbers", "meaning"))
-    return same and formula.clause in ("", other.clause)
+    """Whether one is the other, or a copy with a clause or a meaning of its own."""
+    same = all(getattr(formula, key) == getattr(other, key) for key in ("symbol", "text", "numbers"))
+    return same and formula.clause in ("", other.clause) and formula.meaning in ("", other.meaning)
 
 
 @pytest.fixture(scope="module")

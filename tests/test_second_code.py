@@ -151,7 +151,7 @@ class BadSheet(Demo):
             yield 1 / 0
 
         texts = {"en": {"subtitle": "", "reading_digits": "", "reading_marks": ""}}
-        return SheetOfCode(texts, {}, parts)
+        return SheetOfCode(texts, parts)
 
     def with_histories(self, found, structure, site, asked):
         return found.directions

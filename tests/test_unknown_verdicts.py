@@ -18,7 +18,7 @@ from rocking_cli.codes.italian import dynamic
 from rocking_cli.codes.italian.results import Dynamic, RecordPeak
 from rocking_cli.codes.italian.sheet import dynamic as sheets
 from rocking_cli.codes.italian.sheet.build import SHEET
-from rocking_cli.codes.italian.words import of_histories
+from rocking_cli.codes.italian.sheet.steps import ENGLISH
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.outcome import Outcome
 from rocking_cli.plotting.azimuths import draw_azimuths
@@ -237,17 +237,14 @@ class TestVerification:
             assert found.holds(state, confident=variant) == passes
             assert found.passed(confident=variant) == []  # nor is it known to pass d0*
             assert found.unknown(confident=variant) == ([] if passes else ["two"])
-        _, one, other, changes, _ = of_histories(found, 1.2)
-        said = one if confident else other
-        assert "not satisfied. The outcome under two is unknown" in said
-        assert said.endswith(f"an unknown outcome does not pass, at {state}.")
-        assert f"within d_{state}" in (other if confident else one)
-        assert changes == f"The confidence factor FC changes the verdict at {state}."
+        _, _, _, one, other, changes, _ = sheets.items(ENGLISH, found, 1.2)
+        assert f"{state}: not satisfied. The outcome under two is unknown" in (one if confident else other).text
+        assert f"{state}: satisfied." in (other if confident else one).text
+        assert changes.text == f"The confidence factor FC changes the verdict at {state}."
 
     def test_what_is_not_checked_passes_with_a_caution(self):
         found = self.made(checked=False)
         assert found.holds("SLV", confident=True)
-        assert "Caution: the joints of this mechanism are not checked" in " ".join(of_histories(found, 1.2))
 
     @pytest.mark.parametrize(
         ("language", "cell", "verdict", "caution"),
@@ -263,9 +260,8 @@ class TestVerification:
     )
     @pytest.mark.parametrize("state", ["SLV", "SLC"])
     def test_the_sheet_says_so_for_each_state(self, language, cell, verdict, caution, state):
-        each = SimpleNamespace(exact=SimpleNamespace(confidence=1.2))
         found = self.made(with_FC=3.5, checked=False, state=state)
-        _, _, grid, *said = sheets.part(SHEET.language(language), each, found, "x").items
+        _, _, grid, *said = sheets.items(SHEET.language(language), found, 1.2)
         assert grid.rows[1][1:] == [cell, "0,01" if language == "it" else "0.01"]
         failed = [item.text for item in said if verdict in item.text]
         assert len(failed) == 1 and state in failed[0]

@@ -14,7 +14,8 @@ from rocking_cli.codes.italian import dynamic
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.results import Dynamic, RecordPeak
-from rocking_cli.codes.italian.words import of_histories
+from rocking_cli.codes.italian.sheet.dynamic import items
+from rocking_cli.codes.italian.sheet.steps import TERMINAL
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import follow
 from rocking_cli.structure import Structure
@@ -103,23 +104,22 @@ class TestVerdicts:
         assert not seen((0.15, 0.15)).holds("SLV", confident=True)
         assert seen((0.15, 0.15), state="SLC").holds("SLC", confident=True)
 
-    def test_words_follow_the_numbers(self):
-        said = " ".join(of_histories(seen((0.15, 0.05), (0.15, 0.05)), 1.35))
-        assert (
-            "With FC: no record takes the structure past d0* = 0.3 m; the mean peak displacement, 0.15 m, is beyond "
-            "d_SLV = 0.12 m"
-        ) in said
-        assert "The confidence factor FC changes the verdict at SLV." in said and "SLC" not in said
-        assert "The records belong to SLV and are checked against this limit state alone." in said
-        assert "Only 2 records were used: the code requires at least 7" in said
-        said = " ".join(of_histories(seen(*[(0.1, 0.05)] * 7), 1.35))
-        assert "changes the verdict" not in said and "requires at least" not in said
-        said = " ".join(of_histories(seen((None, 0.05)), 1.35))
-        assert "not satisfied. r0 takes the structure past d0*" in said and "changes the verdict at SLV" in said
-        said = " ".join(of_histories(seen((0.15, 0.05), state="SLC"), 1.35))
-        assert "within d_SLC = 0.18 m." in said and "SLV" not in said
-        assert "Only one record was used" in said
-        assert "Without FC" not in " ".join(of_histories(seen((0.1, 0.1)), 1.0))
+    @pytest.mark.parametrize(
+        ("pairs", "state", "FC", "said"),
+        [
+            ([(0.15, 0.05)] * 2, "SLV", 1.35, {"exceeds 0.12 m", "within 0.12 m", "FC changes", "Only 2 records"}),
+            ([(0.1, 0.05)] * 7, "SLV", 1.35, {"within 0.12 m"}),
+            ([(None, 0.05)], "SLV", 1.35, {"exceeded under r0", "within 0.12 m", "FC changes", "Only one record"}),
+            ([(0.15, 0.05)], "SLC", 1.35, {"within 0.18 m", "Only one record"}),
+            ([(0.1, 0.1)], "SLV", 1.0, {"within 0.12 m", "Only one record"}),
+        ],
+    )
+    def test_words_follow_the_numbers(self, pairs, state, FC, said):
+        found = " ".join(getattr(each, "text", "") for each in items(TERMINAL, seen(*pairs, state=state), FC))
+        every = {"exceeds 0.12 m", "within 0.12 m", "within 0.18 m", "FC changes", "Only 2 records", "Only one record",
+                 "exceeded under r0"}  # fmt: skip
+        assert {each for each in every if each in found} == said
+        assert {each for each in ("SLV", "SLC") if each in found} == {state} and ("Without FC" in found) == (FC > 1)
 
 
 class TestTheCommand:
@@ -182,7 +182,7 @@ class TestWhereAndWhen:
         assert [each.peaks(confident=True)[1] is None for each in above] == [True, False]
         assert not above[0].holds("SLV", confident=True)
         said = " ".join(answer.sentences)
-        assert "carried to the floor of the site, T1=0.4,xi=0.05,z=0.66" in said
+        assert "carried to the floor by the first mode of the building: T1=0.4,xi=0.05,z=0.66" in said
         found = answer.to_dict()["directions"]["positive"]["dynamic"]
         assert found["motions"] == "carried_to_floor" and found["floor"].startswith("T1=0.4,xi=0.05,z=0.66")
 

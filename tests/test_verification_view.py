@@ -8,7 +8,9 @@ from dataclasses import replace
 import pytest
 
 import rocking_cli as rk
-from rocking_cli.codes.italian import words
+from rocking_cli.codes.italian.remarks import differences
+from rocking_cli.codes.italian.sheet.steps import TERMINAL
+from rocking_cli.codes.italian.sheet.summary import verdicts
 from rocking_cli.core import Direction
 from rocking_cli.studies.verification.installed import codes
 from rocking_cli.studies.verification.working import Working
@@ -81,100 +83,90 @@ def test_the_direction_with_the_smaller_ratio_governs():
     assert not any("direction governs" in part for part in view(verified(FACADE)).parts if isinstance(part, str))
 
 
+GROUND = {key: value for key, value in SITE.items() if key != "FC"}
+FLOOR = {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}
+LOW = {**FLOOR, "z": 1.0}
+DAMAGED = {**FLOOR, "T1": 0.6, "SLD": {"T1": 0.4, "xi1": 0.05}}
+
+
+def remarks(found):
+    """The values of each remark, by its key."""
+    return {each.key: each.values for each in found}
+
+
 class TestWords:
     @pytest.mark.parametrize("ag", [0.1, 0.15, 0.19, 0.2, 0.24, 0.26, 0.4])
     @pytest.mark.parametrize("mechanism", [FACADE, WALL, PARAPET], ids=lambda each: each.name)
     def test_the_verdict_is_that_of_the_numbers(self, mechanism, ag):
         found = positive(mechanism, ag=ag)
-        said = words.verdict(found, "SLV", "Here")
-        capacity = max(found.methods["damage"].a_g, found.methods["nonlinear"].a_g)
-        assert ("SLV: passes" in said) == (capacity >= ag)
-        assert ("SLV: fails" in said) == (capacity < ag)
-        assert f"Capacity a_g = {capacity:.4g} g, demand {ag:.4g} g: zeta_E = {capacity / ag:.3g}" in said
-        by_damage = found.methods["damage"].a_g > found.methods["nonlinear"].a_g
-        assert ("The damage method governs" in said) == by_damage
-        assert f"is {found.states['SLV'].d / found.states['SLV'].demand:.3g} times" in said
+        (said,) = verdicts(TERMINAL, "Here", found)
+        damage, nonlinear = (found.methods[key].a_g for key in ("damage", "nonlinear"))
+        capacity, slv = max(damage, nonlinear), found.states["SLV"]
+        assert said.startswith(f"Here, SLV: the verification is {'' if capacity >= ag else 'not '}satisfied. ")
+        for number in (f"zeta_E = {capacity / ag:.4g}", f"a_g = {capacity:.4g} g", f"demand {ag:.4g} g"):
+            assert number in said.replace("is ", "")
+        assert ("the damage method governs" in said) == (damage > nonlinear)
+        assert (f"is {slv.d / slv.demand:.4g} times" in said) == (damage <= nonlinear)
 
     @pytest.mark.parametrize("mechanism", [FACADE, WALL, PARAPET], ids=lambda each: each.name)
     def test_why_the_linear_method_differs(self, mechanism):
         found = positive(mechanism)
-        linear, counts = found.methods["linear"].a_g, found.counts.a_g
-        said = next(words.differences(found, "SLV"))
-        assert ("It is unconservative here." in said) == (linear > counts)
-        assert (
-            f"{100 * linear / counts:.3g} % of the capacity at SLV"
-            if linear < counts
-            else f"{linear / counts:.3g} times the capacity at SLV"
-        ) in said
+        ratio = found.methods["linear"].a_g / found.counts.a_g
+        said = next(differences(found, "SLV"))
+        assert said.key == ("linear_more" if ratio > 1 else "linear_less")
+        assert said.values["ratio"] == pytest.approx(ratio)
+        assert ("It is unconservative here." in TERMINAL(said)) == (ratio > 1)
 
     def test_two_that_agree_say_so(self):
         found = positive(FACADE)
         same = replace(found.methods["linear"], capacity=found.counts.a_g * 1.001)
-        (said, *_) = words.differences(replace(found, methods={**found.methods, "linear": same}), "SLV")
-        assert said.startswith("The linear method gives the same capacity")
+        (said, *_) = differences(replace(found, methods={**found.methods, "linear": same}), "SLV")
+        assert said.key == "linear_same"
 
     def test_the_straight_line_is_said_where_it_changes_the_answer(self):
-        assert not any("straight line" in each for each in words.differences(positive(FACADE), "SLV"))
+        assert "straight" not in remarks(differences(positive(FACADE), "SLV"))
         found = positive(rk.Arch(radius=10.0, thickness=1.5, inclusion_angle_deg=157.5, voussoirs=7))
-        (said,) = [each for each in words.differences(found, "SLV") if "straight line" in each]
+        said = remarks(differences(found, "SLV"))["straight"]
         change = found.straight_methods["nonlinear"].a_g / found.methods["nonlinear"].a_g - 1
-        assert f"{100 * abs(change):.2g} % {'more' if change > 0 else 'less'}" in said
-
-    def test_the_other_limit_states_are_said_where_the_site_gives_them(self):
-        assert list(words.beyond_first(positive(FACADE), "SLV")) == []
-        ground = {key: value for key, value in SITE.items() if key != "FC"}
-        said = list(words.beyond_first(positive(FACADE, SLC=ground, SLD={**ground, "ag": 0.03}), "SLV"))
-        assert said[0].startswith("SLC: passes.") and said[1].startswith("SLD: passes.")
-        said = list(words.beyond_first(positive(FACADE, SLC={**ground, "ag": 0.9}, SLD=ground), "SLV"))
-        assert said[0].startswith("SLC: fails.") and said[1].startswith("SLD: fails.")
-        still = {"ag": 0.24, "F0": 2.5, "TC": 0.55, "S": 1.2}
-        (said,) = words.beyond_first(positive(WALL, SLC=still), "SLV")
-        assert said.startswith("SLC: passes. The damage method governs: the structure does not start to rock below a_g")
+        assert said["change"] == pytest.approx(100 * abs(change))
+        assert said["side"].key == ("more" if change > 0 else "less")
 
     @pytest.mark.parametrize(
-        ("site", "said"),
+        ("mechanism", "site", "wanted"),
         [
-            ({}, "No soil class is given"),
-            (
-                {"floor": {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}},
-                "is evaluated with xi1 as a ratio. This is our reading",
-            ),
-            (
-                {"floor": {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}},
-                "T1 = 0.4 s and xi1 = 0.1 of the floor are used at all limit states",
-            ),
-            (
-                {"floor": {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}},
-                "the others are missing here",
-            ),
-            ({"floor": {"z": 1.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}}, "S_Z = 0.2141 g, is below"),
-            (
-                {"SLC": {key: value for key, value in SITE.items() if key != "FC"}},
-                "The longest period, 4.46 s, exceeds 4 s",
-            ),
-            ({"FC": 1.2}, "FC = 1.2: the value must be 1.35"),
+            (FACADE, {}, ["SLV not"]),
+            (FACADE, {"SLC": GROUND, "SLD": {**GROUND, "ag": 0.03}}, ["SLV not", "SLC", "SLD"]),
+            (FACADE, {"SLC": {**GROUND, "ag": 0.9}, "SLD": GROUND}, ["SLV not", "SLC not", "SLD not"]),
+            (WALL, {"SLC": {"ag": 0.24, "F0": 2.5, "TC": 0.55, "S": 1.2}}, ["SLV", "SLC"]),
         ],
     )
-    def test_what_to_know_of_the_site(self, site, said):
-        assert any(said in each for each in verified(FACADE, **site).remarks)
-        other = verified(WALL, soil="B") if "floor" not in site else verified(FACADE)
-        assert not any(said in each for each in other.remarks)
+    def test_each_limit_state_is_said_that_the_site_gives(self, mechanism, site, wanted):
+        said = list(verdicts(TERMINAL, "Here", positive(mechanism, **site)))
+        found = [re.match(r"Here, (\w+): the verification is( not)? satisfied", each) for each in said]
+        assert ["".join(filter(None, each.groups())) for each in found] == wanted
 
+    @pytest.mark.parametrize(
+        ("site", "key", "values"),
+        [
+            ({}, "no_soil", {}),
+            ({}, "linear_SLV", {}),
+            ({"floor": FLOOR}, "floor", {}),
+            ({"floor": FLOOR}, "same_mode", {"T1": 0.4, "xi1": 0.1}),
+            ({"floor": FLOOR}, "one_mode", {}),
+            ({"floor": LOW}, "low_floor", {"floor": pytest.approx(0.2141, abs=5e-5)}),
+            ({"floor": DAMAGED, "SLC": GROUND}, "same_mode_further", {"T1": 0.6, "xi1": 0.1, "states": ["SLC"]}),
+            ({"SLC": GROUND}, "long", {"T": pytest.approx(4.46, abs=5e-3), "most": 4.0}),
+            ({"FC": 1.2}, "confidence", {"FC": 1.2, "least": 1.35}),
+        ],
+    )
+    def test_what_to_know_of_the_site(self, site, key, values):
+        said = remarks(verified(FACADE, **site).remarks)[key]
+        assert {name: said[name] for name in values} == values
+        other = verified(WALL, soil="B", SLD=GROUND) if "floor" not in site else verified(FACADE)
+        assert key not in remarks(other.remarks)
 
-def test_a_floor_with_its_mode_at_damage_needs_no_caution():
-    own = {"z": 2.0, "H": 3.0, "T1": 0.6, "xi1": 0.1, "n": 3, "SLD": {"T1": 0.4, "xi1": 0.05}}
-    said = " ".join(verified(FACADE, floor=own).remarks)
-    assert "at all limit states" not in said and "are used at SLC too" not in said
-    ground = {key: value for key, value in SITE.items() if key != "FC"}
-    said = " ".join(verified(FACADE, floor=own, SLC=ground).remarks)
-    assert "T1 = 0.6 s and xi1 = 0.1 of the floor at SLV are used at SLC too" in said
-
-
-def test_the_linear_method_without_damage_at_the_site_says_by_what():
-    said = "F0, TC and S of SLV are used, which is our choice"
-    ground = {key: value for key, value in SITE.items() if key != "FC"}
-    assert any(said in each for each in verified(FACADE).remarks)
-    assert not any(said in each for each in verified(FACADE, SLD=ground).remarks)
+    def test_a_floor_with_its_mode_at_damage_needs_no_caution(self):
+        assert not {"same_mode", "same_mode_further"} & remarks(verified(FACADE, floor=DAMAGED).remarks).keys()
 
 
 def test_ties_have_force_and_elongation_at_every_state(files, tmp_path):
@@ -188,7 +180,7 @@ def test_ties_have_force_and_elongation_at_every_state(files, tmp_path):
     text = run(*command).stdout
     for state in ("SLV", "SLC"):
         row = next(line for line in text.splitlines() if "bar" in line and f"d_{state}" in line)
-        assert f"{bar[f'elongation_{state}']:.4g}" in row and f"{100 * bar[f'strain_{state}']:.3g}" in row
+        assert f"{bar[f'elongation_{state}']:.6g}" in row and f"{100 * bar[f'strain_{state}']:.3g}" in row
 
 
 def test_a_control_point_is_typed_and_its_influence_said(files):
@@ -238,22 +230,7 @@ class TestInPython:
         assert answer.directions[Direction.POSITIVE].dynamic is not None
 
 
-def test_of_directions_that_are_alike_none_governs():
-    import rocking_cli as rk
-
-    site = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
-    block = rk.Block(width=0.7, height=2.8)
-    said = " ".join(rk.verify(block, site).sentences)
-    assert "direction governs" not in said and "direction)" not in said
-    leaning = rk.RigidBody(polygon=[[0, 0], [0.7, 0], [0.7, 2.8], [0.2, 2.8]])
-    assert "direction governs" in " ".join(rk.verify(leaning, site).sentences)
-
-
 def test_of_directions_that_differ_by_rounding_the_first_counts():
-    from dataclasses import replace
-
-    from rocking_cli.core import Direction
-
     found = verified(FACADE)
     positive, negative = Direction.POSITIVE, Direction.NEGATIVE
     for off, least, alike in ((1e-14, positive, True), (-1e-14, positive, True), (1e-6, negative, False)):
@@ -276,7 +253,6 @@ UNCHECKED = {"zeta_E SLV"}
 
 HAZARD = [[30, 0.055, 2.45, 0.27], [475, 0.175, 2.45, 0.32], [2475, 0.300, 2.55, 0.36]]
 AT_HAZARD = {**dict.fromkeys(("ag", "F0", "TC", "S")), "hazard": HAZARD, "VN": 50.0, "CU": 1.0, "soil": "C"}
-FLOOR = {"z": 2.0, "H": 3.0, "T1": 0.4, "xi1": 0.1, "n": 3}
 
 
 class TestClauses:

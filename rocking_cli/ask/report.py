@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.ask.sheets import SheetOrigin
-    from rocking_cli.documents.verified import VerifiedReport
+    from rocking_cli.documents.page import VerifiedReport
     from rocking_cli.excitation.scaled import Scaled
     from rocking_cli.io.tables import Columns
     from rocking_cli.structure import Structure
@@ -163,7 +163,7 @@ def _verified(
 ) -> VerifiedReport:  # fmt: skip
     """Return the verification in a report, with time histories under its ground motions."""
     from rocking_cli.ask.sheets import sheet_for
-    from rocking_cli.documents.verified import VerifiedReport
+    from rocking_cli.documents.page import VerifiedReport
     from rocking_cli.studies.verification.check import verify, with_histories
 
     found = verify(structure, site)

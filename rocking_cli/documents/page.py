@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import degrees, isnan
 from typing import Any
 
@@ -17,7 +17,6 @@ from rocking_cli.core import Angle, Length
 from rocking_cli.documents.figures import inline_svg
 from rocking_cli.documents.hung import hung_on
 from rocking_cli.documents.sheet_page import parts
-from rocking_cli.documents.verified import VerifiedReport
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
@@ -39,7 +38,9 @@ from rocking_cli.views.contact import contact_columns
 from rocking_cli.views.equivalent_block import EquivalentSide, is_symmetric, kappa_in_words, sentence, sides_of
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.parameters import PARAMETERS
+from rocking_cli.views.sheet.document import Sheet, SheetPart
 from rocking_cli.views.verdict import SENSE
+from rocking_cli.views.verification import showing
 
 BINS = 6000  # of all motions together: each curve has some two samples for a bin
 FEWEST, MOST = 300, 2500  # of one motion
@@ -51,13 +52,36 @@ RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 Rows = list[list[str]]
 
 
+OWN = frozenset({"drawing", "structure_text"})
+"""The parts of a sheet that a report has anyway."""
+
+
+@dataclass(frozen=True, eq=False)
+class VerifiedReport:
+    """A verification and its calculation sheet, for a report."""
+
+    found: Verification
+    sheet: Sheet
+
+    @property
+    def within(self) -> Sheet:
+        """The sheet without parts that the report has already, with anchors distinct from the report's."""
+        return replace(self.sheet, parts=[_apart(each) for each in self.sheet.parts if each.key not in OWN])
+
+
+def _apart(part: SheetPart) -> SheetPart:
+    below = [_apart(each) for each in part.parts if each.key not in OWN]
+    return replace(part, key=f"verification-{part.key}", parts=below)
+
+
 BAD = frozenset({Concluded.OVERTURNS, Concluded.UNKNOWN, Concluded.NOT_SATISFIED, Concluded.NOT_CHECKED})
 
 
 def cautioned(found: Verification) -> list[str]:
     """Return the remarks of a verification that are cautions, such as on a tie that elongates too far."""
     remarks = [*(remark for each in found.distinct for remark in each.remarks), *found.remarks]
-    return [str(each) for each in dict.fromkeys(remarks) if each.startswith("Caution")]
+    said = dict.fromkeys(map(showing(found).say, remarks))
+    return [each for each in said if each.startswith("Caution")]
 
 
 def _is_bad(end: Conclusion | None) -> bool:

@@ -9,13 +9,13 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.core import Mechanism
-from rocking_cli.documents.sheet_page import MARKS, figure_of
+from rocking_cli.documents.sheet_page import MARKS, figure_of, runs
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plotting import style
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.text import printable
-from rocking_cli.views.sheet.document import Drawing, Grid, Item, Listing, Sentence, Sheet, SheetPart, Steps
-from rocking_cli.views.sheet.markup import runs
+from rocking_cli.views.sheet.document import Drawing, Item, Listing, Sentence, Sheet, SheetPart, Steps
+from rocking_cli.views.view import Table
 
 if TYPE_CHECKING:
     from docx.document import Document
@@ -119,10 +119,10 @@ class _Writer:
             self._part(each, level + 1)
 
     def _item(self, item: Item) -> None:
-        if isinstance(item, Grid):
+        if isinstance(item, Table):
             caption = self.document.add_paragraph()
             caption.paragraph_format.keep_with_next = True
-            self._text(caption, item.caption)
+            self._text(caption, item.title)
             self._grid(item.columns, item.rows)
         elif isinstance(item, Steps):
             self._steps(item.rows)
@@ -198,12 +198,10 @@ class _Writer:
         """Write a text with its sub- and superscripts; characters that XML cannot hold are spelled out."""
         from docx.shared import Pt
 
-        for piece in runs(text):
-            run = paragraph.add_run(printable(piece.text))
+        for piece, place in runs(text):
+            run = paragraph.add_run(printable(piece))
             run.bold = bold or None
-            if piece.place == "sub":
-                run.font.subscript = True
-            elif piece.place == "sup":
-                run.font.superscript = True
+            if place:
+                setattr(run.font, {"sub": "subscript", "sup": "superscript"}[place], True)
             if size is not None:
                 run.font.size = Pt(size)

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import count
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from rocking_cli.core import Mechanism
 from rocking_cli.documents.figures import inline_svg
-from rocking_cli.documents.translated import translate
 from rocking_cli.plotting.moving import asset
 from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.studies.picture import picture
+from rocking_cli.studies.verification.working import MARK
 from rocking_cli.text import printable
 from rocking_cli.views.sheet.document import Drawing, Sheet
-from rocking_cli.views.sheet.markup import runs
 
 MARKS = {"print": "", "transcription": "*", "code": "†", "ours": "‡", "plain": ""}
 """What stands beside a formula, by how far it was checked."""
@@ -36,7 +37,7 @@ def render(sheet: Sheet, mechanism: Mechanism) -> str:
         _environment()
         .get_template("sheet.html")
         .render(
-            sheet=sheet, say=sheet.language.say, parts=parts(sheet, mechanism), motion_style=Markup(asset("motion.css"))
+            sheet=sheet, say=sheet.language, parts=parts(sheet, mechanism), motion_style=Markup(asset("motion.css"))
         )
     )
     return printable(page)
@@ -56,20 +57,34 @@ def parts(sheet: Sheet, mechanism: Mechanism, level: int = 2) -> Markup:
 
 def figure_of(sheet: Sheet, mechanism: Mechanism) -> Figure:
     """Return the drawing of the structure, in the language of a sheet."""
-    title = f"{mechanism.name}: {sheet.language.mechanism(mechanism.mechanism, mechanism.title)}"
-    return translate(draw_structure(picture(mechanism), title), sheet.language)
+    say = sheet.language
+    title = f"{mechanism.name}: {say.mechanism(mechanism.mechanism, mechanism.title)}"
+    figure = draw_structure(picture(mechanism), title)
+    for each in figure.findobj(Text):
+        assert isinstance(each, Text)  # what was looked for
+        first, *rest = each.get_text().split("\n")
+        each.set_text(say.formula("\n".join([say.texts.get(f"drawing {first}", first), *rest])))
+    return figure
 
 
 def _drawing(sheet: Sheet, mechanism: Mechanism) -> Markup:
     return Markup(inline_svg(figure_of(sheet, mechanism), "sheet-drawing"))
 
 
+def runs(text: str) -> Iterator[tuple[str, str]]:
+    """Yield the pieces of a text, each with its place: "sub", "sup" or neither."""
+    end = 0
+    for mark in MARK.finditer(text):
+        yield text[end : mark.start()], ""
+        yield mark[2], "sub" if mark[1] == "_" else "sup"
+        end = mark.end()
+    yield text[end:], ""
+
+
 def formula(text: str) -> Markup:
     """Return a text with its sub- and superscripts as HTML."""
-    return Markup("").join(
-        Markup(f"<{run.place}>{escape(run.text)}</{run.place}>") if run.place else escape(run.text)
-        for run in runs(text)
-    )
+    pieces = (Markup(f"<{place}>{escape(text)}</{place}>") if place else escape(text) for text, place in runs(text))
+    return Markup("").join(pieces)
 
 
 def _environment() -> Environment:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
-from rocking_cli.studies.conclusion import Concluded, Conclusion
+from rocking_cli.studies.conclusion import Concluded, Conclusion, LeftOut
 from rocking_cli.studies.metrics import Excitation, Metric, metric, taken_otherwise
 from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import cut
@@ -168,8 +168,8 @@ class Design:
         The neighbours of the motion that governs at each value; None of a metric that needs no motions.
     caution : str
         A caution about the lambda of the structure as given; empty if there is none.
-    taken_otherwise : sequence of str
-        Sentences on the values for which the code uses others than the structure gives, at either end of the scan.
+    taken_otherwise : sequence of LeftOut
+        What the code does not count of the structure, at either end of the scan.
     motions : sequence of str
         Names of the motions, of which the worst governs at each value.
     """
@@ -187,7 +187,7 @@ class Design:
     not_built: Sequence[NotBuilt] = ()
     behind: Sequence[Neighbours | None] = ()
     caution: str = ""
-    taken_otherwise: Sequence[str] = ()
+    taken_otherwise: Sequence[LeftOut] = ()
     motions: Sequence[str] = ()
 
     @property
@@ -323,17 +323,17 @@ def _check_site(metric: Metric, excitation: Excitation | None) -> None:
 
 def _taken_otherwise(
     structure: Structure, field: str, span: tuple[float, float], aim: Aim, excitation: Excitation | None
-) -> Sequence[str]:
-    """Return, each once, the sentences on values that the code replaces by its own, at both ends of the range."""
+) -> Sequence[LeftOut]:
+    """Return, each once, what the code does not count of the structure, at both ends of the range."""
     if not aim.metric.sited or excitation is None or excitation.site is None:
         return []
-    said: dict[str, None] = {}
+    found: dict[LeftOut, None] = {}
     for value in span:
         try:
-            said |= dict.fromkeys(taken_otherwise(structure.varied(field, value), excitation.site))
+            found |= dict.fromkeys(taken_otherwise(structure.varied(field, value), excitation.site))
         except (InputError, MechanismError):  # its reason is among those of `not_built`
             continue
-    return list(said)
+    return list(found)
 
 
 def _at(

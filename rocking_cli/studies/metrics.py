@@ -12,6 +12,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plugins.errors import blame
 from rocking_cli.plugins.registry import leave_out
 from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import LeftOut
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 from rocking_cli.studies.verification.check import verify
 from rocking_cli.studies.verification.code import Number
@@ -121,9 +122,9 @@ def _ratio(structure: Structure, excitation: Excitation | None) -> float:
     return nan if end.ratio is None else end.ratio
 
 
-def taken_otherwise(structure: Structure, site: SiteFile) -> Sequence[str]:
-    """Return sentences on values for which a code uses others than the structure gives, such as forces of ties."""
-    return verify(structure, site).taken_otherwise
+def taken_otherwise(structure: Structure, site: SiteFile) -> Sequence[LeftOut]:
+    """Return what a structure has and a code does not count, such as the stiffness of ties."""
+    return [each for each in verify(structure, site).left_out if each.what == "tie"]
 
 
 METRICS: Mapping[str, Metric] = {

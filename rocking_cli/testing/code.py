@@ -28,7 +28,7 @@ from rocking_cli.studies.verification.results import CLOSE, Verification, Verifi
 from rocking_cli.studies.verification.site_file import SiteFile
 from rocking_cli.testing.mechanism import _demand
 from rocking_cli.views.template import starter
-from rocking_cli.views.verification import table, view
+from rocking_cli.views.verification import showing, table, view
 
 UNKNOWN = "no_field_of_any_code"
 
@@ -111,7 +111,8 @@ class CodeContract:
     def test_its_result_can_be_shown(self) -> None:
         """Remarks are sentences, and the result can be printed, and written as JSON and as a table."""
         found = self.found
-        said = [*found.remarks, *(text for each in found.directions.values() for text in each.remarks)]
+        remarks = [*found.remarks, *(each for one in found.directions.values() for each in one.remarks)]
+        said = [each if isinstance(each, str) else showing(found).say(each) for each in remarks]
         _demand(all(isinstance(text, str) and text.strip() for text in said), f"remarks that are no sentences: {said}")
         shown = view(found)
         json_text(shown.data() if callable(shown.data) else shown.data)

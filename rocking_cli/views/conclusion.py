@@ -1,4 +1,4 @@
-"""Words of a conclusion, the same on every surface that shows it; of a verification in English and Italian."""
+"""Words of a conclusion, the same on every surface that shows it."""
 
 from __future__ import annotations
 
@@ -13,67 +13,18 @@ from rocking_cli.studies.conclusion import (
     LEAST_SHARE,
     Concluded,
     Conclusion,
+    LeftOut,
     NeighbourShare,
     NextStep,
     are_alike,
     worst,
 )
-from rocking_cli.studies.verification.results import Verification
-from rocking_cli.studies.verification.told import Told
+from rocking_cli.studies.verification.results import Remark, Verification
+from rocking_cli.views.sheet.language import ENGLISH, Language
 from rocking_cli.views.verdict import REMEDIES
 
 MOST_DIGITS = 9
 WAYS = {1: "as given", -1: "reversed"}
-ENGLISH = {
-    "satisfied": "The verification is satisfied.",
-    "satisfied_at": "The verification is satisfied at all limit states that the site gives ({states}).",
-    "not_satisfied": "The verification is not satisfied.",
-    "unknown": "The verification is not satisfied: the outcome under the motions is unknown, which does not pass.",
-    "not_checked": "The site does not give what the code requires: no verification was made.",
-    "governs_at": "{state} governs ({method}{direction}): {ratio}.",
-    "governs": "{method} governs{direction}: {ratio}.",
-    "direction_positive": ", positive direction",
-    "direction_negative": ", negative direction",
-    "ratio": "capacity over demand {ratio:.{digits}g}",
-    "past": "{motion} takes the structure past its capacity",
-    "unproven": "neither satisfied nor disproved under {motion}",
-    "elastic": (
-        "Not counted: the stiffness of {names}, because the code counts only what still acts at collapse, and an "
-        "elastic tie has no strength."
-    ),
-    "too_few": "Not counted: time histories under {names}, because the code requires more records.",
-    "too_few_and_past": (
-        "Not counted, because the code requires more records: time histories under {names}, which take the structure "
-        "past its capacity."
-    ),
-    "not_covered": "The verification does not cover the structure, because another mechanism starts first.",
-    "starts_first": "Another mechanism starts before the one verified, at the joint between {names}.",
-}
-ITALIAN = {
-    "satisfied": "La verifica è soddisfatta.",
-    "satisfied_at": "La verifica è soddisfatta per tutti gli stati limite assegnati dal sito ({states}).",
-    "not_satisfied": "La verifica non è soddisfatta.",
-    "unknown": "La verifica non è soddisfatta: l'esito sotto gli accelerogrammi non è noto.",
-    "not_checked": "Il sito non assegna quanto richiede la norma: la verifica non è stata svolta.",
-    "governs_at": "Governa lo {state} ({method}{direction}): {ratio}.",
-    "governs": "Governa: {method}{direction}: {ratio}.",
-    "direction_positive": ", verso positivo",
-    "direction_negative": ", verso negativo",
-    "ratio": "rapporto tra capacità e domanda {ratio:.{digits}g}",
-    "past": "{motion} porta la struttura oltre la sua capacità",
-    "unproven": "né soddisfatta né smentita sotto {motion}",
-    "elastic": (
-        "Non è messa in conto la rigidezza di {names}: la norma considera solo ciò che agisce fino al collasso, e una "
-        "catena elastica non ha resistenza."
-    ),
-    "too_few": "Non sono messe in conto le analisi sotto {names}: la norma richiede più accelerogrammi.",
-    "too_few_and_past": (
-        "Non sono messe in conto, perché la norma richiede più accelerogrammi, le analisi sotto {names}, che portano "
-        "la struttura oltre la sua capacità."
-    ),
-    "not_covered": "La verifica non riguarda la struttura, perché un altro meccanismo si attiva prima.",
-    "starts_first": "Un altro meccanismo si attiva prima di quello verificato, al giunto tra {names}.",
-}
 STEPS: Mapping[str, str] = {
     **REMEDIES,
     NextStep.MARGIN: "`rocking margin` shows from which scale factor on neighbours overturn, or are unknown",
@@ -84,53 +35,53 @@ STEPS: Mapping[str, str] = {
     NextStep.RESPOND: "`rocking respond` under this motion names the joint that opens or slides, and when",
     NextStep.DESIGN: "`rocking design` finds the value of a field at which the ratio reaches 1",
 }
-TEXTS = {"en": ENGLISH, "it": ITALIAN}
 
 
-def of_verification(found: Verification, title: str | None = None) -> list[Told]:
-    """Return the conclusion of a verification as sentences, which can be translated.
+def of_verification(found: Verification, say: Language = ENGLISH, title: str | None = None) -> list[str]:
+    """Return the conclusion of a verification as sentences.
 
     Parameters
     ----------
     found : Verification
         The verification.
+    say : Language
+        The language.
     title : str, optional
-        Name of the method that governs, in the language of the reader; by default that of the method.
+        Name of the method that governs, in the language; by default that of the method.
     """
     end = found.conclusion
     covers = all(each.what != "mechanism" for each in end.left_out)
     first = end.concluded.value if covers or end.concluded is not Concluded.NOT_CHECKED else "not_covered"
-    said = [_told("satisfied_at", states=", ".join(end.limit_states)) if _at_all(end) else _told(first)]
+    if end.concluded is Concluded.SATISFIED and len(end.limit_states) > 1:
+        first = "satisfied_at"
+    said = [say(f"end_{first}", states=", ".join(end.limit_states))]
     if end.concluded is not Concluded.NOT_CHECKED:
-        said.append(_governs(end, title or _method(found, end)))
-    for why in dict.fromkeys(each.why for each in end.left_out):
-        said.append(_told(why, names=", ".join(each.name for each in end.left_out if each.why == why)))
-    return said
+        said.append(_governs(end, say, title or _method(found, end)))
+    return said + not_counted(end.left_out, say)
 
 
-def _at_all(end: Conclusion) -> bool:
-    return end.concluded is Concluded.SATISFIED and len(end.limit_states) > 1
+def not_counted(left_out: Sequence[LeftOut], say: Language = ENGLISH) -> list[str]:
+    """Return a sentence for each reason for which something does not count, in a language."""
+    of = {why: [each.name for each in left_out if each.why == why] for why in (each.why for each in left_out)}
+    return [say(f"end_{why}", names=", ".join(names)) for why, names in of.items()]
 
 
-def _governs(end: Conclusion, method: str) -> Told:
-    direction = _told(f"direction_{end.direction}") if end.direction else ""
+def _governs(end: Conclusion, say: Language, method: str) -> str:
     if end.ratio is not None:
-        ratio = _told("ratio", ratio=end.ratio, digits=digits_beside_one(end.ratio))
+        ratio = Remark.of("end_ratio", ratio=end.ratio, digits=digits_beside_one(end.ratio))
     else:
-        ratio = _told("unproven" if end.concluded is Concluded.UNKNOWN else "past", motion=end.motion)
+        ratio = Remark.of(f"end_{'unproven' if end.concluded is Concluded.UNKNOWN else 'past'}", motion=end.motion)
+    direction = Remark.of(f"end_direction_{end.direction}") if end.direction else ""
+    values = {"state": end.limit_state, "direction": direction, "ratio": ratio}
     if end.limit_state:
-        return _told("governs_at", state=end.limit_state, direction=direction, method=method, ratio=ratio)
-    return _told("governs", direction=direction, method=f"{method[:1].upper()}{method[1:]}", ratio=ratio)
+        return say("end_governs_at", method=method, **values)
+    return say("end_governs", method=f"{method[:1].upper()}{method[1:]}", **values)
 
 
 def _method(found: Verification, end: Conclusion) -> str:
     each = next(iter(found.directions.values()))
     title = each.methods[end.method].title if end.method in each.methods else "time histories"
     return title.removesuffix(f" at {end.limit_state}")
-
-
-def _told(key: str, **values: Any) -> Told:
-    return Told.of(TEXTS, key, **values)
 
 
 def digits_beside_one(ratio: float) -> int:

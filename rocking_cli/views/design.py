@@ -10,12 +10,12 @@ import numpy as np
 
 from rocking_cli import names
 from rocking_cli.names import percent
-from rocking_cli.studies.conclusion import Concluded
+from rocking_cli.studies.conclusion import Concluded, NextStep
 from rocking_cli.studies.design import Design
 from rocking_cli.studies.metrics import Excitation
 from rocking_cli.text import one_line
 from rocking_cli.views.column import Column, frame_of, table_of
-from rocking_cli.views.conclusion import conclusion_data
+from rocking_cli.views.conclusion import STEPS, conclusion_data, not_counted
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View
@@ -47,7 +47,7 @@ def data(found: Design) -> dict[str, Any]:
         "monotone": found.monotone,
         "scan": {"values": found.values.tolist(), "metric": found.metric.tolist(), **unknown},
         "not_built": [{"low": each.low, "high": each.high, "reason": each.reason} for each in found.not_built],
-        "taken_otherwise": list(found.taken_otherwise),
+        "taken_otherwise": not_counted(found.taken_otherwise),
         "verdict": answer(found),
     }
 
@@ -114,7 +114,7 @@ def answer(found: Design) -> str:
 
 def doubts(found: Design, excitation: Excitation | None) -> list[str]:
     """Return remarks on the answer."""
-    said = list(found.taken_otherwise)
+    said = [f"{each} Next: {STEPS[NextStep.YIELD_FORCE]}." for each in not_counted(found.taken_otherwise)]
     count = len(found.values)
     if not found.has_effect and not found.aim.metric.shaken:
         said.append(f"{found.aim.metric.name} is the same at every value tried: {found.field} has no effect on it.")

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
+from rocking_cli.core import Direction
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.plugins.errors import guard
 from rocking_cli.studies.verification.installed import codes
 from rocking_cli.studies.verification.results import Verification, Verified
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.cautions import cautions_of
+from rocking_cli.views.column import Column, data_of, frame_of, of, table_of
 from rocking_cli.views.conclusion import conclusion_data, next_in_words, of_verification
+from rocking_cli.views.sheet.language import ENGLISH, Language
 from rocking_cli.views.view import ABSENT, Table, View, heading, number
 
 if TYPE_CHECKING:
@@ -25,6 +28,47 @@ SHOWN = ("of_direction", "data", "data_of_all", "table", "draw")
 """The methods that a code overrides: whatever fails there is an error of the plugin."""
 
 
+class MethodRow(NamedTuple):
+    """A method in a direction, and whether it governs there."""
+
+    direction: Direction
+    key: str
+    method: Any
+    governs: bool
+
+
+METHODS: Sequence[Column[MethodRow]] = (
+    Column("", of("direction.label"), name="direction", text=True),
+    Column("", of("key"), name="method", text=True),
+    Column("", of("method.title"), head="", name=None, text=True),
+    Column("capacity", of("method.capacity"), head="capacity"),
+    Column("demand", of("method.demand"), head="demand"),
+    Column("unit", of("method.unit"), head="unit", text=True),
+    Column("ratio", of("method.ratio"), head="ratio"),
+    Column("passes", of("method.passed"), name=None),
+    Column("clause", of("method.clause"), head="clause", name=None, text=True),
+    Column("", of("governs"), head="", form={True: "governs", False: ""}.__getitem__, name="governs", text=True),
+)
+STEPS: Sequence[Column[Working]] = (
+    Column("", of("symbol"), head="", text=True),
+    Column("", of("formula"), head="formula", text=True),
+    Column("", of("numbers"), head="numbers", text=True),
+    Column("", of("value"), head="result", form=number),
+    Column("", of("unit"), head="unit", text=True),
+    Column("", lambda line: cited(line), head="clause", text=True),
+    Column("", of("meaning"), head="meaning", text=True),
+)
+
+
+def rows_of(found: Verification) -> list[MethodRow]:
+    """Return a row for each direction and method."""
+    return [
+        MethodRow(direction, key, method, key == each.governs)
+        for direction, each in found.directions.items()
+        for key, method in each.methods.items()
+    ]
+
+
 class Showing(Generic[F, V]):
     """How the results of a code are shown; a code that shows more, or differently, overrides methods.
 
@@ -32,14 +76,14 @@ class Showing(Generic[F, V]):
     ----------
     of_site : sequence of str
         Symbols of the lines of the site's calculation to show, in order; empty for all.
-    compared : str
-        The quantities whose ratio compares the directions, in words.
+    say : Language
+        How the keys of remarks are said.
     notation : str
         How clauses are cited, such as ": [formula] or §section".
     """
 
     of_site: Sequence[str] = ()
-    compared: str = "capacity to demand"
+    say: Language = ENGLISH
     notation: str = ""
 
     def __init_subclass__(cls, **named: Any) -> None:
@@ -49,21 +93,19 @@ class Showing(Generic[F, V]):
 
     def of_direction(self, found: F, each: V, where: str) -> Iterable[Table | str]:
         """Return the tables and sentences of a direction, which `where` names."""
-        return [methods(each, where), verdict(each, where), *each.remarks]
+        rows = [row for row in rows_of(found) if row.direction is each.direction]
+        table = table_of(f"{where}: capacity by method", METHODS, rows)
+        return [table, verdict(each, where), *map(self.say, each.remarks)]
 
     def data(self, found: F, each: V) -> dict[str, Any]:
         """Return a direction as plain data."""
         return {
-            "methods": {
-                key: {"capacity": one.capacity, "demand": one.demand, "unit": one.unit, "ratio": one.ratio,
-                      "passes": one.passed, "clause": one.clause}
-                for key, one in each.methods.items()
-            },
+            "methods": {row.key: data_of(METHODS, row) for row in rows_of(found) if row.direction is each.direction},
             "governs": each.governs,
             "ratio": each.ratio,
             "passes": each.passed,
-            "remarks": list(each.remarks),
-        }  # fmt: skip
+            "remarks": list(map(self.say, each.remarks)),
+        }
 
     def data_of_all(self, found: F) -> dict[str, Any]:
         """Return as plain data what does not belong to one direction."""
@@ -71,19 +113,12 @@ class Showing(Generic[F, V]):
             "site": {
                 f"{each.symbol} {each.state}".strip(): each.value for each in map(Working.in_plain, found.workings)
             },
-            "remarks": list(found.remarks),
+            "remarks": list(map(self.say, found.remarks)),
         }
 
-    def table(self, found: F) -> dict[str, Sequence[Any]]:
+    def table(self, found: F) -> Mapping[str, Sequence[Any]]:
         """Return a table as columns, with a row for each direction and method."""
-        return columns(
-            ["direction", "method", "capacity", "demand", "unit", "ratio", "governs"],
-            [
-                [direction.label, key, one.capacity, one.demand, one.unit, one.ratio, key == each.governs]
-                for direction, each in found.directions.items()
-                for key, one in each.methods.items()
-            ],
-        )
+        return frame_of(METHODS, rows_of(found))
 
     def draw(self, found: F) -> Figure:
         """Return a plot of the verification. Raises `InputError` if the code has none."""
@@ -122,8 +157,8 @@ def view(found: Verification, site: str | None = None, *, every_step: bool = Fal
     for where, each in sides.items():
         parts += own.of_direction(found, each, where)
     if len(sides) > 1:
-        parts.append(_which_direction(found, own.compared))
-    parts += found.remarks
+        parts.append(_which_direction(found))
+    parts += map(own.say, found.remarks)
     if every_step:
         parts += steps(found.workings)
         for where, each in sides.items():
@@ -141,27 +176,16 @@ def shown(found: Verification) -> dict[str, Any]:
     return {f"{one.direction.label.capitalize()} direction": one for one in found.distinct}
 
 
-def _which_direction(found: Verification, compared: str) -> str:
+def _which_direction(found: Verification) -> str:
     """State which direction governs, with the ratios of both; empty if none does."""
     least = found.governs
     one, other = found.compared(least), found.compared(least.opposite)
     if found.alike or one is None or other is None:
         return ""
     return (
-        f"The {least.label} direction governs: its ratio of {compared} is {one:.3g}, against {other:.3g} in the other "
-        "direction."
+        f"The {least.label} direction governs: its ratio of capacity to demand is {one:.3g}, against {other:.3g} in "
+        "the other direction."
     )
-
-
-def methods(each: Verified, where: str) -> Table:
-    """Return a table of the results of each method in a direction."""
-    rows = [
-        [one.title, number(one.capacity, 4), number(one.demand, 4), one.unit, number(one.ratio, 4), one.clause,
-         "governs" if key == each.governs else ""]
-        for key, one in each.methods.items()
-    ]  # fmt: skip
-    heads = ["", "capacity", "demand", "unit", "ratio", "clause", ""]
-    return Table(f"{where}: capacity by method", heads, rows, numbers=(1, 2, 4))
 
 
 def verdict(each: Verified, where: str) -> str:
@@ -196,13 +220,8 @@ def _site(found: Verification, symbols: Sequence[str]) -> Table:
 
 def steps(workings: Sequence[Working], where: str = "") -> Iterator[Table]:
     """Yield the lines of a calculation, a table for each section; `where` names the direction."""
-    heads = ["", "formula", "numbers", "result", "unit", "clause", "meaning"]
-    for section, lines in groupby((each.in_plain() for each in workings), key=lambda line: line.section):
-        rows = [
-            [line.symbol, line.formula, line.numbers, number(line.value), line.unit, cited(line), line.meaning]
-            for line in lines
-        ]
-        yield Table(": ".join(part for part in (where, section) if part) or "Calculation", heads, rows, numbers=(3,))
+    for section, lines in groupby((each.in_plain() for each in workings), key=of("section")):
+        yield table_of(": ".join(filter(None, (where, section))) or "Calculation", STEPS, lines)
 
 
 def cited(line: Working) -> str:
@@ -223,12 +242,7 @@ def data(found: Verification) -> dict[str, Any]:
     }
 
 
-def columns(heads: Sequence[str], rows: Sequence[Sequence[Any]]) -> dict[str, Sequence[Any]]:
-    """Return rows as columns by their headings."""
-    return {name: [row[k] for row in rows] for k, name in enumerate(heads)}
-
-
-def table(found: Verification) -> dict[str, Sequence[Any]]:
+def table(found: Verification) -> Mapping[str, Sequence[Any]]:
     """Return a table as columns, with a row for each direction and method."""
     return showing(found).table(found)
 

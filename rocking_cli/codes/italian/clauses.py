@@ -31,4 +31,4 @@ REFERENCE_LIFE, HAZARD, SOIL = Clause("§2.4.3"), Clause("§3.2"), Clause("§3.2
 S = Clause("[3.2.3]")
 RETURN_PERIOD, SPECTRUM, DAMPING, TC, TB, TD = (_held(f"[3.2.{k}]") for k in (0, 2, 4, 5, 6, 7))
 DISPLACEMENT, DISPLACEMENT_LONG, DISPLACEMENT_GROUND = (_held(f"[3.2.{k}]") for k in (10, 11, 12))
-OUTSIDE = Clause("not in the code")
+OUTSIDE = Clause("not in this edition")

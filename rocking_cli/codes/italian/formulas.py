@@ -1,7 +1,7 @@
 """The formulas of a verification by the Italian code: symbol, text, slots for its numbers, unit and clause.
 
 The calculation sheet, `workings` and the terminal all use these formulas. The `meaning` of a formula is a key of the
-texts of the sheet.
+texts of the sheet; a copy has another one where uses differ.
 """
 
 from __future__ import annotations
@@ -165,7 +165,6 @@ D_C = Formula("d_[C]({at})", "Σ (P+Q) Δx/Σ (P+Q)", "({P} · {x} + …)/{PQ}",
 D_C_POINT = Formula("d_[C]({at})", "|x_[C](φ) − x_[C](0)|", "{one} − {other}", "m", clauses.D, meaning="d_C")
 D = Formula(
     "{symbol}", "d_[C] Σ (P+Q) x′^[2]/(x_[C]′ Σ (P+Q) x′)", "{d} · {second}/({x} · {first})", "m", clauses.D,
-    meaning="{what}",
 )  # fmt: skip
 
 # Limit states
@@ -193,11 +192,12 @@ PERIOD = {
     )
     for rule in RULES
 }  # fmt: skip
-RHO = Formula("ρ_[{on}]", "d_[{state}]/S_[De](T_[{on}])", "{d}/{demand}", "", clauses.NONLINEAR, meaning="{outcome}")
+RHO = Formula("ρ_[{on}]", "d_[{state}]/S_[De](T_[{on}])", "{d}/{demand}", "", clauses.NONLINEAR)
 
 # Methods
-CAPACITY = Formula("{symbol}", "a_[g] · {capacity}/{demand}", "{ag} · {c}/{d}", "g", meaning="{what}")
-CAPACITY_FOUND = Formula("{symbol}", "{demand}(a_[g]) = {capacity}", "", "g", meaning="{what}_iterated")
+CAPACITY = Formula("{symbol}", "a_[g] · {capacity}/{demand}", "{ag} · {c}/{d}", "g", meaning="a_g_method")
+START = replace(CAPACITY, meaning="a_g_start")
+CAPACITY_FOUND = Formula("{symbol}", "{demand}(a_[g]) = {capacity}", "", "g")
 LINEAR = Formula("a_[g,linear]", "q · a_[g,0]", "{q} · {a}", "g", clauses.LINEAR, meaning="a_g_method")
 ZETA = Formula("ζ_[E{more}]", "{symbol}/{asked}", "{a}/{b}", "", clauses.ZETA, meaning="zeta")
 LASTS = Formula(

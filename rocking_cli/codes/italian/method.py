@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from math import pi, sqrt
 
-from rocking_cli.codes.italian import clauses, wordings
+from rocking_cli.codes.italian import clauses, remarks
 from rocking_cli.codes.italian.capacity import CapacityCurve, ExactCurve, StraightCurve, with_elastic_branch
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import DAMPING, DemandSpectrum
@@ -120,12 +120,13 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     """
     ground, taken = SiteGround(of_structure(site, mechanism)), lasting(mechanism)
     found = {direction: _verified(taken, direction, ground, control) for direction in taken.directions}
-    otherwise = [wordings.of_ties_at_rest(elastic(mechanism))] if taken is not mechanism else []
-    remarks = [*otherwise, *wordings.of_site(ground, list(found.values()))]
+    otherwise = elastic(mechanism) if taken is not mechanism else []
+    said = [remarks.of_ties_at_rest(otherwise)] if otherwise else []
     return ItalianVerification(
         taken, KEY, NAME, EDITION, found,
-        workings=Later(partial(workings_of_site, ground)), remarks=remarks, taken_otherwise=otherwise,
-        left_out=[LeftOut("tie", tie.name, "elastic") for tie in elastic(mechanism)] if otherwise else [],
+        workings=Later(partial(workings_of_site, ground)),
+        remarks=[*said, *remarks.of_site(ground, list(found.values()))],
+        left_out=[LeftOut("tie", tie.name, "elastic") for tie in otherwise],
     )  # fmt: skip
 
 
@@ -139,12 +140,12 @@ def _verified(
     states = {rule.state: case.state(rule) for rule in RULES}
     on_line = {rule.state: line.state(rule) for rule in RULES}
     methods = case.methods(states)
-    remarks = wordings.of_direction(exact, states, ground)
+    said = remarks.of_direction(exact, states, ground)
     if control is not None:
         usual = ExactCurve(chain, chain.barycentre, ground.site.FC)
         by_it = _Case(ground, usual)
         others = by_it.methods({rule.state: by_it.state(rule) for rule in RULES})
-        remarks.append(wordings.of_control(methods[NONLINEAR], others[NONLINEAR], exact.d0, usual.d0))
+        said.append(remarks.of_control(methods[NONLINEAR], others[NONLINEAR], exact.d0, usual.d0))
     found = ItalianVerified(
         direction=direction,
         first=FIRST,
@@ -159,7 +160,7 @@ def _verified(
         straight_methods=line.methods(on_line),
         governing={state: _governs(methods, *pair) for state, pair in OF_STATE.items()},
         governs=_governs(methods, DAMAGE, NONLINEAR),
-        remarks=remarks,
+        remarks=said,
     )
     return replace(found, workings=Later(partial(workings_of_direction, ground, found)))
 

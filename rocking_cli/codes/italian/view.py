@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from rocking_cli import names
 from rocking_cli.codes.italian import formulas as F
-from rocking_cli.codes.italian import words
-from rocking_cli.codes.italian.results import (
-    Dynamic,
-    ItalianVerification,
-    ItalianVerified,
-    LimitState,
-    RecordPeak,
-)
+from rocking_cli.codes.italian.remarks import differences
+from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, ItalianVerified, LimitState
+from rocking_cli.codes.italian.sheet import dynamic
+from rocking_cli.codes.italian.sheet.states import ties
+from rocking_cli.codes.italian.sheet.steps import TERMINAL
+from rocking_cli.codes.italian.sheet.summary import methods, verdicts
 from rocking_cli.codes.italian.ties import pulls
 from rocking_cli.studies.verification.working import in_plain
-from rocking_cli.views.verification import Showing, cited, columns
-from rocking_cli.views.view import ABSENT, Table, number
+from rocking_cli.views.column import Column, frame_of, of
+from rocking_cli.views.sheet.document import Sentence
+from rocking_cli.views.verification import METHODS, MethodRow, Showing, cited, rows_of
+from rocking_cli.views.view import Table, number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-
+COLUMNS: Sequence[Column[MethodRow]] = (
+    *METHODS[:2],
+    Column("a_g", of("method.a_g"), "g"),
+    Column("asked", of("method.demand"), "g"),
+    Column("zeta_E", of("method.zeta")),
+    Column("TR", of("method.return_period"), "years"),
+    METHODS[-1],
+)
 OF_SITE = [
     in_plain(each.symbol.format(at="T_[0]"))
     for each in (
@@ -36,26 +42,19 @@ OF_SITE = [
 class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
     """How the results of the Italian code are shown."""
 
-    of_site, compared = OF_SITE, "capacity to demand"
+    of_site, say = OF_SITE, TERMINAL
     notation = ": [formula] or §section"
 
     def of_direction(self, found: ItalianVerification, each: ItalianVerified, where: str) -> Iterable[Table | str]:
-        """Return the capacity curve, the methods, the verdict and why the methods differ."""
+        """Return the capacity curve, the methods, the verdicts, why the methods differ, and the time histories."""
         yield _capacity(each, where)
-        yield from _pulls(each)
-        yield _methods(each)
-        yield words.verdict(each, found.first, where)
-        yield from words.differences(each, found.first)
-        yield from words.beyond_first(each, found.first)
-        yield from each.remarks
+        yield from ties(TERMINAL, each.exact, each.states)
+        yield methods(TERMINAL, where, each)
+        yield from verdicts(TERMINAL, where, each)
+        yield from map(TERMINAL, [*differences(each, found.first), *each.remarks])
         if each.dynamic is not None:
-            rows = [
-                [record.name, *(_peak(record, each.dynamic, confident) for confident in (True, False))]
-                for record in each.dynamic.records
-            ]
-            heads = ["record", "with FC", "without"]
-            yield Table("Time histories: largest d [m]", heads, rows, numbers=(1, 2))
-            yield from words.of_histories(each.dynamic, each.exact.confidence)
+            for item in dynamic.items(TERMINAL, each.dynamic, each.exact.confidence):
+                yield item.text if isinstance(item, Sentence) else item
 
     def data(self, found: ItalianVerification, each: ItalianVerified) -> dict[str, Any]:
         """Return a direction as plain data."""
@@ -65,24 +64,9 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
         """Return an empty mapping, because the values of the ground are already among the workings."""
         return {}
 
-    def table(self, found: ItalianVerification) -> dict[str, Sequence[Any]]:
+    def table(self, found: ItalianVerification) -> Mapping[str, Sequence[Any]]:
         """Return a row for each direction and method."""
-        return columns(
-            ["direction", "method", "a_g [g]", "asked [g]", "zeta_E", "TR [years]", "governs"],
-            [
-                [
-                    direction.label,
-                    key,
-                    method.a_g,
-                    method.demand,
-                    method.zeta,
-                    method.return_period,
-                    key == each.governs,
-                ]
-                for direction, each in found.directions.items()
-                for key, method in each.methods.items()
-            ],
-        )
+        return frame_of(COLUMNS, rows_of(found))
 
     def draw(self, found: ItalianVerification) -> Figure:
         """Draw the capacity curves."""
@@ -116,45 +100,6 @@ def _capacity(each: ItalianVerified, where: str) -> Table:
             ]
     title = f"{where}: capacity, on the exact curve and on the straight line from a0* to d0*"
     return Table(title, ["", "exact\ncurve", "straight\nline", "unit", "clause"], rows, numbers=(1, 2))
-
-
-def _methods(each: ItalianVerified) -> Table:
-    """Table of the capacity by each method."""
-    known = any(method.return_period is not None for method in each.methods.values())
-    rows = []
-    for key, method in each.methods.items():
-        if method.a_g is None or each.stands_back(key):
-            continue
-        line = each.straight_methods[key]
-        years = [method.lasts or ABSENT] if known else []
-        governs = f"decides {state}" if (state := each.decides(key)) else ""
-        rows.append(
-            [
-                method.title,
-                *(number(each, 4) for each in (method.a_g, line.a_g, method.demand, method.zeta)),
-                *years,
-                method.clause,
-                governs,
-            ]
-        )
-    heads = [
-        "",
-        "a_g [g]\nexact\ncurve",
-        "a_g [g]\nstraight\nline",
-        "a_g [g]\ndemand",
-        "zeta_E",
-        *(["TR\n[years]"] if known else []),
-    ]
-    return Table("Capacity by method", [*heads, "clause", ""], rows, numbers=range(1, len(heads)))
-
-
-def _peak(record: RecordPeak, found: Dynamic, confident: bool) -> str:
-    d, known_to = record.peak(confident=confident), record.known_to(confident=confident)
-    if known_to is not None:
-        return f"{names.UNKNOWN} after {known_to:.4g} s"
-    if d is None:
-        return "overturns"
-    return f"{d:.4g}{' past d0*' if d >= found.d0 else ''}"
 
 
 def _data(each: ItalianVerified) -> dict[str, Any]:
@@ -196,18 +141,6 @@ def _ties(each: ItalianVerified) -> dict[str, dict[str, float | None]]:
             for pull in pulls(each.exact, at.d):
                 found.setdefault(pull.name, {})[f"{key}_{name}"] = getattr(pull, key)
     return found
-
-
-def _pulls(each: ItalianVerified) -> list[Table]:
-    """Return a table of ties, and of forces against the motion, at each limit state; empty if there are none."""
-    rows = [
-        [pull.name, f"d_{state}", number(pull.force / 1e3), number(pull.elongation, 4),
-         ABSENT if pull.strain is None else number(100 * pull.strain, 3)]
-        for state, at in each.states.items() for pull in pulls(each.exact, at.d)
-    ]  # fmt: skip
-    heads = ["", "at", "force\n[kN]", "elongation\n[m]", "elongation\n[%]"]
-    title = "Ties, and forces against the motion with the way of their points"
-    return [Table(title, heads, rows, numbers=(2, 3, 4))] if rows else []
 
 
 def _histories(found: Dynamic) -> dict[str, Any]:

@@ -55,6 +55,26 @@ def governing(methods: Mapping[str, Method]) -> str:
     return min(methods, key=lambda key: inf if (ratio := methods[key].ratio) is None or isnan(ratio) else ratio)
 
 
+class Remark(NamedTuple):
+    """A remark on a result, which a view says in a language.
+
+    Parameters
+    ----------
+    key : str
+        Key of the sentence among the texts of the code.
+    values : mapping of str to object
+        Numbers, names and further remarks in the sentence.
+    """
+
+    key: str
+    values: Mapping[str, Any]
+
+    @classmethod
+    def of(cls, key: str, /, **values: Any) -> Remark:
+        """Return the remark of a key with its values."""
+        return cls(key, values)
+
+
 class Requirement(NamedTuple):
     """What a code requires of a direction at one limit state.
 
@@ -104,15 +124,15 @@ class Verified:
         The key of the method that decides, such as `governing(methods)`.
     workings : sequence of Working
         The lines of the calculation.
-    remarks : sequence of str
-        Remarks on the results, as sentences.
+    remarks : sequence of str or Remark
+        Remarks on the results: sentences, or keys of the texts of the code.
     """
 
     direction: Direction
     methods: Mapping[str, Method]
     governs: str
     workings: Sequence[Working] = field(default=(), kw_only=True)
-    remarks: Sequence[str] = field(default=(), kw_only=True)
+    remarks: Sequence[str | Remark] = field(default=(), kw_only=True)
 
     @property
     def counts(self) -> Method:
@@ -160,10 +180,8 @@ class Verification:
         Result in each direction in which the structure can rock.
     workings : sequence of Working
         Lines of the calculation that are common to both directions, such as the ground.
-    remarks : sequence of str
-        Remarks on the verification, as sentences.
-    taken_otherwise : sequence of str
-        Those remarks that name values for which the code used others than the structure gives.
+    remarks : sequence of str or Remark
+        Remarks on the verification: sentences, or keys of the texts of the code.
     left_out : sequence of LeftOut
         What was given and does not count.
     """
@@ -174,8 +192,7 @@ class Verification:
     edition: str
     directions: Mapping[Direction, Verified]
     workings: Sequence[Working] = field(default=(), kw_only=True)
-    remarks: Sequence[str] = field(default=(), kw_only=True)
-    taken_otherwise: Sequence[str] = field(default=(), kw_only=True)
+    remarks: Sequence[str | Remark] = field(default=(), kw_only=True)
     left_out: Sequence[LeftOut] = field(default=(), kw_only=True)
 
     @property

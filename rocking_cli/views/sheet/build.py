@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,8 +12,9 @@ from rocking_cli.studies.assessment import File, TitleBlock
 from rocking_cli.studies.verification.check import code_of
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.studies.verification.site_file import SiteFile
-from rocking_cli.views.sheet.document import Grid, Item, Listing, Sentence, Sheet, SheetPart
+from rocking_cli.views.sheet.document import Item, Listing, Sentence, Sheet, SheetPart
 from rocking_cli.views.sheet.language import DIGITS, Language
+from rocking_cli.views.view import Table
 
 MOST = 200  # lines of a file that are printed
 
@@ -44,15 +45,13 @@ class SheetOfCode:
     Parameters
     ----------
     texts : mapping of str to mapping
-        For each language, the texts by their keys, including `subtitle`, `reading_digits` and `reading_marks`.
-    spelled : mapping of str to str
-        Printed forms of the symbols in plain sentences.
+        For each language, the texts by their keys or their English form, including `subtitle`,
+        `reading_digits` and `reading_marks`.
     parts : callable
         `parts(language, verification, site)` returns the parts of the sheet, the summary first.
     """
 
     texts: Mapping[str, Mapping[str, str]]
-    spelled: Mapping[str, str]
     parts: Callable[[Language, Any, Any], Iterable[SheetPart]]
 
     def language(self, key: str) -> Language:
@@ -62,7 +61,7 @@ class SheetOfCode:
             raise InputError(
                 Problem(f"there is no calculation sheet in {key!r}", field="`language`", hint=f"known: {known}")
             )
-        return Language(key, self.texts[key], self.spelled)
+        return Language(key, self.texts[key])
 
 
 def sheet_of(site: SiteFile) -> SheetOfCode:
@@ -98,52 +97,42 @@ def sheet(found: Verification, site: SiteFile, language: Language, title: TitleB
         If the code of the site has no sheet.
     """
     own = sheet_of(site)
-    say = own.language(language.key)
-    about = {say.say(name): text for name, text in title.known.items()}
+    say, mechanism = own.language(language.key), found.mechanism
+    about = {say(name.capitalize()): text for name, text in title.known.items()}
     if site.site.name:
-        about[say.say("site_name")] = site.site.name
-    about[say.say("date")] = title.date
-    about[say.say("program")] = f"rocking-cli {made.versions['rocking-cli']}"
+        about[say("Site")] = site.site.name
+    about[say("Date")] = title.date
+    about[say("Program")] = f"rocking-cli {made.versions['rocking-cli']}"
     with blame(f"the code {site.site.code} failed in its sheet", own.parts.__module__):
         first, *others = own.parts(say, found, site.site)
-    parts = [first, _reading(say, found), *others, _inputs(say, found, title, made)]
-    return Sheet(say, say.say("title", name=found.mechanism.name), _subtitle(say, found), about, parts, title.logo)
-
-
-def _subtitle(say: Language, found: Verification) -> str:
-    mechanism = found.mechanism
-    return say.say("subtitle", structure=say.mechanism(mechanism.mechanism, mechanism.title))
-
-
-def _reading(say: Language, found: Verification) -> SheetPart:
-    has_mass = found.mechanism.has_mass
-    said = [say.say("reading_digits", digits=DIGITS, force="kN" if has_mass else "N/kg")]
-    said += [say.say("reading_marks"), *([] if has_mass else [say.say("per_kilogram")])]
-    return SheetPart("reading", say.say("reading"), [*map(Sentence, said)])
+    reading = [say("reading_digits", digits=DIGITS, force="kN" if mechanism.has_mass else "N/kg"), say("reading_marks")]
+    if not mechanism.has_mass:
+        reading.append(say("The file gives no masses: weights are per kilogram of the whole structure, in N/kg."))
+    how = SheetPart("reading", say("How to read it"), [*map(Sentence, reading)])
+    subtitle = say("subtitle", structure=say.mechanism(mechanism.mechanism, mechanism.title))
+    parts = [first, how, *others, _inputs(say, found, title, made)]
+    return Sheet(say, say("Calculation sheet: {name}", name=mechanism.name), subtitle, about, parts, title.logo)
 
 
 def _inputs(say: Language, found: Verification, title: TitleBlock, made: SheetSources) -> SheetPart:
-    files = [("structure_file", made.structure), ("site_file", made.site)]
-    rows = [[say.say(kind), file.name, file.checksum] for kind, file in files]
+    files = {"structure": made.structure, "site": made.site}
+    rows = [[say(kind), file.name, file.checksum] for kind, file in files.items()]
     for name, file in made.records.items():
-        seen = [name, say.say("pulse")] if file is None else [file.name, file.checksum]
-        rows.append([say.say("record_file"), *seen])
-    versions = [[*each] for each in made.versions.items()]
+        seen = [name, say("pulse, computed from its formula")] if file is None else [file.name, file.checksum]
+        rows.append([say("record"), *seen])
     items: list[Item] = [
-        Sentence(say.say("inputs_are")),
+        Sentence(say("Run this command with these files and versions to reproduce the sheet.")),
         Listing(title.command),
-        Grid(say.say("files"), ["", say.say("file"), "SHA-256"], rows),
-        Grid(say.say("versions"), [say.say("package"), say.say("version")], versions),
-        Sentence(say.say("source", source=found.mechanism.source)),
+        Table(say("Files"), ["", say("file"), "SHA-256"], rows),
+        Table(say("Versions"), [say("package"), say("version")], [[*each] for each in made.versions.items()]),
+        Sentence(say("Mechanism: {source}.", source=found.mechanism.source)),
     ]
-    texts = [SheetPart(kind, say.say(kind), list(_text(say, file))) for kind, file in
-             (("structure_text", made.structure), ("site_text", made.site))]  # fmt: skip
-    return SheetPart("inputs", say.say("inputs"), items, texts)
-
-
-def _text(say: Language, file: File) -> Iterator[Item]:
-    """Yield the content of a file, cut if it is too long for a printed page."""
-    lines: Sequence[str] = file.text.splitlines()
-    yield Listing("\n".join(lines[:MOST]))
-    if len(lines) > MOST:
-        yield Sentence(say.say("cut", more=len(lines) - MOST))
+    texts = []
+    for kind, file in files.items():
+        lines = file.text.splitlines()
+        text: list[Item] = [Listing("\n".join(lines[:MOST]))]
+        if len(lines) > MOST:  # too long for a printed page
+            more = len(lines) - MOST
+            text.append(Sentence(say("(the file continues: {more} more lines are not printed)", more=more)))
+        texts.append(SheetPart(f"{kind}_text", say(f"{kind.capitalize()} file"), text))
+    return SheetPart("inputs", say("Files and versions"), items, texts)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.view import Table
 
 
 @dataclass(frozen=True)
@@ -16,16 +17,6 @@ class Sentence:
     text: str
     answers: bool = False
     fails: bool = False
-
-
-@dataclass(frozen=True)
-class Grid:
-    """A table: caption, headings, cells, and indices of the columns with numbers."""
-
-    caption: str
-    columns: Sequence[str]
-    rows: Sequence[Sequence[str]]
-    numbers: Collection[int] = ()
 
 
 @dataclass(frozen=True)
@@ -49,7 +40,7 @@ class Listing:
     text: str
 
 
-Item = Sentence | Grid | Steps | Drawing | Listing
+Item = Sentence | Table | Steps | Drawing | Listing
 
 
 @dataclass(frozen=True)

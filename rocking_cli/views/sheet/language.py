@@ -3,35 +3,40 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from datetime import date
 from functools import cached_property
+from importlib.resources import files
 from math import isnan
-from typing import Any, NamedTuple
+from string import Formatter
+from typing import Any
 
-from rocking_cli.studies.verification.told import WITH_COMMA, filled, said_in
-from rocking_cli.studies.verification.working import MINUS, Formula, Working
-from rocking_cli.views.sheet import texts_en, texts_it
+from rocking_cli.studies.verification.results import Remark
+from rocking_cli.studies.verification.working import MINUS, Formula, Working, in_plain
+from rocking_cli.views import view
 
+LANGUAGES = ("en", "it")
+WITH_COMMA = frozenset({"it"})
+"""The languages that write 1.5 with a comma."""
 DIGITS = 6  # significant: recomputed from printed numbers, a result agrees to five
 ABSENT = "–"
 
 
-class LanguageTexts(NamedTuple):
-    """Words of a language: texts, names of months, titles and cautions of mechanisms, and words in drawings."""
+def texts_of(package: str, key: str) -> Mapping[str, str]:
+    """Return the texts that a package has in a language: by keys, or by their English form."""
+    import tomllib
 
-    texts: Mapping[str, str]
-    months: Sequence[str]
-    mechanisms: Mapping[str, str]
-    cautions: Mapping[str, str]
-    pictures: Mapping[str, str]
+    text = (files(package) / "texts" / f"{key}.toml").read_text(encoding="utf-8")
+    return {name: " ".join(each.split()) for name, each in tomllib.loads(text).items()}
 
 
-TABLES = {
-    key: LanguageTexts(each.TEXTS, each.MONTHS, each.MECHANISMS, each.CAUTIONS, each.PICTURES)
-    for key, each in (("en", texts_en), ("it", texts_it))
-}
+class _WithComma(Formatter):
+    """The format of texts in which numbers have a decimal comma."""
+
+    def format_field(self, value: Any, spec: str) -> str:
+        text: str = super().format_field(value, spec)
+        return text.replace(".", ",") if isinstance(value, float) else text
 
 
 @dataclass(frozen=True)
@@ -44,37 +49,53 @@ class Language:
         "en" or "it".
     own : mapping of str to str
         The texts of a code, in addition to those of every sheet.
-    spelled : mapping of str to str
-        Printed forms of the symbols in plain sentences.
+    is_plain : bool
+        Whether texts and numbers are in plain characters, as for the terminal.
     """
 
     key: str
     own: Mapping[str, str] = field(default_factory=dict, compare=False)
-    spelled: Mapping[str, str] = field(default_factory=dict, compare=False)
+    is_plain: bool = False
 
     @cached_property
     def texts(self) -> Mapping[str, str]:
-        """Texts of the language, by key."""
-        return {**TABLES[self.key].texts, **self.own}
+        """Texts of the language, by key or by their English form."""
+        return {**texts_of("rocking_cli.views.sheet", self.key), **self.own}
 
-    def say(self, key: str, **values: Any) -> str:
-        """Return a text with its slots filled; marks of formulas in values are escaped."""
-        ready = {name: plain(value) if isinstance(value, str) else value for name, value in values.items()}
-        return filled(self.texts[key], self.key, ready)
+    def __call__(self, text: str | Remark, /, **values: Any) -> str:
+        """Return a text in this language, with its slots filled.
 
-    def remark(self, text: str) -> str:
-        """Return a sentence of the study in this language, if translated, with its symbols as printed."""
-        said, marks = said_in(self.key, text), "|".join(map(re.escape, self.spelled))
-        return re.sub(marks, lambda found: self.spelled[found[0]], said) if marks else said
+        Parameters
+        ----------
+        text : str or Remark
+            The key of a text, or its English form: without a translation it stays as it is.
+        **values
+            Values of the slots: numbers, names, remarks, or lists of these. Marks of formulas in names are escaped.
+        """
+        key, values = (text.key, dict(text.values)) if isinstance(text, Remark) else (text, values)
+        found = self.texts.get(key, key)
+        found = in_plain(found) if self.is_plain else found
+        if not values:
+            return found
+        written = _WithComma() if self.key in WITH_COMMA else Formatter()
+        return written.format(found, **{name: self._value(value) for name, value in values.items()})
+
+    def _value(self, value: Any) -> Any:
+        if isinstance(value, Remark):
+            return self(value)
+        if isinstance(value, list):
+            *before, last = map(self._value, value)
+            return f"{', '.join(before)} {self('and')} {last}" if before else last
+        return plain(value) if isinstance(value, str) and not self.is_plain else value
 
     def number(self, value: float | None, digits: int = DIGITS) -> str:
         """Return a number as it is printed."""
+        if self.is_plain:
+            return view.number(value, digits)
         if value is None or isnan(value):
             return ABSENT
         mantissa, _, power = f"{value + 0.0:.{digits}g}".partition("e")
-        text = mantissa.replace("-", MINUS)
-        if self.key in WITH_COMMA:
-            text = text.replace(".", ",")
+        text = self.formula(mantissa.replace("-", MINUS))
         return f"{text} · 10^[{str(int(power)).replace('-', MINUS)}]" if power else text
 
     def step(
@@ -84,9 +105,9 @@ class Language:
         found = formula.working(value, names, write=self.number, marks=self.formula, **numbers)
         return replace(
             found,
-            meaning=self.say(found.meaning, **(names or {})),
-            unit=self.texts.get(f"unit {found.unit}", found.unit),
-            clause=self.texts.get(f"clause {found.clause}", found.clause),
+            meaning=self(formula.meaning, **(names or {})),
+            unit=self.texts.get(found.unit, found.unit),
+            clause=self.texts.get(found.clause, found.clause),
         )
 
     def formula(self, formula: str) -> str:
@@ -95,22 +116,21 @@ class Language:
 
     def day(self, when: date) -> str:
         """Return a date in words."""
-        return f"{when.day} {TABLES[self.key].months[when.month - 1]} {when.year}"
-
-    @property
-    def words_of_pictures(self) -> Mapping[str, str]:
-        """Translations of the words in drawings, by their English form."""
-        return TABLES[self.key].pictures
+        return f"{when.day} {self(f'{when:%B}')} {when.year}"
 
     def mechanism(self, key: str, title: str) -> str:
         """Return the title of a mechanism in this language; the given title if there is no translation."""
-        return TABLES[self.key].mechanisms.get(key, plain(title))
+        return self.texts.get(f"mechanism_{key}", plain(title))
 
     def caution(self, key: str, text: str) -> str:
         """Return the caution about a mechanism in this language; the given text if there is no translation."""
-        return TABLES[self.key].cautions.get(key, plain(text))
+        return self.texts.get(f"caution_{key}", plain(text))
 
 
 def plain(text: str) -> str:
     """Escape a text so that nothing in it is read as a sub- or superscript."""
     return re.sub(r"([_^])\[", "\\1\N{WORD JOINER}[", text)
+
+
+ENGLISH = Language("en", is_plain=True)
+"""As the terminal has it."""

@@ -6,45 +6,38 @@ from collections.abc import Iterator
 
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianVerification
-from rocking_cli.codes.italian.rules import RULES
-from rocking_cli.codes.italian.sheet import dynamic, site, summary, texts_en, texts_it
+from rocking_cli.codes.italian.sheet import dynamic, site, summary
 from rocking_cli.codes.italian.sheet.steps import of_direction
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
+from rocking_cli.core import Direction
 from rocking_cli.views.sheet.build import SheetOfCode
 from rocking_cli.views.sheet.document import Drawing, SheetPart
-from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.sheet.language import LANGUAGES, Language, texts_of
+
+WHERE = {
+    Direction.POSITIVE: "Positive direction (clockwise)",
+    Direction.NEGATIVE: "Negative direction (anticlockwise)",
+}
 
 
 def parts(say: Language, found: ItalianVerification, given: ItalianSite) -> Iterator[SheetPart]:
     """Yield summary, drawing, site, and each direction; one direction if both have the same numbers."""
-    shown = {say.say(one.direction.label): one for one in found.distinct}
+    shown = {say(WHERE[one.direction]): one for one in found.distinct}
     if len(found.distinct) < len(found.directions):
-        shown = {say.say("both"): found.distinct[0]}
+        shown = {say("Both directions"): found.distinct[0]}
     ground = SiteGround(of_structure(given, found.mechanism))
     yield summary.part(say, found, shown)
-    yield SheetPart("drawing", say.say("drawing"), [Drawing(say.say("drawing_label", name=found.mechanism.name))])
+    name = found.mechanism.name
+    label = say("{name} at rest with its dimensions, and displaced to its critical rotation", name=name)
+    yield SheetPart("drawing", say("Drawing"), [Drawing(label)])
     yield site.part(say, ground)
     for where, each in shown.items():
         key = each.direction.label
         below = list(of_direction(say, ground, each))
         if each.dynamic is not None:
-            below.append(dynamic.part(say, each, each.dynamic, key))
+            items = list(dynamic.items(say, each.dynamic, each.exact.confidence))
+            below.append(SheetPart(f"{key}-dynamic", say("Dynamic method"), items))
         yield SheetPart(key, where, [], below)
 
 
-SPELLED = {
-    "alpha0": "α_[0]",
-    "lambda": "λ",
-    "a0*": "a_[0]^[*]",
-    "d0*": "d_[0]^[*]",
-    "a*": "a^[*]",
-    **{f"d_{rule.state}": f"d_[{rule.state}]" for rule in RULES},
-    "xi1^-1/2 eta(xi)": "ξ_[1]^[−1/2] η(ξ)",
-    "xi1": "ξ_[1]",
-    "S_Z": "S_[Z]",
-    "a_g": "a_[g]",
-    "T0": "T_[0]",
-    "m/s2": "m/s²",
-}
-"""The symbols of plain sentences, as they are printed."""
-SHEET = SheetOfCode({"en": texts_en.TEXTS, "it": texts_it.TEXTS}, SPELLED, parts)
+SHEET = SheetOfCode({key: texts_of("rocking_cli.codes.italian", key) for key in LANGUAGES}, parts)

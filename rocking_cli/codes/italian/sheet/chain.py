@@ -11,8 +11,9 @@ from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.displaced import DisplacedChain, Moved
 from rocking_cli.core.hung.attached import PointMass
 from rocking_cli.studies.verification.working import Working
-from rocking_cli.views.sheet.document import Grid, Item, SheetPart, Steps
+from rocking_cli.views.sheet.document import Item, SheetPart, Steps
 from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.view import Table
 
 ROUNDING = 1e-12  # of the size of a thing: what is smaller is none
 NONE = 1e-9  # of what makes up a sum: what is left of it is none
@@ -61,10 +62,10 @@ def part(say: Language, curve: ExactCurve, key: str) -> SheetPart:
         *held(say, rest, scale),
         Steps(list(_sums(say, chain, rest, scale))),
     ]
-    return SheetPart(f"{key}-chain", say.say("chain"), items)
+    return SheetPart(f"{key}-chain", say("Kinematic chain, at rest"), items)
 
 
-def _weights(say: Language, chain: Chain, scale: Scale) -> Grid:
+def _weights(say: Language, chain: Chain, scale: Scale) -> Table:
     """Return a table of every mass that moves, with its shares in P and in P + Q."""
     mechanism, moving = chain.mechanism, {name for block in chain.blocks for name in block.bodies}
     named = [(body.name, body.mass, 1.0, 1.0) for body in mechanism.weighed() if body.name in moving]
@@ -79,9 +80,9 @@ def _weights(say: Language, chain: Chain, scale: Scale) -> Grid:
         numbers = [each.spot.at.real, each.spot.at.imag, mass, w, h]
         forces = [scale.weight(each.carried), scale.weight(each.inertial)]
         rows.append([name, str(block), *(say.number(value) for value in [*numbers, *forces])])
-    heads = [say.say("weight"), say.say("block"), "x [m]", "y [m]", "M [kg]", "w", "h"]
-    caption = say.say("weights", g=say.number(mechanism.gravity))
-    return Grid(caption, [*heads, f"P [{scale.unit}]", f"P + Q [{scale.unit}]"], rows, range(1, 9))
+    heads = [say("weight"), say("block"), "x [m]", "y [m]", "M [kg]", "w", "h"]
+    caption = say("weights", g=say.number(mechanism.gravity))
+    return Table(caption, [*heads, f"P [{scale.unit}]", f"P + Q [{scale.unit}]"], rows, range(1, 9))
 
 
 def _of_blocks(say: Language, chain: Chain, scale: Scale) -> Iterator[Working]:
@@ -101,7 +102,7 @@ def _of_blocks(say: Language, chain: Chain, scale: Scale) -> Iterator[Working]:
             yield say.step(F.GP, scale.near(block.x_of_P), names, P=carried, x=places)
 
 
-def at_work(say: Language, position: DisplacedChain, scale: Scale) -> Grid:
+def at_work(say: Language, position: DisplacedChain, scale: Scale) -> Table:
     """Return a table of the motion of each block in a position: centre of rotation, barycentres, displacements."""
     rows = []
     for k, each in enumerate(position.blocks, 1):
@@ -110,11 +111,11 @@ def at_work(say: Language, position: DisplacedChain, scale: Scale) -> Grid:
         shown = [say.number(value) for value in (each.turns, scale.near(each.dx), scale.near(each.dy))]
         rows.append([str(k), say.number(scale.near(each.gone)), *at, say.number(_x_of_P(position, each, scale)),
                      shown[0], *centre, *shown[1:]])  # fmt: skip
-    caption = say.say("at_work_rest" if position.phi == 0 else "at_work", phi=say.number(position.phi), across="@")
+    caption = say("at_work_rest" if position.phi == 0 else "at_work", phi=say.number(position.phi), across="@")
     caption = caption.replace("@", "(x_[O] − x_[P])" if position.chain.direction > 0 else "(x_[P] − x_[O])")
-    heads = [say.say("block"), "Δx [m]", "x_[G] [m]", "y_[G] [m]", "x_[P] [m]", "θ′", "x_[O] [m]", "y_[O] [m]",
+    heads = [say("block"), "Δx [m]", "x_[G] [m]", "y_[G] [m]", "x_[P] [m]", "θ′", "x_[O] [m]", "y_[O] [m]",
              "x′ [m]", "y′ [m]"]  # fmt: skip
-    return Grid(caption, heads, rows, range(1, 10))
+    return Table(caption, heads, rows, range(1, 10))
 
 
 def _x_of_P(position: DisplacedChain, each: Moved, scale: Scale) -> float:
@@ -139,8 +140,8 @@ def held(say: Language, position: DisplacedChain, scale: Scale) -> list[Item]:
         ]
         for each in position.held
     ]
-    heads = [say.say("action"), f"F, N [{scale.unit}]", "r′, L′ [m]", f"−F r′, N L′ [{scale.unit} m]"]
-    return [Grid(say.say("held"), heads, rows, (1, 2, 3))]
+    heads = [say("force or tie"), f"F, N [{scale.unit}]", "r′, L′ [m]", f"−F r′, N L′ [{scale.unit} m]"]
+    return [Table(say("held"), heads, rows, (1, 2, 3))]
 
 
 def _printed(position: DisplacedChain, scale: Scale, total: float, kind: str) -> float:

@@ -1,55 +1,55 @@
-"""The time histories on the capacity curve, as a table and sentences."""
+"""The time histories on the capacity curve, as a table and sentences, of the sheet and of the terminal."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rocking_cli.codes.italian.results import Dynamic, ItalianVerified, RecordPeak
-from rocking_cli.views.sheet.document import Grid, Item, Sentence, SheetPart
+from rocking_cli.codes.italian.results import Dynamic, RecordPeak
+from rocking_cli.views.sheet.document import Sentence
 from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.view import Table
+
+SETS = {True: "with FC", False: "without FC"}
 
 
-def part(say: Language, each: ItalianVerified, found: Dynamic, key: str) -> SheetPart:
-    """Return the part on the dynamic method in a direction."""
+def items(say: Language, found: Dynamic, FC: float) -> Iterator[Sentence | Table]:
+    """Yield what the dynamic method found in a direction."""
+    (state,) = found.allowed
+    yield Sentence(say("dynamic_is", d0=found.d0, state=state))
+    yield Sentence(say(found.motions.kind, floor=found.motions.floor))
     rows = [
-        [record.name, *(_peak(say, record, found.d0, confident=confident) for confident in (True, False))]
+        [record.name, *(_peak(say, record, found.d0, confident=confident) for confident in SETS)]
         for record in found.records
     ]
-    heads = [say.say("record"), say.say("with_FC"), say.say("without_FC")]
-    items: list[Item] = [
-        Sentence(say.say("dynamic_is", d0=found.d0, state=next(iter(found.allowed)))),
-        Sentence(say.say(found.motions.kind, floor=found.motions.floor)),
-        Grid(say.say("dynamic_table"), heads, rows, (1, 2)),
-    ]
-    for confident in (True, False) if each.exact.confidence != 1 else (True,):
-        items += _said(say, found, confident=confident)
+    heads = [say("record"), *map(say, SETS.values())]
+    yield Table(say("Peak displacement d [m]"), heads, rows, (1, 2))
+    for confident in SETS if FC != 1 else (True,):
+        yield from map(Sentence, _said(say, found, state, confident=confident))
+    if FC != 1 and found.holds(state, confident=True) != found.holds(state, confident=False):
+        yield Sentence(say("The confidence factor FC changes the verdict at {state}.", state=state))
     if not found.checked:
-        items.append(Sentence(say.say("not_checked")))
-    count = len(found.records)
-    if count < found.enough:
-        items.append(Sentence(say.say("one" if count == 1 else "few", count=count, enough=found.enough)))
-    return SheetPart(f"{key}-dynamic", say.say("dynamic"), items)
+        yield Sentence(say("not_checked"))
+    if found.too_few:
+        count = len(found.records)
+        yield Sentence(say("one" if count == 1 else "few", count=count, enough=found.enough))
 
 
 def _peak(say: Language, record: RecordPeak, d0: float, *, confident: bool) -> str:
     d, known_to = record.peak(confident=confident), record.known_to(confident=confident)
     if known_to is not None:
-        return say.say("unknown_after", time=say.number(known_to, 4))
+        return say("unknown after {time} s", time=say.number(known_to, 4))
     if d is None:
-        return say.say("overturns")
-    return f"{say.number(d)} {say.say('past')}" if d >= d0 else say.number(d)
+        return say("overturns")
+    return f"{say.number(d)} {say('past d_[0]^[*]')}" if d >= d0 else say.number(d)
 
 
-def _said(say: Language, found: Dynamic, *, confident: bool) -> Iterator[Sentence]:
-    which = say.say("with_FC" if confident else "without_FC")
-    which = f"{which[0].upper()}{which[1:]}"
+def _said(say: Language, found: Dynamic, state: str, *, confident: bool) -> Iterator[str]:
     mean, unknown = found.mean(confident=confident), found.unknown(confident=confident)
+    which = say(SETS[confident])
+    values = {"which": f"{which[0].upper()}{which[1:]}", "state": state, "mean": mean, "allowed": found.allowed[state]}
     if passed := found.passed(confident=confident):
-        yield Sentence(say.say("past_d0", which=which, names=", ".join(passed)))
-    if mean is None:
-        for state in found.allowed if unknown else ():
-            yield Sentence(say.say("unknown_fails", which=which, state=state, names=", ".join(unknown)))
-        return
-    for state, allowed in found.allowed.items():
-        key = "holds" if found.holds(state, confident=confident) else "holds_not"
-        yield Sentence(say.say(key, which=which, state=state, mean=mean, allowed=allowed))
+        yield say("past_d0", **values, names=", ".join(passed))
+    if mean is not None:
+        yield say("holds" if found.holds(state, confident=confident) else "holds_not", **values)
+    elif unknown:
+        yield say("unknown_fails", **values, names=", ".join(unknown))

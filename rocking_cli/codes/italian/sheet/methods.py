@@ -9,22 +9,27 @@ from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.demand import DAMPING, DemandSpectrum, FloorSpectrum, GroundSpectrum
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified
-from rocking_cli.codes.italian.rules import OF_STATE, RULES, Rule
+from rocking_cli.codes.italian.rules import DAMAGE, FIRST, LINEAR, NONLINEAR, OF_STATE, RULES, Rule
 from rocking_cli.codes.italian.sheet import spectra
 from rocking_cli.codes.italian.sheet.site import hazard_at, is_close
 from rocking_cli.codes.italian.sheet.states import LINE
-from rocking_cli.studies.verification.working import Working
+from rocking_cli.studies.verification.working import Formula, Working
 from rocking_cli.views.sheet.document import Item, Sentence, SheetPart, Steps
 from rocking_cli.views.sheet.language import Language
 
-STATE = {key: state for state, pair in OF_STATE.items() for key in pair} | {"SLD": "SLD"}
+STATE = {key: state for state, pair in OF_STATE.items() for key in pair} | {LINEAR: FIRST, "SLD": "SLD"}
 RULE = {OF_STATE[rule.state][1]: rule for rule in RULES}
 
 
+TITLES = {
+    DAMAGE: "Onset of rocking at {state}", "SLD": "Onset of rocking at {state}",
+    NONLINEAR: "Nonlinear method at {state}", LINEAR: "Linear method: behaviour factor q",
+}  # fmt: skip
+
+
 def title(say: Language, key: str) -> str:
-    """Return the name of a method: by its own text, or by the text of its kind at a limit state."""
-    own = f"method_{key}"
-    return say.say(own) if own in say.texts else say.say(f"method_{_kind(key)}_at", state=STATE[key])
+    """Return the name of a method."""
+    return say(TITLES[_kind(key)], state=STATE[key])
 
 
 def _kind(key: str) -> str:
@@ -68,7 +73,7 @@ class Methods:
             if method.a_g is None:
                 continue
             if name == "linear":
-                heading = self.say.say("linear_at", state=self.ground.state_of_activation)
+                heading = self.say("linear_at", state=self.ground.state_of_activation)
                 yield SheetPart(f"{key}-{name}", heading, list(self._linear(method)))
                 continue
             heading = title(self.say, name)
@@ -79,7 +84,7 @@ class Methods:
                 line = self.found.straight_methods[name]
                 asked = self._asked(name, f",{LINE}", line=True)
                 items = list(self._items(name, line, asked, f",{LINE}"))
-                yield SheetPart(f"{key}-{name}-line", f"{heading}, {self.say.say('and_line')}", items)
+                yield SheetPart(f"{key}-{name}-line", f"{heading}, {self.say('on the straight line')}", items)
 
     def _asked(self, name: str, more: str, *, line: bool) -> MethodComparison:
         if name in RULE:
@@ -110,8 +115,8 @@ class Methods:
         spectrum = self.ground.spectrum(asked.state)
         assert spectrum is not None and method.a_g is not None  # its state is given
         symbol = f"a_[g,{_kind(name)}{more}]"
-        names = {"symbol": symbol, "what": "a_g_method", "state": asked.state, "asked": "a_[g]", "more": more}
-        yield from self._solved(names, spectrum, asked, method.a_g, method.clause)
+        names = {"symbol": symbol, "state": asked.state, "asked": "a_[g]", "more": more}
+        yield from self._solved(F.CAPACITY, names, spectrum, asked, method.a_g, method.clause)
         yield Steps([self._zeta(method, names)])
         yield from self._lasts(method, asked, more)
 
@@ -119,17 +124,19 @@ class Methods:
         return self.say.step(F.ZETA, method.zeta or 0.0, names, a=method.a_g, b=method.demand)
 
     def _solved(
-        self, names: Mapping[str, str], spectrum: DemandSpectrum, asked: MethodComparison, a_g: float, clause: str
-    ) -> Iterator[Item]:
+        self, formula: Formula, names: Mapping[str, str], spectrum: DemandSpectrum, asked: MethodComparison,
+        a_g: float, clause: str,
+    ) -> Iterator[Item]:  # fmt: skip
         """Yield the a_g at which a demand equals a capacity, and its check if it was found by iteration."""
         say, own, found = self.say, self._demand(spectrum, asked), {**names, "capacity": asked.name}
         if is_close(a_g, spectrum.ag * asked.capacity / own):
             under = f"({asked.demand})" if " " in asked.demand else asked.demand
             numbers = {"ag": spectrum.ag, "c": asked.capacity, "d": own}
-            yield Steps([say.step(replace(F.CAPACITY, clause=clause), a_g, {**found, "demand": under}, **numbers)])
+            yield Steps([say.step(replace(formula, clause=clause), a_g, {**found, "demand": under}, **numbers)])
             return
-        yield Steps([say.step(replace(F.CAPACITY_FOUND, clause=clause), a_g, {**found, "demand": asked.demand})])
-        yield Sentence(say.say("check", state=asked.state))
+        by_iteration = replace(F.CAPACITY_FOUND, clause=clause, meaning=f"{formula.meaning}_iterated")
+        yield Steps([say.step(by_iteration, a_g, {**found, "demand": asked.demand})])
+        yield Sentence(say("check", state=asked.state))
         yield Steps(list(self._checked(spectrum.with_ag(a_g), asked)))
 
     def _linear(self, method: ItalianMethod) -> Iterator[Item]:
@@ -138,11 +145,11 @@ class Methods:
         assert method.a_g is not None  # SLV is always given
         asked = self._activation(ground.state_of_activation)
         if ground.of_activation != ground.spectrum(asked.state):  # the ground of SLV under the mode of SLD
-            yield Sentence(say.say("mode_of_SLD"))
+            yield Sentence(say("T_[1] and ξ_[1] are here those of SLD."))
             yield Steps(list(self._checked(ground.of_activation, asked)))
         start, damage = method.a_g / q, self.found.methods["damage"]
-        names = {"symbol": "a_[g,0]", "what": "a_g_start", "state": asked.state}
-        yield from self._solved(names, ground.of_activation, asked, start, damage.clause)
+        names = {"symbol": "a_[g,0]", "state": asked.state}
+        yield from self._solved(F.START, names, ground.of_activation, asked, start, damage.clause)
         by_code = F.LINEAR if asked.state == "SLD" else replace(F.LINEAR, standing="ours")
         linear = say.step(by_code, method.a_g, q=q, a=start)
         names = {"symbol": "a_[g,linear]", "asked": "a_[g,SLV]", "state": "SLV", "more": ""}
@@ -168,10 +175,10 @@ class Methods:
         if TR is None or hazard is None:
             return
         if method.beyond:
-            yield Sentence(say.say("beyond_long" if (method.zeta or 0) >= 1 else "beyond_short", TR=say.number(TR)))
+            yield Sentence(say("beyond_long" if (method.zeta or 0) >= 1 else "beyond_short", TR=say.number(TR)))
             return
         yield Steps([say.step(F.LASTS, TR, {"more": more, "demand": asked.demand, "capacity": asked.name})])
-        yield Sentence(say.say("check_TR"))
+        yield Sentence(say("Check, with the ground of this return period:"))
         spectrum = self.ground.at_return_period(TR, asked.state)
         rows = list(hazard_at(say, hazard, TR))
         by_ground = asked.demand == "a_[g]"  # r and a_g say it all

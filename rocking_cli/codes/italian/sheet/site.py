@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import log
 
 from rocking_cli.codes.italian import formulas as F
@@ -10,7 +10,6 @@ from rocking_cli.codes.italian.demand import DAMPING, FloorSpectrum, GroundSpect
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.rules import FIRST, FURTHER, RULES, STATES
 from rocking_cli.codes.italian.sheet import spectra
-from rocking_cli.codes.italian.site import SIZES, StateGround
 from rocking_cli.codes.italian.site_hazard import (
     LONGEST,
     PROBABILITY,
@@ -24,18 +23,34 @@ from rocking_cli.codes.italian.site_hazard import (
 )
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.verification.working import Working
-from rocking_cli.views.sheet.document import Grid, Item, Sentence, SheetPart, Steps
+from rocking_cli.views.sheet.document import Item, Sentence, SheetPart, Steps
 from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.view import Table
 
-SYMBOLS = {"ag": ("a_[g]", "g"), "F0": ("F_[0]", ""), "TC": ("T_[C]", "s"), "S": ("S", "")}
-OTHERS = {"VN": ("V_[N]", "years"), "CU": ("C_[U]", ""), "T0": ("T_[0]", "s")}
-OF_FLOOR = {"z": ("z", "m"), "H": ("H", "m"), "n": ("n", "")}
+OF_GROUND = {
+    "ag": ("a_[g]", "g", "ground acceleration on rock, {state}"),
+    "F0": ("F_[0]", "", "amplification of the spectrum, {state}"),
+    "TC": ("T_[C]", "s", "end of the constant-acceleration branch, {state}"),
+    "S": ("S", "", "soil and topography factor, {state}"),
+}
+OF_SITE = {
+    "VN": ("V_[N]", "years", "nominal life"),
+    "CU": ("C_[U]", "", "coefficient of use"),
+    "T0": ("T_[0]", "s", "given_T0"),
+    "soil": ("", "", "soil class"),
+}
+OF_FLOOR = {
+    "z": ("z", "m", "height of the floor above the foundation"),
+    "H": ("H", "m", "height of the building"),
+    "n": ("n", "", "number of storeys"),
+}
+"""Symbol, unit and meaning of fields of the site file."""
 
 
 def part(say: Language, ground: SiteGround) -> SheetPart:
     """Return the part on the site, with a part for each limit state that it gives."""
     states = [each for each in STATES if ground.spectrum(each) is not None]
-    return SheetPart("site", say.say("site"), [_given(say, ground)], [_of_state(say, ground, each) for each in states])
+    return SheetPart("site", say("Site"), [_given(say, ground)], [_of_state(say, ground, each) for each in states])
 
 
 def given(say: Language, ground: SiteGround) -> Iterator[Working]:
@@ -51,36 +66,32 @@ def given(say: Language, ground: SiteGround) -> Iterator[Working]:
             yield say.step(F.XI1, mode.xi1, {"state": state})
 
 
-def _given(say: Language, ground: SiteGround) -> Grid:
+def _given(say: Language, ground: SiteGround) -> Table:
     """Return a table of the values of the site file, without its tables."""
     site = ground.site
     FC, q, *modes = ([each.symbol, each.meaning, say.number(each.value), each.unit] for each in given(say, ground))
     rows = [FC, q]
     for state in (FIRST, *FURTHER):
-        rows += _sizes(say, state, site.shaking(state))
-    for key, (symbol, unit) in OTHERS.items():
-        value = getattr(site, key)
-        if value is not None:
-            rows.append([symbol, say.say(f"given_{key}"), say.number(value), say.texts.get(f"unit {unit}", unit)])
-    if site.soil is not None:
-        rows.append(["", say.say("given_soil"), site.soil, ""])
+        at = site.shaking(state)
+        if at is not None and at.spectrum is not None:
+            meaning = say("ground acceleration, the ordinate of the table at T = 0, {state}", state=state)
+            rows.append(["a_[g]", meaning, say.number(at.spectrum[0][1]), "g"])
+        rows += _values(say, at, OF_GROUND, state=state)
+    rows += _values(say, site, OF_SITE)
     if ground.hazard is not None:
-        rows.append(["", say.say("given_topography"), site.topography, ""])
-    if site.floor is not None:
-        for key, (symbol, unit) in OF_FLOOR.items():
-            rows.append([symbol, say.say(f"given_{key}"), say.number(float(getattr(site.floor, key))), unit])
-    heads = [say.say(key) for key in ("symbol", "quantity", "value", "unit")]
-    return Grid(say.say("given"), heads, [*rows, *modes], (2,))
+        rows.append(["", say("topographic class"), site.topography, ""])
+    rows += _values(say, site.floor, OF_FLOOR)
+    heads = [say(key) for key in ("symbol", "quantity", "value", "unit")]
+    return Table(say("Data of the site file"), heads, [*rows, *modes], (2,))
 
 
-def _sizes(say: Language, state: str, given: StateGround | None) -> Iterator[list[str]]:
-    if given is not None and given.spectrum is not None:
-        yield ["a_[g]", say.say("given_ordinate", state=state), say.number(given.spectrum[0][1]), "g"]
-    if given is None or given.ag is None:
-        return
-    for key in SIZES:
-        symbol, unit = SYMBOLS[key]
-        yield [symbol, say.say(f"given_{key}", state=state), say.number(getattr(given, key)), unit]
+def _values(say: Language, given: object, fields: Mapping[str, tuple[str, str, str]], **names: str) -> list[list[str]]:
+    """Return the rows of fields that are given."""
+    values = {key: getattr(given, key, None) for key in fields}
+    return [
+        [symbol, say(meaning, **names), value if isinstance(value, str) else say.number(float(value)), say(unit)]
+        for key, (symbol, unit, meaning) in fields.items() if (value := values[key]) is not None
+    ]  # fmt: skip
 
 
 def _of_state(say: Language, ground: SiteGround, state: str) -> SheetPart:
@@ -94,8 +105,8 @@ def _of_state(say: Language, ground: SiteGround, state: str) -> SheetPart:
             L, t = one.size
             sizes = {"kappa": one.kappa, "L": L, "t": t, "w": one.w, "E": one.E, "g": STANDARD_GRAVITY}
             items.append(Steps([say.step(F.OWN_PERIOD, one.period, **sizes)]))
-        items += [Sentence(say.say("free")), Steps(list(spectra.at_own_period(say, spectrum, T0, DAMPING)))]
-    return SheetPart(f"site-{state}", say.say("ground_at", state=state), items)
+        items += [Sentence(say("free")), Steps(list(spectra.at_own_period(say, spectrum, T0, DAMPING)))]
+    return SheetPart(f"site-{state}", say("Ground at {state}", state=state), items)
 
 
 def _of_life(say: Language, ground: SiteGround, state: str) -> Iterator[Working]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,8 +19,9 @@ from rocking_cli.codes.italian.sheet.chain import Scale
 from rocking_cli.codes.italian.ties import pulls
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.studies.verification.working import Working
-from rocking_cli.views.sheet.document import Grid, Item, Sentence, SheetPart, Steps
+from rocking_cli.views.sheet.document import Item, Sentence, SheetPart, Steps
 from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.view import Table
 
 LINE = "lin"  # in subscripts: on the straight line
 
@@ -47,13 +48,14 @@ class Writer:
         """Yield the parts on the chain, on the ends of the curve, and on each limit state."""
         say = self.say
         yield chains.part(say, self.curve, key)
-        yield SheetPart(f"{key}-curve", say.say("curve"), list(self._ends()))
+        yield SheetPart(f"{key}-curve", say("Capacity curve"), list(self._ends()))
         for rule in RULES:
             items = list(self._state(rule))
-            yield SheetPart(f"{key}-{rule.state}", say.say("state", state=rule.state), items)
+            yield SheetPart(f"{key}-{rule.state}", say("{state}, on the exact capacity curve", state=rule.state), items)
             line = list(self._on_line(rule))
-            heading = say.say("state_line", state=rule.state)
-            yield SheetPart(f"{key}-{rule.state}-line", heading, [Sentence(say.say("line_is")), Steps(line)])
+            heading = say("{state}, on the straight line", state=rule.state)
+            steps: list[Item] = [Sentence(say("line_is")), Steps(line)]
+            yield SheetPart(f"{key}-{rule.state}-line", heading, steps)
 
     def _ends(self) -> Iterator[Item]:
         """Yield the steps to a0* and d0*."""
@@ -65,7 +67,7 @@ class Writer:
         yield chains.at_work(say, end, self.scale)
         yield from chains.held(say, end, self.scale)
         rows = list(chains.multiplier(say, end, self.scale, "α(φ_[0])"))
-        yield Steps([*rows, *self._moved(end, {"at": "φ_[0]", "symbol": "d_[0]^[*]", "what": "d0"})])
+        yield Steps([*rows, *self._moved(end, {"at": "φ_[0]", "symbol": "d_[0]^[*]"}, "d0")])
 
     def _accelerated(self, alpha: float) -> dict[str, float]:
         """Return values for the slots of the formula of a*, for a multiplier."""
@@ -85,7 +87,7 @@ class Writer:
             return say.step(F.X_C_STRAIGHT, dx, names, x=own.dx)
         return say.step(F.X_C_TURNS, dx, names, turns=own.turns, y=control.at.imag, O=scale.near(own.centre.imag))
 
-    def _moved(self, position: DisplacedChain, names: Mapping[str, str]) -> Iterator[Working]:
+    def _moved(self, position: DisplacedChain, names: Mapping[str, str], meaning: str) -> Iterator[Working]:
         """Yield the steps to d_C and d in a position."""
         say, curve, scale = self.say, self.curve, self.scale
         chain, control = curve.chain, curve.control
@@ -100,12 +102,14 @@ class Writer:
             yield say.step(F.D_C_POINT, d_C, names, one=scale.near(one), other=scale.near(other))
         first, second = scale.weight(chain.first), scale.weight(chain.second)
         d = curve.displacement_at(position.phi)
-        yield say.step(F.D, d, names, d=d_C, second=second, x=chain.sideways(control), first=first)
+        yield say.step(
+            replace(F.D, meaning=meaning), d, names, d=d_C, second=second, x=chain.sideways(control), first=first
+        )
 
     def _state(self, rule: Rule) -> Iterator[Item]:
         """Yield the steps of a limit state on the exact curve."""
         say, s, at = self.say, rule.state, self.found.states[rule.state]
-        names = {"state": s, "on": s, "at": f"φ_[{s}]", "symbol": f"d(φ_[{s}])", "what": "d_again"}
+        names = {"state": s, "on": s, "at": f"φ_[{s}]", "symbol": f"d(φ_[{s}])"}
         yield Steps([self._allowed(rule, at)])
         broken = rule.at_breaks and self.curve.broken is not None and at.d == self.curve.broken
         phi = self.curve.torn if broken and self.curve.torn is not None else self.curve.rotation(at.d)
@@ -113,24 +117,12 @@ class Writer:
         yield Steps([say.step(F.PHI, phi, names)])
         yield chains.at_work(say, position, self.scale)
         yield from chains.held(say, position, self.scale)
-        yield from self._ties(rule, at)
-        rows = list(self._moved(position, names))
+        yield from ties(say, self.curve, {s: at})
+        rows = list(self._moved(position, names, "d_again"))
         rows += chains.multiplier(say, position, self.scale, f"α(φ_[{s}])")
         here = self.curve.acceleration_at(phi)
         rows.append(say.step(F.A_THERE, here, names, **self._accelerated(position.alpha)))
         yield Steps([*rows, *self._period_and_demand(rule, at, s, here)])
-
-    def _ties(self, rule: Rule, at: LimitState) -> Iterator[Item]:
-        """Yield the force and elongation of ties, and of forces against the motion."""
-        say = self.say
-        rows = [
-            [pull.name, say.number(pull.force / 1e3), say.number(pull.elongation),
-             say.number(None if pull.strain is None else 100 * pull.strain, 3)]
-            for pull in pulls(self.curve, at.d)
-        ]  # fmt: skip
-        if rows:
-            heads = [say.say("tie"), "N [kN]", "ΔL [m]", "ΔL/L [%]"]
-            yield Grid(say.say("ties_at", state=rule.state), heads, rows, (1, 2, 3))
 
     def _allowed(self, rule: Rule, at: LimitState) -> Working:
         """Return the step for the displacement capacity at a limit state."""
@@ -153,8 +145,8 @@ class Writer:
             return
         yield from spectra.displacement(say, spectrum, spectra.At(f"T_[{name}]", at.T, rule.damping))
         still = self.found.passes(s) and not at.passes and LINE not in name
-        names["outcome"] = "passes" if at.passes else "passes_still" if still else "fails"
-        yield say.step(F.RHO, at.ratio, names, d=at.d, demand=at.demand)
+        meaning = "passes" if at.passes else "passes_still" if still else "fails"
+        yield say.step(replace(F.RHO, meaning=meaning), at.ratio, names, d=at.d, demand=at.demand)
 
     def _on_line(self, rule: Rule) -> Iterator[Working]:
         """Yield the steps of a limit state on the straight line."""
@@ -162,3 +154,14 @@ class Writer:
         a, name = StraightCurve(curve.a0, curve.d0).acceleration(at.d), f"{rule.state},{LINE}"
         yield self.say.step(F.A_LINE, a, {"state": s, "on": name}, a0=curve.a0, d=at.d, d0=curve.d0)
         yield from self._period_and_demand(rule, at, name, a)
+
+
+def ties(say: Language, curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Table]:
+    """Return a table of ties, and of forces against the motion, at limit states; empty if there are none."""
+    rows = [
+        [pull.name, f"d_[{state}]" if not say.is_plain else f"d_{state}", say.number(pull.force / 1e3),
+         say.number(pull.elongation), say.number(None if pull.strain is None else 100 * pull.strain, 3)]
+        for state, at in states.items() for pull in pulls(curve, at.d)
+    ]  # fmt: skip
+    heads = [say("tie"), "", "N [kN]", *map(say, ("ΔL [m]", "ΔL/L [%]"))]
+    return [Table(say("ties_at", state=list(states)), heads, rows, (2, 3, 4))] if rows else []

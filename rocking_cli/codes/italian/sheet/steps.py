@@ -7,14 +7,15 @@ from dataclasses import replace
 
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianVerified
-from rocking_cli.codes.italian.sheet import site, texts_en
+from rocking_cli.codes.italian.sheet import site
 from rocking_cli.codes.italian.sheet.methods import Methods
 from rocking_cli.codes.italian.sheet.states import Writer
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import SheetPart, workings
-from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.sheet.language import Language, texts_of
 
-ENGLISH = Language("en", texts_en.TEXTS)
+ENGLISH = Language("en", texts_of("rocking_cli.codes.italian", "en"))
+TERMINAL = replace(ENGLISH, is_plain=True)
 
 
 def of_direction(say: Language, ground: SiteGround, found: ItalianVerified) -> Iterator[SheetPart]:

@@ -1,110 +1,106 @@
-"""Summary of the sheet: whether each direction passes at each limit state, by which margin, and what governs."""
+"""Summary of the sheet: whether each direction passes at each limit state, by which margin, and what governs.
+
+The terminal has its verdicts and its methods, too.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from rocking_cli.codes.italian.results import ItalianVerification, ItalianVerified
-from rocking_cli.codes.italian.rules import OF_STATE
+from rocking_cli.codes.italian.remarks import differences
+from rocking_cli.codes.italian.results import HISTORIES, ItalianVerification, ItalianVerified
+from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, NONLINEAR, OF_STATE
 from rocking_cli.codes.italian.sheet.methods import title
-from rocking_cli.codes.italian.words import differences
 from rocking_cli.studies.conclusion import Concluded
+from rocking_cli.studies.verification.results import Remark
+from rocking_cli.studies.verification.working import in_plain
 from rocking_cli.views.conclusion import of_verification
-from rocking_cli.views.sheet.document import Grid, Item, Sentence, SheetPart
-from rocking_cli.views.sheet.language import Language, plain
+from rocking_cli.views.sheet.document import Item, Sentence, SheetPart
+from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.view import Table
+
+SHORT = {
+    "SLD": "onset of rocking", DAMAGE: "onset of rocking", LINEAR: "linear method", NONLINEAR: "nonlinear method",
+    HISTORIES: "time histories",
+}  # fmt: skip
+"""Names of the methods within a sentence, by their kind."""
 
 
 def part(say: Language, found: ItalianVerification, shown: Mapping[str, ItalianVerified]) -> SheetPart:
     """Return the part with the summary."""
-    end = found.conclusion
-    method = say.say(f"short_{end.method.split('_')[0]}")
-    said = [say.remark(each) for each in of_verification(found, method)]
-    fails = end.concluded is not Concluded.SATISFIED
-    items: list[Item] = [Sentence(" ".join(said), answers=True, fails=fails)]
-    items += [
-        verdict(say, end.limit_state if end.limit_state in each.states else found.first, where, each)
-        for where, each in shown.items()
-    ]
+    end, mechanism = found.conclusion, found.mechanism
+    answer = " ".join(of_verification(found, say, say(SHORT[end.method.split("_")[0]])))
+    items: list[Item] = [Sentence(answer, answers=True, fails=end.concluded is not Concluded.SATISFIED)]
     for where, each in shown.items():
-        items += _starts_later(say, found.first, where, each)
+        items += map(Sentence, verdicts(say, where, each))
     if len(shown) > 1:  # which direction governs
         least = found.governs
         ratio, rest = (found.compared(direction) for direction in (least, least.opposite))
         if ratio is not None and rest is not None and not found.alike:
-            items.append(Sentence(say.say("which", least=say.say(f"short_{least.label}"), ratio=ratio, rest=rest)))
+            items.append(Sentence(say("which", least=say(least.label), ratio=ratio, rest=rest)))
     for where, each in shown.items():
-        items += [_states(say, where, each), _methods(say, where, each)]
-    caution = found.mechanism.caution
-    remarks = [remark for each in shown.values() for remark in each.remarks]
+        items += [_states(say, where, each), methods(say, where, each)]
     said = [
-        f"{where}: {say.remark(text)}" if len(shown) > 1 else say.remark(text)
+        f"{where}: {say(text)}" if len(shown) > 1 else say(text)
         for where, each in shown.items() for text in differences(each, found.first)
     ]  # fmt: skip
-    said += [say.remark(each) for each in dict.fromkeys([*remarks, *found.remarks])]
-    if caution:
-        said.append(say.say("caution", text=say.caution(found.mechanism.mechanism, caution)))
-    if own := found.mechanism.own_caution():
-        said.append(say.say("caution", text=plain(own)))
-    under = [SheetPart("remarks", say.say("remarks"), [*map(Sentence, said)])] if said else []
-    return SheetPart("summary", say.say("summary"), items, under)
+    said += [say(each) for one in shown.values() for each in one.remarks]
+    said += map(say, found.remarks)
+    general = say.caution(mechanism.mechanism, mechanism.caution) if mechanism.caution else ""
+    said += [say("Caution: {text}", text=each) for each in (general, mechanism.own_caution()) if each]
+    under = [SheetPart("remarks", say("Remarks"), [*map(Sentence, dict.fromkeys(said))])] if said else []
+    return SheetPart("summary", say("Summary"), items, under)
 
 
-def verdict(say: Language, first: str, where: str, each: ItalianVerified) -> Sentence:
-    """Return the sentence with the verdict on a direction."""
-    (damage, nonlinear), by = OF_STATE[first], each.governing[first]
-    at, counts, passes = each.states[first], each.methods[by], each.passes(first)
-    if passes is None or at.demand is None or at.ratio is None or counts.a_g is None or counts.demand is None:
-        return Sentence(say.say("no_state", where=where, state=first))
-    if by == damage:
-        other = each.methods[nonlinear].a_g or 0.0
-        why = say.say("why_damage", a_g=counts.a_g, other=other, asked=counts.demand)
-    else:
-        why = say.say(
-            "why_nonlinear", d=at.d, ratio=at.ratio, demand=at.demand, T=at.T, a_g=counts.a_g, asked=counts.demand
-        )
-    key = "verdict_passes" if passes else "verdict_fails"
-    text = say.say(key, where=where, state=first, zeta=counts.zeta, why="@").replace("@", why)
-    return Sentence(text)
+def verdicts(say: Language, where: str, each: ItalianVerified) -> Iterator[str]:
+    """Yield whether a direction passes at each limit state that the site gives, by what margin, and what governs."""
+    for state, at in each.states.items():
+        (damage, nonlinear), by = OF_STATE[state], each.governing[state]
+        counts = each.methods[by]
+        if at.demand is None or counts.a_g is None:
+            if state == each.first:
+                yield say("{where}: the site does not give {state}.", where=where, state=state)
+            continue
+        values = {"a_g": counts.a_g, "asked": counts.demand, "other": each.methods[nonlinear].a_g or 0.0}
+        values |= {"d": at.d, "demand": at.demand, "ratio": at.ratio, "T": at.T}
+        why = Remark("why_damage" if by == damage else "why_nonlinear", values)
+        key = "verdict_passes" if each.passes(state) else "verdict_fails"
+        yield say(key, where=where, state=state, zeta=counts.zeta, why=why)
+    start = each.methods["SLD"]
+    if start.zeta is not None:
+        key = "verdict_passes" if start.passed else "verdict_fails"
+        why = Remark.of("why_SLD", a_g=start.a_g, asked=start.demand)
+        yield say(key, where=where, state="SLD", zeta=start.zeta, why=why)
 
 
-def _starts_later(say: Language, first: str, where: str, each: ItalianVerified) -> Iterator[Item]:
-    """Yield remarks on further limit states at which the onset of rocking governs, not the displacement ratio."""
-    for state in each.states:
-        (damage, nonlinear), counts = OF_STATE[state], each.methods[each.governing[state]]
-        if state != first and each.governing[state] == damage and each.passes(state) is not None:
-            other = each.methods[nonlinear].a_g or 0.0
-            why = say.say("why_damage", a_g=counts.a_g, other=other, asked=counts.demand)
-            key = "verdict_passes" if each.passes(state) else "verdict_fails"
-            yield Sentence(say.say(key, where=where, state=state, zeta=counts.zeta, why="@").replace("@", why))
-
-
-def _states(say: Language, where: str, each: ItalianVerified) -> Grid:
+def _states(say: Language, where: str, each: ItalianVerified) -> Table:
     rows = []
     for state, at in each.states.items():
-        known = at.ratio is not None
-        outcome = say.say("unknown" if not known else "yes" if each.passes(state) else "no")
-        rows.append([state, *(say.number(v, 4) for v in (at.d, at.demand, at.T, at.ratio)), outcome])
-    damage = each.methods.get("SLD")
-    if damage is not None and damage.zeta is not None:
-        numbers = [say.number(v, 4) for v in (damage.a_g, damage.demand, None, damage.zeta)]
-        numbers[:2] = [f"{text} g" for text in numbers[:2]]
-        rows.append([say.say("begins", state="SLD"), *numbers, say.say("yes" if damage.passed else "no")])
-    heads = [say.say("limit_state"), f"{say.say('allowed')} [m]", f"{say.say('asked')} [m]", "T [s]", say.say("ratio")]
-    return Grid(say.say("states", where=where), [*heads, say.say("outcome")], rows, (1, 2, 3, 4))
+        outcome = "not required" if at.ratio is None else "satisfied" if each.passes(state) else "not satisfied"
+        rows.append([state, *(say.number(v, 4) for v in (at.d, at.demand, at.T, at.ratio)), say(outcome)])
+    damage = each.methods["SLD"]
+    if damage.zeta is not None:
+        numbers = [f"{say.number(damage.a_g, 4)} g", f"{say.number(damage.demand, 4)} g", say.number(None)]
+        outcome = say("satisfied" if damage.passed else "not satisfied")
+        rows.append([say("{state}, onset of rocking", state="SLD"), *numbers, say.number(damage.zeta, 4), outcome])
+    heads = [say("limit state"), f"{say('capacity')} [m]", f"{say('demand')} [m]", "T [s]", say("ratio")]
+    title = say("{where}: limit states, on the exact capacity curve", where=where)
+    return Table(title, [*heads, say("verification")], rows, (1, 2, 3, 4))
 
 
-def _methods(say: Language, where: str, each: ItalianVerified) -> Grid:
+def methods(say: Language, where: str, each: ItalianVerified) -> Table:
+    """Return a table of the capacity by each method, on the exact curve and on the straight line."""
     known = any(method.return_period is not None for method in each.methods.values())
     rows = []
     for key, method in each.methods.items():
         if method.a_g is None or each.stands_back(key):
             continue
-        line = each.straight_methods[key]
-        numbers = [say.number(v, 4) for v in (method.a_g, line.a_g, method.demand, method.zeta)]
+        numbers = (method.a_g, each.straight_methods[key].a_g, method.demand, method.zeta)
         years = [method.lasts or say.number(None)] if known else []
-        rows.append(
-            [title(say, key), *numbers, *years, say.say("governs", state=state) if (state := each.decides(key)) else ""]
-        )
-    heads = [say.say("method"), f"a_[g] [g], {say.say('exact')}", f"a_[g] [g], {say.say('line')}"]
-    heads += [f"{say.say('asked')} [g]", "ζ_[E]", *([say.say("TR_years")] if known else []), ""]
-    return Grid(say.say("methods", where=where), heads, rows, range(1, len(heads) - 1))
+        decides = say("decides {state}", state=state) if (state := each.decides(key)) else ""
+        rows.append([title(say, key), *(say.number(value, 4) for value in numbers), *years, method.clause, decides])
+    heads = [say("method"), f"a_[g] [g]\n{say('exact curve')}", f"a_[g] [g]\n{say('straight line')}"]
+    heads += [f"a_[g] [g]\n{say('demand')}", "ζ_[E]", *([say("T_[R] [years]")] if known else [])]
+    heads = [in_plain(each) if say.is_plain else each for each in heads]
+    caption = say("{where}: capacity by each method", where=where)
+    return Table(caption, [*heads, say("clause"), ""], rows, range(1, len(heads)))
