@@ -9,10 +9,11 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from mechanisms._linkage_sides import Connection, LinkageSide
-from mechanisms._polygons import Points, area_of, distance, inside
 from mechanisms._shapes import Shape
 from rocking_cli.core import Direction, Reals, Vertex, geometry_error, quantity
 from rocking_cli.core.fields import Described, Name
+from rocking_cli.core.kinematics import Points
+from rocking_cli.core.polygons import area_of, distance, inside
 
 SCAN = 24  # places of a crack at which it is looked for first; of two, of either
 EDGE = 1e-6  # of its line: as near to its ends as a crack may come
@@ -56,10 +57,6 @@ class Crack(Described):
     def ends(self) -> tuple[str, str]:
         """Words for the two ends of the crack, in the order of x or y."""
         return ("left", "right") if self.cut == "horizontal" else ("bottom", "top")
-
-    def enlarged(self, factor: float) -> Crack:
-        """Return the crack in a structure of another size."""
-        return self.model_copy(update={"along": [[factor * each for each in point] for point in self.along]})
 
 
 class Halves(NamedTuple):

@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mechanisms._polygons import Points, area_of
 from rocking_cli.core import Outline
+from rocking_cli.core.kinematics import Points
+from rocking_cli.core.polygons import area_of
 
 NEAR = 1e-6  # of the size of both: how far beside a side a point may be and be on it
 PARALLEL = 1e-3  # sine of the angle between two sides that lie on one another

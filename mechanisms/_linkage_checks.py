@@ -8,9 +8,10 @@ import numpy as np
 
 from mechanisms import _faces as faces
 from mechanisms._linkage_sides import PlacedSide
-from mechanisms._polygons import distance, inside, size_of
+from mechanisms._polygons import size_of
 from mechanisms._shapes import Member
 from rocking_cli.core import Direction, Outline, Pin, RigidMotion
+from rocking_cli.core.polygons import distance, inside
 
 BESIDE = 1e-2  # of the width and height of a body: how far beside it a joint may be drawn
 CLOSES = 1e-9  # of the fastest point: how fast a face may close by rounding

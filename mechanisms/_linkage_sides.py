@@ -57,12 +57,6 @@ class Connection(Described):
                 return (each,)
         return tuple(self.hinge or self.fixed or self.slide or ())
 
-    def enlarged(self, factor: float) -> Connection:
-        """Return the joint in a structure of another size."""
-        if not isinstance(self.at, list):
-            return self
-        return self.model_copy(update={"at": [factor * each for each in self.at]})
-
 
 class LinkageSide(Described):
     """One direction of rocking: the body whose rotation is phi, and the joints."""
@@ -73,10 +67,6 @@ class LinkageSide(Described):
         "where the motion ends at the latest; if omitted, where it locks or the leading body lies flat", unit="deg",
         default=None, gt=0, le=180,
     )  # fmt: skip
-
-    def enlarged(self, factor: float) -> LinkageSide:
-        """Return the side of a structure of another size."""
-        return self.model_copy(update={"joints": {key: each.enlarged(factor) for key, each in self.joints.items()}})
 
 
 @dataclass(frozen=True)

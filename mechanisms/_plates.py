@@ -9,20 +9,11 @@ from typing import Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from mechanisms._polygons import (
-    Points,
-    area_of,
-    distance,
-    fault_of,
-    gap,
-    inside,
-    lies_within,
-    overlap,
-    pierced,
-    size_of,
-)
+from mechanisms._polygons import fault_of, gap, lies_within, overlap, pierced, size_of
 from rocking_cli.core import Body, Outline, Vertex, annular_sector, geometry_error, polygon, quantity
 from rocking_cli.core.fields import Described
+from rocking_cli.core.kinematics import Points
+from rocking_cli.core.polygons import area_of, distance, inside
 
 TOUCH = 1e-3  # of the size of the body: parts that are nearer touch
 EXACT = 1e-6  # of it: how far one may reach into another by rounding
@@ -55,12 +46,6 @@ class BodyPart(Described):
     def corners(self) -> Points:
         """Corners of the part, x + iy [m]."""
         return np.array([complex(*vertex) for vertex in self.polygon])
-
-    def enlarged(self, factor: float) -> BodyPart:
-        """Return the part in a body of another size."""
-        moved = [[factor * each for each in vertex] for vertex in self.polygon]
-        depth = None if self.depth is None else factor * self.depth
-        return self.model_copy(update={"polygon": moved, "depth": depth})
 
 
 @dataclass(frozen=True)

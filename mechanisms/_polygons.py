@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Reals
+from rocking_cli.core.kinematics import Points
+from rocking_cli.core.polygons import area_of, distance, inside, squared
 
 SAME = 1e-9  # of the polygon's size: points that are nearer are one
 MANY = 256  # boxes that are compared with all that begin before they end, at a time
-Points = NDArray[np.complex128]
 Indices = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
@@ -22,12 +23,6 @@ Bools = NDArray[np.bool_]
 def size_of(z: Points) -> float:
     """Return the sum of width and height of a polygon [m]."""
     return float(np.ptp(z.real) + np.ptp(z.imag))
-
-
-def area_of(z: Points) -> float:
-    """Return the area of a polygon [m2], negative if its corners are clockwise."""
-    z = z - z[0]
-    return float((z.conj() * np.roll(z, -1)).imag.sum() / 2)
 
 
 def thickness_of(z: Points) -> float:
@@ -45,26 +40,6 @@ def fault_of(z: Points) -> str | None:
     if abs(area_of(z)) <= SAME * size**2 or any_meet(z):
         return "its sides cross or enclose nothing: list the corners in order around the outline"
     return None
-
-
-def distance(points: Points, z: Points) -> Reals:
-    """Return the distances of points from the sides of a polygon [m]."""
-    side = np.roll(z, -1) - z
-    away = points[:, None] - z
-    along = np.clip((away * side.conj()).real / _squared(side), 0.0, 1.0)
-    found: Reals = np.abs(away - along * side).min(axis=1)
-    return found
-
-
-def inside(points: Points, z: Points) -> Bools:
-    """Return whether points are inside a polygon; for points on a side, either result is possible."""
-    w = np.roll(z, -1)
-    y = points.imag[:, None]
-    spans = (z.imag > y) != (w.imag > y)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        crossing = z.real + (y - z.imag) / (w - z).imag * (w - z).real
-    odd: Bools = np.count_nonzero(spans & (points.real[:, None] < crossing), axis=1) % 2 == 1
-    return odd
 
 
 def overlap(one: Points, other: Points, tolerance: float) -> bool:
@@ -114,16 +89,10 @@ def _nearest(corners: Points, z: Points) -> tuple[int, int, complex]:
     """Return the corner nearest to a polygon, the side nearest to this corner, and the point on this side."""
     k = int(distance(corners, z).argmin())
     side = np.roll(z, -1) - z
-    along = np.clip(((corners[k] - z) * side.conj()).real / _squared(side), 0.0, 1.0)
+    along = np.clip(((corners[k] - z) * side.conj()).real / squared(side), 0.0, 1.0)
     on = z + along * side
     near = int(np.abs(corners[k] - on).argmin())
     return k, near, complex(on[near])
-
-
-def _squared(side: Points) -> Reals:
-    """Return the squared lengths of sides, with 1 for sides of zero length."""
-    found: Reals = np.where(side == 0, 1.0, np.abs(side) ** 2)
-    return found
 
 
 def _boxes_meet(one: Points, other: Points, margin: float) -> bool:

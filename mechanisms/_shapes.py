@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import pi
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from mechanisms._plates import BodyPart, plates, united
-from mechanisms._polygons import area_of, fault_of
+from mechanisms._polygons import fault_of
 from rocking_cli.core import Body, Outline, Vertex, disc, geometry_error, point, polygon, quantity
 from rocking_cli.core.fields import Described
+from rocking_cli.core.polygons import area_of
 
 SHAPES = ("polygon", "parts", "disc", "masses")
 
@@ -131,23 +132,3 @@ class Shape(Described):
         """Return whether density and depth are known, for the body or for all of its parts."""
         parts = [(part.density or own[0], part.depth or own[1]) for part in self._solids] or [(own[0], own[1])]
         return all(None not in each for each in parts)
-
-    def enlarged(self, factor: float) -> Shape:
-        """Return the body in a structure of another size: lengths are multiplied, masses and densities stay."""
-        changed: dict[str, Any] = {}
-        if self.polygon is not None:
-            changed["polygon"] = [[factor * each for each in vertex] for vertex in self.polygon]
-        if self.parts is not None:
-            changed["parts"] = [part.enlarged(factor) for part in self.parts]
-        if self.disc is not None:
-            centre = [factor * each for each in self.disc.centre]
-            changed["disc"] = Disc(centre=centre, radius=factor * self.disc.radius)
-        if self.masses is not None:
-            changed["masses"] = [Mass(mass=each.mass, at=[factor * x for x in each.at]) for each in self.masses]
-        if self.centroid is not None:
-            changed["centroid"] = [factor * each for each in self.centroid]
-        for key, power in (("depth", 1), ("inertia", 2)):
-            value = getattr(self, key)
-            if value is not None:
-                changed[key] = factor**power * value
-        return self.model_copy(update=changed)

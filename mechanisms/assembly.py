@@ -11,7 +11,6 @@ import numpy as np
 from pydantic import ConfigDict, Field, model_validator
 
 from mechanisms import _assembly as analysis
-from mechanisms._assembly.loads import Going, at_rest, under_way
 from mechanisms._linked_bodies import LinkedBodies
 from mechanisms._per_direction import per_direction
 from mechanisms._polygons import fault_of
@@ -35,10 +34,12 @@ from rocking_cli.core import (
     geometry_error,
     point,
     quantity,
+    rotation,
 )
 from rocking_cli.core.contacts import MASONRY
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.fields import Described, Name
+from rocking_cli.core.loading import Going, loading
 from rocking_cli.errors import MechanismError, StructureError
 from rocking_cli.text import in_short
 
@@ -79,10 +80,6 @@ class AssemblyGround(Described):
         """Corners, x + iy [m]."""
         return tuple(complex(*vertex) for vertex in self.polygon)
 
-    def enlarged(self, factor: float) -> AssemblyGround:
-        """Return the part of the ground for a structure of another size."""
-        return self.model_copy(update={"polygon": [[factor * each for each in vertex] for vertex in self.polygon]})
-
 
 class Support(Described):
     """A support that restrains a point of a block sideways, in both senses, such as a floor tied to a wall's top."""
@@ -96,10 +93,6 @@ class Support(Described):
         if not any(self.along):
             raise geometry_error("along", "is not a valid direction: give [x, y], not both zero")
         return self
-
-    def enlarged(self, factor: float) -> Support:
-        """Return the support of a structure of another size."""
-        return self.model_copy(update={"at": [factor * each for each in self.at]})
 
 
 class Leads(Described):
@@ -253,9 +246,6 @@ class Assembly(LinkedBodies):
 
         return as_validation_error([RefusedFields(field[:-1], field[-1], reason)], Assembly.mechanism)
 
-    def _check_stands(self) -> None:
-        """Check nothing: the limit analysis finds whether the assembly stands."""
-
     # What there is
 
     @cached_property
@@ -317,9 +307,16 @@ class Assembly(LinkedBodies):
 
     @per_direction
     def _collapse(self, direction: Direction) -> analysis.Collapse:
-        dead, live = at_rest(self.weighed(), self.attached, direction, self.gravity)
+        bodies, rest, push = self.weighed(), np.zeros(1), -int(direction) * self.gravity
+        dead, both = (
+            loading(
+                bodies, [rotation(rest, 0j, 0.0)] * len(bodies), self.attached, direction, self.gravity,
+                Going(rest, rest, np.full(1, ground, np.complex128)),
+            )[0]
+            for ground in (0.0, push)
+        )  # fmt: skip
         return analysis.collapse(
-            self._blocks, self._contacts, self._guides, direction, dead=dead, live=live, gravity=self.gravity
+            self._blocks, self._contacts, self._guides, direction, dead=dead, live=both - dead, gravity=self.gravity
         )
 
     @per_direction
@@ -588,7 +585,7 @@ class Assembly(LinkedBodies):
         still = np.zeros(len(phi))
         going = Going(still, still, np.asarray(-int(direction) * shares * self.gravity, np.complex128))
         bodies, motions = self.weighed(), self.motion(phi, direction)
-        forces = under_way(bodies, motions, self.attached, direction, self.gravity, going)
+        forces = loading(bodies, motions, self.attached, direction, self.gravity, going)
         centres = np.array([motion.carry(body.centroid)[0] for body, motion in zip(bodies, motions, strict=True)])
         turns = np.exp(1j * np.array([motion.psi for motion in motions]))
         weight, joints = self._collapse(direction).problem.weight, self._remaining(direction)

@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import model_validator
 
 from mechanisms._plates import EXACT, BodyPart, Fillet, Plate, fillet, foot_is_cut, plates, united
-from mechanisms._polygons import SAME, Bools, Points, fault_of, size_of
+from mechanisms._polygons import SAME, Bools, fault_of, size_of
 from mechanisms._single_body import SingleBody
 from rocking_cli.core import (
     Body,
@@ -26,6 +26,7 @@ from rocking_cli.core import (
     polygon,
     quantity,
 )
+from rocking_cli.core.kinematics import Points
 
 LEVEL = 1e-6  # of its width or height, the smaller: nobody measures finer how level two corners are
 MOST = 10_000  # corners

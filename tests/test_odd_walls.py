@@ -24,7 +24,7 @@ from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
 from rocking_cli.io import yaml_file
 from tests.test_assembly import assembly
-from tests.test_assembly_limit import FLOOR, cut, rectangle, weights
+from tests.test_assembly_limit import FLOOR, cut, multiplier, rectangle, weights
 
 POSITIVE = Direction.POSITIVE
 TALL = rectangle("a", 0, 0, 1, 4)
@@ -103,7 +103,7 @@ def test_forces_near_a_state_balance_without_tension():
         dead, live = weights(blocks)
         states = linkage(blocks, joints, (), collapse(blocks, joints)).states
         there = DisplacedAssembly(remaining(blocks, joints, (), states), float(np.abs(dead).sum()))
-        forces = dead + there.multiplier(dead, live) * live
+        forces = dead + multiplier(there, dead, live) * live
         (answer,) = there.admissible(forces)
         if answer.forces is None or answer.margin <= 0:
             continue

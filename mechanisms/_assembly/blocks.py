@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mechanisms._polygons import Points, area_of
+from rocking_cli.core.kinematics import Points
+from rocking_cli.core.polygons import area_of
 
 
 @dataclass(frozen=True)

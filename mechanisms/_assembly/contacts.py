@@ -14,8 +14,10 @@ import numpy as np
 
 from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
 from mechanisms._assembly.faults import ContactFault, listed
-from mechanisms._polygons import Points, distance, inside, nearby, overlap, size_of, thickness_of
+from mechanisms._polygons import nearby, overlap, size_of, thickness_of
 from rocking_cli.core import Reals
+from rocking_cli.core.kinematics import Points
+from rocking_cli.core.polygons import distance, inside
 
 GAP = 2e-3  # of the smaller block: 2 mm of a voussoir of width and height .5 m each
 PARALLEL = 0.05  # sine of the angle of two edges that may still lie on each other

@@ -95,14 +95,6 @@ class DisplacedAssembly:
         """Velocities that the joints allow, as orthonormal columns; forces that do work on them cannot be balanced."""
         return np.linalg.qr(velocity_space(self.bearings.rates, self.frame))[0]
 
-    def multiplier(self, dead: Reals, live: Reals) -> float:
-        """Return the multiplier of `live` in displaced equilibrium, by virtual work; see `collapse` for the loads."""
-        free = self._free
-        if free.shape[1] != 1:
-            raise NoAnswer(f"the mechanism can move in {free.shape[1]} independent ways where it is, not in one")
-        work = [float(scaled(forces, self.frame, self.weight) @ free[:, 0]) for forces in (dead, live)]
-        return -work[0] / work[1]
-
     def admissible(self, forces: Reals) -> list[Admissible]:
         """Check whether the joints can carry forces on the blocks, for several cases.
 

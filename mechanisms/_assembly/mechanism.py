@@ -11,8 +11,7 @@ import numpy as np
 from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
 from mechanisms._assembly.joined import JoinedNames
 from mechanisms._assembly.limit import Collapse
-from mechanisms._assembly.rays import Frame, VelocityRows
-from mechanisms._assembly.unique import velocity_space
+from mechanisms._assembly.rays import Frame
 from rocking_cli.core import Guide, Reals
 
 STILL = 1e-8  # of the fastest velocity: a rate that is none
@@ -68,9 +67,6 @@ class AssemblyLinkage:
         Guides of groups that move.
     states : tuple of Opening
         State of each joint.
-    freedom : int
-        Number of independent motions that hinges and guides allow at first: 1 if they determine the motion. More if
-        joints slide, or if parts that no longer touch would have to move together.
     """
 
     groups: tuple[tuple[str, ...], ...]
@@ -79,7 +75,6 @@ class AssemblyLinkage:
     hinges: tuple[AssemblyHinge, ...]
     guides: tuple[Guide, ...]
     states: tuple[Opening, ...]
-    freedom: int
 
     @property
     def lifted(self) -> tuple[int, ...]:
@@ -149,7 +144,6 @@ def linkage(
         hinges,
         held,
         states,
-        _freedom(groups, hinges, held, number, size),
     )
 
 
@@ -183,22 +177,3 @@ def _hinges(
         if here.join(one, other):
             found.append(AssemblyHinge(one, other, point, k))
     return tuple(found)
-
-
-def _freedom(
-    groups: Sequence[tuple[str, ...]],
-    hinges: Sequence[AssemblyHinge],
-    guides: Sequence[Guide],
-    number: dict[str, int],
-    size: float,
-) -> int:
-    """Return the number of independent velocities that hinges and guides allow."""
-    frame = Frame(tuple(str(k) for k in range(len(groups))), (0j,) * len(groups), size)
-    still = -1
-    rows = [
-        (still if h.one is None else h.one, still if h.other is None else h.other, h.point, way)
-        for h in hinges for way in (1 + 0j, 1j)
-    ]  # fmt: skip
-    rows += [(still, number[g.bodies[0]], g.at, 1j * g.along / abs(g.along)) for g in guides]
-    one, other, points, ways = (np.array(each) for each in zip(*rows, strict=True)) if rows else (np.zeros(0, int),) * 4
-    return int(velocity_space(frame.rates(VelocityRows(one, other, points, ways)), frame).shape[1])

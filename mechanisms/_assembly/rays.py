@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
 from mechanisms._assembly.sparse import Sparse, from_entries
-from mechanisms._polygons import Points
 from rocking_cli.core import Guide, Reals
+from rocking_cli.core.kinematics import Points
 
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.intp]

@@ -13,8 +13,8 @@ import numpy as np
 
 from mechanisms._assembly.rays import Bools, Frame, Indices
 from mechanisms._assembly.sparse import Sparse, components, from_entries
-from mechanisms._polygons import Points
 from rocking_cli.core import Reals
+from rocking_cli.core.kinematics import Points
 
 ACROSS = 1e-3  # sine of the angle between directions that count as two
 APART = 1e-9  # of the size of the whole: lines of action that do not pass one point

@@ -52,12 +52,6 @@ class Body:
         return [self.outline] if self.outline else drawn.get(self.name, ())
 
 
-def area_of(corners: Sequence[complex]) -> float:
-    """Return the signed area of a polygon [m2], positive if its corners are anticlockwise."""
-    z = np.asarray(corners) - corners[0]
-    return float((z.conj() * np.roll(z, -1)).imag.sum() / 2)
-
-
 def weighed(bodies: Sequence[Body], factor: float) -> Sequence[Body]:
     """Return the bodies with all masses and inertias multiplied by a factor."""
     if factor == 1.0:

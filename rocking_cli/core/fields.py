@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
 from pydantic.fields import FieldInfo
@@ -31,6 +31,9 @@ LEAST = {
     "m/s2": 1e-6, "g": 1e-6, "deg": 1e-6, "years": 1e-6,
 }  # fmt: skip
 """Least value of a quantity that must be positive, by its unit: far below any structure, far above underflow."""
+
+
+POWERS = {"m": 1, "m2": 2, "m3": 3, "kg m2": 2}  # of a length, by the unit of a field
 
 
 def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any = None, **bounds: Any) -> Any:
@@ -113,6 +116,17 @@ def least(field: FieldInfo) -> float:
     return LEAST.get(str(extra.get("unit")), 0.0) if positive and isinstance(extra, dict) else 0.0
 
 
+def _multiplied(value: Any, factor: float, power: int) -> Any:
+    """Return a value of another size: numbers times a power of the factor, by the power of length in their unit."""
+    if isinstance(value, Described):
+        return value.enlarged(factor)
+    if isinstance(value, list | tuple):
+        return type(value)(_multiplied(each, factor, power) for each in value)
+    if isinstance(value, dict):
+        return {key: _multiplied(each, factor, power) for key, each in value.items()}
+    return value * factor**power if power and isinstance(value, float) else value
+
+
 class Described(BaseModel):
     """Base class of what users describe by fields: refuses unknown fields, and reads texts with units."""
 
@@ -121,6 +135,33 @@ class Described(BaseModel):
     def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
         """Yield the fields that were given, without those at their defaults."""
         return ((key, getattr(self, key)) for key in type(self).model_fields if key in self.model_fields_set)
+
+    def enlarged(self, factor: float) -> Self:
+        """Return the same for a structure of another size: fields in m, m2, m3 or kg m2 are multiplied, others stay.
+
+        Parameters
+        ----------
+        factor : float
+            Factor on every length, > 0.
+
+        Returns
+        -------
+        Described
+            That of the new size. Given masses and loads stay the same, so that the behaviour of a structure need not
+            scale; the positions of loads and ties are multiplied.
+
+        Raises
+        ------
+        pydantic.ValidationError
+            If a field of a structure is then out of its bounds.
+        """
+        changed = {}
+        for key, info in type(self).model_fields.items():
+            extra, value = info.json_schema_extra, getattr(self, key)
+            power = POWERS.get(str(extra.get("unit")), 0) if isinstance(extra, dict) else 0
+            if (new := _multiplied(value, factor, power)) != value:
+                changed[key] = new
+        return self.model_copy(update=changed)
 
     @field_validator("*", mode="before")
     @classmethod

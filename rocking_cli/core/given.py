@@ -26,14 +26,6 @@ KINEMATIC = "kinematic"
 NEEDS_A_SIDE = "requires one_sided: otherwise the structure rocks through to the other side"
 LATER = {"dampers": "a damper", "inerters": "an inerter"}
 """What structures will have one day, and is refused by name until then."""
-POWERS = {"m": 1, "m2": 2, "m3": 3, "kg m2": 2}  # of a length, by the unit of a field
-
-
-def _multiplied(value: Any, factor: float) -> Any:
-    """Return a number, or every number of nested lists, times a factor; other values are returned unchanged."""
-    if isinstance(value, (list, tuple)):
-        return type(value)(_multiplied(each, factor) for each in value)
-    return value * factor if isinstance(value, float) else value
 
 
 Eta = Annotated[float, Field(gt=0, le=5)]  # how much it may be at most depends on the structure
@@ -239,36 +231,3 @@ class Given(Described):
         if self.depth is None:
             raise RefusedFields((), "depth", "is missing: density needs the size out of plane")
         return self.depth
-
-    def enlarged(self, factor: float) -> Self:
-        """Return a structure of another size: every field in m, m2, m3 or kg m2 is multiplied, the others stay.
-
-        Parameters
-        ----------
-        factor : float
-            Factor on every length, > 0.
-
-        Returns
-        -------
-        Mechanism
-            The structure of the new size. Given masses and loads stay the same, so that its behaviour need not scale;
-            the positions of loads and ties are multiplied.
-
-        Raises
-        ------
-        pydantic.ValidationError
-            If a field is then out of its bounds.
-        """
-        changed: dict[str, Any] = {}
-        for key, field in type(self).model_fields.items():
-            unit = field.json_schema_extra.get("unit") if isinstance(field.json_schema_extra, dict) else None
-            power, value = POWERS.get(str(unit)), getattr(self, key)
-            if power is not None:
-                changed[key] = _multiplied(value, factor**power)
-            elif isinstance(value, list) and value and hasattr(value[0], "enlarged"):
-                changed[key] = [thing.enlarged(factor) for thing in value]
-            elif isinstance(value, dict) and any(hasattr(thing, "enlarged") for thing in value.values()):
-                changed[key] = {name: thing.enlarged(factor) for name, thing in value.items()}
-            elif hasattr(value, "enlarged"):
-                changed[key] = value.enlarged(factor)
-        return self.model_copy(update=changed)

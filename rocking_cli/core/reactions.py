@@ -17,6 +17,7 @@ from rocking_cli.core.hung.attached import PointMass, Spot
 from rocking_cli.core.hung.attachments import followed
 from rocking_cli.core.joints import Joint
 from rocking_cli.core.kinematics import Direction, Points, Reals
+from rocking_cli.core.loading import Going, loading
 from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.core.released import Pieces
 
@@ -98,24 +99,12 @@ def reactions(
     body is m (z'' + u_g'' + i (g + v_g'')), and their moment about its centroid is I psi''.
     """
     ground = np.broadcast_to(np.asarray(ground, np.complex128), phi.shape)
-    weight = ground + 1j * mechanism.gravity
-    turning = acceleration(mechanism, direction, phi, rate, ground)
+    going = Going(acceleration(mechanism, direction, phi, rate, ground), rate, ground)
     moving = _Moving(mechanism, direction, phi)
-
-    for body, motion in zip(mechanism.weighed(), moving.motions, strict=True):
-        z, dz, ddz = motion.carry(body.centroid)
-        force = body.mass * (dz * turning + ddz * rate**2 + weight)
-        moving.demand(body.name, z, force, body.inertia * (motion.dpsi * turning + motion.ddpsi * rate**2))
-    for thing in mechanism.attached:
-        if isinstance(thing, PointMass):
-            z, dz, ddz = moving.follow(thing.spot)
-            moved = dz * turning + ddz * rate**2
-            across, up = thing.horizontal * (moved.real + weight.real), thing.vertical * moved.imag
-            moving.demand(
-                thing.spot.body, z, _point(thing.mass * across, thing.mass * (up + thing.weight * weight.imag))
-            )
-        for push in thing.forces(direction, moving.follow):
-            moving.demand(push.spot.body, moving.follow(push.spot).z, -push.force)
+    bodies = mechanism.weighed()
+    loads = loading(bodies, moving.motions, mechanism.attached, direction, mechanism.gravity, going)
+    for body, motion, load in zip(bodies, moving.motions, loads.swapaxes(0, 1), strict=True):
+        moving.demand(body.name, motion.carry(body.centroid)[0], -_point(load[:, 0], load[:, 1]), -load[:, 2])
     found = moving.at_joints()
     if found is None and (contacts := _instead_of_joints(mechanism, direction)):
         pieces = Pieces(mechanism, direction, phi)

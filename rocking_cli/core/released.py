@@ -16,15 +16,15 @@ from functools import cached_property
 import numpy as np
 
 from rocking_cli.core.contacts import Contact, Piece
-from rocking_cli.core.hung.attached import PointMass, Spot
+from rocking_cli.core.hung.attached import Path, PointMass, Spot
 from rocking_cli.core.kinematics import Direction, Points, Reals, RigidMotion, rotation
 from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.core.rates import Integers, Rates, VelocityTerm
 
-SINGULAR = 1e-9  # least pivot, about, of rates over the size of the whole: with less, forces are not determined
+SINGULAR = 1e-9  # 1/largest entry of the inverse of the rates over the size: below, forces are not determined
 AT_ONCE = 1_000_000  # entries of the matrices that are inverted at once: 8 MB of each
-MASSLESS = 1e-12  # of the largest mass: what a piece without any is taken to have
-ONE, PUSH, RATE, WEIGHT = range(4)  # what forces are affine in: 1, u_g'', phi.^2 and v_g''
+NO_MASS = 1e-12  # mass given to a piece without mass, over the largest mass
+ONE, PUSH, RATE, WEIGHT = range(4)  # indices of the factors of 1, u_g'', phi.^2 and v_g'' in tables of forces
 
 
 @dataclass(frozen=True, eq=False)
@@ -255,7 +255,7 @@ class Pieces:
         several = name in self._each and any(spot.body in self._mechanism.alike() for spot in spots)
         return list(dict.fromkeys(each.shift for each in self._parts)) if several else [0j]
 
-    def _spread(self, spot: Spot, way: Points, shifts: Sequence[complex]) -> Reals:
+    def _spread(self, spot: Spot, along: Points, shifts: Sequence[complex]) -> Reals:
         """Return the derivative of a point's velocity along a unit vector by all coordinates, shape (n, 3 pieces).
 
         With several `shifts`, this is the mean over the points so far beside it.
@@ -265,13 +265,13 @@ class Pieces:
             copies = (each.body.name for each in self._parts if (each.of, each.shift) == (spot.body, shift))
             name = next(copies, self._piece(spot)) if shift else self._piece(spot)
             k = self._column[name]
-            found[:, k : k + 3] += self._factors(name, self._carried(name, spot.at + shift), way) / len(shifts)
+            found[:, k : k + 3] += self._factors(name, self._carried(name, spot.at + shift), along) / len(shifts)
         return found
 
-    def _factors(self, name: str, at: Points, way: Points) -> Reals:
+    def _factors(self, name: str, at: Points, along: Points) -> Reals:
         """Return the derivative of a point's velocity along a unit vector by its piece's coordinates, shape (n, 3)."""
         arm = at - self._centres[name][0]
-        return np.stack([way.real, way.imag, (arm.conjugate() * way).imag], axis=1)
+        return np.stack([along.real, along.imag, (arm.conjugate() * along).imag], axis=1)
 
     def _mass(self) -> Reals:
         """Return the mass matrix of each piece with its loads, shape (n, pieces, 3, 3)."""
@@ -279,13 +279,13 @@ class Pieces:
         matrix = np.tile(whole, (self.phi.size, 1, 1, 1))
         for thing in self._masses:
             shifts = self._shifts(thing.name, thing.spot)
-            for share, way in ((thing.horizontal, 1 + 0j), (thing.vertical, 1j)):
+            for share, along in ((thing.horizontal, 1 + 0j), (thing.vertical, 1j)):
                 for shift in shifts:
-                    rate = self._spread(thing.spot, np.full(self.phi.size, way), [shift])
+                    rate = self._spread(thing.spot, np.full(self.phi.size, along), [shift])
                     rate = rate.reshape(self.phi.size, -1, 3)
                     matrix += thing.mass / len(shifts) * share * rate[..., None] * rate[:, :, None, :]
-        # A beam without mass moves all the same: what it weighs is nothing beside the rest.
-        least = MASSLESS * np.abs(matrix).max()
+        # A piece without mass has no accelerations: it is given a mass too small to change the others.
+        least = NO_MASS * np.abs(matrix).max()
         light = np.diagonal(matrix, axis1=2, axis2=3) < least
         return np.asarray(matrix + least * np.eye(3) * light[..., None, :])
 
@@ -314,7 +314,7 @@ class Pieces:
         for thing in self._masses:
             # The point of a body has an acceleration of its own beside those of the coordinates: -psi.^2 times its arm.
             shifts = self._shifts(thing.name, thing.spot)
-            across, up = (self._spread(thing.spot, np.full(n, way), shifts) for way in (1 + 0j, 1j))
+            across, up = (self._spread(thing.spot, np.full(n, along), shifts) for along in (1 + 0j, 1j))
             name = self._piece(thing.spot)
             arm = self._carried(name, thing.spot.at) - self._centres[name][0]
             inwards = -(self._motions[name].dpsi ** 2) * arm
@@ -361,26 +361,21 @@ class Pieces:
             forces[:, k + 1, WEIGHT] += part.body.mass
         for thing in self._masses:
             shifts = self._shifts(thing.name, thing.spot)
-            across, up = (self._spread(thing.spot, np.full(n, way), shifts) for way in (1 + 0j, 1j))
+            across, up = (self._spread(thing.spot, np.full(n, along), shifts) for along in (1 + 0j, 1j))
             forces[..., PUSH] += thing.mass * thing.horizontal * across
             forces[..., ONE] += thing.mass * thing.weight * g * up
             forces[..., WEIGHT] += thing.mass * thing.weight * up
 
-        def follow(spot: Spot) -> object:
-            return self._path(spot)
-
         for other in mechanism.attached:
-            pushes = other.forces(direction, follow)  # type: ignore[arg-type]
+            pushes = other.forces(direction, self._path)
             shifts = self._shifts(other.name, *(push.spot for push in pushes))
             for push in pushes:
                 if self._moves(push.spot):
-                    way = np.exp(1j * np.angle(push.force))  # of any size, also of none
-                    forces[..., ONE] -= np.abs(push.force)[:, None] * self._spread(push.spot, way, shifts)
+                    along = np.exp(1j * np.angle(push.force))  # a unit vector for a force of zero too
+                    forces[..., ONE] -= np.abs(push.force)[:, None] * self._spread(push.spot, along, shifts)
         return forces
 
-    def _path(self, spot: Spot) -> object:
-        from rocking_cli.core.hung.attached import Path
-
+    def _path(self, spot: Spot) -> Path:
         return Path(*(self._motions[self._piece(spot)] if self._moves(spot) else self._still).carry(spot.at))
 
     def rates(self, contacts: Sequence[Contact]) -> tuple[Rates, list[tuple[tuple[int, ...], int | None]]]:
@@ -441,10 +436,10 @@ class Pieces:
         where = self._carried(contact.pieces[1] if contact.pieces[1] is not None else contact.pieces[0], at)
         return where - contact.roll * normal
 
-    def _between(self, contact: Contact, at: Points, way: Points) -> list[VelocityTerm]:
+    def _between(self, contact: Contact, at: Points, along: Points) -> list[VelocityTerm]:
         """Return the velocity of the second piece relative to the first, at a point along a direction."""
         return [
-            VelocityTerm(self.number(name), sign * self._factors(name, at, way))
+            VelocityTerm(self.number(name), sign * self._factors(name, at, along))
             for name, sign in zip(contact.pieces[::-1], (1.0, -1.0), strict=True)
             if name is not None
         ]

@@ -14,7 +14,3 @@ class Strength(Described):
     def force(self, depth: float) -> float:
         """Return the largest normal force of a contact [N], of a structure with depth `depth` [m]."""
         return self.stress * self.width * depth
-
-    def enlarged(self, factor: float) -> Strength:
-        """Return the strength of the same material in a structure of another size."""
-        return self.model_copy(update={"width": factor * self.width})

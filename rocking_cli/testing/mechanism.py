@@ -44,6 +44,7 @@ from rocking_cli.core.coefficients import jump
 from rocking_cli.core.contract import Verdict as Verdict
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.hung.attached import Spot
+from rocking_cli.core.polygons import area_of, distance
 from rocking_cli.core.reactions import reactions
 from rocking_cli.core.registry import conformance
 from rocking_cli.core.released import Pieces, Undetermined, released
@@ -430,7 +431,7 @@ def outlines_are_those_of_the_bodies(structure: Mechanism) -> None:
         for each in outlines:
             z = np.asarray(each, np.complex128)
             _demand(z.size >= 3 and bool(np.isfinite(z).all()), f"an outline of {name} has fewer than three corners")
-            _demand(_area(each) > 0, f"an outline of {name} encloses no area")
+            _demand(area_of(each) != 0, f"an outline of {name} encloses no area")
         if sketch.uniform:
             _demand(bool(outlines), f"the sketch declares the bodies uniform, but gives no outline of {name}")
             _is_uniform(body, outlines)
@@ -452,7 +453,7 @@ def hinges_hold_together(structure: Mechanism) -> None:
             for name in hinge.bodies if sketch.uniform else ():
                 outlines = sketch.outlines.get(name) or [bodies[name].outline]
                 size = max(abs(corner - bodies[name].centroid) for each in outlines for corner in each)
-                off = min(_off_the_edge(hinge.point, each) for each in outlines)
+                off = min(float(distance(np.array([hinge.point]), np.asarray(each))[0]) for each in outlines)
                 _demand(off <= DRAWN * size, f"{which} is {off:.3g} m off the edge of {name}")
 
 
@@ -691,13 +692,8 @@ def _paired(one: RigidMotion, other: RigidMotion, point: complex) -> dict[str, t
     return {**{name: (mine, its) for name, mine, its in moved}, **turned}
 
 
-def _area(outline: Outline) -> float:
-    z = np.asarray(outline, np.complex128)
-    return abs(float((z.conj() * np.roll(z, -1)).imag.sum())) / 2
-
-
 def _is_uniform(body: Body, outlines: Sequence[Outline]) -> None:
-    areas = [_area(each) for each in outlines]
+    areas = [abs(area_of(each)) for each in outlines]
     plates = [polygon("", body.mass * area / sum(areas), each) for area, each in zip(areas, outlines, strict=True)]
     mass = body.mass or 1.0
     centroid = sum(plate.mass * plate.centroid for plate in plates) / mass
@@ -725,11 +721,3 @@ def _can_be_within(body: Body) -> None:
         f"the inertia of {body.name} is {body.inertia:.6g} kg m2, more than that of all its mass at the furthest "
         f"corner of its outline, {body.mass * reach**2:.6g} kg m2",
     )
-
-
-def _off_the_edge(point: complex, outline: Outline) -> float:
-    """Return the distance of a point from the sides of an outline [m]."""
-    z = np.asarray(outline, np.complex128)
-    side = np.roll(z, -1) - z
-    along = np.clip(((point - z) * side.conj()).real / np.maximum(np.abs(side) ** 2, np.finfo(float).tiny), 0.0, 1.0)
-    return float(np.abs(point - z - along * side).min())

@@ -17,12 +17,13 @@ from rocking_cli.core.hung.element import Element
 from rocking_cli.core.hung.interlock import Interlock
 from rocking_cli.core.hung.loads import Load
 from rocking_cli.core.hung.ties import Tie
-from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
+from rocking_cli.core.kinematics import Direction, Points, Reals, RigidMotion
+from rocking_cli.core.polygons import distance, inside
 from rocking_cli.core.sketch import Outline
 from rocking_cli.text import did_you_mean
 
 OUTSIDE = 1e-6  # of the size of a body: how far outside it a point may be by rounding
-POINTS = ("top", "centroid")  # what answers call points of the structure itself
+OWN_NAMES = ("top", "centroid")  # what answers call points of the structure itself
 FAR = 1.0  # of the size of a body: how far off it a load may be without a word
 LOOKED_AT = 129  # rotations at which it is seen whether a tie stretches
 STRETCHED = 1e-9  # of the length of its path, or of a metre: what counts as stretching
@@ -96,7 +97,8 @@ class Carrier:
         """Return a point of a body. Raises `RefusedFields` if the point lies outside the body."""
         body = self.carrying(name, point, loc)
         shapes = self.outlines.get(body, ())
-        if shapes and not any(_holds(np.asarray(shape), point) for shape in shapes):
+        at = np.array([point])
+        if shapes and not any(_holds(np.asarray(shape), at) for shape in shapes):
             corners = np.concatenate([np.asarray(shape) for shape in shapes])
             low, high = corners.real.min(), corners.real.max()
             bottom, top = corners.imag.min(), corners.imag.max()
@@ -115,11 +117,12 @@ class Carrier:
     def off(self, body: str, point: complex) -> float:
         """Return the distance of a point from a body, over the size of the body; 0 if its shape is not known."""
         shapes = [np.asarray(shape) for shape in self.outlines.get(body, ())]
-        if not shapes or any(_holds(shape, point) for shape in shapes):
+        at = np.array([point])
+        if not shapes or any(_holds(shape, at) for shape in shapes):
             return 0.0
         corners = np.concatenate(shapes)
         size = abs(complex(np.ptp(corners.real), np.ptp(corners.imag)))
-        return min(_from_edges(shape, point) for shape in shapes) / size
+        return min(float(distance(at, shape)[0]) for shape in shapes) / size
 
     def foot(self, name: str | None, loc: Loc) -> Spot:
         """Return the point below the centroid of a body, at the height of its lowest corner. Raises `RefusedFields`."""
@@ -140,7 +143,7 @@ def attach(
 
     Raises `RefusedFields`, also if a name is used twice or is in `taken`.
     """
-    own, names = {*POINTS, *taken}, set[str]()
+    own, names = {*OWN_NAMES, *taken}, set[str]()
     for k, load in enumerate(loads):
         loc: Loc = ("loads", k)
         _own_name(load.name, names, own, loc)
@@ -230,22 +233,7 @@ def followed(bodies: Sequence[Body], motions: Sequence[RigidMotion], shape: tupl
     return follow
 
 
-def _from_edges(corners: np.ndarray, point: complex) -> float:
-    """Return the distance of a point from the edges of a polygon [m]."""
-    edge = np.roll(corners, -1) - corners
-    long = np.abs(edge) ** 2
-    long[long == 0] = 1.0  # also of an edge so short that its square vanishes
-    along = np.clip(((point - corners) * edge.conj()).real / long, 0.0, 1.0)
-    return float(np.abs(point - corners - along * edge).min())
-
-
-def _holds(corners: np.ndarray, point: complex) -> bool:
-    """Return whether a point is in a polygon, or next to its edge."""
-    if _from_edges(corners, point) <= OUTSIDE * float(np.abs(corners - corners.mean()).max()):
-        return True
-    a, b = corners, np.roll(corners, -1)
-    edge = b - a
-    with np.errstate(divide="ignore", invalid="ignore"):
-        crossing = a.real + (point.imag - a.imag) / edge.imag * edge.real
-    spans = (a.imag > point.imag) != (b.imag > point.imag)
-    return bool(np.count_nonzero(spans & (point.real < crossing)) % 2)
+def _holds(corners: Points, at: Points) -> bool:
+    """Return whether a point, given as an array of one, is in a polygon, or next to its edge."""
+    close = OUTSIDE * float(np.abs(corners - corners.mean()).max())
+    return bool(distance(at, corners)[0] <= close or inside(at, corners)[0])

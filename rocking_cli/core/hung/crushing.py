@@ -18,7 +18,3 @@ class Crushing(Described):
             f"pivots moved inwards by crushing at {self.strength / 1e6:g} MPa under the forces at rest, and kept there "
             "over the whole motion"
         )
-
-    def enlarged(self, factor: float) -> Crushing:
-        """Return the same strength for a structure of another size."""
-        return self.model_copy(update={"depth": None if self.depth is None else factor * self.depth})

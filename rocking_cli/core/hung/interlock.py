@@ -58,7 +58,3 @@ class Interlock(Described):
         """Return the friction of all crossing walls as one force on the body whose foot is at a point."""
         spot = Spot(foot.body, foot.at + 1j * ARM * self.height)
         return ConstantForce(NAME, spot, complex(-self.walls * self.force(density, gravity)), friction=True)
-
-    def enlarged(self, factor: float) -> Interlock:
-        """Return the crossing walls of a structure of another size, with the same number of courses."""
-        return self.model_copy(update={key: factor * getattr(self, key) for key in ("overlap", "thickness", "height")})

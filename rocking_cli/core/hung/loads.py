@@ -75,8 +75,3 @@ class Load(Described):
         shares = {"horizontal": self.horizontal, "vertical": self.vertical, "weight": self.weight}
         given = {key: value for key, value in shares.items() if value is not None}
         return PointMass(self.name, spot, count * self.mass, **{**FLOORS.get(self.floor or "", {}), **given})
-
-    def enlarged(self, factor: float) -> Load:
-        """Return the load on a structure of another size: its point and its seat are multiplied, all else stays."""
-        seat = None if self.seat is None else factor * self.seat
-        return self.model_copy(update={"at": [factor * each for each in self.at], "seat": seat})

@@ -50,11 +50,6 @@ class Place(Described):
         """Position at rest, x + iy [m]."""
         return complex(*(self.ground or self.at or ()))
 
-    def enlarged(self, factor: float) -> Place:
-        """Return the place on a structure of another size."""
-        moved = {key: [factor * each for each in value] for key in ("ground", "at") if (value := getattr(self, key))}
-        return self.model_copy(update=moved)
-
 
 class Face(Described):
     """A straight face of a body with springs to the ground along it."""
@@ -64,11 +59,6 @@ class Face(Described):
     body: Name | None = Field(None, description="the body, by its name in the picture; optional for a single body")
     start: Vertex = point("one end of the face", alias="from")
     end: Vertex = point("its other end", alias="to")
-
-    def enlarged(self, factor: float) -> Face:
-        """Return the face on a structure of another size."""
-        moved = {key: [factor * each for each in getattr(self, key)] for key in ("start", "end")}
-        return self.model_copy(update=moved)
 
 
 class Tie(Described):
