@@ -139,6 +139,21 @@ def read(text: str, unit: str) -> float:
     raise UnitError(f"{shown} is {_a(other)}, not {_a(kind) if kind else f'in {unit}'}", f"units: {', '.join(known)}")
 
 
+def number_of(given: object, unit: str) -> float:
+    """Return a number that is given as such, in `unit`, or as a text with its unit or without. Raises `UnitError`."""
+    if isinstance(given, str):
+        parts = split(given)
+        if not unit and parts is None:
+            raise UnitError(f"{cut(printable(given))!r} is not a number")
+        return float(parts[0]) if parts is not None and not parts[1] else read(given, unit)
+    try:
+        if not isinstance(given, bool):
+            return float(given)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        pass
+    raise UnitError(f"{given!r} is not a number")
+
+
 def _guess(given: str, known: tuple[str, ...]) -> str:
     alike = {unit.lower(): unit for unit in reversed(known)}
     close = get_close_matches(given.lower(), list(alike), n=1)

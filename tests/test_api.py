@@ -161,12 +161,6 @@ def test_an_answer_shows_itself(name, tmp_path):
     assert (tmp_path / "a.svg").stat().st_size > 1000
 
 
-def test_a_motion_draws_itself(tmp_path):
-    figure = rk.read_record(EXAMPLES / "accel.csv").plot(tmp_path / "a.png")
-    assert [axes.get_ylabel() for axes in figure.axes][:2] == ["acceleration [g]", "velocity [m/s]"]
-    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
-
-
 def test_names_of_others_are_text_in_a_notebook():
     answer = rk.equiv(rk.Block(name="<img src=x>", width=0.7, height=2.8))
     assert "<img" not in answer._repr_html_() and "&lt;img" in answer._repr_html_()

@@ -385,7 +385,7 @@ class TestRespond:
             ("--plot", "none/plot.png", "does not exist"),
             ("--out", "history.txt", "does not end in .csv or .parquet"),
             ("--out", "none/history.csv", "does not exist"),
-            ("--scale", "nan", "finite"),
+            ("--scale", "nan", "is not a number"),
             ("--scale", "big", "not a number"),
             ("--polarity", "2", "'1', '-1'"),
             ("--release", "1.5", "between 0 and 1"),

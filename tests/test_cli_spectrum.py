@@ -181,7 +181,7 @@ class TestWrongUse:
         ("arguments", "said"),
         [
             ((), "--record PLACE or --pulse PULSE"),
-            (("--pulse", "sine:0.4g:1s", "--dt", "0.01"), "describe a record"),
+            (("--pulse", "sine:0.4g:1s", "--dt", "0.01"), "describes a record"),
             (("--pulse", "sine:0.4:1s"), "no unit of amplitude"),
             (("--record", "a.AT2", "b.AT2"), "--record '*.AT2'"),
             (("--record", ACCEL, "--slenderness", "5"), "alpha = atan(b/h)"),

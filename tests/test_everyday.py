@@ -131,7 +131,7 @@ class TestDefaults:
         bare = run_json("record", "bare.txt")
         assert (bare["unit"], bare["dt"]) == ("m/s2", 0.02)
         run(*PULSE)  # no record to describe, and nobody typed that there is one
-        assert "describe a record" in run(*PULSE, "--units", "g", code=2).stderr
+        assert "describes a record" in run(*PULSE, "--units", "g", code=2).stderr
 
     def test_jobs_are_for_this_machine_and_silent_on_a_cluster(self, monkeypatch):
         Path("study.yaml").write_text("name: unread\n", encoding="utf-8")

@@ -183,12 +183,15 @@ class TestTurned:
     @pytest.mark.parametrize(
         ("options", "words"),
         [
-            (("--with", "EAST"), "--with FILE requires --azimuth"),
-            (("--azimuth", "30"), "give --with FILE"),
-            (("--with", "EAST", "--azimuth", "x"), "give degrees, such as 30"),
+            (("--with", "EAST"), "--azimuth is missing"),
+            (("--azimuth", "30"), "--azimuth requires a second component"),
+            (("--with", "EAST", "--azimuth", "x"), "give a value such as 30"),
             (("--with", str(ACCEL), "--azimuth", "30"), "--with is the first component too"),
             (("--with", "AGAIN", "--azimuth", "30"), "give the channel of the second with --with-channel"),
-            (("--with", "EAST", "--azimuth", "all", "--polarity", "both"), "already covers both polarities"),
+            (
+                ("--with", "EAST", "--azimuth", "all", "--polarity", "both"),
+                "--polarity cannot be combined with --azimuth all",
+            ),
         ],
     )
     def test_wrong_options(self, pair, options, words):
@@ -197,8 +200,8 @@ class TestTurned:
         assert words in run("respond", "--record", ACCEL, *options, code=2).stderr
 
     def test_all_is_for_respond(self, pair):
-        result = run("record", ACCEL, "--with", pair, "--azimuth", "all", code=2)
-        assert "--azimuth all works with `rocking respond` only" in result.stderr
+        said = run("record", ACCEL, "--with", pair, "--azimuth", "all", code=2).stderr
+        assert "--azimuth can be all for `respond` only" in said
 
 
 class TestAllAround:

@@ -93,11 +93,15 @@ class TestDerivatives:
     @pytest.mark.parametrize("steps", [["baseline linear"], ["highpass 0.5"], ["taper 0.05"], ["factor 2"], []])
     def test_corrections_do_not_hide_coarse_steps(self, tmp_path, steps):
         file = write(tmp_path / "steps.csv", "t [s],u [m]", T, np.round(U, 3))
-        asked = Reading(quantity="displacement", steps=parse_steps(steps))
+        asked = Reading({"quantity": "displacement"}, parse_steps(steps))
         (doubt,) = (each for each in asked.read(file).remarks if each.kind == "resolution")
         size = 2 if steps == ["factor 2"] else 1
         assert doubt.value == pytest.approx(size * 0.001 / DT**2 / STANDARD_GRAVITY)
-        turned = replace(asked, other=write(tmp_path / "b.csv", "t [s],u [m]", T, np.round(U, 4)), azimuth=30.0)
+        turned = replace(
+            asked,
+            options=asked.options
+            | {"other": write(tmp_path / "b.csv", "t [s],u [m]", T, np.round(U, 4)), "azimuth": 30.0},
+        )
         assert doubt.value in [pytest.approx(each.value) for each in turned.read(file).remarks]
         filtered = replace(asked, steps=(*asked.steps, *parse_steps(["lowpass 20"])))
         assert "resolution" not in [each.kind for each in filtered.read(file).remarks]

@@ -45,6 +45,21 @@ def test_no_layer_below_the_command_line_knows_a_flag(package):
     assert not found, "\n".join(found)
 
 
+def test_no_layer_below_the_questions_imports_by_the_name_of_the_package(package):
+    """The root fetches its names from `ask`, which the contract on layers does not see."""
+    modules = {path.stem for path in (ROOT / "rocking_cli").iterdir()}
+    found = [
+        f"{place}:{node.lineno}: {alias.name}"
+        for place, tree in package.items()
+        if not place.startswith(("rocking_cli/cli/", "rocking_cli/ask/"))
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and node.module == "rocking_cli" and node.level == 0
+        for alias in node.names
+        if alias.name not in modules and not alias.name.startswith("__")
+    ]
+    assert not found, "\n".join(found)
+
+
 # Classes that share a name: plugins import the load of `rocking_cli.core`, users the mechanism of `rocking_cli`; the
 # shipped kernels are made of the text of theirs.
 SHARED = {

@@ -6,15 +6,15 @@ import ast
 import inspect
 import re
 from importlib import import_module
-from typing import get_type_hints
+from pathlib import Path
 
 import click
 import pytest
 
 import rocking_cli as rk
 from rocking_cli.ask import watcher as rk_watcher
-from rocking_cli.ask.ground_motions import MotionArguments, ReadingArguments
 from rocking_cli.cli.main import COMMANDS
+from rocking_cli.processing.reading_options import READING, SCALING
 from tests.conftest import EXAMPLES
 from tests.elsewhere import PROJECT
 from tests.test_cli import run, run_json
@@ -53,8 +53,8 @@ VERBS = [name for name in COMMANDS if name not in WITHOUT]
 def test_what_a_command_can_do_python_can_do_by_the_same_names(name):
     verb = getattr(rk, name)
     arguments = inspect.signature(verb).parameters
-    more = MotionArguments if name != "select" else ReadingArguments
-    loose = set(get_type_hints(more)) if "options" in arguments else set()
+    more = READING if name in ("select", "score", "calibrate") else READING | SCALING
+    loose = more if "options" in arguments else {}
     missing, other = [], []
     for param in asked(name):
         word = NAMED.get(param.name, param.name)
@@ -92,14 +92,10 @@ def test_an_argument_that_is_none_or_has_no_effect_is_refused():
 
 def numeric(verb):
     """The arguments of a verb that are numbers, or several."""
-    loose = NUMBERS if "options" in verb.__annotations__ else {}
-    for name, given in (loose | verb.__annotations__).items():
+    for name, given in verb.__annotations__.items():
         types = set(re.findall(r"\w+", given))
         if types & {"float", "int"} and not types & {"str", "Literal", "Callable"}:
             yield name
-
-
-NUMBERS = dict.fromkeys(("dt", "azimuth", "scale", "target_pga", "target_pgv"), "float")
 
 
 @pytest.mark.parametrize("name", [*VERBS, "respond_each", "overturning_map", "overturning_curves", "response_spectrum"])
@@ -119,10 +115,7 @@ def test_text_for_a_number_is_refused(name):
 def test_the_refusal_of_a_text_says_what_to_give():
     block, motion = rk.Block(width=0.7, height=2.8), "sine:0.3g:0.8s"
     for given, said in (
-        ({"target_pga": "0.4g"}, "give 0.4, in g"),
-        ({"target_pgv": "40 cm/s"}, "give 0.4, in m/s"),
         ({"tail": "500 ms"}, "give 0.5, in s"),
-        ({"dt": "10 kg"}, "give a number, in s"),
         ({"rtol": "1e-8"}, "give 1e-08$"),
     ):
         with pytest.raises(rk.InputError, match=said):
@@ -131,6 +124,58 @@ def test_the_refusal_of_a_text_says_what_to_give():
         rk.InputError, match=r"`sizes` must be two numbers, got the text '0\.2:2'\n  give \(low, high\)"
     ):
         rk.spectrum(block, motion, sizes="0.2:2")
+
+
+@pytest.mark.parametrize(
+    ("text", "number"),
+    [
+        ({"dt": "10ms"}, {"dt": 0.01}),
+        ({"target_pga": "0.4g"}, {"target_pga": 0.4}),
+        ({"target_pga": "4 m/s^2"}, {"target_pga": 4 / 9.80665}),
+        ({"target_pgv": "40 cm/s"}, {"target_pgv": 0.4}),
+        ({"scale": "2", "units": "M/SEC**2"}, {"scale": 2, "units": "m/s2"}),
+        ({"resample": "5 ms", "taper": "5%"}, {"resample": 0.005, "taper": 0.05}),
+        ({"other": "east.csv", "azimuth": "0.5 rad"}, {"other": "east.csv", "azimuth": 28.64788975654116}),
+    ],
+)
+def test_an_option_of_a_record_may_be_text_with_its_unit_as_on_the_command_line(tmp_path, monkeypatch, text, number):
+    monkeypatch.chdir(tmp_path)
+    columns = "0\n1\n2\n-1\n0\n" * 20
+    for name in ("north.csv", "east.csv"):
+        Path(name).write_text(columns)
+    usual = {"dt": 0.01, "units": "g"}
+    assert rk.record("north.csv", **usual | text).result == rk.record("north.csv", **usual | number).result
+
+
+@pytest.mark.parametrize(
+    ("option", "said"),
+    [
+        ({"dt": "10 kg"}, "`dt`: 10 kg is a mass, not a time"),
+        ({"dt": 0}, "`dt`: 0 is not positive"),
+        ({"target_pga": "0.4 m"}, "`target_pga`: 'm' is not a unit of acceleration"),
+        ({"azimuth": "north", "other": "a.csv"}, "`azimuth`: 'north' is not a number"),
+        ({"units": "furlong"}, "`units`: 'furlong' is not a known unit"),
+        ({"quantity": "speed"}, "`from` must be one of acceleration, velocity, displacement"),
+        ({"channel": 1.5}, "`channel` must be a number, from 1, or a name"),
+        ({"other": 3}, "`with` must be the file"),
+        ({"azimth": 3}, "`azimth` is not an argument\n  did you mean azimuth?"),
+    ],
+)
+def test_an_option_of_a_record_that_is_wrong_is_named(option, said):
+    with pytest.raises(rk.InputError) as refused:
+        rk.record(EXAMPLES / "accel.csv", **option)
+    assert said in str(refused.value)
+
+
+def test_all_azimuths_are_asked_in_python_as_on_the_command_line():
+    pair = {"other": EXAMPLES / "accel_transverse.csv", "azimuth": "all", "scale": 2}
+    found = rk.respond(EXAMPLES / "block.yaml", EXAMPLES / "accel.csv", models="linear1", **pair)
+    typed = ("--with", pair["other"], "--azimuth", "all", "--scale", 2, "--model", "linear1")
+    shown = run_json("respond", EXAMPLES / "block.yaml", "--record", EXAMPLES / "accel.csv", *typed)
+    assert shown["pga"] == found.pga.tolist()
+    assert shown["responses"]["linear1"]["said"] == found.view.data["responses"]["linear1"]["said"]
+    with pytest.raises(rk.InputError, match="`tail` cannot be combined with `azimuth` all"):
+        rk.respond(EXAMPLES / "block.yaml", EXAMPLES / "accel.csv", tail=2, **pair)
 
 
 def test_of_a_trace_or_a_table_an_option_without_effect_is_refused(monkeypatch):

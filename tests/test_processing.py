@@ -16,7 +16,7 @@ from rocking_cli.excitation.doubts import doubts
 from rocking_cli.excitation.measures import measure
 from rocking_cli.processing.entry import Entry, of_reading
 from rocking_cli.processing.floor import Floor
-from rocking_cli.processing.reading import Reading
+from rocking_cli.processing.reading import Reading, reading_of
 from rocking_cli.processing.steps import STEPS, parse_step, parse_steps, process
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
@@ -108,7 +108,7 @@ class TestShape:
         found = process(both, parse_steps(["factor -1.5"]))
         assert (found.acceleration == -1.5 * motion.acceleration).all()
         assert (found.vertical.acceleration == 1.5 * motion.acceleration).all()
-        alone = Reading(steps=parse_steps(["factor -1.5"])).vertical(ACCEL)
+        alone = Reading({}, parse_steps(["factor -1.5"])).vertical(ACCEL)
         assert (alone.acceleration == 1.5 * Reading().read(ACCEL).acceleration).all()
 
     def test_a_floor_is_corrected_with_its_ground(self):
@@ -283,7 +283,7 @@ class TestCommands:
             (("--lowpass", "80"), "--lowpass: 80 Hz is not below the Nyquist frequency, 50 Hz"),
             (("--lowpass", "x"), "is not a frequency in Hz"),
             (("--gain", "3"), "is a gain without a unit"),
-            (("--azimuth", "30"), "give --with FILE"),
+            (("--azimuth", "30"), "--azimuth requires a second component"),
             (("--floor", "T1=0.4"), "z and gamma, or n"),
         ],
     )
@@ -292,7 +292,7 @@ class TestCommands:
 
     def test_a_pulse_has_none(self):
         result = run("respond", "--pulse", "sine:0.5g:1s", "--lowpass", "5", code=2)
-        assert "--lowpass changes a record: give --record FILE" in result.stderr
+        assert "--lowpass describes a record" in result.stderr
 
     def test_a_list_may_repeat_a_step(self, tmp_path):
         (tmp_path / "set.yaml").write_text(
@@ -307,12 +307,9 @@ class TestCommands:
     @pytest.mark.parametrize(
         ("entry", "words"),
         [
-            (f"{{file: '{ACCEL.as_posix()}', azimuth: 30}}", "an azimuth is between two components"),
-            (
-                f"{{file: '{ACCEL.as_posix()}', with: east.csv}}",
-                "--azimuth is missing: the file of a second component needs it",
-            ),
-            (f"{{file: '{ACCEL.as_posix()}', with_channel: '2'}}", "--with-channel applies to one of two components"),
+            (f"{{file: '{ACCEL.as_posix()}', azimuth: 30}}", "--azimuth requires a second component"),
+            (f"{{file: '{ACCEL.as_posix()}', with: east.csv}}", "--azimuth is missing"),
+            (f"{{file: '{ACCEL.as_posix()}', with_channel: '2'}}", "--with-channel requires a second component"),
             ("{file: set.yaml}", "is a list of records itself"),
         ],
     )
@@ -329,7 +326,7 @@ class TestCommands:
 
     def test_what_is_written_of_a_reading_reads_so_again(self, tmp_path):
         for azimuth in (0.0, 30.0):
-            asked = Reading(other=TRANSVERSE, azimuth=azimuth, steps=parse_steps(["highpass 0.2"]))
+            asked = reading_of({"other": TRANSVERSE, "azimuth": azimuth, "highpass": 0.2})
             entry = Entry.model_validate({"file": ACCEL.name, **of_reading(asked, ACCEL.parent)})
             assert entry.reading(ACCEL.parent).read(ACCEL).processing == asked.read(ACCEL).processing
 
@@ -346,7 +343,7 @@ class TestCommands:
         one = f"  - {{file: '{ACCEL.as_posix()}', factor: 2}}\n"
         other = f"  - {{file: '{ACCEL.as_posix()}', factor: 1}}\n"
         (tmp_path / "set.yaml").write_text(f"records:\n{one}{other}{one}")
-        found = Motions((tmp_path / "set.yaml", ACCEL, ACCEL)).records
+        found = Motions.of([tmp_path / "set.yaml", ACCEL, ACCEL], {}).records
         assert [each.entry.factor if each.entry else None for each in found] == [2, 1, None]
 
     def test_a_clean_file_is_read_whatever_was_done(self, tmp_path):

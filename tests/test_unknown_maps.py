@@ -17,7 +17,6 @@ from rocking_cli.dynamics.outcome import OUTCOME, Outcome
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import COARSE, parse_pulse
 from rocking_cli.excitation.records import read_record
-from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.plotting import style
 from rocking_cli.plotting.animation import animation_page
 from rocking_cli.plotting.equivalent_pulses import draw_equivalent
@@ -25,6 +24,7 @@ from rocking_cli.plotting.history import draw_history
 from rocking_cli.plotting.moving import ratio_chart
 from rocking_cli.plotting.overturning import draw_comparison, draw_map
 from rocking_cli.plotting.spectrum import draw_spectra
+from rocking_cli.processing.scaled import Scaled
 from rocking_cli.structure import Structure
 from rocking_cli.structure_file import load_structure
 from rocking_cli.studies import under_pulses

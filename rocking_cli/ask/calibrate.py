@@ -12,7 +12,7 @@ import numpy as np
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, structure_of
-from rocking_cli.ask.ground_motions import OF_FILES, ReadingArguments, check_known, reading_of
+from rocking_cli.ask.ground_motions import ReadingArguments, check_known
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.score import motions_of, tests_of
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -23,7 +23,6 @@ from rocking_cli.studies.neighbours import Neighbourhood
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.processing.reading import Reading
     from rocking_cli.structure import Structure
     from rocking_cli.studies.experiments.region import JointRegion
     from rocking_cli.studies.experiments.table import ObservedTest, TableOfTests
@@ -47,7 +46,7 @@ def calibrate(
     neighbours: int | None = None,
     out: str | Path | None = None,
     threads: int | None = None,
-    readings: tuple[Reading, Reading | None] | None = None,
+    usual: Mapping[str, Any] | None = None,
     watch: Watcher = SILENT,
     **options: Unpack[ReadingArguments],
 ) -> Answer[TraceFit] | Answer[JointRegion]:
@@ -75,8 +74,8 @@ def calibrate(
         YAML file, and with `free_geometry` width and height too; with `free` only.
     threads : int, optional
         Number of tests at a time; by default, one for each processor.
-    readings : tuple of (Reading, Reading or None), optional
-        How the records of `tests` are read; by default according to `options`.
+    usual : mapping of str to object, optional
+        Options for records of `tests` that do not state their unit, interval or channel themselves.
     watch : Watcher
         Told how far the work is.
     **options
@@ -103,11 +102,9 @@ def calibrate(
     ready = structure_of(structure)
     source = Path(ready.file) if source is None and ready.file is not None else source
     if free is not None:
-        reading = readings[0] if readings is not None else reading_of(options)
         of_tests: dict[str, object] = {
             "slenderness": slenderness, "restitution": restitution, "points": points, "neighbours": neighbours,
-            "threads": threads, **{name: getattr(reading, name) for name in (*OF_FILES, "floor")},
-            **{step.name: step for step in reading.steps},
+            "threads": threads, **options,
         }  # fmt: skip
         if idle := [f"`{name}`" for name, value in of_tests.items() if value is not None]:
             verb = "has" if len(idle) == 1 else "have"
@@ -129,7 +126,7 @@ def calibrate(
 
     with watch.progress(len(kept), "tests") as advance:
         found = joint_region(
-            kept, ready, motions_of(table, readings, options), around, *grid,
+            kept, ready, motions_of(table, options, usual), around, *grid,
             threads=threads, progress=advance,
         )  # fmt: skip
     shown = region_view(found, ready.name, table.file, len(table.tests))

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from pathlib import Path
 from textwrap import shorten
-from typing import Any, TypedDict, get_type_hints
+from typing import Any
 
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem, renamed
@@ -18,14 +16,15 @@ from rocking_cli.excitation.doubts import coarse_for, doubts
 from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
 from rocking_cli.excitation.records import read_record
-from rocking_cli.excitation.records.opening import STANDARD_INPUT, allow_again
-from rocking_cli.excitation.records.sensor import Gain, Quantity, size_of
-from rocking_cli.excitation.scaled import Scaled
+from rocking_cli.excitation.records.opening import allow_again
 from rocking_cli.excitation.selection import select
-from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.listed import Listed, is_list
-from rocking_cli.processing.reading import Reading
-from rocking_cli.processing.steps import STEPS, Resample, Step, parse_step, process
+from rocking_cli.processing.reading import Reading, reading_of
+from rocking_cli.processing.reading_options import READING, SCALING
+from rocking_cli.processing.reading_options import MotionArguments as MotionArguments
+from rocking_cli.processing.reading_options import ReadingArguments as ReadingArguments
+from rocking_cli.processing.scaled import Scaled
+from rocking_cli.processing.steps import Resample, process
 from rocking_cli.text import did_you_mean
 from rocking_cli.views.processing import in_words
 from rocking_cli.views.view import FEW
@@ -33,97 +32,18 @@ from rocking_cli.views.view import FEW
 Motion = GroundMotion | Pulse | Scaled | str | Path
 """Ground motion or pulse, file of a record, or pulse as text such as `sine:0.6g:0.8s`."""
 MOST_PGA, MOST_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and too long to simulate
-SCALING = ("scale", "target_pga", "target_pgv")
-OF_FILES = ("dt", "units", "channel", "quantity", "gain", "other")
-"""Arguments that describe the file of a record."""
+Source = GroundMotion | Scaled | Pulse | Listed | InputError
+"""What a motion is made of: a file of a pattern or a list by itself, or why a place has no file."""
+MOST_PGA, MOST_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and too long to simulate
 
 
-class ReadingArguments(TypedDict, total=False):
-    """Keyword arguments of verbs that read records.
-
-    Parameters
-    ----------
-    units, dt, channel : str, float, str, optional
-        Unit, sampling interval [s] and channel of the record, if its file does not state them.
-    quantity : {"acceleration", "velocity", "displacement"}, optional
-        Quantity in the record; velocities and displacements are differentiated.
-    gain : Gain or str, optional
-        Sensitivity of the instrument: the value of one unit of the record, such as "0.05m/V".
-    other, other_channel, azimuth : path, str, float, optional
-        File and channel of the horizontal component at right angles, and the angle of the structure's plane from the
-        record towards it [deg].
-    baseline, highpass, lowpass, taper, trim, resample : str or float, optional
-        Corrections, made in the order in which they are given: as for `correct`.
-    floor : Floor, str or mapping, optional
-        Floor of a building on which the structure stands, as for `on_floor`.
-    """
-
-    units: str | None
-    dt: float | None
-    channel: str | None
-    quantity: Quantity | None
-    gain: Gain | str | None
-    other: str | Path | None
-    other_channel: str | None
-    azimuth: float | None
-    baseline: str | None
-    highpass: str | float | None
-    lowpass: str | float | None
-    taper: str | float | None
-    trim: str | None
-    resample: str | float | None
-    floor: Floor | str | Mapping[str, Any] | None
-
-
-class MotionArguments(ReadingArguments, total=False):
-    """Keyword arguments of verbs that read and scale ground motions: those of `ReadingArguments`, and one scale.
-
-    Parameters
-    ----------
-    scale : float, optional
-        Scale factor on the motions; a negative one reverses them.
-    target_pga, target_pgv : float, optional
-        Peak ground acceleration [standard gravity] or velocity [m/s] to scale the motions to.
-    """
-
-    scale: float | None
-    target_pga: float | None
-    target_pgv: float | None
-
-
-def check_known(options: Mapping[str, Any], accepted: type = ReadingArguments) -> None:
+def check_known(options: Mapping[str, Any], accepted: Mapping[str, object] = READING) -> None:
     """Refuse keyword arguments of a verb that are not among those it accepts. Raises `InputError`."""
-    known = list(get_type_hints(accepted))
     for name in options:
-        if name not in known:
-            hint = "the motions of this question are not scaled" if name in SCALING else did_you_mean(name, known)
+        if name not in accepted:
+            scaled = "the motions of this question are not scaled"
+            hint = scaled if name in SCALING else did_you_mean(name, list(accepted))
             raise InputError(Problem("is not an argument", field=f"`{name}`", hint=hint))
-
-
-def reading_of(options: MotionArguments | ReadingArguments) -> Reading:
-    """Return how to read a record, from the keyword arguments of a verb.
-
-    Raises
-    ------
-    InputError
-        If a correction, a gain or a floor is not valid, or if two arguments do not go together.
-    """
-    plain: dict[str, Any] = {
-        name: value for name, value in options.items() if value is not None and name not in SCALING
-    }
-    steps = [
-        plain.pop(name) if isinstance(value, Step) else parse_step(name, plain.pop(name))
-        for name, value in list(plain.items())
-        if name in STEPS
-    ]
-    if isinstance(gain := plain.get("gain"), str):
-        plain["gain"] = Gain.parse(gain)
-    if (floor := plain.get("floor")) is not None and not isinstance(floor, Floor):
-        plain["floor"] = Floor.parse(floor)
-    if "other" in plain and "azimuth" not in plain:
-        hint = "0 is the direction of the record, 90 that of the second component"
-        raise InputError(Problem("is missing for two components", field="`azimuth`", hint=hint))
-    return Reading(**plain, steps=tuple(steps))
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,55 +52,47 @@ class Motions:
 
     Parameters
     ----------
-    given : tuple of GroundMotion, Pulse, str or Path
-        Motions, pulses, pulses as text, files of records, patterns such as "records/*.AT2", and lists of records.
+    sources : tuple of Source
+        The motions, the files of patterns and lists one by one.
     reading : Reading
         How the files are read and corrected, and the floor.
-    usual : Reading, optional
-        How files are read that do not state their unit, interval or channel themselves; by default as `reading`.
     scale, target_pga, target_pgv : float, optional
         Scale factor, or what to scale to: as for `MotionArguments`.
     """
 
-    given: tuple[Motion, ...]
+    sources: tuple[Source, ...]
     reading: Reading = field(default_factory=Reading)
-    usual: Reading | None = None
     scale: float | None = None
     target_pga: float | None = None
     target_pgv: float | None = None
-
-    def __post_init__(self) -> None:
-        if sum(value is not None for value in (self.scale, self.target_pga, self.target_pgv)) > 1:
-            raise InputError("`scale`, `target_pga` and `target_pgv` cannot be combined: give one of them")
 
     @classmethod
     def of(
         cls,
         given: Motions | Motion | Sequence[Motion],
-        options: MotionArguments | ReadingArguments,
-        accepted: type = MotionArguments,
+        options: MotionArguments | ReadingArguments | Mapping[str, Any],
+        *,
+        accepted: Mapping[str, object] = READING | SCALING,
+        usual: Mapping[str, Any] | None = None,
     ) -> Motions:
-        """Return the motions of a verb, from what it is given and its keyword arguments. Raises `InputError`."""
+        """Return the motions of a verb, from what it is given and its keyword arguments. Raises `InputError`.
+
+        `accepted` are the arguments of the verb, and `usual` is how files are read that do not state it themselves.
+        """
         check_known(options, accepted)
         if isinstance(given, Motions):
             return given
-        given = each_of(given)
         for name, value in options.items():
-            if value is not None and not given:
-                raise InputError(Problem("has no effect, as no ground motion is given", field=f"`{name}`"))
-        scaling: dict[str, Any] = {name: options.get(name) for name in SCALING}
-        return cls(tuple(given), reading_of(options), **scaling)
-
-    def __bool__(self) -> bool:
-        """Return whether any motion is given."""
-        return bool(self.given)
-
-    @cached_property
-    def _found(self) -> tuple[list[GroundMotion | Scaled | Pulse | Listed], list[InputError]]:
-        """Motions, pulses and files, those of patterns and lists one by one, and the errors of places with no file."""
-        sources: dict[object, GroundMotion | Scaled | Pulse | Listed] = {}
-        errors: list[InputError] = []
-        for one in self.given:
+            if value is not None and not each_of(given):
+                what = "has no effect, as no ground motion is given"
+                raise InputError(Problem(what, field=f"`{name}`", hint="give `motion`"))
+        scaling = {
+            name: SCALING[name].parse(each) for name, each in options.items() if name in SCALING and each is not None
+        }
+        if len(scaling) > 1:
+            raise InputError("`scale`, `target_pga` and `target_pgv` cannot be combined: give one of them")
+        sources: dict[object, Source] = {}
+        for one in each_of(given):
             if isinstance(one, GroundMotion | Scaled):
                 sources[id(one)] = one
             elif (pulse := pulse_in(one)) is not None:
@@ -190,30 +102,29 @@ class Motions:
                     for listed in files_of(str(one)):
                         sources.setdefault((listed.path, listed.folder, repr(listed.entry)), listed)
                 except InputError as error:
-                    errors.append(error)
-        return list(sources.values()), errors
+                    sources[id(error)] = error
+        return cls(tuple(sources.values()), reading_of(options, usual).check(), **scaling)
+
+    def __bool__(self) -> bool:
+        """Return whether any motion is given."""
+        return bool(self.sources)
 
     @property
     def count(self) -> int:
         """Number of motions, those that cannot be found among them."""
-        return len(self._found[0]) + len(self._found[1])
+        return len(self.sources)
 
     @property
     def records(self) -> list[Listed]:
         """Files of records, in the order in which they are given."""
-        return [each for each in self._found[0] if isinstance(each, Listed)]
+        return [each for each in self.sources if isinstance(each, Listed)]
 
     @property
     def has_records(self) -> bool:
         """Whether anything but pulses is given."""
-        return bool(self._found[1]) or not all(
-            isinstance(each, Pulse) or (isinstance(each, Scaled) and each.pulse is not None) for each in self._found[0]
+        return not all(
+            isinstance(each, Pulse) or (isinstance(each, Scaled) and each.pulse is not None) for each in self.sources
         )
-
-    @property
-    def are_read(self) -> bool:
-        """Whether all motions were read and scaled before."""
-        return bool(self.given) and all(isinstance(each, Scaled) for each in self.given)
 
     def one(self, p: float, watch: Watcher = SILENT, *, with_vertical: bool = False) -> Scaled:
         """Return the single motion, as `gather`. Raises `InputError` if there are several."""
@@ -247,53 +158,29 @@ class Motions:
         InputError
             If none can be used, a pulse is malformed, or an argument describes records and none is given.
         """
-        self._check(with_vertical=with_vertical)
-        if self.are_read:
-            return [each for each in self.given if isinstance(each, Scaled)]
-        sources, errors = self._found[0], [*self._found[1]]
-        several = self.count > 1
+        self.check(with_vertical=with_vertical)
+        if self.sources and all(isinstance(each, Scaled) for each in self.sources):
+            return [each for each in self.sources if isinstance(each, Scaled)]  # read before
         chosen: list[Scaled] = []
-        for place, source in enumerate(sources):
+        for place, source in enumerate(self.sources):
             try:
-                one = self._scaled(source, place)
+                one = self._scaled(source)
             except InputError as error:
-                errors.append(error)
+                if self.count == 1:
+                    raise
+                watch.leave_out(error)
                 continue
             name, taken = one.motion.name, {other.motion.name for other in chosen}
             if name in taken and isinstance(source, Listed):
                 name = f"{name} ({source.path.parent})"
             if name in taken:
                 name = f"{name} ({place + 1})"
-            one = one._replace(motion=replace(one.motion, name=name))
-            chosen.append(one)
-        for refused in errors:
-            if not several:
-                raise refused
-            watch.leave_out(refused)
+            chosen.append(one._replace(motion=replace(one.motion, name=name)))
         if not chosen:
             raise InputError("no ground motion can be used")
         _introduce(chosen, watch)
         warn_about([one.motion for one in chosen if one.pulse is None], watch, p, whom)
         return chosen
-
-    def read(self, record: Listed) -> GroundMotion:
-        """Read a record. Raises `InputError` if that is not possible."""
-        given, typed = self._readings(record)
-        if typed != given:
-            with suppress(InputError):
-                return record.as_said(typed.read(record.path))
-            allow_again(record.path)
-        return record.as_said(given.read(record.path))
-
-    def reading_for(self, motion: Scaled) -> Reading:
-        """Return how the record of one of these motions is read, also for its other components."""
-        usual, source = self.usual or self.reading, self._found[0][motion.place]
-        return source.reading(usual) if isinstance(source, Listed) else usual
-
-    def unusable(self, chosen: Sequence[Scaled]) -> list[str]:
-        """Return the files of records that are not among the chosen motions."""
-        places = {each.place for each in chosen}
-        return [str(each.path) for k, each in enumerate(self._found[0]) if isinstance(each, Listed) and k not in places]
 
     def vertical(
         self, motion: Scaled, file: str | Path, dt: float | None, channel: str | None, watch: Watcher = SILENT
@@ -305,9 +192,9 @@ class Motions:
         InputError
             If the file cannot be read; the message names `vertical_dt` and `vertical_channel`.
         """
-        reading = self.reading_for(motion)
+        reading = motion.record.reading(self.reading) if motion.record is not None else self.reading
         arguments = {"channel": "vertical_channel"}
-        if dt is not None or reading.dt is None:
+        if dt is not None or (reading.dt is None and "dt" not in reading.usual):
             arguments["dt"] = "vertical_dt"
         try:
             component = reading.vertical(file, dt, channel)
@@ -322,75 +209,18 @@ class Motions:
         warn_about([component], watch)
         return component
 
-    def settled(self, motion: Scaled) -> Reading | None:
-        """Return how the file of one of these motions was read: as it states itself, or else as `usual`.
-
-        None for what is not a file, and for standard input, which cannot be read again.
-        """
-        record = self._found[0][motion.place]
-        if not isinstance(record, Listed) or str(record.path) == STANDARD_INPUT:
-            return None
-        given, typed = self._readings(record)
-        if typed != given:
-            with suppress(InputError):
-                typed.read(record.path)
-                return typed
-        return given
-
-    def unprocessed(self, motion: Scaled) -> GroundMotion | None:
-        """Return the record of one of these motions before its corrections; None if it has none."""
-        record = self._found[0][motion.place]
-        if not isinstance(record, Listed) or not (reading := record.reading(self.usual or self.reading)).steps:
-            return None
-        allow_again(record.path)
-        grid = tuple(step for step in reading.steps if isinstance(step, Resample))  # uneven times cannot do without
-        bare = replace(reading, steps=grid, floor=None)
-        typed = replace(self.reading, steps=grid, floor=None) if self.usual is not None else bare
-        return Motions((), typed, bare if self.usual is not None else None).read(Listed(record.path))
-
-    def apart(self) -> list[Motions]:
-        """Return these motions one by one, those that cannot be found among them."""
-        alone = [([source], list[InputError]()) for source in self._found[0]]
-        alone += [(list[GroundMotion | Scaled | Pulse | Listed](), [error]) for error in self._found[1]]
-        single = []
-        for found in alone:
-            one = replace(self)
-            one.__dict__["_found"] = found
-            single.append(one)
-        return single
-
-    def without(self, path: Path) -> Motions:
-        """Return these motions without those of one file."""
-        found = [
-            each
-            for each in self._found[0]
-            if not (isinstance(each, Listed) and each.path.exists() and each.path.samefile(path))
-        ]
-        kept = replace(self, given=self.given if found else ())
-        kept.__dict__["_found"] = found, self._found[1]
-        return kept
-
-    def _readings(self, record: Listed) -> tuple[Reading, Reading]:
-        """Return how to read a record that does not state its unit, interval or channel, and one that does."""
-        typed = record.reading(self.reading)
-        if self.usual is None:
-            return typed, typed
-        usual, given = self.usual, record.reading(self.usual)
-        if usual.units != self.reading.units and usual.units is not None:
-            of = given.quantity or "acceleration"
-            if given.gain is not None or (given.units == usual.units and size_of(usual.units, of) is None):
-                given = record.reading(replace(usual, units=None))  # it says nothing of such a record
-        return given, typed
-
-    def _scaled(self, source: GroundMotion | Scaled | Pulse | Listed, place: int) -> Scaled:
+    def _scaled(self, source: Source) -> Scaled:
+        if isinstance(source, InputError):
+            raise source
         if isinstance(source, Scaled):
             return source
         if isinstance(source, Listed):
-            one = Scaled(self.read(source), 1.0, file=source.path, place=place)
+            motion, reading = source.settled(self.reading)
+            one = Scaled(motion, 1.0, record=source, reading=reading)
         elif isinstance(source, Pulse):
-            one = Scaled(self.reading.on_floor(source.sampled()), 1.0, pulse=source, place=place)
+            one = Scaled(self.reading.on_floor(source.sampled()), 1.0, pulse=source)
         else:
-            one = Scaled(self.reading.on_floor(process(source, self.reading.steps)), 1.0, place=place)
+            one = Scaled(self.reading.on_floor(process(source, self.reading.steps)), 1.0)
         return one._replace(factor=self.factor(one.motion, measure(one.motion.of_ground)))
 
     def factor(self, motion: GroundMotion, measured: Measures) -> float:
@@ -405,9 +235,8 @@ class Motions:
         for wanted, own in ((self.target_pga, measured.pga), (self.target_pgv, measured.pgv)):
             if wanted is not None:
                 if own == 0:
-                    raise InputError(
-                        Problem("the record is zero throughout and cannot be scaled to a peak", motion.name)
-                    )
+                    what = "the record is zero throughout and cannot be scaled to a peak"
+                    raise InputError(Problem(what, motion.name))
                 by = wanted / own
         pga, pgv = abs(by) * measured.pga, abs(by) * measured.pgv
         if not (pga <= MOST_PGA and pgv <= MOST_PGV):
@@ -417,15 +246,24 @@ class Motions:
             raise InputError(Problem(problem, motion.name, hint=hint))
         return by
 
-    def _check(self, *, with_vertical: bool) -> None:
-        """Raise `InputError` if an argument describes records and none is given."""
-        if self.has_records:
-            return
-        of_records = [f"`{name}`" for name in OF_FILES[2 * with_vertical :] if getattr(self.reading, name) is not None]
-        of_records += [f"`{step.name}`" for step in self.reading.steps]
-        if of_records:
-            verb = "describes" if len(of_records) == 1 else "describe"
-            raise InputError(f"{' and '.join(of_records)} {verb} a record, and no record is given")
+    def check(self, *, with_vertical: bool = False) -> None:
+        """Raise `InputError` if an argument has no effect; unit and interval also apply to a vertical component."""
+        of_both = ("units", "dt") if with_vertical else ()
+        given = [name for name in self.reading.options if name not in (*of_both, "floor")]
+        given += [step.name for step in self.reading.steps]
+        if given and not self.has_records:
+            verb = "describes" if len(given) == 1 else "describe"
+            raise InputError(f"{' and '.join(f'`{name}`' for name in given)} {verb} a record, and no record is given")
+
+
+def unprocessed(motion: Scaled) -> GroundMotion | None:
+    """Return the record of a motion before its corrections; None if it has none."""
+    reading = motion.reading
+    if reading is None or motion.file is None or not reading.steps:
+        return None
+    allow_again(motion.file)
+    grid = tuple(step for step in reading.steps if isinstance(step, Resample))  # uneven times cannot do without
+    return replace(reading.without("floor"), steps=grid).read(motion.file)
 
 
 def pulse_in(given: Motion) -> Pulse | None:
@@ -453,13 +291,15 @@ def motion_of(given: Motion) -> GroundMotion:
 
 def files_of(place: str) -> list[Listed]:
     """Return the records of a file, a pattern or a list of records. Raises `InputError` if there are none."""
-    return [listed for path in select(place) for listed in (_listed(path) if is_list(path) else [Listed(path)])]
+    found = []
+    for path in select(place):
+        if is_list(path):
+            from rocking_cli.processing.record_list import read_list
 
-
-def _listed(path: Path) -> list[Listed]:
-    from rocking_cli.processing.record_list import read_list
-
-    return read_list(path)
+            found += read_list(path)
+        else:
+            found.append(Listed(path))
+    return found
 
 
 def kind_of(given: object) -> str:

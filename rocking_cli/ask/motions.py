@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, doubts_of, models_of, structure_of
-from rocking_cli.ask.ground_motions import Motion, motion_of
+from rocking_cli.ask.ground_motions import Motion, Motions, introduce, motion_of, warn_about
 from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.history import RTOL
+from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.measures import measure
 from rocking_cli.processing.floor import Floor
+from rocking_cli.processing.scaled import Scaled
 from rocking_cli.processing.steps import Step, parse_steps, process
+from rocking_cli.structure import Structure
 from rocking_cli.studies.azimuths import AzimuthResponses
 from rocking_cli.studies.release import Release
 from rocking_cli.views.view import heading
@@ -138,3 +144,48 @@ def respond_around(
         return draw_azimuths(found, heading(ready.mechanism), style.over((first, second), math=True))
 
     return Answer("all directions", found, view(ready, found, doubts_of(ready.mechanism)), table, figure)
+
+
+def all_directions(
+    structure: Structure, motions: Motions, vertical: tuple[Any, Any, Any], *, watch: Watcher = SILENT, **question: Any
+) -> Any:
+    """Answer `respond` with `azimuth` "all": read a pair of components, and ask `respond_around`.
+
+    Parameters
+    ----------
+    structure : Structure
+        The structure.
+    motions : Motions
+        One record with a second component.
+    vertical : tuple
+        The vertical component or its file, or None; its sampling interval and its channel.
+    watch : Watcher
+        Told what was read, and what is doubtful about it.
+    **question
+        Further arguments of `respond_around`.
+
+    Returns
+    -------
+    Answer of AzimuthResponses
+
+    Raises
+    ------
+    InputError
+        If there is not one record, or its components cannot be combined.
+    """
+    if motions.count != 1 or not motions.records:
+        raise InputError(Problem("all takes a single pair of components: give one record", field="`azimuth`"))
+    (record,) = motions.records
+    one, other = record.reading(motions.reading).pair(record.path)
+    for component in (one, other):
+        introduce("component", Scaled(component, 1.0), watch)
+        warn_about([component], watch, structure.growth)
+    given, dt, channel = vertical
+    if given is not None:
+        if not isinstance(given, GroundMotion):
+            given = motions.vertical(Scaled(one, 1.0, record=record), given, dt, channel, watch)
+        one = replace(one, vertical=given)
+    factor = motions.factor(one, measure(one.of_ground))
+    if factor != 1:
+        watch.note(f"scaled by {factor:.6g}: PGA = {abs(factor) * one.of_ground.pga_g:.4g} g at 0 degrees")
+    return respond_around(structure, one, other, scale=factor, **question)

@@ -13,19 +13,16 @@ from rocking_cli.units import UnitError, read, split
 P = ParamSpec("P")
 R = TypeVar("R")
 UNITS = {
-    "dt": "s", "vertical_dt": "s", "tail": "s", "period": "s", "band": "s", "sizes": "s", "azimuth": "deg", "ag": "g",
-    "top": "g", "target_pga": "g", "target_pgv": "m/s",
+    "vertical_dt": "s", "tail": "s", "period": "s", "band": "s", "sizes": "s", "ag": "g", "top": "g",
 }  # fmt: skip
 """Units of arguments that have one."""
-OF_OPTIONS = dict.fromkeys(("dt", "azimuth", "scale", "target_pga", "target_pgv"), "float | None")
-"""Arguments that are numbers among those of `MotionArguments`, with their types."""
 
 
 def takes_numbers(verb: Callable[P, R]) -> Callable[P, R]:
     """Make a verb refuse text where the annotation of an argument says a number, or several."""
     meant = {
         name: given
-        for name, given in (OF_OPTIONS | verb.__annotations__).items()
+        for name, given in verb.__annotations__.items()
         if re.search(r"\b(float|int)\b", given) and not re.search(r"\b(str|Literal|Callable)\b", given)
     }
     names = verb.__code__.co_varnames

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, done, signs_of
+from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, done, signs_of, unprocessed
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
@@ -122,8 +122,7 @@ def record(
 
         ready = structure_of(structure)
     p = ready.p if ready is not None else None
-    motions, signs = Motions.of(motion, options), signs_of(polarity)
-    read = motions.one(0.0)
+    read, signs = Motions.of(motion, options).one(0.0), signs_of(polarity)
     if any(each.startswith("from ") for each in read.motion.processing):
         watch.note(f"{read.motion.name}{done(read.motion)}")
     found = doubts(read.motion.of_ground, measure(read.motion.of_ground))
@@ -153,7 +152,7 @@ def record(
         own,
         View(lambda: data(first), [*parts(examined, 100), said]),
         partial(_columns, scaled[0]),
-        partial(_figure, scaled[0], first, partial(motions.unprocessed, read)),
+        partial(_figure, scaled[0], first, partial(unprocessed, read)),
         examined=tuple(examined),
         motions=tuple(scaled),
     )

@@ -20,6 +20,7 @@ from rocking_cli.dynamics.history import FINEST_RTOL, RTOL, TAIL, History
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.processing.reading_options import ALL
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.studies.release import Release
@@ -108,7 +109,8 @@ def respond(
     -------
     ResponseAnswer
         Time histories, by model. `runs` has those of each polarity, `neighbours` the outcomes of the neighbours,
-        `contacts` the contact demands, `fit` and `to_pulse` the pulse and the response to it.
+        `contacts` the contact demands, `fit` and `to_pulse` the pulse and the response to it. With `azimuth` "all",
+        instead, what `respond_around` returns.
 
     Raises
     ------
@@ -140,6 +142,19 @@ def respond(
     ready = structure_of(structure, opening)
     motions, signs = Motions.of(() if motion is None else motion, options), signs_of(polarity)
     _check(motions, signs, vertical, (vertical_dt, vertical_channel), with_pulse)
+    if motions.reading.azimuth == ALL:
+        from rocking_cli.ask.motions import all_directions
+
+        idle = {
+            "polarity": str(polarity) != "1", "with_pulse": with_pulse is not None, "impacts": impacts,
+            "contact": contact, "tail": tail != TAIL, "neighbours": neighbours != 0,
+        }  # fmt: skip
+        if said := [f"`{name}`" for name, given in idle.items() if given]:
+            raise InputError(f"{', '.join(said)} cannot be combined with `azimuth` all: give one angle")
+        of_vertical = (vertical, vertical_dt, vertical_channel)
+        answer: ResponseAnswer
+        answer = all_directions(ready, motions, of_vertical, models=models, release=release, rtol=rtol, watch=watch)
+        return answer
     given = motions.one(ready.growth, watch, with_vertical=vertical is not None) if motions else None
     if given is None and release is None:
         raise InputError("no excitation is given: give a motion or a `release`")

@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import checked, structure_of
-from rocking_cli.ask.ground_motions import Motions, ReadingArguments, check_known, pulse_in, reading_of
+from rocking_cli.ask.ground_motions import Motions, ReadingArguments, check_known, files_of, pulse_in
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import RockingError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.processing.reading import reading_of
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Neighbourhood
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.processing.reading import Reading
     from rocking_cli.studies.experiments.score import Scored
     from rocking_cli.studies.experiments.table import TableOfTests
 
@@ -38,7 +38,7 @@ def score(
     restitution_deviation: float | None = None,
     opening: float | None = None,
     threads: int | None = None,
-    readings: tuple[Reading, Reading | None] | None = None,
+    usual: Mapping[str, Any] | None = None,
     watch: Watcher = SILENT,
     **options: Unpack[ReadingArguments],
 ) -> Answer[Scored]:
@@ -60,9 +60,8 @@ def score(
         Largest opening of a joint up to which a history is valid, over D_cr; by default that of each structure.
     threads : int, optional
         Number of tests at a time; by default, one for each processor.
-    readings : tuple of (Reading, Reading or None), optional
-        How the records are read, and how those are that do not state their unit, interval or channel; by default
-        according to `options`.
+    usual : mapping of str to object, optional
+        Options for records that do not state their unit, interval or channel themselves.
     watch : Watcher
         Told how far the work is, and which tests cannot be simulated.
     **options
@@ -96,7 +95,7 @@ def score(
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     table = tests_of(tests)
     structures = _structures(table, checked(opening))
-    motion_of = motions_of(table, readings, options)
+    motion_of = motions_of(table, options, usual)
     with watch.progress(len(table.tests), "tests") as advance:
         found = score_tests(
             table.tests, partial(_known, structures), motion_of, around, threads=threads, progress=advance
@@ -116,11 +115,11 @@ def tests_of(given: str | Path | Mapping[str, Sequence[Any]] | TableOfTests) -> 
 
 
 def motions_of(
-    table: TableOfTests, readings: tuple[Reading, Reading | None] | None, options: ReadingArguments
+    table: TableOfTests, options: ReadingArguments, usual: Mapping[str, Any] | None
 ) -> Callable[[str], GroundMotion]:
     """Return the function that reads the record of a test, or samples its pulse; it keeps the last ones."""
     check_known(options)
-    motions = Motions((), *readings) if readings is not None else Motions((), reading_of(options))
+    motions = Motions((), reading_of(options, usual).check())
     return lru_cache(KEPT)(partial(_motion, table.folder, motions))
 
 
@@ -148,7 +147,7 @@ def _motion(folder: Path, motions: Motions, named: str) -> GroundMotion:
     """Read the record of a test as these motions are read, or sample its pulse."""
     if (pulse := pulse_in(named)) is not None:
         return motions.reading.on_floor(pulse.sampled())
-    return replace(motions, given=(folder / named,)).one(0.0).motion
+    return replace(motions, sources=tuple(files_of(str(folder / named)))).one(0.0).motion
 
 
 def _figure(found: Scored) -> Figure:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -12,10 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.ground_motions import Motion, Motions, ReadingArguments
+from rocking_cli.ask.ground_motions import Motion, Motions, ReadingArguments, Source
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
+from rocking_cli.excitation.records.opening import STANDARD_INPUT
+from rocking_cli.processing.listed import Listed
+from rocking_cli.processing.reading_options import READING
 from rocking_cli.studies.record_set import RecordSet
 
 if TYPE_CHECKING:
@@ -109,7 +112,7 @@ def select(
     wanted = record_set.SetRequirements(count, band, within, damping, factors, one_per, same_factor, seed)
     spectrum = _target(target, watch)
     spectrum.check(wanted.band)
-    motions = _without(target, Motions.of(records, options, ReadingArguments), watch)
+    motions = _without(target, Motions.of(records, options, accepted=READING), watch)
     chosen = motions.gather(0.0, watch)
     candidates = [each.motion for each in chosen]
     with watch.progress(len(candidates), "spectra") as advance:
@@ -124,16 +127,19 @@ def select(
     with ExitStack() as bars:
         result = record_set.choose(spectra, wanted, lambda total: bars.enter_context(watch.progress(total, "sets")))
     files = [str(each.file) if each.file else None for each in chosen]
-    results = ShownSet(result, spectrum, files, motions.unusable(chosen))
+    unusable = [str(each.path) for each in motions.records if all(each is not one.record for one in chosen)]
+    results = ShownSet(result, spectrum, files, unusable)
 
     def figure() -> Figure:
         from rocking_cli.plotting.record_set import draw_record_set
 
         return draw_record_set(result, title(results))
 
-    sources = tuple(motions.settled(chosen[k]) for k in result.chosen.tolist())
+    readings = tuple(
+        None if str(chosen[k].file) == STANDARD_INPUT else chosen[k].reading for k in result.chosen.tolist()
+    )
     return SetAnswer(
-        "record set", result, view(results), lambda: table(results), figure, shown=results, readings=sources
+        "record set", result, view(results), lambda: table(results), figure, shown=results, readings=readings
     )
 
 
@@ -141,12 +147,16 @@ def _without(target: object, motions: Motions, watch: Watcher) -> Motions:
     """Return the motions without the target, which a pattern may also match."""
     if not isinstance(target, str | Path) or not Path(target).exists():
         return motions
-    kept = motions.without(Path(target))
+    kept = replace(motions, sources=tuple(each for each in motions.sources if not _is_of(each, Path(target))))
     if kept.count < motions.count:
         if not kept:
             raise InputError(f"no records to choose from: {target} is the target; add the files of records")
         watch.note(f"{target} is the target spectrum and is not used as a record")
     return kept
+
+
+def _is_of(source: Source, file: Path) -> bool:
+    return isinstance(source, Listed) and source.path.exists() and source.path.samefile(file)
 
 
 def _target(given: Any, watch: Watcher) -> TargetSpectrum:

@@ -11,10 +11,10 @@ from rocking_cli.ask.given import SiteLike, yaml_of
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.records.opening import original
-from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.io.browser import as_pdf, browser
 from rocking_cli.io.files import check_writable, write_whole
 from rocking_cli.io.json_text import json_text
+from rocking_cli.processing.scaled import Scaled
 from rocking_cli.structure import Structure
 from rocking_cli.studies.assessment import File, TitleBlock, file_of_motion, versions
 from rocking_cli.studies.verification.results import Verification

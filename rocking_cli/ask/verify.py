@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from rocking_cli.ask.sheets import SheetOrigin
     from rocking_cli.core import Mechanism
-    from rocking_cli.excitation.scaled import Scaled
+    from rocking_cli.processing.scaled import Scaled
     from rocking_cli.studies.verification.control import Control
 
 

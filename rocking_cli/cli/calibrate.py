@@ -101,12 +101,13 @@ def command(file: str, reading: ReadingOptions, output: Output, **question: Any)
 
     output.keep_apart(file, question["free"], question["tests"])
     watch = OnTerminal()
-    readings = reading.readings
     if question["free"] is not None:
         # Defaults of a user have no effect on a trace, and are no error.
         question |= {name: None for name in ("points", "neighbours") if from_default(name)}
         question["free"] = read_table(question["free"], parse_trace)
-    answer = calibrate(structures.prepared([file]), out=output.out, watch=watch, readings=readings, **question)
+    answer = calibrate(
+        structures.prepared([file]), out=output.out, watch=watch, usual=reading.usual, **question, **reading.options
+    )
     if output.out is not None:
         watch.note(f"wrote {output.out}")
     replace(output, out=None).show(answer)

@@ -11,6 +11,7 @@ import click
 
 from rocking_cli.cli import complete, defaults, options
 from rocking_cli.cli.defaults import from_default
+from rocking_cli.processing.reading_options import CORRECTIONS
 
 if TYPE_CHECKING:
     from rocking_cli.ask.sheets import SheetOrigin
@@ -74,7 +75,8 @@ def command_line(ctx: click.Context) -> str:
 
     said = ["rocking", ctx.info_name or ""]
     taken = defaults.of_run(ctx)
-    for param in sorted(ctx.command.params, key=lambda each: _place(ctx.params.get(each.name or ""))):
+    steps = [name for name in ctx.params if name in CORRECTIONS]  # in the order of the command line
+    for param in sorted(ctx.command.params, key=lambda each: steps.index(each.name) if each.name in steps else -1):
         value = ctx.params.get(param.name or "")
         if default := taken.get(param.name or ""):
             said += [f"--{default.option}", default.value]
@@ -82,7 +84,7 @@ def command_line(ctx: click.Context) -> str:
             continue
         for each in _typed(value):
             said += [] if isinstance(param, click.Argument) else [param.opts[0]]
-            said += [] if each is True else [str(each)]
+            said += [] if each is True else [str(getattr(each, "value", each))]  # of a correction
     places = ", ".join(f"--{each.option} from {each.place}" for each in taken.values())
     return shlex.join(said) + (f"  # {places}" if places else "")
 
@@ -92,8 +94,3 @@ def _typed(value: object) -> tuple[object, ...]:
     if isinstance(value, tuple) and value and isinstance(value[0], float):
         return (",".join(str(each) for each in value if each is not None),)
     return value if isinstance(value, tuple) else (value,)
-
-
-def _place(value: object) -> int:
-    """Return the place of an option: corrections in their order, all others before them."""
-    return value.place if isinstance(value, options.Placed) else 0

@@ -12,7 +12,7 @@ import click
 from rocking_cli.cli.options import STANDARD_OUTPUT
 
 if TYPE_CHECKING:
-    from rocking_cli.excitation.scaled import Scaled
+    from rocking_cli.processing.scaled import Scaled
 
 
 def check_strays(files: Sequence[str], records: Sequence[str]) -> None:

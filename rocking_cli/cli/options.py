@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Mapping
+from dataclasses import fields
 from functools import wraps
 from pathlib import Path
 from typing import Any
@@ -11,20 +11,10 @@ from typing import Any
 import click
 
 from rocking_cli.cli import complete
+from rocking_cli.cli.defaults import from_default
 from rocking_cli.cli.help import RecordOption
-from rocking_cli.cli.quantities import (
-    AMPLITUDE,
-    AZIMUTH,
-    INTERVAL,
-    NUMBER,
-    PERIOD,
-    PGA,
-    PGV,
-    SHARE,
-    Parsed,
-    Unit,
-    quantity_of,
-)
+from rocking_cli.cli.quantities import AMPLITUDE, NUMBER, PERIOD, SHARE, Parsed, quantity_of
+from rocking_cli.processing.reading_options import CORRECTIONS, READING, SCALING, Option
 
 STANDARD_OUTPUT = "-"
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
@@ -185,98 +175,54 @@ ground_motions: Decorator = in_order(
 """Ground motions, any number of them: `records` and `pulses`."""
 
 
-@dataclass(frozen=True)
-class Placed:
-    """Correction of a record, and its place among them: they are made in the order of the command line."""
-
-    place: int
-    step: Any
-
-    def __str__(self) -> str:
-        return str(self.step.value)
-
-
-def _placed(ctx: click.Context, param: click.Parameter, value: tuple[Any, ...]) -> Placed | None:
-    """Keep the order of corrections, as a callback: click calls callbacks in the order of what was typed."""
-    if not value:
-        return None
+def _once(ctx: click.Context, param: click.Parameter, value: tuple[Any, ...]) -> Any:
+    """Return the value of a correction, as a callback of click."""
     if len(value) > 1:
         hint = "a `processing:` list of a study, or of a list of records, may repeat a step."
         raise click.BadParameter(f"is given twice: give it once; {hint}", ctx, param)
-    place = ctx.meta[__name__] = ctx.meta.get(__name__, 0) + 1
-    return Placed(place, value[0])
+    return value[0] if value else None
 
 
-def _correction(name: str, metavar: str, what: str) -> Decorator:
-    def parse(text: str) -> Any:
-        from rocking_cli.processing.steps import STEPS
-
-        return STEPS[name].parse(text)
-
-    kind = Parsed(name, parse)
-    return record_option(f"--{name}", multiple=True, type=kind, metavar=metavar, callback=_placed, help=what)
+def _choices(option: Option) -> Callable[..., list[str]] | None:
+    """Return the completion of an option whose values are words of its metavar."""
+    if not option.metavar.startswith("["):
+        return None
+    return lambda ctx, param, typed: [each for each in option.metavar[1:-1].split("|") if each.startswith(typed)]
 
 
-def _gain(text: str) -> Any:
-    from rocking_cli.excitation.records.sensor import Gain
+def _declared(options: Mapping[str, Option]) -> Decorator:
+    """Declare the options of records by their declarations."""
+    return in_order(
+        *(
+            record_option(
+                f"--{(option.key or name).replace('_', '-')}",
+                name,
+                type=Parsed(name, option.parse),
+                metavar=option.metavar,
+                help=option.help,
+                shell_complete=complete.files if option.metavar == "FILE" else _choices(option),
+                **({"multiple": True, "callback": _once} if name in CORRECTIONS else {}),
+            )
+            for name, option in options.items()
+        )
+    )
 
-    return Gain.parse(text)
+
+def _packed(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Hand the options of records to a command as `options`, in the order in which they are typed, and `usual`."""
+
+    @wraps(command)
+    def with_options(*args: Any, **given: Any) -> Any:
+        options = {name: given.pop(name) for name in [*given] if name in READING or name in SCALING}
+        options = {name: value for name, value in options.items() if value is not None}
+        usual = {name: options.pop(name) for name in [*options] if from_default(name)}
+        return command(*args, options=options, usual=usual, **given)
+
+    return with_options
 
 
-def _floor(text: str) -> Any:
-    from rocking_cli.processing.floor import Floor
-
-    return Floor.parse(text)
-
-
-CORRECTIONS = ("baseline", "highpass", "lowpass", "taper", "trim", "resample")
-corrections: Decorator = in_order(
-    _correction(
-        "baseline",
-        "linear|quadratic",
-        "Baseline correction: the best-fitting constant, line or parabola is subtracted.",
-    ),
-    _correction("highpass", "HZ", "High-pass corner frequency in Hz (Butterworth, zero phase)."),
-    _correction("lowpass", "HZ", "Low-pass corner frequency in Hz (Butterworth, zero phase)."),
-    _correction("taper", "SHARE", "Fraction of the duration over which each end is tapered to zero."),
-    _correction("trim", "FROM:TO", "Start and end of the part to keep, in s."),
-    _correction("resample", "TIME", "Resample to this interval, in s; uneven times are put on a regular grid."),
-)
-"""Corrections of a record, made in the order in which they are given."""
-
-reading: Decorator = in_order(
-    record_option("--units", type=Unit(), help="Unit of the record, if the file does not state it."),
-    record_option(
-        "--dt", type=quantity_of(INTERVAL), metavar="TIME", help="Sampling interval in s, if the file has no times."
-    ),
-    record_option("--channel", metavar="CHANNEL", help="Channel or column to read: its number, from 1, or its name."),
-    record_option(
-        "--from", "quantity", type=click.Choice(("acceleration", "velocity", "displacement")),
-        help="Quantity in the record; velocities and displacements are differentiated.",
-    ),
-    record_option(
-        "--gain", type=Parsed("gain", _gain), metavar="GAIN",
-        help="Instrument sensitivity: the value of one unit of the record, such as 0.05m/V or 4.7e-6m/s2/count.",
-    ),
-    record_option(
-        "--with", "other", type=click.Path(), metavar="FILE", shell_complete=complete.files,
-        help="Second horizontal component, perpendicular to the record; the two are rotated into the plane "
-        "of the structure.",
-    ),
-    record_option(
-        "--with-channel", "other_channel", metavar="CHANNEL", help="Channel of the second component in its file."
-    ),
-    record_option(
-        "--azimuth", type=AZIMUTH, metavar="DEGREES",
-        help="Azimuth of the structure's plane, in degrees: 0 is the record, 90 is --with. `respond` also accepts all.",
-    ),
-    corrections,
-    record_option(
-        "--floor", type=Parsed("floor", _floor), metavar="T1=...",
-        help="Floor of a building on which the structure stands: T1=0.4,xi=0.05,z=0.67,gamma=1.29 (or n=3 storeys).",
-    ),
-)  # fmt: skip
-"""The options for reading and processing records: the fields of `groups.Reading`."""
+reading: Decorator = in_order(_declared(READING), _packed)
+"""The options for reading and processing records; corrections are made in the order in which they are given."""
 
 
 def polarity(*choices: str, default: str = "1") -> Decorator:
@@ -291,26 +237,8 @@ def polarity(*choices: str, default: str = "1") -> Decorator:
 
 
 def scaling(*polarities: str, default: str = "1") -> Decorator:
-    """Declare how to scale a motion: `scale`, `target_pga`, `target_pgv` and `polarity`, which is one of these.
-
-    The user may give one of the first three.
-    """
-    return in_order(
-        record_option("--scale", type=NUMBER, metavar="FACTOR", help="Scale factor on the motion.  [default: 1]"),
-        record_option(
-            "--target-pga",
-            type=quantity_of(PGA),
-            metavar="ACCELERATION",
-            help="Peak ground acceleration to scale the motion to, in g.",
-        ),
-        record_option(
-            "--target-pgv",
-            type=quantity_of(PGV),
-            metavar="VELOCITY",
-            help="Peak ground velocity to scale the motion to, in m/s.",
-        ),
-        polarity(*polarities, default=default),
-    )
+    """Declare how to scale a motion, one of `scale`, `target_pga` and `target_pgv`, and `polarity`, one of these."""
+    return in_order(_declared(SCALING), polarity(*polarities, default=default))
 
 
 site: Decorator = click.option("--site", type=click.Path(), metavar="SITE.yaml", help=HELP["site"])

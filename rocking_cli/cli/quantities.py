@@ -15,10 +15,8 @@ import click
 
 from rocking_cli.cli import terminal
 from rocking_cli.errors import InputError
+from rocking_cli.processing.reading_options import UNITS
 from rocking_cli.units import UnitError, read, split
-
-# The names of units stand here again so that `--help` needs no numpy; a test holds them together.
-UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g")
 
 
 class Parsed(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
@@ -47,28 +45,6 @@ class Parsed(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generi
             self.fail(f"{problem.message}{f': {problem.hint}' if problem.hint else ''}.", param, ctx)
         except ValueError as error:
             self.fail(f"{error}.", param, ctx)
-
-
-class Unit(click.Choice):  # type: ignore[type-arg,unused-ignore]  # generic in newer click only
-    """Unit of acceleration, in any spelling that the header of a record may have: `m/s^2` is `m/s2`.
-
-    Units of velocity and length are accepted too, for records `--from` these, but not listed.
-    """
-
-    def __init__(self) -> None:
-        super().__init__(UNITS)
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the name of a spelling, or fail naming the option and the choices."""
-        if value in UNITS:
-            return value
-        from rocking_cli.excitation.records.record_units import canonical
-        from rocking_cli.excitation.records.sensor import quantity_of
-
-        found = canonical(str(value))
-        if found is None and quantity_of(str(value)) is not None:
-            return "".join(str(value).split())
-        return super().convert(found or value, param, ctx)
 
 
 @dataclass(frozen=True)
@@ -101,8 +77,6 @@ class QuantityKind:
 AMPLITUDE = QuantityKind("acceleration", "g", "0.6g", "0.1g:2g", 1e-9, 1e6)  # of a pulse
 PERIOD = QuantityKind("period", "s", "0.8s", "0.2s:4s", 1e-6, 1e6)
 RATIO = QuantityKind("number", "", "4", "0.5:10", 1e-6, 1e6)
-PGA = QuantityKind("acceleration", "g", "0.35g")
-PGV = QuantityKind("velocity", "m/s", "0.4m/s")
 INTERVAL = QuantityKind("time", "s", "0.01s")
 TAIL = QuantityKind("time", "s", "10s", most=3600, zero=True)
 
@@ -143,19 +117,6 @@ def angle(text: str, unit: str) -> float:
     return float(text) if parts is not None and not parts[1] else read(text, unit)
 
 
-def azimuth(text: str) -> float | str:
-    """Return an angle in degrees; or the word `all`, for the commands that accept it."""
-    if text == ALL:
-        return text
-    try:
-        found = angle(text, "deg")
-    except UnitError as error:
-        raise ValueError(f"{error.message}: give degrees, such as 30") from None
-    if not isfinite(found):
-        raise ValueError(f"{text} is not a finite angle")
-    return found
-
-
 def tilt(text: str) -> Any:
     """Return the `Release` of a text: a fraction of the critical rotation, or an angle with its unit; not zero."""
     from rocking_cli.studies.release import Release
@@ -163,9 +124,8 @@ def tilt(text: str) -> Any:
     return Release.of(text)
 
 
-ALL = "all"
 NUMBER, POSITIVE, SHARE = Parsed("number", number), Parsed("number", positive), Parsed("share", share)
-AZIMUTH, TILT = Parsed("angle", azimuth), Parsed("tilt", tilt)
+TILT = Parsed("tilt", tilt)
 
 
 def quantity(kind: QuantityKind, text: str, example: str = "") -> float:
@@ -196,21 +156,12 @@ def _number(kind: QuantityKind, text: str) -> float:
             raise UnitError(f"{text!r} has no unit", f"give one of {', '.join(UNITS)}")
         return float(number)
     if kind.unit == "g":
-        return _acceleration(float(number), unit)
+        from rocking_cli.excitation.records.record_units import in_g
+
+        return in_g(text)
     if kind.name == "period" and unit.lower() == "hz":
         return 1 / float(number) if float(number) else 0.0
     return read(text, kind.unit)
-
-
-def _acceleration(number: float, spelling: str) -> float:
-    """Return an acceleration in g; its unit may have any spelling found in the headers of records."""
-    from rocking_cli.excitation.base import STANDARD_GRAVITY
-    from rocking_cli.excitation.records import record_units
-
-    unit = record_units.canonical(spelling)
-    if unit is None:
-        raise UnitError(f"{spelling!r} is not a unit of acceleration", f"give one of {', '.join(UNITS)}")
-    return number if unit == "g" else number * record_units.UNITS[unit] / STANDARD_GRAVITY
 
 
 def span(kind: QuantityKind, text: str) -> tuple[float, float]:

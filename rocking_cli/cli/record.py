@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rocking_cli.cli import options, terminal
-from rocking_cli.cli.groups import Output, ReadingOptions, Scaling
+from rocking_cli.cli.groups import Output, ReadingOptions
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import PERIOD, SHARE, range_of
 from rocking_cli.cli.written import write_picture, write_table
@@ -19,8 +20,8 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
+    from rocking_cli.ask.ground_motions import Motions
     from rocking_cli.ask.record import RecordAnswer
-    from rocking_cli.processing.listed import Listed
     from rocking_cli.processing.oscillator import ResponseSpectrum
     from rocking_cli.views.record import Examined
 
@@ -66,13 +67,13 @@ if TYPE_CHECKING:
 @options.plot("Plot one record, or the spectra")
 @options.as_json
 @click.pass_context
-@options.grouped(reading=ReadingOptions, scaling=Scaling, output=Output)
+@options.grouped(reading=ReadingOptions, output=Output)
 def command(
     ctx: click.Context,
     files: tuple[str, ...],
     reading: ReadingOptions,
-    scaling: Scaling,
     output: Output,
+    polarity: str,
     **more: Any,
 ) -> None:
     """Inspect records: what was read, and how strong it is (peaks, Arias intensity, durations).
@@ -96,34 +97,34 @@ def command(
       rocking record "north.AT2" "east.AT2" --spectrum spectra.csv --plot spectra.png
       rocking record accel.csv --measures "Sa(1.0), CAV, PGV/v_imp" --structure frame.yaml
     """
-    from rocking_cli.ask.ground_motions import Motions
+    from rocking_cli.ask.ground_motions import signs_of
     from rocking_cli.ask.record import record
     from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import keep_apart
     from rocking_cli.views.record import data, parts
 
     out, plot, kept, watch = output.out, output.plot, more["spectrum"], OnTerminal()
-    given = [one for file in files for one in Motions((Path(file),), *reading.readings, *scaling.scaling).apart()]
-    alone = len(given) == 1 and scaling.polarity != "both"
+    first, *others = (reading.of(Path(file)) for file in files)
+    motions = replace(first, sources=tuple(one for each in (first, *others) for one in each.sources))
+    signs, alone = signs_of(polarity), motions.count == 1 and polarity != "both"
     if plot is not None and kept is None and not alone:
         raise click.UsageError("--plot draws a single record: give one FILE and one polarity.")
-    records = [one.records[0] if one.records else None for one in given]
-    clean = _clean_paths(out, records, reading.channel, scaling.signs, alone=alone) if out is not None else {}
+    clean = _clean_paths(out, motions, signs, alone=alone) if out is not None else {}
     outputs = [("--plot", plot), ("--spectrum", kept), *(("--out", path) for path in clean.values())]
-    keep_apart(outputs, [*(str(each.path) for each in records if each is not None), more["structure"]])
+    keep_apart(outputs, [*(str(each.path) for each in motions.records), more["structure"]])
     _make_room(out, clean.values())
     if more["structure"] is not None:
         from rocking_cli.cli import structures
 
         more["structure"] = structures.prepared([more["structure"]])
     examined: list[Examined] = []
-    for k, one in enumerate(given):
+    for k, one in enumerate(motions.sources):
         try:
-            answer = record(one, polarity=scaling.polarity, watch=watch, **more)
+            answer = record(replace(motions, sources=(one,)), polarity=polarity, watch=watch, **more)
         except InputError as error:
             watch.leave_out(error)
             continue
-        _write_clean(answer, [clean.get((k, sign)) for sign in scaling.signs])
+        _write_clean(answer, [clean.get((k, sign)) for sign in signs])
         if plot is not None and kept is None:
             write_picture(plot, answer.figure())
         for seen in answer.examined if output.as_json else ():
@@ -138,21 +139,20 @@ def command(
     watch.end()
 
 
-def _clean_paths(
-    out: Path, records: Sequence[Listed | None], channel: str | None, signs: Sequence[int], *, alone: bool
-) -> dict[tuple[int, int], Path]:
+def _clean_paths(out: Path, motions: Motions, signs: Sequence[int], *, alone: bool) -> dict[tuple[int, int], Path]:
     """Return the clean file of each record, by its place and polarity; in a folder, named after record and channel."""
     from rocking_cli.excitation.records.opening import name_of
+    from rocking_cli.processing.listed import Listed
 
     if _is_file(out):
         if not alone:
             raise click.UsageError("--out FILE.csv takes one record: give one FILE and one polarity, or a folder.")
         return {(0, signs[0]): out}
     paths: dict[tuple[int, int], Path] = {}
-    for k, record in enumerate(records):
-        if record is None:
+    for k, record in enumerate(motions.sources):
+        if not isinstance(record, Listed):
             continue
-        own = record.entry.channel if record.entry is not None and record.entry.channel is not None else channel
+        own = record.reading(motions.reading).channel
         suffix = "-" + re.sub(r"\W+", "-", own.strip()) if own is not None else ""
         for sign in signs:
             turned = "-reversed" if len(signs) > 1 and sign < 0 else ""

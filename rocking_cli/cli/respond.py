@@ -6,12 +6,14 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
 from rocking_cli.cli import complete, inputs, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, Output
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import INTERVAL, POSITIVE, TAIL, TILT, quantity_of
 from rocking_cli.errors import RockingError
+from rocking_cli.processing.reading_options import ALL
 from rocking_cli.views.view import View, heading
 
 if TYPE_CHECKING:
@@ -131,14 +133,12 @@ def command(files: tuple[str, ...], asked: GroundMotions, output: Output, **ques
     from rocking_cli.cli.watching import OnTerminal
 
     structure, watch = inputs.structure(files, asked.records), OnTerminal()
-    if asked.all_azimuths:
-        from rocking_cli.cli import azimuths
-
-        azimuths.show(structure, asked, output, question, watch)
-        return
     motions = asked.motions
+    around = motions.reading.azimuth == ALL
+    if around and click.get_current_context().get_parameter_source("neighbours") is not ParameterSource.COMMANDLINE:
+        question["neighbours"] = 0
     output.keep_apart(*files, *motions.records, question["vertical"])
-    if motions.count > 1:
+    if motions.count > 1 and not around:
         _show_each(structure, motions, output, question, watch)
     else:
         output.show(respond(structure, motions or None, watch=watch, **question))

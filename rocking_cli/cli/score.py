@@ -56,7 +56,8 @@ def command(ctx: click.Context, file: str, reading: ReadingOptions, output: Outp
     output.keep_apart(file)
     watch = OnTerminal()
     table = read_table(file, lambda sheet: parse_tests(sheet, Path()))
-    answer = score(table, opening=ctx.meta.get(options.OPENING), watch=watch, readings=reading.readings, **around)
+    opening = ctx.meta.get(options.OPENING)
+    answer = score(table, opening=opening, watch=watch, usual=reading.usual, **around, **reading.options)
     failed = answer.failed
     for each in failed[:NAMED]:
         terminal.error(f"{name_of(file)}:{each.test.line}: {reason(each)}")

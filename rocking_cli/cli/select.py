@@ -105,13 +105,12 @@ def command(records: tuple[str, ...], target: Path, reading: ReadingOptions, out
       rocking select "records/*.AT2" --target ec8.csv --band 0.2:2 --count 7 --factors 0.5:3 -o set --plot set.png
       rocking respond block.yaml --record "set/*.csv"
     """
-    from rocking_cli.ask.ground_motions import Motions
     from rocking_cli.ask.selection import select
     from rocking_cli.cli.set_folder import check_folder, write_set
     from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import keep_apart
 
-    motions, watch = Motions(tuple(map(Path, records)), *reading.readings), OnTerminal()
+    motions, watch = reading.of(*map(Path, records)), OnTerminal()
     paths = [target, *(each.path for each in motions.records)]
     keep_apart([("--plot", output.plot)], [str(path) for path in paths])
     if output.out is not None:

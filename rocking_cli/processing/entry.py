@@ -5,80 +5,52 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
-from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.records.record_units import canonical
-from rocking_cli.excitation.records.sensor import Gain, units_of
-from rocking_cli.processing.floor import Floor
-from rocking_cli.processing.reading import Reading
+from rocking_cli.errors import InputError
+from rocking_cli.processing.reading import Reading, reading_of
+from rocking_cli.processing.reading_options import CORRECTIONS, READING
 from rocking_cli.processing.steps import Factor, parse_steps
 
 Positive = Annotated[float, Field(gt=0)]
+SPELLED = ("units", "channel", "other_channel")
+"""Options whose values are kept as their parser spells them; others as the file has them."""
 
 
-def _parsed(parse: Callable[[Any], object]) -> AfterValidator:
-    """Return a validator that checks a value by a parser raising `InputError`, and leaves the value unchanged."""
+def _parsed(parse: Callable[[Any], Any], *, spelled: bool = False) -> Callable[[Any], Any]:
+    """Return a validator that checks a value by a parser raising `InputError`."""
 
     def check(value: Any) -> Any:
         try:
-            parse(value)
+            found = None if value is None else parse(value)
         except InputError as error:
             (problem, *_) = error.problems
             raise ValueError("; ".join(part for part in (problem.message, problem.hint) if part)) from None
-        return value
+        return found if spelled else value
 
-    return AfterValidator(check)
-
-
-def _unit(value: object) -> object:
-    """Return a unit in its canonical spelling; raise `ValueError` for a text that is not a known unit.
-
-    Units of velocity and displacement, and values that are not texts, are returned unchanged.
-    """
-    known = {name for quantity in ("acceleration", "velocity", "displacement") for name in units_of(quantity)}
-    if value not in known and isinstance(value, str):
-        found = canonical(value)
-        if found is None:
-            raise ValueError(f"must be one of {', '.join(sorted(known))}, got {value!r}")
-        return found
-    return value
+    return check
 
 
-def _numbered(value: object) -> object:
-    """Return a channel given as a whole number as text: messages list channels by number."""
-    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+def _item(name: str) -> Any:
+    """Return the field of an option, for a model of pydantic, with its default."""
+    option = READING[name]
+    checked = Annotated[Any, BeforeValidator(_parsed(option.parse, spelled=name in SPELLED))]
+    return checked, Field(None, alias=option.key or None, description=option.help)
 
 
-Channel = Annotated[str, BeforeValidator(_numbered)]
-Steps = Annotated[list[dict[str, Any] | str], _parsed(parse_steps)]
-FloorText = Annotated[str | dict[str, Any], _parsed(Floor.parse)]
+FloorItem = Annotated[Any, BeforeValidator(_parsed(READING["floor"].parse))]
+Steps = Annotated[list[dict[str, Any] | str], AfterValidator(_parsed(parse_steps))]
 
 
-class Entry(BaseModel):
-    """How a record is read and processed."""
+class _Entry(BaseModel):
+    """How a record is read and processed: the options of `ReadingArguments`, and what a list says of a record."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
     file: str | None = Field(None, description="a file, or a pattern of file names")
-    units: Annotated[str, BeforeValidator(_unit)] | None = Field(None, description="unit, where no file says")
-    dt: Positive | None = Field(None, description="sample interval, where no file says")
-    channel: Channel | None = Field(None, description="which of several channels")
-    quantity: Literal["acceleration", "velocity", "displacement"] | None = Field(
-        None, alias="from", description="what the file holds"
-    )
-    gain: Annotated[str, _parsed(Gain.parse)] | None = Field(
-        None, description="what one unit of the file stands for, such as 0.05 m/V"
-    )
-    other: str | None = Field(None, alias="with", description="the file of the component at right angles")
-    other_channel: Channel | None = Field(None, alias="with_channel", description="its channel")
-    azimuth: float | None = Field(
-        None, description="of the structure's plane, from the first component to the second [deg]"
-    )
     processing: Steps | None = Field(None, description="corrections in their order, such as `- highpass: 0.1`")
-    floor: FloorText | None = Field(None, description="the floor that the structure stands on, such as {T1: 0.4, ...}")
     factor: float | None = Field(None, description="factor on the record, as one of a set")
     event: str | None = Field(None, description="the earthquake, where its file does not say")
     station: str | None = Field(None, description="the station, where its file does not say")
@@ -99,29 +71,25 @@ class Entry(BaseModel):
         InputError
             If an azimuth has no second component, or a second component no azimuth.
         """
-        if self.other is not None and self.azimuth is None and common.other is None:
-            hint = "give 0 for the record, 90 for that of `with`, or what is between them"
-            raise InputError(
-                Problem("is missing: the file of a second component needs it", field="`azimuth`", hint=hint)
-            )
+        given = {name: getattr(self, name) for name in ITEMS}
+        if given["other"] is not None:
+            given["other"] = folder / given["other"]
         factor = () if self.factor is None else (Factor(self.factor),)
-        gain = Gain.parse(self.gain) if self.gain is not None else common.gain
-        return Reading(
-            dt=_first(self.dt, common.dt),
-            units=_first(self.units, common.units),
-            channel=_first(self.channel, common.channel),
-            quantity=_first(self.quantity, common.quantity),
-            gain=gain,
-            other=folder / self.other if self.other is not None else common.other,
-            other_channel=_first(self.other_channel, common.other_channel),
-            azimuth=_first(self.azimuth, common.azimuth),
-            steps=(*parse_steps(self.processing or []), *factor, *common.steps),
-            floor=Floor.parse(self.floor) if self.floor is not None else common.floor,
-        )
+        own = reading_of(given)
+        return Reading(own.options, (*parse_steps(self.processing or []), *factor)).over(common).check()
 
 
-def _first(own: Any, common: Any) -> Any:
-    return common if own is None else own
+ITEMS = tuple(name for name in READING if name not in CORRECTIONS)
+"""Options that are items of an entry; corrections are those of its `processing`."""
+
+if TYPE_CHECKING:
+
+    class Entry(_Entry):
+        """How a record is read and processed."""
+
+        def __getattr__(self, name: str) -> Any: ...
+else:
+    Entry = create_model("Entry", __base__=_Entry, __module__=__name__, **{name: _item(name) for name in ITEMS})
 
 
 def as_written(entry: Entry) -> Mapping[str, Any]:
@@ -140,18 +108,13 @@ def of_reading(reading: Reading, folder: Path) -> dict[str, Any]:
         Folder to which the entry's files are to be relative.
     """
     said = {
-        "units": reading.units,
-        "dt": reading.dt,
-        "channel": reading.channel,
-        "from": reading.quantity,
-        "gain": str(reading.gain) if reading.gain is not None else None,
-        "with": relative(Path(reading.other), folder) if reading.other is not None else None,
-        "with_channel": reading.other_channel,
-        "azimuth": reading.azimuth if reading.other is not None else None,
-        "processing": [str(step) for step in reading.steps] or None,
-        "floor": str(reading.floor) if reading.floor is not None else None,
+        option.key or name: value if isinstance(value, float | str) else str(value)
+        for name, option in READING.items()
+        if (value := reading.options.get(name)) is not None
     }
-    return {key: value for key, value in said.items() if value is not None}
+    if reading.other is not None:
+        said["with"] = relative(Path(reading.other), folder)
+    return said | ({"processing": [str(step) for step in reading.steps]} if reading.steps else {})
 
 
 def relative(file: Path, folder: Path) -> str:

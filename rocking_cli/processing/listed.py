@@ -36,17 +36,17 @@ class Listed(NamedTuple):
         except InputError as error:
             raise InputError(*(replace(each, file=str(self.path)) for each in error.problems)) from None
 
-    def read(self, common: Reading) -> GroundMotion:
-        """Return the motion of the record. Raises `InputError` if it cannot be read."""
-        return self.as_said(self.reading(common).read(self.path))
+    def settled(self, common: Reading) -> tuple[GroundMotion, Reading]:
+        """Return the motion of the record, and how it was read. Raises `InputError` if it cannot be read.
 
-    def as_said(self, motion: GroundMotion) -> GroundMotion:
-        """Return the motion with the earthquake and station of the list instead of those of its file."""
-        if self.entry is None:
-            return motion
-        own = motion.origin
-        event, station = name(self.entry.event) or own.event, name(self.entry.station) or own.station
-        return replace(motion, origin=own._replace(event=event, station=station))
+        Earthquake and station of the list take the place of those of the file.
+        """
+        motion, reading = self.reading(common).settled(self.path)
+        if self.entry is not None:
+            own = motion.origin
+            event, station = name(self.entry.event) or own.event, name(self.entry.station) or own.station
+            motion = replace(motion, origin=own._replace(event=event, station=station))
+        return motion, reading
 
 
 def is_list(path: Path) -> bool:

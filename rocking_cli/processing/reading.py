@@ -2,62 +2,67 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_measured
-from rocking_cli.excitation.records.sensor import Gain, Quantity, as_acceleration, smallest_step
+from rocking_cli.excitation.records.opening import allow_again
+from rocking_cli.excitation.records.sensor import Quantity, as_acceleration, size_of, smallest_step
 from rocking_cli.processing.components import turned
-from rocking_cli.processing.floor import Floor
+from rocking_cli.processing.reading_options import ALL, READING, ReadingArguments
 from rocking_cli.processing.steps import Factor, Lowpass, Resample, Step, of_vertical, process
+
+OF_FILES = ("dt", "units", "channel", "quantity", "gain")
+OF_PAIRS = ("other", "other_channel", "azimuth")
 
 
 @dataclass(frozen=True)
 class Reading:
-    """How a record is read and processed; the steps take place in the order of the parameters.
+    """How a record is read and processed; each option of `ReadingArguments` is an attribute, None if it is not given.
 
     Parameters
     ----------
-    dt, units, channel : float, str, str, optional
-        Sampling interval [s], unit and channel, as for `rocking_cli.excitation.records.read_record`.
-    quantity : str, optional
-        Quantity in the file; by default acceleration, or the quantity of the gain.
-    gain : Gain, optional
-        Value of one unit of the file.
-    other : str or Path, optional
-        File of the component at right angles, read in the same way.
-    other_channel : str, optional
-        Channel of the second component; by default that of the first.
-    azimuth : float
-        Angle of the structure's plane, from the first component towards the second [deg].
+    options : mapping of str to object
+        Values of the options that are given, without the corrections.
     steps : tuple of Step
         Corrections in their order, applied to the recorded values, before differentiation.
-    floor : Floor, optional
-        The floor that the structure stands on.
+    usual : mapping of str to object
+        Options for files that do not state the same themselves.
     """
 
-    dt: float | None = None
-    units: str | None = None
-    channel: str | None = None
-    quantity: Quantity | None = None
-    gain: Gain | None = None
-    other: str | Path | None = None
-    other_channel: str | None = None
-    azimuth: float = 0.0
+    options: Mapping[str, Any] = field(default_factory=dict)
     steps: tuple[Step, ...] = ()
-    floor: Floor | None = None
+    usual: Mapping[str, Any] = field(default_factory=dict)
 
-    def __post_init__(self) -> None:
-        alone = (
-            ("azimuth", self.azimuth, "an azimuth is between"),
-            ("with_channel", self.other_channel, "applies to one of"),
-        )
-        for name, given, what in alone if self.other is None else ():
-            if given:
-                hint = "give the file of the second with `with`"
-                raise InputError(Problem(f"{what} two components", field=f"`{name}`", hint=hint))
+    def __getattr__(self, name: str) -> Any:
+        """Return the value of an option."""
+        if name not in READING:
+            raise AttributeError(name)
+        return self.options.get(name)
+
+    def over(self, common: Reading) -> Reading:
+        """Return this reading with what it does not state from that of all records, whose corrections come last."""
+        return Reading({**common.options, **self.options}, (*self.steps, *common.steps), common.usual)
+
+    def without(self, *names: str) -> Reading:
+        """Return this reading without some options."""
+        return replace(self, options={name: each for name, each in self.options.items() if name not in names})
+
+    def check(self) -> Reading:
+        """Return this reading. Raises `InputError` if an azimuth has no second component, or the reverse."""
+        for name in ("azimuth", "other_channel") if self.other is None else ():
+            if self.options.get(name) is not None:
+                message, hint = "requires a second component", "give the file of the second with `with`"
+                raise InputError(Problem(message, field=f"`{READING[name].key or name}`", hint=hint))
+        if self.other is not None and self.azimuth is None:
+            hint = "0 is the direction of the record, 90 that of the second component"
+            raise InputError(Problem("is missing for two components", field="`azimuth`", hint=hint))
+        return self
 
     def read(self, file: str | Path) -> GroundMotion:
         """Return the motion that excites a structure.
@@ -67,6 +72,32 @@ class Reading:
         InputError
             If a file cannot be read, a correction cannot be made, or two components do not fit together.
         """
+        return self.settled(file)[0]
+
+    def settled(self, file: str | Path) -> tuple[GroundMotion, Reading]:
+        """Return the motion that excites a structure, and how its file was read: without usual options if it can be.
+
+        Raises
+        ------
+        InputError
+            As `read`.
+        """
+        usual = {name: each for name, each in self.usual.items() if name not in self.options}
+        if "units" in usual:
+            of: Quantity = self.quantity or "acceleration"
+            if self.gain is not None or size_of(usual["units"], of) is None:  # it says nothing of such a record
+                del usual["units"]
+        alone = Reading(self.options, self.steps)
+        if usual:
+            with suppress(InputError):
+                return alone._read(file), alone
+            allow_again(file)
+            alone = replace(alone, options={**usual, **self.options})
+        return alone._read(file), alone
+
+    def _read(self, file: str | Path) -> GroundMotion:
+        if self.azimuth == ALL:
+            raise InputError(Problem("can be all for `respond` only", field="`azimuth`", hint="give one angle"))
         measured, quantity = self._measured(file, self.channel)
         step = smallest_step(measured)
         if self.other is not None:
@@ -86,20 +117,25 @@ class Reading:
         InputError
             As `read`.
         """
-        assert self.other is not None
-        alone = replace(self, other=None, other_channel=None, azimuth=0.0)
-        return alone.read(file), replace(alone, channel=self._channel_of_other(file)).read(self.other)
+        alone, channel = self.without(*OF_PAIRS), self._channel_of_other(file)
+        second = (
+            alone.without("channel")
+            if channel is None
+            else replace(alone, options={**alone.options, "channel": channel})
+        )
+        return alone.read(file), second.read(self.other)
 
     def _channel_of_other(self, file: str | Path) -> str | None:
-        assert self.other is not None
         if self.other_channel is None and _same(self.other, file):
             hint = "give the channel of the second with `with_channel`"
             raise InputError(Problem("is the first component too", str(file), field="`with`", hint=hint))
-        return self.channel if self.other_channel is None else self.other_channel
+        channel: str | None = self.channel if self.other_channel is None else self.other_channel
+        return channel
 
     def on_floor(self, motion: GroundMotion) -> GroundMotion:
         """Return the motion of the floor for a ground motion; without a floor, the ground motion."""
-        return motion if self.floor is None else self.floor.of(motion)
+        found: GroundMotion = motion if self.floor is None else self.floor.of(motion)
+        return found
 
     def vertical(self, file: str | Path, dt: float | None = None, channel: str | None = None) -> GroundMotion:
         """Return the vertical component from a file of its own, read in the same way and with the same corrections.
@@ -109,17 +145,36 @@ class Reading:
         InputError
             As `read`.
         """
-        own = replace(
-            self, dt=dt if dt is not None else self.dt, channel=channel, other=None, other_channel=None, azimuth=0.0,
-            steps=of_vertical(self.steps), floor=None,
-        )  # fmt: skip
-        return own.read(file)
+        own = {name: each for name, each in (("dt", dt), ("channel", channel)) if each is not None}
+        bare = self.without("channel", "floor", *OF_PAIRS)
+        usual = {name: each for name, each in self.usual.items() if name != "channel"}
+        return Reading({**bare.options, **own}, of_vertical(self.steps), usual).read(file)
 
     def _measured(self, file: str | Path, channel: str | None) -> tuple[GroundMotion, Quantity]:
         uneven = any(isinstance(step, Resample) for step in self.steps)
-        return read_measured(
-            file, dt=self.dt, units=self.units, channel=channel, quantity=self.quantity, gain=self.gain, uneven=uneven
-        )
+        of_file = {name: self.options[name] for name in OF_FILES if name in self.options} | {"channel": channel}
+        return read_measured(file, uneven=uneven, **of_file)
+
+
+def reading_of(options: ReadingArguments | Mapping[str, Any], usual: Mapping[str, Any] | None = None) -> Reading:
+    """Return how to read a record, from the keyword arguments of a verb, or what the fields of a file say.
+
+    Parameters
+    ----------
+    options : mapping of str to object
+        Options by name; corrections are made in the order in which they are given.
+    usual : mapping of str to object, optional
+        Options for files that do not state the same themselves.
+
+    Raises
+    ------
+    InputError
+        If a value is not valid.
+    """
+    given = {name: READING[name].parse(each) for name, each in options.items() if name in READING and each is not None}
+    steps = tuple(each for each in given.values() if isinstance(each, Step))
+    own = {name: each for name, each in given.items() if not isinstance(each, Step)}
+    return Reading(own, steps, {name: READING[name].parse(each) for name, each in (usual or {}).items()})
 
 
 def _same(one: str | Path, other: str | Path) -> bool:

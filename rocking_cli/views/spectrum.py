@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from rocking_cli.excitation.scaled import Scaled
 from rocking_cli.names import FEWEST, NO_UPLIFT, OVERTURNS, ROCKS, UNKNOWN
+from rocking_cli.processing.scaled import Scaled
 from rocking_cli.studies.spectrum import Spectrum
 from rocking_cli.studies.under_pulses import Integers, Reals
 from rocking_cli.views import processing

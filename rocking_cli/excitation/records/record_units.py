@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.patterns import regex
+from rocking_cli.units import UnitError, number_of, split
 
 UNITS: dict[str, float] = {
     "g": STANDARD_GRAVITY,
@@ -73,6 +74,20 @@ def canonical(spelling: str) -> str | None:
     if re.fullmatch(_OF_G, word):
         return "mg" if word.startswith("m") else "%g"
     return word[: word.index("s")].rstrip(" ./·*p") + "/s2"
+
+
+def in_g(given: object) -> float:
+    """Return an acceleration in standard gravity, from a number or a text with a unit in any spelling of headers.
+
+    Raises `UnitError`.
+    """
+    parts = split(given) if isinstance(given, str) else None
+    if parts is None or not parts[1]:
+        return number_of(given, "g")
+    unit = canonical(parts[1])
+    if unit is None:
+        raise UnitError(f"{parts[1]!r} is not a unit of acceleration", f"give one of {CHOICES}")
+    return float(parts[0]) if unit == "g" else float(parts[0]) * UNITS[unit] / STANDARD_GRAVITY
 
 
 def is_unit(word: str) -> bool:

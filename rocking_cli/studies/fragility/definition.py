@@ -15,10 +15,9 @@ from rocking_cli.core.fields import Name, Restitution
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.errors import InputError
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text
-from rocking_cli.processing.entry import Entry, FloorText, Steps
-from rocking_cli.processing.floor import Floor
+from rocking_cli.processing.entry import Entry, FloorItem, Steps
 from rocking_cli.processing.intensity import parse_measure
-from rocking_cli.processing.reading import Reading
+from rocking_cli.processing.reading import Reading, reading_of
 from rocking_cli.processing.steps import parse_steps
 from rocking_cli.studies.file_part import Part, Sound, problems_of
 from rocking_cli.studies.fragility.displacements import is_quantity, metres, spelt
@@ -235,13 +234,12 @@ class Common(Part):
     """Processing and floor of all records."""
 
     processing: Steps = Field([], description="corrections of every record, in their order, after its own")
-    floor: FloorText | None = Field(None, description="the floor of a building that the structures stand on")
+    floor: FloorItem = Field(None, description="the floor of a building that the structures stand on")
 
     @property
     def reading(self) -> Reading:
         """How every record is read and processed, unless its entry states otherwise."""
-        floor = Floor.parse(self.floor) if self.floor is not None else None
-        return Reading(steps=parse_steps(self.processing), floor=floor)
+        return Reading(reading_of({"floor": self.floor}).options, parse_steps(self.processing))
 
 
 class Definition(Sampling, Common):

@@ -1,0 +1,250 @@
+"""How a record is read and scaled: the options, declared once for the command line, Python, files and documentation.
+
+Options of the command line, fields of study files and of lists of records, and keyword arguments in Python are made of
+these declarations. The module imports nothing heavy, so that the help of a command stays fast.
+"""
+
+import re
+from collections.abc import Callable, Mapping
+from math import isfinite
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, TypedDict
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.units import UnitError, number_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rocking_cli.excitation.records.sensor import Gain
+    from rocking_cli.processing.floor import Floor
+    from rocking_cli.processing.steps import Step
+
+ALL = "all"
+"""The azimuth that stands for every direction."""
+QUANTITIES = ("acceleration", "velocity", "displacement")
+UNITS = ("g", "m/s2", "cm/s2", "mm/s2", "gal", "mg", "%g")
+"""Units of acceleration; they stand here again so that the help needs no numpy, and a test holds them together."""
+
+
+class Option(NamedTuple):
+    """An option of reading or scaling a record.
+
+    Parameters
+    ----------
+    help : str
+        What it is, for all pages.
+    parse : callable
+        Returns the value of what the user gives, as text or in another form. Raises `InputError`.
+    metavar : str
+        What stands for its value in the help.
+    key : str
+        Its name in files, and with dashes on the command line; empty if it is that of the argument.
+    """
+
+    help: str
+    parse: Callable[[Any], Any]
+    metavar: str
+    key: str = ""
+
+
+def _refused(name: str, message: str, hint: str) -> InputError:
+    return InputError(Problem(message, field=f"`{name}`", hint=hint))
+
+
+def _in(unit: str, name: str, example: str, *, positive: bool = True) -> Callable[[Any], float]:
+    """Return the parser of a quantity, given as a number in its unit or as text, with its unit or without."""
+
+    def parse(given: Any) -> float:
+        try:
+            number = _acceleration(given) if unit == "g" else number_of(given, unit)
+        except UnitError as error:
+            before = f"{error.hint}; " if error.hint else ""
+            raise _refused(name, error.message, f"{before}give a value such as {example}") from None
+        if not isfinite(number) or (positive and number <= 0):
+            what = "positive" if positive else "a finite number"
+            raise _refused(name, f"{given!r} is not {what}", f"give a value such as {example}")
+        return number
+
+    return parse
+
+
+def _acceleration(given: Any) -> float:
+    from rocking_cli.excitation.records.record_units import in_g
+
+    return in_g(given)
+
+
+def _unit(given: Any) -> str:
+    """Return the name of a unit of acceleration, velocity or length in any spelling that headers have."""
+    from rocking_cli.excitation.records.record_units import canonical
+    from rocking_cli.excitation.records.sensor import quantity_of
+
+    name = canonical(str(given))
+    if name is None and quantity_of(str(given)) is None:
+        raise _refused("units", f"{given!r} is not a known unit", f"give one of {', '.join(UNITS)}")
+    return name or "".join(str(given).split())
+
+
+def _quantity(given: Any) -> str:
+    if given not in QUANTITIES:
+        raise _refused("from", f"must be one of {', '.join(QUANTITIES)}, got {given!r}", "by default acceleration")
+    return str(given)
+
+
+def _gain(given: Any) -> Any:
+    from rocking_cli.excitation.records.sensor import Gain
+
+    return given if isinstance(given, Gain) else Gain.parse(str(given))
+
+
+def _channel(given: Any) -> str:
+    if isinstance(given, bool) or not isinstance(given, str | int):
+        raise _refused("channel", f"must be a number, from 1, or a name, got {given!r}", "messages list the channels")
+    return str(given)
+
+
+def _file(given: Any) -> Any:
+    if isinstance(given, str) or hasattr(given, "__fspath__"):
+        return given
+    raise _refused("with", f"must be the file of the second component, got {given!r}", "give its path")
+
+
+def _azimuth(given: Any) -> float | str:
+    return ALL if given == ALL else _in("deg", "azimuth", "30", positive=False)(given)
+
+
+def _floor(given: Any) -> Any:
+    from rocking_cli.processing.floor import Floor
+
+    return given if isinstance(given, Floor) else Floor.parse(given)
+
+
+def _step(name: str) -> Callable[[Any], Any]:
+    def parse(given: Any) -> Any:
+        from rocking_cli.processing.steps import Step, parse_step
+
+        return given if isinstance(given, Step) else parse_step(name, given)
+
+    return parse
+
+
+CORRECTIONS = ("baseline", "highpass", "lowpass", "taper", "trim", "resample")
+
+
+class ReadingArguments(TypedDict, total=False):
+    """Keyword arguments of verbs that read records; the corrections are made in the order in which they are given."""
+
+    units: Annotated[
+        str | None,
+        Option("Unit of the record, if the file does not state it.", _unit, f"[{'|'.join(UNITS)}]"),
+    ]
+    dt: Annotated[
+        float | str | None,
+        Option("Sampling interval in s, if the file has no times.", _in("s", "dt", "0.01s"), "TIME"),
+    ]
+    channel: Annotated[
+        str | int | None, Option("Channel or column to read: its number, from 1, or its name.", _channel, "CHANNEL")
+    ]
+    quantity: Annotated[
+        Literal["acceleration", "velocity", "displacement"] | None,
+        Option(
+            "Quantity in the record; velocities and displacements are differentiated.",
+            _quantity, f"[{'|'.join(QUANTITIES)}]", "from",
+        ),
+    ]  # fmt: skip
+    gain: Annotated[
+        "Gain | str | None",
+        Option(
+            "Instrument sensitivity: the value of one unit of the record, such as 0.05m/V or 4.7e-6m/s2/count.",
+            _gain, "GAIN",
+        ),
+    ]  # fmt: skip
+    other: Annotated[
+        "str | Path | None",
+        Option(
+            "Second horizontal component, perpendicular to the record; the two are rotated into the plane of the "
+            "structure.",
+            _file, "FILE", "with",
+        ),
+    ]  # fmt: skip
+    other_channel: Annotated[
+        str | int | None, Option("Channel of the second component in its file.", _channel, "CHANNEL", "with_channel")
+    ]
+    azimuth: Annotated[
+        float | str | None,
+        Option(
+            "Azimuth of the structure's plane, in degrees: 0 is the record, 90 the second. `respond` also accepts all.",
+            _azimuth, "DEGREES",
+        ),
+    ]  # fmt: skip
+    baseline: Annotated[
+        "Step | str | None",
+        Option(
+            "Baseline correction: the best-fitting constant, line or parabola is subtracted.",
+            _step("baseline"), "linear|quadratic",
+        ),
+    ]  # fmt: skip
+    highpass: Annotated[
+        "Step | str | float | None",
+        Option("High-pass corner frequency in Hz (Butterworth, zero phase).", _step("highpass"), "HZ"),
+    ]
+    lowpass: Annotated[
+        "Step | str | float | None",
+        Option("Low-pass corner frequency in Hz (Butterworth, zero phase).", _step("lowpass"), "HZ"),
+    ]
+    taper: Annotated[
+        "Step | str | float | None",
+        Option("Fraction of the duration over which each end is tapered to zero.", _step("taper"), "SHARE"),
+    ]
+    trim: Annotated["Step | str | None", Option("Start and end of the part to keep, in s.", _step("trim"), "FROM:TO")]
+    resample: Annotated[
+        "Step | str | float | None",
+        Option("Resample to this interval, in s; uneven times are put on a regular grid.", _step("resample"), "TIME"),
+    ]
+    floor: Annotated[
+        "Floor | str | Mapping[str, Any] | None",
+        Option(
+            "Floor of a building on which the structure stands: T1=0.4,xi=0.05,z=0.67,gamma=1.29 (or n=3 storeys).",
+            _floor, "T1=...",
+        ),
+    ]  # fmt: skip
+
+
+class MotionArguments(ReadingArguments, total=False):
+    """Keyword arguments of verbs that read and scale ground motions: those of `ReadingArguments`, and one scale."""
+
+    scale: Annotated[
+        float | str | None,
+        Option(
+            "Scale factor on the motion.  [default: 1]", _in("", "scale", "1.5", positive=False), "FACTOR"
+        ),
+    ]  # fmt: skip
+    target_pga: Annotated[
+        float | str | None,
+        Option(
+            "Peak ground acceleration to scale the motion to, in g.",
+            _in("g", "target_pga", "0.35g"), "ACCELERATION",
+        ),
+    ]  # fmt: skip
+    target_pgv: Annotated[
+        float | str | None,
+        Option(
+            "Peak ground velocity to scale the motion to, in m/s.", _in("m/s", "target_pgv", "0.4m/s"), "VELOCITY"
+        ),
+    ]  # fmt: skip
+
+
+def _declared(arguments: type) -> dict[str, Option]:
+    """Return the options of a class by the names of its arguments, and list them in its docstring."""
+    found = {name: given.__metadata__[0] for name, given in arguments.__annotations__.items()}
+    lines = "".join(f"    {name} : optional\n        {re.sub('  .*', '', each.help)}\n" for name, each in found.items())
+    arguments.__doc__ = f"{arguments.__doc__}\n\n    Parameters\n    ----------\n{lines}"
+    return found
+
+
+READING: dict[str, Option] = _declared(ReadingArguments)
+"""The options of reading a record, in the order of the help."""
+SCALING: dict[str, Option] = {
+    name: each for name, each in _declared(MotionArguments).items() if name not in READING
+}  # fmt: skip
+"""The options of scaling a motion, of which one may be given."""
