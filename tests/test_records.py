@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.records import peer, read_record, text
-from rocking_cli.excitation.records.record_units import canonical, header_units
+from rocking_cli.excitation.records.record_units import canonical
 from rocking_cli.excitation.records.times import on_grid
 from tests.conftest import NEEDS_RECORDS, record
 
@@ -81,6 +81,14 @@ def accelerations(motion: GroundMotion) -> list[float]:
         "0.0e+000 1.0e-001\n1.0e-002 -2.0e-001\n2.0e-002 3.0e-001\n",
         "-0.01,0.1\n0.00,-0.2\n0.01,0.3\n",
         "0.00,0.1\n0.01,-0.2\n0.02,0.3\n\x1a",
+        "\ufeff0.00,0.1\n0.01,-0.2\n0.02,0.3\n",
+        "0,00;0,1\n0,01;-0,2\n0,02;0,3\n",  # as spreadsheets write
+        "0;0,1\n0,01;-,2\n0,02;3,0E-1\n",
+        "0,00\t0,1\n0,01\t-0,2\n0,02\t0,3\n",
+        '"0,00";"0,1"\n"0,01";"-0,2"\n"0,02";"0,3"\n',
+        '"0.00","0.1"\n"0.01","-0.2"\n"0.02","0.3"\n',
+        '"0.00" "0.1"\n"0.01" "-0.2"\n"0.02" "0.3"\n',
+        '# "made up", 3.5\n"0.00",0.1\n"0.01",-0.2\n"0.02",0.3\n',
     ],
 )
 def test_two_columns(write, rows):
@@ -115,10 +123,6 @@ def test_units_are_converted_to_si(write, unit, factor):
     assert motion.unit == unit
 
 
-def test_the_path_may_be_a_string_and_the_name_is_the_files(write):
-    assert read_record(str(write("0,1\n0.01,2\n", "El Centro.NS.dat")), units="g").name == "El Centro.NS.dat"
-
-
 @pytest.mark.parametrize("name", ["record.AT2", "record.json", "record", "record.png"])
 def test_the_format_is_found_from_the_content_not_the_name(write, name):
     assert read_record(write("t,accel_g\n0,1\n0.01,2\n", name)).format == "text"
@@ -132,10 +136,6 @@ def test_encodings(write, bom, encoding):
     motion = read_record(write((bom if encoding == "utf-8" else b"") + content))
     assert accelerations(motion) == [1, 2]
     assert motion.unit == "m/s2"
-
-
-def test_bom_before_the_first_number(write):
-    assert accelerations(read_record(write(b"\xef\xbb\xbf0,1\n0.1,2\n"), units="m/s2")) == [1, 2]
 
 
 @UNTIMED
@@ -232,17 +232,13 @@ def test_spellings(spelling, name):
         ("t,accel [%g]", "%g"),
         ("time,Acceleration (% g)", "%g"),
         ("t;a [m/s²]", "m/s2"),
+        ("t,a_g [cm/s2]", "cm/s2"),
     ],
 )
 def test_unit_from_the_header(write, header, unit):
     motion = read_record(write(f"{header}\n0.0,1\n0.5,2\n"))
     assert motion.unit == unit
     assert motion.npts == 2
-
-
-def test_unit_from_the_header_of_one_column(write):
-    assert read_record(write("accel_g\n1\n2\n"), dt=0.1).unit == "g"
-    assert read_record(write("m/s2\n1\n2\n"), dt=0.1).unit == "m/s2"
 
 
 @pytest.mark.parametrize(
@@ -275,41 +271,11 @@ def test_the_unit_is_never_guessed(write, header):
     assert read_record(path, units="cm/s2").acceleration[0] == 0.01
 
 
-@pytest.mark.parametrize(
-    ("header", "line", "quoted"),
-    [
-        ("t,a [furlong/s2]\n", 1, "furlong/s2"),
-        ("t [s],acceleration [g/10]\n", 1, "g/10"),
-        ("# made up\nTime (sec); acc (kine)\n", 2, "kine"),
-        ("# units: furlong/fortnight^2\nt,a\n", 1, "furlong/fortnight^2"),
-        ("units = bananas\nt,a\n", 1, "bananas"),
-    ],
-)
-def test_an_unknown_unit_is_quoted(write, header, line, quoted):
-    path = write(f"{header}0.0,1\n0.5,2\n")
-    found = problem(path)
-    assert f"the header says '{quoted}', which is not a known unit of acceleration" in found.message
-    assert "`units`" in found.hint
-    assert found.line == line
-    assert read_record(path, units="g").unit == "g"
-
-
 def test_unknown_unit_of_the_user(write):
     (found,) = problems(write("0,1\n0.5,2\n"), units="ft/s2")
     assert "unknown unit 'ft/s2'" in found.message
     assert found.field == "`units`"
     assert "g, m/s2, cm/s2, mm/s2, gal" in found.hint
-
-
-def test_a_unit_of_the_user_may_be_spelled_otherwise(write):
-    assert read_record(write("0,1\n0.5,2\n"), units="M/SEC^2").unit == "m/s2"
-
-
-@pytest.mark.parametrize(("header", "units"), [("accel_g", "m/s2"), ("a [m/s2]", "g"), ("a [cm/s2]", "mm/s2")])
-def test_header_and_user_may_not_differ(write, header, units):
-    found = problem(write(f"# made up\nt,{header}\n0,1\n0.5,2\n"), units=units)
-    assert f"but `units` says {units}" in found.message
-    assert found.line == 2
 
 
 def test_header_and_user_may_agree(write):
@@ -328,50 +294,7 @@ def test_two_units_in_a_header_are_not_guessed_between(write):
     assert "`units` says cm/s2" in problem(path, units="cm/s2").message
 
 
-@pytest.mark.parametrize(
-    ("header", "line", "fragment"),
-    [
-        ("t,velocity", 1, "velocity or displacement"),
-        ("t [s],v [m/s]", 1, "'m/s'"),
-        ("# one\nt [s];u (cm)", 2, "'cm'"),
-        ("t,vel_cm/s", 1, "velocity or displacement"),
-        ("t,Displacement (mm)", 1, "'mm'"),
-        ("t,disp", 1, "velocity or displacement"),
-        ("t,acceleration [cm/s]", 1, "'cm/s'"),
-        ("# VELOCITY TIME SERIES IN UNITS OF CM/S\nt,x", 1, "'cm/s'"),
-        ("# accelerations\nt,vel", 2, "velocity or displacement"),
-        ("t,accel [ft/s2]", 1, "'ft/s2' cannot be read"),
-        ("t,accel [counts]", 1, "'counts' cannot be read"),
-    ],
-)
-@pytest.mark.parametrize("units", [None, "g"])
-def test_other_quantities_are_refused(write, header, line, fragment, units):
-    found = problem(write(f"{header}\n0,1\n0.5,2\n"), units=units)
-    assert fragment in found.message
-    assert found.line == line
-    assert "acceleration" in found.hint
-
-
-def test_times_in_another_unit_are_refused(write):
-    found = problem(write("time_ms,accel_g\n0,1\n5,2\n"))
-    assert "'ms'" in found.message
-    assert "seconds" in found.hint
-    assert found.line == 1
-
-
-def test_a_unit_in_brackets_outweighs_a_name():
-    assert header_units("accel_g [cm/s2]") == {"cm/s2"}
-    assert header_units("a_g [g]") == {"g"}
-    assert header_units("a_g") == set()
-
-
 # --- the sample interval --------------------------------------------------------------------------------------------
-
-
-def test_one_column_needs_an_interval(write):
-    found = problem(write("accel_g\n1\n2\n"))
-    assert "no sample interval" in found.message
-    assert "`dt`" in found.hint
 
 
 def test_everything_missing_is_said_at_once(write):
@@ -400,35 +323,6 @@ def times(write, *printed: str) -> Path:
     return write("t,accel_g\n# comment\n\n" + "".join(f"{t},1\n" for t in printed))
 
 
-@pytest.mark.parametrize(
-    ("printed", "line", "fragment"),
-    [
-        (("0", "0.01", "0.02", "0.04", "0.05"), 7, "uneven"),
-        (("0", "0.01", "0.02", "0.021", "0.03", "0.04"), 7, "uneven"),
-        (("0", "0.01", "0.021", "0.03"), 6, "uneven"),
-        (("0", "0.01", "0.02", "0.0202"), 7, "uneven"),
-        (("0", "0.01", "0.01", "0.02"), 6, "does not increase: 0.01 s is repeated"),
-        (("0.00", "0.01", "0.01", "0.02", "0.02"), 6, "does not increase"),
-        (("0", "0.01", "0.02", "0.015", "0.03"), 7, "does not increase: 0.015 s comes after 0.02 s"),
-        (("0.03", "0.02", "0.01"), 5, "does not increase"),
-        (("0", "0", "0"), 5, "is repeated"),
-    ],
-)
-def test_uneven_times_are_refused(write, printed, line, fragment):
-    found = problem(times(write, *printed))
-    assert fragment in found.message
-    assert found.line == line
-    assert found.excerpt.startswith(printed[line - 4])
-
-
-def test_comments_and_blank_lines_between_rows_are_counted_as_lines(write):
-    assert problem(write("t,accel_g\n0,1\n# c\n\n0.01,1\n,\n0.02,1\n% c\n0.04,1\n0.05,1\n")).line == 9
-
-
-def test_times_too_close_to_be_times_are_refused(write):
-    assert "sample interval of" in problem(write("t,accel_g\n0,1\n5e-324,2\n")).message
-
-
 def test_a_missing_sample_is_found_where_it_is(write):
     printed = [f"{i * 0.005:.3f}" for i in range(3000) if i != 1234]
     found = problem(times(write, *printed))
@@ -452,13 +346,6 @@ def test_rounded_times_are_accepted(write, dt, decimals, n):
     assert motion.dt == pytest.approx(dt, abs=1.01 * 10**-decimals / (n - 1))
 
 
-@pytest.mark.parametrize(("dt", "decimals"), [(0.005, 2), (1 / 150, 3), (1 / 256, 3), (1 / 3, 1)])
-def test_times_rounded_too_much_are_refused(write, dt, decimals):
-    found = problem(times(write, *(f"{i * dt:.{decimals}f}" for i in range(1000))))
-    assert "time" in found.message
-    assert found.line is not None
-
-
 @UNTIMED
 @given(
     n=st.integers(6, 60),
@@ -477,56 +364,122 @@ def test_one_time_out_of_step_is_always_noticed(tmp_path_factory, n, where, shif
 # --- what is wrong with a text file ---------------------------------------------------------------------------------
 
 
+def peer_of(
+    body: str, npts: int | None = 3, dt: str | None = ".01", series: str = "ACCELERATION TIME SERIES IN UNITS OF G"
+) -> str:
+    """A PEER AT2 file with a header of four lines."""
+    said = [f"NPTS= {npts}"] * (npts is not None) + [f"DT= {dt} SEC"] * (dt is not None)
+    return f"PEER NGA STRONG MOTION DATABASE RECORD\nmade up\n{series}\n{', '.join(said)}\n{body}\n"
+
+
 @pytest.mark.parametrize(
-    ("content", "line", "fragment"),
+    ("content", "line", "fragment", "options"),
     [
-        ("t,accel_g\n0,1\n0.01,abc\n0.02,3\n", 3, "'abc' is not a number"),
-        ("t,accel_g\n0,abc\n0.01,2\n", 2, "'abc' is not a number"),
-        ("t,accel_g\nO.00,1\n0.01,2\n0.02,2\n", 2, "'O.00' is not a number"),
-        ("t,accel_g\n0,1\n0.01,2\nend\n", 4, "'end' is not a number"),
-        ("t,accel_g\n0,1_0\n0.01,2\n", 2, "'1_0' is not a number"),
-        ("t,accel_g\n0,0x1\n0.01,2\n", 2, "'0x1' is not a number"),
-        ("t,accel_g\n0,1\n0.01,1 2\n", 3, "'1 2' is not a number"),
-        ("t,accel_g\n0,1\n0.01,NaN\n0.02,3\n", 3, "'NaN' is not a finite number"),
-        ("t,accel_g\nnan,1\n0.01,2\n", 2, "'nan' is not a finite number"),
-        ("t,accel_g\n0,1\n0.01,-inf\n", 3, "'-inf' is not a finite number"),
-        ("t,accel_g\n0,1\n0.01,1e999\n", 3, "'1e999' is not a finite number"),
-        ("t,accel_g\n0,1\n0.01,1e300\n", 3, "'1e300' is not a finite number of sensible size"),
-        ("t,accel_g\n-1e308,1\n1e308,2\n", 2, "'-1e308' is not a finite number of sensible size"),
-        ("t,accel_g\n\n0,1\n# c\n0.01\n0.02,3\n", 5, "has 1 column, the rows before it have 2"),
-        ("t,accel_g\n0,1\n0.01,2,3\n", 3, "has 3 columns, the rows before it have 2"),
-        ("t accel_g\n0 1\n0.01 2 3\n", 3, "has 3 columns, the rows before it have 2"),
-        ("t,accel_g\n0,1\n0.01,,2\n", 3, "a value is missing"),
-        ("t;accel_g\n0;1\n;2\n", 3, "a value is missing"),
-        ("t,a,b\nO.00,1,2\n0,1,2\n0.01,2,3\n", 2, "'O.00' is not a number"),
-        ("t,a,b\n0,1,2\n0.01,2\n", 3, "has 2 columns, the rows before it have 3"),
-        ("t,accel_g\n0,1\n", 2, "at least two samples"),
-        ("6 km south of the fault\naccel_g\n1\n2\n", 1, "'km' is not a number"),
+        ("t,accel_g\n0,1\n0.01,abc\n0.02,3\n", 3, "'abc' is not a number", {}),
+        ("t,accel_g\n0,abc\n0.01,2\n", 2, "'abc' is not a number", {}),
+        ("t,accel_g\nO.00,1\n0.01,2\n0.02,2\n", 2, "'O.00' is not a number", {}),
+        ("t,accel_g\n0,1\n0.01,2\nend\n", 4, "'end' is not a number", {}),
+        ("t,accel_g\n0,1_0\n0.01,2\n", 2, "'1_0' is not a number", {}),
+        ("t,accel_g\n0,0x1\n0.01,2\n", 2, "'0x1' is not a number", {}),
+        ("t,accel_g\n0,1\n0.01,1 2\n", 3, "'1 2' is not a number", {}),
+        ("t,accel_g\n0,1\n0.01,NaN\n0.02,3\n", 3, "'NaN' is not a finite number", {}),
+        ("t,accel_g\nnan,1\n0.01,2\n", 2, "'nan' is not a finite number", {}),
+        ("t,accel_g\n0,1\n0.01,-inf\n", 3, "'-inf' is not a finite number", {}),
+        ("t,accel_g\n0,1\n0.01,1e999\n", 3, "'1e999' is not a finite number", {}),
+        ("t,accel_g\n0,1\n0.01,1e300\n", 3, "'1e300' is not a finite number of sensible size", {}),
+        ("t,accel_g\n-1e308,1\n1e308,2\n", 2, "'-1e308' is not a finite number of sensible size", {}),
+        ("t,accel_g\n\n0,1\n# c\n0.01\n0.02,3\n", 5, "has 1 column, the rows before it have 2", {}),
+        ("t,accel_g\n0,1\n0.01,2,3\n", 3, "has 3 columns, the rows before it have 2", {}),
+        ("t accel_g\n0 1\n0.01 2 3\n", 3, "has 3 columns, the rows before it have 2", {}),
+        ("t,accel_g\n0,1\n0.01,,2\n", 3, "a value is missing", {}),
+        ("t;accel_g\n0;1\n;2\n", 3, "a value is missing", {}),
+        ("t,a,b\nO.00,1,2\n0,1,2\n0.01,2,3\n", 2, "'O.00' is not a number", {}),
+        ("t,a,b\n0,1,2\n0.01,2\n", 3, "has 2 columns, the rows before it have 3", {}),
+        ("t,accel_g\n0,1\n", 2, "at least two samples", {}),
+        ("6 km south of the fault\naccel_g\n1\n2\n", 1, "'km' is not a number", {}),
+        ("accel_g\n1\n", 2, "at least two samples", {"dt": 0.01}),
+        ("accel_g\n1\n2\n", None, "no sample interval", {}),
+        ("t a [g]\n0,00 0,10\n0,01 0,20\n", 2, "point, not a comma", {}),
+        ("t,accel_g\n0.0,1\n0.5,2x\n", 3, "correct it", {}),
+        ("1 -2 3 -4 5 -6 7 -8\n2 -3 4 -5 6 -7 8 -9\n0 1 0 1 0 1 0 1\n", None, "run on from line", {"units": "g"}),
+        ("0,00;0,1\n0,01;1.234\n0,02;0,3\n", 2, "a point", {"units": "g"}),
+        ("0,00;0,1\n0,01;1,2,3\n0,02;0,3\n", 2, "'1.2.3' is not a number", {"units": "g"}),
+        ('"0,00","0,1"\n"0,01","0,2"\n', 1, "quotation marks", {"units": "g"}),
+        ('"0.00","0.1"\n"0.01","1,234"\n', 2, "has 3 columns", {"units": "g"}),
+        ('"0.00","0.1\n"0.01",""\n', 2, "has 1 column", {"units": "g"}),
+        # times
+        ("time_ms,accel_g\n0,1\n5,2\n", 1, "'ms'", {}),
+        ("t,accel_g\n0,1\n5e-324,2\n", None, "sample interval of", {}),
+        ("t,accel_g\n0,1\n# c\n\n0.01,1\n,\n0.02,1\n% c\n0.04,1\n0.05,1\n", 9, "uneven", {}),
+        ("t,a\n0,1\n0.01,1\n0.02,1\n0.04,1\n0.05,1\n", 5, "uneven", {"units": "g"}),
+        ("t,a\n0,1\n0.01,1\n0.02,1\n0.021,1\n0.03,1\n0.04,1\n", 5, "uneven", {"units": "g"}),
+        ("t,a\n0,1\n0.01,1\n0.021,1\n0.03,1\n", 4, "uneven", {"units": "g"}),
+        ("t,a\n0,1\n0.01,1\n0.02,1\n0.0202,1\n", 5, "uneven", {"units": "g"}),
+        ("t,a\n0,1\n0.01,1\n0.01,1\n0.02,1\n", 4, "does not increase: 0.01 s is repeated", {"units": "g"}),
+        ("t,a\n0,1\n0.02,1\n0.015,1\n0.03,1\n", 4, "0.015 s comes after 0.02 s", {"units": "g"}),
+        ("t,a\n0.03,1\n0.02,1\n0.01,1\n", 3, "does not increase", {"units": "g"}),
+        ("t,a\n0,1\n0,1\n0,1\n", 3, "is repeated", {"units": "g"}),
+        ("accel_g,time_s\n0,0\n1,1\n", 1, "the time is in the second column", {}),
+        ("a [g];t [s]\n0;0\n1;1\n", 1, "the time is in the second column", {}),
+        ('"acc (g)",Time\n0,0\n1,1\n', 1, "the time is in the second column", {}),
+        # units and quantities
+        ("# made up\nt,accel_g\n0,1\n0.5,2\n", 2, "but `units` says m/s2", {"units": "m/s2"}),
+        ("# made up\nt,a [m/s2]\n0,1\n0.5,2\n", 2, "but `units` says g", {"units": "g"}),
+        ("# made up\nt,a [cm/s2]\n0,1\n0.5,2\n", 2, "but `units` says mm/s2", {"units": "mm/s2"}),
+        ("t,a [furlong/s2]\n0,1\n0.5,2\n", 1, "says 'furlong/s2', which is not a known unit", {}),
+        ("t [s],acceleration [g/10]\n0,1\n0.5,2\n", 1, "says 'g/10', which is not a known unit", {}),
+        ("# made up\nTime (sec); acc (kine)\n0;1\n0.5;2\n", 2, "says 'kine', which is not a known unit", {}),
+        ("# units: furlong/fortnight^2\nt,a\n0,1\n0.5,2\n", 1, "says 'furlong/fortnight^2', which", {}),
+        ("units = bananas\nt,a\n0,1\n0.5,2\n", 1, "says 'bananas', which is not a known unit", {}),
+        ("t,velocity\n0,1\n0.5,2\n", 1, "velocity or displacement", {"units": "g"}),
+        ("t [s],v [m/s]\n0,1\n0.5,2\n", 1, "'m/s'", {}),
+        ("# one\nt [s];u (cm)\n0;1\n0.5;2\n", 2, "'cm'", {"units": "g"}),
+        ("t,vel_cm/s\n0,1\n0.5,2\n", 1, "velocity or displacement", {}),
+        ("t,Displacement (mm)\n0,1\n0.5,2\n", 1, "'mm'", {"units": "g"}),
+        ("t,disp\n0,1\n0.5,2\n", 1, "velocity or displacement", {}),
+        ("t,acceleration [cm/s]\n0,1\n0.5,2\n", 1, "'cm/s'", {"units": "g"}),
+        ("# VELOCITY TIME SERIES IN UNITS OF CM/S\nt,x\n0,1\n0.5,2\n", 1, "'cm/s'", {}),
+        ("# accelerations\nt,vel\n0,1\n0.5,2\n", 2, "velocity or displacement", {"units": "g"}),
+        ("t,accel [ft/s2]\n0,1\n0.5,2\n", 1, "'ft/s2' cannot be read", {}),
+        ("t,accel [counts]\n0,1\n0.5,2\n", 1, "'counts' cannot be read", {"units": "g"}),
+        # PEER AT2
+        (peer_of("1 2 3\n4 oops 6", 6), 6, "'oops' is not a number", {}),
+        (peer_of("1 2 3\n\n4 NaN 6", 6), 7, "'NaN' is not a finite number", {}),
+        (peer_of("1 2 3\n4 ******** 6", 6), 6, "'********' is not a number", {}),
+        (peer_of("1 1E999 3"), 5, "'1E999' is not a finite number", {}),
+        (peer_of("1 -1e300 3"), 5, "'-1e300' is not a finite number", {}),
+        (peer_of("1 2 1_0"), 5, "'1_0' is not a number", {}),
+        (peer_of("1 2,5 3"), 5, "'2,5' is not a number", {}),
+        (peer_of("1 2 3", None), None, "(NPTS)", {}),
+        (peer_of("1 2 3", 3, None), 4, "(DT)", {}),
+        (peer_of("1 2 3", None, None), None, "(NPTS)", {}),
+        (peer_of("1 2 3", 2), 4, "NPTS = 2", {}),
+        (peer_of("1 2 3", 4), 4, "3 values", {}),
+        (peer_of("1 2 3", 0), 4, "NPTS = 0", {}),
+        (peer_of("", 0), 4, "at least two samples", {}),
+        (peer_of("1", 1), 4, "at least two samples", {}),
+        (peer_of("1 2 3", dt="0.0"), 4, "positive", {}),
+        (peer_of("1 2 3", dt="-.01"), 4, "positive", {}),
+        (peer_of("1 2 3", dt="1E999"), 4, "positive", {}),
+        (peer_of("1 2 3", series="VELOCITY TIME SERIES IN UNITS OF CM/S"), 3, "not an acceleration", {}),
+        (peer_of("1 2 3", series="DISPLACEMENT TIME SERIES IN UNITS OF CM"), 3, "not an acceleration", {"units": "g"}),
+        # Fortran drops the E of a three-digit exponent; read as two numbers it would be a sample of -102 g.
+        (peer_of(".1234-102 .2 .3"), 4, "has 4 values", {}),
+        # any file
+        *((empty, None, "empty", {}) for empty in ("", "\n \r\n", "\ufeff", "\x1a")),
+        *((binary, None, "binary", {}) for binary in (b"\x89PNG\r\n\x1a\n\0\0\0", "0,1\n\0\0\0\n0.1,2\n", "\x02")),
+        ("0,1\n\x02\n".encode("utf-16"), None, "binary", {}),
+        ("t,accel_g\n0,1\n0.1,2\n".encode("utf-16")[:-1], None, "cut or damaged", {}),
+        *(
+            (other, None, "PEER AT2", {})
+            for other in ("hello\n", "t,accel_g\n", "# a\n", '{"a": [\n0.1]}', "<a>\n1\n2")
+        ),
     ],
 )
-def test_bad_rows(write, content, line, fragment):
-    path = write(content)
-    found = problem(path)
-    assert fragment in found.message
-    assert found.line == line
-    assert f"{path}:{line}: " in str(found)
-    assert "\n" not in (found.excerpt or "")
-
-
-def test_one_number_is_not_a_record(write):
-    found = problem(write("accel_g\n1\n"), dt=0.01)
-    assert "at least two samples" in found.message
-    assert found.line == 2
-
-
-def test_decimal_commas_that_cannot_be_told_from_others_are_explained(write):
-    found = problem(write("t a [g]\n0,00 0,10\n0,01 0,20\n"))
-    assert "point, not a comma" in found.hint
-    assert found.line == 2
-
-
-def test_a_comma_between_columns_is_not_taken_for_a_decimal_one(write):
-    assert "correct it" in problem(write("t,accel_g\n0.0,1\n0.5,2x\n")).hint
+def test_what_is_wrong_is_said_with_its_line(write, content, line, fragment, options):
+    found = problem(write(content), **{"dt": 0.01} | options if "run on" in fragment else options)
+    assert fragment in str(found)
+    assert found.line == line and "\n" not in (found.excerpt or "")
 
 
 def test_a_bad_value_late_in_a_long_file_is_placed(write):
@@ -538,48 +491,14 @@ def test_a_bad_value_late_in_a_long_file_is_placed(write):
 # --- what is wrong with any file ------------------------------------------------------------------------------------
 
 
-def test_missing_file(tmp_path):
-    found = problem(tmp_path / "nowhere.csv")
-    assert "no such file" in found.message
-    assert found.line is None
-
-
-def test_the_file_is_named_as_the_user_named_it(tmp_path, monkeypatch):
+def test_a_file_is_named_as_the_user_named_it(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (found,) = problems("./nowhere.csv")
-    assert found.file == "./nowhere.csv"
-
-
-def test_directory(tmp_path):
-    assert "this is a folder" in problem(tmp_path).message
-
-
-def test_a_path_no_file_can_have():
-    assert "cannot be read" in problem("a\0b").message
-
-
-@pytest.mark.parametrize("content", [b"", b"\n \r\n", b"\xef\xbb\xbf", b"\x1a"])
-def test_empty_file(write, content):
-    assert "empty" in problem(write(content)).message
-
-
-@pytest.mark.parametrize(
-    "content",
-    [b"\x89PNG\r\n\x1a\n\0\0\0", b"0,1\n\0\0\0\n0.1,2\n", b"0,1\n0.1,\x02", "0,1\n\x02\n".encode("utf-16")],
-)
-def test_binary_file(write, content):
-    found = problem(write(content), units="g")
-    assert "binary" in found.message
-    assert "plain text" in found.hint
-
-
-@pytest.mark.parametrize(
-    "content", ["hello\nworld\n", "t,accel_g\n", "# only a comment\n", '{"a": [\n0.1,\n0.2]}', "<a>\n1\n2"]
-)
-def test_something_else_altogether(write, content):
-    found = problem(write(content), dt=0.01, units="g")
-    assert "not a record format" in found.message
-    assert "PEER AT2" in found.hint and "\n" not in found.hint
+    for name, said in (
+        ("./nowhere.csv", "no such file"),
+        (str(tmp_path), "this is a folder"),
+        ("a\0b", "cannot be read"),
+    ):
+        assert said in problem(name).message
 
 
 @UNTIMED
@@ -716,78 +635,12 @@ def test_unit_missing_or_contradicted_in_peer(write):
     assert found.line == 3
 
 
-@pytest.mark.parametrize(
-    "quantity", ["VELOCITY TIME SERIES IN UNITS OF CM/S", "DISPLACEMENT TIME SERIES IN UNITS OF CM"]
-)
-@pytest.mark.parametrize("units", [None, "g"])
-def test_velocity_and_displacement_files_are_refused(write, quantity, units):
-    found = problem(write(at2(VALUES, units=quantity + "\n")), units=units)
-    assert "not an acceleration" in found.message
-    assert found.line == 3
-
-
-@pytest.mark.parametrize("npts", [12, 14, 0])
-def test_number_of_points_must_match(write, npts):
-    found = problem(write(at2(VALUES, npts=npts)))
-    assert f"NPTS = {npts}" in found.message
-    assert "13 values" in found.message
-    assert found.line == 4
-
-
-def test_exponents_without_a_letter_do_not_pass_unnoticed(write):
-    # Fortran drops the E of a three-digit exponent; read as two numbers it would be a sample of -102 g.
-    assert "has 4 values" in problem(write(at2([], npts=3) + ".1234-102 .2 .3")).message
-
-
-@pytest.mark.parametrize("npts", [0, 1])
-def test_too_few_points_in_peer(write, npts):
-    found = problem(write(at2(VALUES[:npts])))
-    assert "at least two samples" in found.message
-    assert found.line == 4
-
-
-@pytest.mark.parametrize("dt", ["0.0", "-.01", "1E999"])
-def test_interval_of_peer_must_be_positive(write, dt):
-    found = problem(write(at2(VALUES, dt=dt)))
-    assert "positive" in found.message
-    assert found.line == 4
-
-
 def test_an_interval_that_is_given_must_agree_with_peer(write):
     path = write(at2(VALUES))
     assert read_record(path, dt=0.01).dt == 0.01
     found = problem(path, dt=0.005)
     assert "0.01 s, but `dt` says 0.005 s" in found.message
     assert found.line == 4
-
-
-@pytest.mark.parametrize(
-    ("body", "line", "fragment"),
-    [
-        ("1 2 3\n4 oops 6\n", 6, "'oops' is not a number"),
-        ("1 2 3\n\n4 NaN 6\n", 7, "'NaN' is not a finite number"),
-        ("1 2 3\n4 ******** 6\n", 6, "'********' is not a number"),
-        ("1 1E999 3\n", 5, "'1E999' is not a finite number"),
-        ("1 -1e300 3\n", 5, "'-1e300' is not a finite number"),
-        ("1 2 1_0\n", 5, "'1_0' is not a number"),
-        ("1 2,5 3\n", 5, "'2,5' is not a number"),
-    ],
-)
-def test_bad_values_in_peer(write, body, line, fragment):
-    found = problem(write(at2([], npts=6).rstrip("\n") + "\n" + body))
-    assert fragment in found.message
-    assert found.line == line
-
-
-@pytest.mark.parametrize(
-    ("header", "missing", "line"),
-    [("DT= .01 SEC\n", "NPTS", None), ("NPTS= 3\n", "DT", 4), ("\n", "NPTS", None)],
-)
-def test_peer_without_its_numbers(write, header, missing, line):
-    found = problem(write(f"{TITLE}{UNITS_OF_G}{header}1 2 3\n"))
-    assert f"({missing})" in found.message
-    assert "NPTS=" in found.hint
-    assert found.line == line
 
 
 def test_comments_in_peer_are_passed_over(write):
@@ -836,11 +689,6 @@ def test_real_records(name, options, npts, dt, pga, form):
     assert motion.pga_g == pytest.approx(pga, abs=0.0005)
 
 
-@NEEDS_RECORDS
-def test_a_real_record_without_a_unit_is_refused():
-    assert "`units`" in problem(record("elcentro_NS_full_2col.dat")).hint
-
-
 @pytest.fixture(scope="module")
 def make_accel():
     return runpy.run_path(str(EXAMPLES / "make_accel.py"))
@@ -874,21 +722,6 @@ def test_the_example_has_unix_newlines():
     assert content.startswith(b"time_s,accel_g\n0.00,0.000000\n")
     assert b"\r" not in content
     assert b"-0.000000" not in content
-
-
-@pytest.mark.parametrize("header", ["accel_g,time_s", "a [g];t [s]", '"acc (g)",Time'])
-def test_columns_in_the_other_order_are_refused_even_if_the_accelerations_rise(tmp_path, header):
-    path = tmp_path / "swapped.csv"
-    mark = ";" if ";" in header else ","
-    path.write_text(header + "\n" + "".join(f"{k * 0.01}{mark}{k * 0.01}\n" for k in range(5)), encoding="utf-8")
-    with pytest.raises(InputError, match=r"swapped.csv:1: the time is in the second column"):
-        read_record(path)
-
-
-def test_a_bare_column_name_that_begins_with_t_is_no_time(tmp_path):
-    path = tmp_path / "named.csv"
-    path.write_text("time_s,transverse_g\n0,0\n0.01,1\n0.02,0\n", encoding="utf-8")
-    assert read_record(path, units="g").npts == 3
 
 
 # --- tables of several columns --------------------------------------------------------------------------------------
@@ -985,11 +818,6 @@ def test_a_bad_value_in_a_table_names_its_column(write):
     assert "'x' is not a number" in found.message
 
 
-def test_values_that_run_on_are_not_taken_for_a_table(write):
-    path = write("1 -2 3 -4 5 -6 7 -8\n2 -3 4 -5 6 -7 8 -9\n0 1 0 1 0 1 0 1\n")
-    assert "run on from line to line" in problem(path, dt=0.01, units="g").hint
-
-
 def test_two_components_without_times(write):
     path = write("ns [g],ew [g]\n1,2\n-1,5\n1,8\n")
     assert accelerations(read_record(path, channel="ns", dt=0.01)) == [G, -G, G]
@@ -999,11 +827,6 @@ def test_two_components_without_times(write):
 def test_accelerations_that_repeat_the_times_are_no_times(write):
     path = write("x,y\n0,0\n0.02,0.02\n")
     assert accelerations(read_record(path, channel="1", units="m/s2")) == [0, 0.02]
-
-
-@pytest.mark.parametrize("channel", ["1", "accel [g]", "accel"])
-def test_the_only_column_may_be_named(write, channel):
-    assert read_record(write("t,accel [g]\n0,1\n0.01,2\n"), channel=channel).name == "record.txt"
 
 
 # --- times with few digits ------------------------------------------------------------------------------------------
@@ -1018,10 +841,6 @@ def test_times_of_six_digits_are_even(write, dt, n):
     motion = read_record(times(write, *printed(dt, n)))
     assert motion.npts == n
     assert motion.dt == pytest.approx(dt, rel=1e-4)
-
-
-def test_times_whose_digits_no_longer_tell_samples_apart_are_refused(write):
-    assert "time" in problem(times(write, *printed(1 / 800, 90000))).message
 
 
 def test_times_of_few_decimals_are_not_taken_for_times_of_few_digits(write):
@@ -1049,52 +868,11 @@ def test_the_table_of_a_laboratory_is_read():
     assert "4: Amplitude - Plot 3, column 8" in found.hint
 
 
-# --- how spreadsheets write -----------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "rows",
-    [
-        "0,00;0,1\n0,01;-0,2\n0,02;0,3\n",
-        "0;0,1\n0,01;-,2\n0,02;3,0E-1\n",
-        "0,00\t0,1\n0,01\t-0,2\n0,02\t0,3\n",
-        '"0,00";"0,1"\n"0,01";"-0,2"\n"0,02";"0,3"\n',
-        '"0.00","0.1"\n"0.01","-0.2"\n"0.02","0.3"\n',
-        '"0.00" "0.1"\n"0.01" "-0.2"\n"0.02" "0.3"\n',
-        '# "made up", 3.5\n"0.00",0.1\n"0.01",-0.2\n"0.02",0.3\n',
-    ],
-)
-def test_decimal_commas_and_quoted_numbers(write, rows):
-    motion = read_record(write(rows), units="m/s2")
-    assert accelerations(motion) == [0.1, -0.2, 0.3]
-    assert motion.dt == pytest.approx(0.01)
-
-
-@pytest.mark.parametrize(
-    ("rows", "line", "fragment"),
-    [
-        ("0,00;0,1\n0,01;1.234\n0,02;0,3\n", 2, "a point"),
-        ("0,00;0,1\n0,01;1,2,3\n0,02;0,3\n", 2, "'1.2.3' is not a number"),
-        ('"0,00","0,1"\n"0,01","0,2"\n', 1, "quotation marks"),
-        ('"0.00","0.1"\n"0.01","1,234"\n', 2, "has 3 columns"),
-        ('"0.00","0.1\n"0.01",""\n', 2, "has 1 column"),
-    ],
-)
-def test_commas_that_may_be_two_things_are_refused(write, rows, line, fragment):
-    found = problem(write(rows), units="m/s2")
-    assert fragment in found.message
-    assert found.line == line
-
-
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be"])
 @pytest.mark.parametrize("content", ["Zeit;a [m/s²]\r\n0,0;1,5\r\n0,5;2\r\n", "t,accel [m/s2]\n0.0,1.5\n0.5,2\n"])
 def test_utf_16(write, encoding, content):
     motion = read_record(write(content.encode(encoding)))
     assert (accelerations(motion), motion.unit) == ([1.5, 2], "m/s2")
-
-
-def test_utf_16_that_is_cut_is_refused(write):
-    assert "cut or damaged" in problem(write("t,accel_g\n0,1\n0.1,2\n".encode("utf-16")[:-1])).message
 
 
 @pytest.mark.parametrize("content", [b"t,accel_g\n0,1\n0.1,2\n\0\0\0\0", b"t,accel_g\0\0\n0,1\0\n0.1,2\0\0\n"])
