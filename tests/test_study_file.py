@@ -246,7 +246,7 @@ def test_no_mistake_hides_another(tmp_path):
         ("structures[3].nmae", 9, "is not a field of structures[3]"),
         ("records[1]", 11, "units"),
         ("records[1].pulse", 11, "malformed pulse 'sine:0.6g': expected sine:AMPLITUDE:PERIOD"),
-        ("records[2].units", 12, "'foot' is not a known unit"),
+        ("records[2].units", 12, "'foot' is not a known unit; give one of g"),
         ("records[2].file", 12, "none.AT2: no such file"),
         ("records[2].vertical", 12, "up.AT2: no such file"),
         ("levels", 14, "a cloud scales records by factors: `measure: scale`"),
