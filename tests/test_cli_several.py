@@ -139,7 +139,8 @@ class TestRespond:
         ]
         assert "bad.csv:3" in result.stderr and "no.csv: no such file" in result.stderr
         assert (
-            "none of 1 motions" in run("respond", FRAME, "--record", "bad.csv", "--record", "r/east.csv", code=5).stdout
+            "under east.csv, the structure does not uplift"
+            in run("respond", FRAME, "--record", "bad.csv", "--record", "r/east.csv", code=5).stdout
         )
         assert run("respond", FRAME, "--record", "bad.csv", "--record", "no.csv", code=2).stdout == ""
 

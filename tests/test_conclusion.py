@@ -231,7 +231,7 @@ def test_a_margin_a_pulse_and_a_response_conclude_alike():
         end = rk.pulse(block, shape="sine", ag=float(ag[:-1]), period=float(period[:-1])).conclusion
         assert end.concluded is alone.conclusion.concluded
         found = margin[margin.conclusion.motion]
-        least = found.possible(0.1)
+        least = found.first(0.1, unknown=True)
         assert margin.conclusion.ratio == (np.inf if least is None else least)
     several = rk.margin(block, pulses, polarity="1", neighbours=5)
     assert several.conclusion.motion == several.sentences[0].split(". ")[1].split(" governs")[0] == "sine:2g:1s"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from math import atan2, cos, hypot, sin
 
@@ -188,9 +187,8 @@ def test_a_history_ends_where_nothing_holds_the_structure_down():
     up = motion.vertical.acceleration
     k = int((up <= -G).argmax())
     gone = motion.dt * (k - 1 + (up[k - 1] + G) / (up[k - 1] - up[k]))  # on the ramp
-    assert (
-        history.unknown and history.check.reason == "weightless" and history.known_to == pytest.approx(gone, abs=1e-12)
-    )
+    assert history.unknown and history.check.reason == "weightless"
+    assert history.known_to == pytest.approx(gone, abs=1e-12)
     assert history.contact_lost == pytest.approx(gone, abs=1e-12)
     assert "nothing holds the structure down" in joints_in_words(history)
 
@@ -354,16 +352,6 @@ def test_without_friction_in_the_file_what_is_required_is_compared_with_masonry(
     assert "no more than the 0.6 usual for masonry" in contact_words(found, block)
     said = contact_words(replace(found, friction_needed=0.61), block)
     assert "more than the 0.6 usual for masonry" in said and "no more than" not in said
-
-
-def test_an_answer_in_python_has_it_too():
-    import rocking_cli as rk
-
-    answer = rk.respond(rk.Block(width=0.7, height=2.8, friction=0.2), "sine:0.4g:0.8s", models="nonlinear")
-    found = answer.to_dict()["responses"]["nonlinear"]["contact"]
-    assert found["slides"] == pytest.approx(answer["nonlinear"].uplift_time) and found["per_unit_mass"] is True
-    assert any("Sliding would start" in each for each in answer.sentences)
-    assert json.dumps(found)
 
 
 def test_thrown_back_it_is_checked_on_both_sides_of_an_impact():

@@ -76,7 +76,7 @@ def test_the_shares_are_those_of_neighbours_followed_alone(mechanism, pulse, pol
     assert found.factors.tolist() == sorted([*FACTORS, 1.0]) and partly.size
     for k in [0, *partly[:2], partly[-1], FACTORS.size]:
         assert found.overturned[k] == share(mechanism, motion, found.factors[k], polarities)[0]
-    assert found.itself == share(mechanism, motion, 1.0, polarities)[0]
+    assert found.share.lowest == share(mechanism, motion, 1.0, polarities)[0]
 
 
 @pytest.mark.parametrize("polarities", [(-1,), (1, -1)])
@@ -152,55 +152,38 @@ class TestLevels:
     def test_where_unknown_outcomes_count_as_overturning(self):
         found = made(0.0, 0.2, 0.6, 0.3, 1.0, unknown=(0.1, 0.4, 0.0, 0.3, 0.0))
         np.testing.assert_allclose(found.at_most, [0.1, 0.6, 0.6, 0.6, 1.0])
-        assert [found.possible(level) for level in LEVELS] == [1.0, 2.0, 5.0]
+        assert [found.first(level, unknown=True) for level in LEVELS] == [1.0, 2.0, 5.0]
         assert [found.first(level) for level in LEVELS] == [2.0, 3.0, 5.0]
-        assert [found.last_possible_below(level) for level in LEVELS] == [None, 1.0, 4.0]
+        assert [found.last_below(level, unknown=True) for level in LEVELS] == [None, 1.0, 4.0]
         assert [found.last_below(level) for level in LEVELS] == [1.0, 4.0, 4.0]
         assert [found.always(level) for level in LEVELS] == [2.0, 5.0, 5.0]
-        assert [found.always_possible(level) for level in LEVELS] == [1.0, 2.0, 5.0]
-        assert (found.itself, found.itself_at_most) == (0.0, 0.1)
+        assert [found.always(level, unknown=True) for level in LEVELS] == [1.0, 2.0, 5.0]
+        assert found.share[:2] == (0.0, 0.1)
 
 
 class TestWords:
-    def test_no_factor_overturns(self):
-        assert in_words(made(0, 0.05, 0), 0.5) == (
-            "At no scale factor from 1 to 3 (PGA from 0.5 g to 1.5 g) do 10 % or more of the neighbouring motions "
-            "overturn the structure."
-        )
-
-    def test_each_level_in_turn(self):
-        assert in_words(made(0, 0.2, 0.6), 0.4) == (
-            "At least 10 % of the neighbouring motions first overturn the structure at a factor of 2 (PGA 0.8 g), "
-            "50 % at 3 (1.2 g) and 90 % at none up to 3; the factors tried are 75 % apart."
-        )
-
-    def test_islands_are_told(self):
-        assert in_words(made(0, 0.2, 0.0, 1.0), 0.5).endswith(
-            "A stronger motion is not always worse: at a factor of 3 (1.5 g) none does."
-        )
-        assert in_words(made(0, 0.6, 0.3, 1.0), 0.5).endswith("always worse: at a factor of 3 (1.5 g) only 30 % do.")
-        assert in_words(made(0, 0.6, 1.0, 0.7, 0.8), 0.5).endswith("always worse: at a factor of 4 (2 g) only 70 % do.")
-        assert "always worse" not in in_words(made(0, 0.2, 0.6, 1.0), 0.5)
-
-    def test_the_first_sentence_counts_unknown_outcomes_as_overturning(self):
-        doubt = (
-            "From a factor of 2 (1 g) on, some outcomes are unknown, as the model no longer "
-            "holds (see `rocking respond`): there, the structure may overturn."
-        )
-        few = "At no factor tried are 10 % or more known to overturn it; this does not prove that it stands."
-        assert in_words(made(0, 0, 0, unknown=(0, 0.3, 0.6)), 0.5) == (
-            "At least 10 % of the neighbouring motions first overturn the structure, or have an unknown outcome, at a "
-            "factor of 2 (PGA 1 g), 50 % at 3 (1.5 g) and 90 % at none up to 3; the factors tried are 75 % apart. "
-            f"{doubt} {few}"
-        )
-        assert in_words(made(0, 0, 0, unknown=(0, 0.05, 0.05)), 0.5) == (
-            "At no scale factor from 1 to 3 (PGA from 0.5 g to 1.5 g) do 10 % or more of the neighbouring motions "
-            f"overturn the structure, or have an unknown outcome. {doubt} {few}"
-        )
-        assert in_words(made(0, 0.2, 0.0, 1.0, unknown=(0, 0.4, 0.3, 0)), 0.5).endswith(
-            "A stronger motion is not always worse: at a factor of 3 (1.5 g) only 30 % do. "
-            f"{doubt} Shares known to overturn it: 10 % from 2 (1 g), 50 % from 4 (2 g), 90 % from 4 (2 g)."
-        )
+    @pytest.mark.parametrize(
+        ("shares", "unknown", "said"),
+        [
+            ((0, 0.05, 0), None, ["At no scale factor from 1 to 3 (PGA from 0.5 g to 1.5 g)", "10 % or more"]),
+            ((0, 0.2, 0.6), None, ["10 %", "at a factor of 2 (PGA 1 g), 50 % at 3 (1.5 g) and 90 % at none up to 3"]),
+            ((0, 0.2, 0.0, 1.0), None, ["not always worse: at a factor of 3 (1.5 g) none does."]),
+            ((0, 0.6, 0.3, 1.0), None, ["not always worse: at a factor of 3 (1.5 g) only 30 % do."]),
+            ((0, 0.6, 1.0, 0.7, 0.8), None, ["not always worse: at a factor of 4 (2 g) only 70 % do."]),
+            # Unknown outcomes count as overturning in what is said first.
+            ((0, 0, 0), (0, 0.3, 0.6), ["or have an unknown outcome, at a factor of 2 (PGA 1 g), 50 % at 3 (1.5 g)",
+                                        "From a factor of 2 (1 g) on", "does not prove that it stands"]),
+            ((0, 0, 0), (0, 0.05, 0.05), ["At no scale factor from 1 to 3", "or have an unknown outcome",
+                                          "From a factor of 2 (1 g) on", "does not prove that it stands"]),
+            ((0, 0.2, 0.0, 1.0), (0, 0.4, 0.3, 0), ["3 (1.5 g) only 30 % do", "the structure may overturn",
+                                                    "known to overturn it: 10 % from 2 (1 g), 50 % from 4 (2 g)"]),
+        ],
+    )  # fmt: skip
+    def test_it_says_at_which_factors_how_many_overturn(self, shares, unknown, said):
+        words = in_words(made(*shares, unknown=unknown), 0.5)
+        assert all(each in words for each in said)
+        assert ("always worse" in words) == any("always worse" in each or "only 30 %" in each for each in said)
+        assert ("unknown" in words) == (unknown is not None)
 
     def test_the_numbers_are_those_of_the_shares(self):
         motion = parse_pulse("ricker:0.7g:0.9s").sampled()
@@ -258,7 +241,7 @@ class TestCommand:
         theirs = data["motions"][1]
         assert theirs["shares"] == found.overturned.tolist() and theirs["unknown"] == [0.0] * 61
         assert theirs["factors"] == sorted([*FACTORS.tolist(), 1.0])
-        assert theirs["overturned"] == found.itself and theirs["uplift"] == found.uplift
+        assert theirs["overturned"] == found.share.lowest and theirs["uplift"] == found.uplift
         assert set(theirs["levels"]) == {"10", "50", "90"}
         assert theirs["levels"]["50"]["first"] == found.first(0.5)
         assert theirs["verdict"] == in_words(found, 0.5)
@@ -281,11 +264,13 @@ class TestCommand:
         model = build_model(load_structure(EXAMPLES / "arch.yaml"), "nonlinear")
         found = margin(model, read_record(self.ACCEL), (1,), around=Neighbourhood(5))
         assert ours["unknown"] == found.unknown.tolist() and max(ours["unknown"]) > 0.5
-        assert ours["levels"]["50"]["first_or_unknown"] == found.possible(0.5) is not None
-        assert ours["levels"]["10"]["last_below_or_unknown"] == found.last_possible_below(0.1) is not None
+        assert ours["levels"]["50"]["first_or_unknown"] == found.first(0.5, unknown=True) is not None
+        assert ours["levels"]["10"]["last_below_or_unknown"] == found.last_below(0.1, unknown=True) is not None
         rows = [" ".join(line.split()) for line in run(*words).stdout.splitlines()]
         first = next(k for k, row in enumerate(rows) if row.startswith("accel.csv: overturn or unknown"))
-        assert f" {found.possible(0.5):.3g} " in rows[first] and rows[first + 1].startswith("known to overturn")
+        assert f" {found.first(0.5, unknown=True):.3g} " in rows[first] and rows[first + 1].startswith(
+            "known to overturn"
+        )
         assert any(row.startswith("accel.csv: At least 10 %") and "an unknown outcome" in row for row in rows)
         (known,) = run_json(*words, "--opening", "100%")["motions"]
         wider, less = np.array(known["unknown"]), np.array(ours["unknown"])

@@ -33,7 +33,7 @@ from rocking_cli.studies.metrics import METRICS, Excitation
 from rocking_cli.studies.movements import Watched, largest
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
 from rocking_cli.studies.survey import ORDERS, Survey, Surveyed, Under
-from rocking_cli.views import assessment_words
+from rocking_cli.views import assessment
 from rocking_cli.views import azimuths as azimuth_views
 from rocking_cli.views import margin as margin_views
 from rocking_cli.views import survey as survey_views
@@ -287,11 +287,13 @@ class TestVerification:
 
 class TestReport:
     def test_a_pulse_alone_may_be_unknown_too(self):
-        fit, own = SimpleNamespace(pulse=SimpleNamespace(title="sine")), SimpleNamespace(reference="critical rotation")
-        result = SimpleNamespace(alone=0.2, alone_unknown=True, fits=[fit], histories={"nonlinear": own})
-        assert "has an unknown outcome" in assessment_words.alone(result)
-        result.alone_unknown = False
-        assert "rocks the structure to 20 % of its critical rotation" in assessment_words.alone(result)
+        fit, own = SimpleNamespace(pulse=SimpleNamespace(title="sine")), SimpleNamespace(ends_at_limit=(False, False))
+        for end, said in (
+            (Conclusion(concluded=Concluded.UNKNOWN, known_until=0.8), "the outcome is unknown after 0.8 s"),
+            (Conclusion(concluded=Concluded.ROCKS, peak_ratio=0.2), "the structure rocks to 0.2 phi_cr"),
+        ):
+            pulse = SimpleNamespace(conclusion=end)
+            assert said in assessment.alone(SimpleNamespace(to_pulse=pulse, fits=[fit], histories={"nonlinear": own}))
 
     def test_movements_say_until_when_they_are_the_largest(self):
         mechanism = rk.load_structure(EXAMPLES / "masonry" / "portal.yaml").model_copy(update={"opening": 0.0})

@@ -28,16 +28,18 @@ from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.studies.assessment import Assessment, MotionResult, PulseMap, amplitude_in_g, share
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.studies.film import Film
-from rocking_cli.studies.linearisation import Linearisation
 from rocking_cli.studies.movements import Watched
 from rocking_cli.studies.overturning import Region
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.text import printable
-from rocking_cli.views import assessment_words as words
+from rocking_cli.views import assessment as words
 from rocking_cli.views.contact import contact_columns
 from rocking_cli.views.equivalent_block import EquivalentSide, is_symmetric, kappa_in_words, sentence, sides_of
+from rocking_cli.views.error import rows as error_rows
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.parameters import PARAMETERS
+from rocking_cli.views.response import outcome_table
+from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.sheet.document import Sheet, SheetPart
 from rocking_cli.views.verdict import SENSE
 from rocking_cli.views.verification import showing
@@ -105,7 +107,7 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
     environment.filters["symbols"] = symbols
     environment.filters["greek"] = _greek
     bins = int(np.clip(BINS // max(1, len(content.results)), FEWEST, MOST))
-    demands = contact_columns(content.mechanism)
+    demands = [column for column in contact_columns(content.mechanism) if column.head is not None]
     page = environment.get_template("report.html").render(
         content=content,
         verified=verified,
@@ -113,12 +115,10 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         answer=words.in_a_sentence(content, verified.found if verified is not None else None),
         falls=_is_bad(content.conclusion) or (verified is not None and _is_bad(verified.found.conclusion)),
         verdicts=words.verdicts(content),
-        overview=words.overview(content),
-        overview_columns=words.overview_columns(content, _over(content)),
-        governs=words.governs(content) if content.results else "",
+        overview=words.overview(content, _over(content)),
         doubts=words.doubts(content),
         cautioned=cautioned(verified.found) if verified is not None else [],
-        restitution=words.restitution(content),
+        restitution=_greek(restitution_used(content.structure)),
         drawing=_still(draw_structure(content.picture, content.name), "drawing"),
         measured=_dimensions(content),
         directions=_directions(content),
@@ -149,7 +149,11 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         maps=[_map(each, k) for k, each in enumerate(content.maps)],
         errors=_still(draw_linearisation(content.curves, content.asked, ""), "errors") if content.curves else None,
         error_tables=[
-            (each.direction.label if len(content.asked) > 1 else "", _errors(each)) for each in content.asked
+            (
+                each.direction.label if len(content.asked) > 1 else "",
+                [[_greek(cell) for cell in row] for row in error_rows(each, content.mechanism.gravity)],
+            )
+            for each in content.asked
         ],
         measures=[_measures(each) for each in content.results],
         style=Markup(asset("motion.css")),
@@ -274,7 +278,12 @@ def _response(content: Assessment, result: MotionResult, k: int, bins: int) -> d
     film = Film(content.picture, best, result.motion, result.contacts[result.polarity].assumed_friction)
     pulses = [replace(each, sign=each.sign * result.polarity) for each in result.fits[:1] if result.file]
     charts = [ratio_chart(result.histories, bins), ground_chart(result.motion, pulses, bins)]
-    moment = _peak_time(best, film)
+    moment = film.start
+    if best.fell:  # when it passes the critical rotation, else that of the peak
+        moment = min(float(best.time[int(np.searchsorted(best.time, best.overturning_time))]), film.end)
+    elif best.peak_ratio:
+        moment = float(best.time[int(np.nanargmax(np.abs(best.ratio)))])
+    rows = outcome_table("", result, result.polarity, Watched(content.mechanism)).rows
     label = f"{content.name}, as it moves under {result.given.motion.name}"
     data = moving(film, charts, label=label, speed=1.0, moment=moment)
     return {
@@ -285,62 +294,15 @@ def _response(content: Assessment, result: MotionResult, k: int, bins: int) -> d
         "data": Markup(as_script(data)),
         "id": f"motion-{k}",
         "models": [words.MODELS[name] for name in result.histories],
-        "rows": _outcomes(list(result.histories.values()), Watched(content.mechanism)),
+        "rows": [[_greek(cell) for cell in row] for row in rows],
         "fits": [_fit(fit) for fit in result.fits if result.file],
         "alone": words.alone(result),
     }
 
 
-def _peak_time(run: History, film: Film) -> float:
-    """Return the time of the peak rotation, or of passing the critical one if the structure overturns [s]."""
-    if run.fell:
-        return min(float(run.time[int(np.searchsorted(run.time, run.overturning_time))]), film.end)
-    return float(run.time[int(np.nanargmax(np.abs(run.ratio)))]) if run.peak_ratio else film.start
-
-
 def _known(run: History) -> str:
     """Return until when the outcome of a nonlinear history is known."""
     return f"until {run.known_to:.4g} s" if run.unknown else "not checked" if run.check is None else "throughout"
-
-
-def _outcomes(runs: Sequence[History], watched: Watched) -> Rows:
-    def angle(phi: float) -> str:
-        return ABSENT if isnan(phi) else f"{degrees(phi):.4g}"
-
-    free, some = all(runs[0].ends_at_limit), any(runs[0].ends_at_limit)
-    called = "the limit" if free else "critical rotation, or the limit" if some else "critical rotation"
-    over = style.over(runs[0].ends_at_limit).replace("φcr", "φ_cr")
-    moved = [watched.peaks(run) for run in runs]
-    known: Rows = []
-    if any(run.unknown for run in runs):
-        until = [_number(run.known_to) for run in runs]
-        known.append(["known until; peaks, impacts and displacements are those until then", *until, "s"])
-        bounds = [_number(run.lower_bound) if run.unknown else ABSENT for run in runs]
-        known.append(["lower bound of the peak rotation ratio, until the first joint opens", *bounds, "1"])
-    return [
-        ["outcome", *(run.words for run in runs), ""],
-        *known,
-        [
-            f"peak rotation over {called}, |φ|/{over.removeprefix('φ/')}",
-            *(_number(run.peak_ratio) for run in runs),
-            "1",
-        ],
-        ["peak rotation, clockwise", *(angle(run.peak_positive) for run in runs), "°"],
-        ["peak rotation, anticlockwise", *(angle(run.peak_negative) for run in runs), "°"],
-        ["first uplift", *(_number(run.uplift_time) for run in runs), "s"],
-        [
-            "overturning time: passes the critical rotation for good" if not free else "overturning time",
-            *(_number(run.overturning_time) for run in runs),
-            "s",
-        ],
-        ["number of impacts", *(str(len(run.felt)) for run in runs), "1"],
-        ["peak impact velocity", *(_number(each.impact_velocity) for each in moved), "m/s"],
-        [
-            "peak horizontal displacement of the top",
-            *(_number(1000 * each.points[0].horizontal) for each in moved),
-            "mm",
-        ],
-    ]
 
 
 def _fit(fit: PulseFit) -> list[str]:
@@ -377,22 +339,6 @@ def _map(each: PulseMap, k: int) -> dict[str, Any]:
             for name, fit in each.marks
         ],
     }
-
-
-def _errors(each: Linearisation) -> Rows:
-    def percent(ratio: float) -> str:
-        if np.isinf(ratio):
-            return "never uplifts"
-        error = 100 * (ratio - 1)
-        return f"{error:+.0f} %" if abs(error) >= 9.95 else f"{error:+.2g} %"
-
-    rows = [["uplift acceleration", "", percent(each.uplift_ratio1), percent(each.uplift_ratio2)]]
-    for r, ratio in zip(each.amplitude.tolist(), each.period_ratio.tolist(), strict=True):
-        rows.append(["free period", f"φ/φ_cr = {r:g}", percent(ratio), percent(ratio)])
-    both = (each.overturning_ratio1.tolist(), each.overturning_ratio2.tolist())
-    for a, one, two in zip(each.acceleration.tolist(), *both, strict=True):
-        rows.append(["overturning time", f"a/λ = {a:g}", percent(one), percent(two)])
-    return rows
 
 
 def _measures(result: MotionResult) -> dict[str, Any]:

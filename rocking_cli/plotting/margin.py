@@ -37,7 +37,7 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
     for k, (name, each) in enumerate(margins.items()):
         look = style.distinct(k) | {"marker": "", "linewidth": style.BOLD}
         axes.plot(each.factors, each.overturned, label=style.plain(shorten(name, NAME, placeholder=" ...")), **look)
-        axes.plot(1.0, each.itself, color=look["color"], clip_on=False, **style.STAR)
+        axes.plot(1.0, each.share.lowest, color=look["color"], clip_on=False, **style.STAR)
         if each.unknown.any():
             between = style.UNKNOWN | {"edgecolor": look["color"]}
             axes.fill_between(each.factors, each.overturned, each.at_most, alpha=0.4, **between)

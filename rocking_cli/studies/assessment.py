@@ -7,16 +7,16 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from importlib.metadata import version
-from math import nan, pi
+from math import pi
 
 import numpy as np
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
-from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.history import RTOL, TAIL, History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import CLOSE, disagree
-from rocking_cli.engines import follow, respond
+from rocking_cli.engines import respond
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import coarse_for, doubts
@@ -27,14 +27,13 @@ from rocking_cli.excitation.records.opening import name_of, original
 from rocking_cli.processing.scaled import Scaled
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion, worst
-from rocking_cli.studies.contact import ContactDemand, Contacts
 from rocking_cli.studies.linearisation import Linearisation, compare
 from rocking_cli.studies.margin import LEVELS, Margin, margin
-from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
+from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.studies.overturning import OverturningMap, Region, overturning_map
 from rocking_cli.studies.picture import Picture, picture
-from rocking_cli.studies.response import concluded
-from rocking_cli.studies.under_pulses import outcomes, parse_shape, pulsed_model
+from rocking_cli.studies.response import Question, Response, response_of
+from rocking_cli.studies.under_pulses import parse_shape, pulsed_model
 
 AMPLITUDES, ACCELERATIONS = (0.25, 0.5, 0.75), (1.5, 2.0, 4.0)  # at which the error of the block is said
 FITTED = ("sine", "ricker")  # the pulses with an amplitude and a period and nothing else: a map has these two axes
@@ -92,50 +91,35 @@ class TitleBlock:
         return {name: text for name, text in given.items() if text}
 
 
-@dataclass(frozen=True, eq=False)
-class MotionResult:
-    """A ground motion and the response of the structure to it.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MotionResult(Response):
+    """A ground motion and the response of the structure to it, and to its best pulse, with all that a report shows.
 
     Parameters
     ----------
-    given : Scaled
-        The motion as read, or the sampled pulse, and the factor on it.
     file : File or None
         File of the record; None for a pulse.
     measured : Measures
         Intensity measures of the scaled motion, on the floor if the structure stands on one.
     doubts : tuple of Doubt
         Doubtful properties of the motion as read.
-    runs : mapping of int to mapping of str to History
-        The histories of each model under each polarity that was simulated.
-    polarity : int
-        The polarity that governs.
-    neighbours : mapping of int to Neighbours
-        Outcomes of the neighbours of the motion under each polarity, by the nonlinear model.
     margin : Margin
         The scale factors at which the motion uplifts and overturns the structure.
     fits : tuple of PulseFit
         The pulses fitted to the motion, the best first; a motion that is a pulse has this pulse alone.
-    alone : float or None
-        Peak ratio under the best pulse alone, NaN if the structure overturns; None if no pulse was fitted.
-    contacts : mapping of int to ContactDemand
-        Check of the contacts in the nonlinear history, under each polarity.
-    alone_unknown : bool
-        Whether the outcome under the best pulse is unknown: `alone` is then the peak ratio while it is known.
     """
 
     given: Scaled
     file: File | None
     measured: Measures
     doubts: tuple[Doubt, ...]
-    runs: Mapping[int, Mapping[ModelName, History]]
-    polarity: int
-    neighbours: Mapping[int, Neighbours]
     margin: Margin
     fits: tuple[PulseFit, ...]
-    alone: float | None
-    contacts: Mapping[int, ContactDemand]
-    alone_unknown: bool = False
+
+    @property
+    def polarity(self) -> int:
+        """The polarity that governs; the first one if none does."""
+        return self.conclusion.polarity or next(iter(self.runs))
 
     @property
     def motion(self) -> GroundMotion:
@@ -172,11 +156,6 @@ class MotionResult:
     def unknown(self) -> bool:
         """Whether the outcome in the governing polarity is unknown; no polarity overturns the structure then."""
         return self.histories["nonlinear"].unknown
-
-    @property
-    def conclusion(self) -> Conclusion:
-        """What is concluded under this motion, and what governs."""
-        return concluded(self.runs, self.neighbours, self.given.motion.name)
 
     @property
     def histories(self) -> Mapping[ModelName, History]:
@@ -347,29 +326,23 @@ def steps(given: Sequence[Scaled]) -> int:
 
 def _result(structure: Structure, given: Scaled, polarities: Sequence[int], around: Neighbourhood) -> MotionResult:
     ground = given.motion.of_ground
-    found = [] if given.pulse is not None else doubts(ground, measure(ground))
-    doubtful = [*found, *(coarse_for(given.motion, structure.p) if given.pulse is None else [])]
-    under = {sign: given.motion.scaled(sign * given.factor) for sign in polarities}
-    names, model = structure.default_models, structure.model("nonlinear")
-    runs = {sign: respond(structure, motion, models=names) for sign, motion in under.items()}
-    contacts = Contacts(structure.mechanism)
+    doubtful = [] if given.pulse is not None else doubts(ground, measure(ground))
+    doubtful = [*doubtful, *(coarse_for(given.motion, structure.p) if given.pulse is None else [])]
+    asked = Question(tuple(polarities), release=None, tail=TAIL, rtol=RTOL, around=around)
+    found = response_of(structure, structure.default_models, given, asked)
     scaled = given.motion.scaled(given.factor)
     fits = _fits(given, scaled)
-    alone, alone_unknown = _alone(structure, fits[0], polarities) if fits else (None, False)
-    near = {sign: neighbours(model, motion, around) for sign, motion in under.items()}
+    if fits:
+        alone = fits[0].alone(scaled)
+        runs = {sign: respond(structure, alone.scaled(sign), models=["nonlinear"]) for sign in polarities}
+        found = replace(found, to_pulse=Response(given=None, first=alone, runs=runs, neighbours={}, contacts={}))
     return MotionResult(
-        given=given,
+        **vars(found),
         file=file_of_motion(given),
         measured=measure(scaled),
         doubts=tuple(doubtful),
-        runs=runs,
-        polarity=concluded(runs, near).polarity or polarities[0],
-        neighbours=near,
-        margin=margin(model, scaled, polarities, around=around),
+        margin=margin(structure.model("nonlinear"), scaled, polarities, around=around),
         fits=fits,
-        alone=alone,
-        contacts={sign: contacts.check(run["nonlinear"], under[sign]) for sign, run in runs.items()},
-        alone_unknown=alone_unknown,
     )
 
 
@@ -388,22 +361,6 @@ def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:
     except InputError:
         return ()
     return tuple(sorted(fits, key=lambda fit: -fit.captured))
-
-
-def _alone(structure: Structure, fit: PulseFit, polarities: Sequence[int]) -> tuple[float, bool]:
-    """Return the largest peak ratio under a pulse alone, NaN if the structure overturns, and whether it is unknown."""
-    if structure.why_no_block or structure.refuses("sizes"):  # nothing measures a pulse here
-        alone = fit.pulse.sampled()
-        runs = [follow(structure, alone.scaled(polarity * fit.sign)) for polarity in polarities]
-        if any(run.fell for run in runs):
-            return nan, False
-        return max(run.peak_ratio for run in runs), any(run.unknown for run in runs)
-    shape = _shape(fit.pulse)
-    under = pulsed_model(structure, "nonlinear", shape, (1, -1))
-    signs = [polarity * fit.sign for polarity in polarities]
-    period, amplitude = np.array([fit.pulse.period]), np.array([fit.pulse.amplitude])
-    found = outcomes(under, shape, period, amplitude, polarities=signs)
-    return float(found.peak_ratio[0]), bool(found.unknown[0])
 
 
 def _shape(pulse: Pulse) -> Pulse:

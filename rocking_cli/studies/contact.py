@@ -6,7 +6,7 @@ this is true: at every sample while the structure rocks, at its first uplift and
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -70,7 +70,7 @@ class SupportDemand(NamedTuple):
     least: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class ContactDemand:
     """Forces and friction that a history requires of the contacts; NaN if undefined, as for a structure at rest.
 
@@ -128,22 +128,22 @@ class ContactDemand:
         The forces of guides, such as what holds the top of a wall; empty if statics does not determine them.
     """
 
-    friction_needed: float
-    joint: str
-    time: float
-    duration: float
-    base_shear: float
-    least_normal: float
-    impact_friction: float
-    lost: float
-    lost_joint: str
-    whole: bool
-    friction: float | None
-    slides: float
-    slides_joint: str
-    crushing: CrushingDemand | None
     times: Reals
     demand: Reals
+    friction_needed: float = NONE
+    joint: str = ""
+    time: float = NONE
+    duration: float = NONE
+    base_shear: float = NONE
+    least_normal: float = NONE
+    impact_friction: float = NONE
+    lost: float = NONE
+    lost_joint: str = ""
+    whole: bool = False
+    friction: float | None = None
+    slides: float = NONE
+    slides_joint: str = ""
+    crushing: CrushingDemand | None = None
     opens: float | None = None
     opens_joint: str = ""
     shared: bool = False
@@ -202,13 +202,10 @@ class Contacts:
         most[DEMAND] = 0.0
         joint = np.zeros(most.shape, np.int64)
         shear = 0.0
-        for direction in self.mechanism.directions:
-            mine = np.flatnonzero(states.rocks & (states.sign == direction))
-            for start in range(0, mine.size, BLOCK):
-                part = mine[start : start + BLOCK]
-                found = self._forces(direction, states, part)
-                most[:, part], joint[:, part] = self._worst(direction, found)
-                shear = max(shear, float(np.abs(_base(found, self._rest[direction])).max()))
+        for direction, part in self._parts(states):
+            found = self._forces(direction, states, part)
+            most[:, part], joint[:, part] = self._worst(direction, found)
+            shear = max(shear, float(np.abs(_base(found, self._rest[direction])).max()))
         asked = replace(self._summed_up(history, states, most, joint, shear), supports=self._supports(states))
         if history.check is None:
             return asked
@@ -222,34 +219,36 @@ class Contacts:
         Impacts are left out: their impulses are not part of it.
         """
         states = _samples(self.mechanism, history, motion)
-        shear = np.full(states.time.size, np.nan)
+        shear = np.full(history.time.size, np.nan)
+        for direction, part in self._parts(states):
+            shear[part] = _base(self._forces(direction, states, part), self._rest[direction])
+        return shear
+
+    def _parts(self, states: _States) -> Iterator[tuple[Direction, Places]]:
+        """Yield the places of the states that rock in each direction, `BLOCK` at a time."""
         for direction in self.mechanism.directions:
             mine = np.flatnonzero(states.rocks & (states.sign == direction))
             for start in range(0, mine.size, BLOCK):
-                part = mine[start : start + BLOCK]
-                shear[part] = _base(self._forces(direction, states, part), self._rest[direction])
-        return np.concatenate([shear, np.full(history.time.size - shear.size, np.nan)])
+                yield direction, mine[start : start + BLOCK]
 
     def _supports(self, states: _States) -> list[SupportDemand]:
-        """Return the largest force of each guide in either sense."""
+        """Return the largest force of each guide in either sense; none if statics does not determine them."""
         found: dict[str, list[tuple[Contact, Reals]]] = {}
-        for direction in self.mechanism.directions:
+        for direction, part in self._parts(states):
             contacts = self.mechanism.contacts(direction) or ()
             ends = np.cumsum([contact.forces for contact in contacts])
             guides = [(int(end) - 1, each) for end, each in zip(ends, contacts, strict=True) if each.held == "slide"]
-            mine = np.flatnonzero(states.rocks & (states.sign == direction)) if guides else np.zeros(0, np.intp)
-            for start in range(0, mine.size, BLOCK):
-                part = mine[start : start + BLOCK]
-                try:
-                    table = released(self.mechanism, direction, states.phi[part])
-                except Undetermined:
-                    return []
-                assert table is not None  # it has guides
-                ground = states.ground[part]
-                terms = np.stack([np.ones(part.size), ground.real, states.rate[part] ** 2, ground.imag], axis=-1)
-                for row, each in guides:
-                    force = np.einsum("nk,nk->n", table.force[:, row], terms)
-                    found.setdefault(each.support, []).append((each, force))
+            if not guides:
+                continue
+            try:
+                table = released(self.mechanism, direction, states.phi[part])
+            except Undetermined:
+                return []
+            assert table is not None  # it has guides
+            ground = states.ground[part]
+            terms = np.stack([np.ones(part.size), ground.real, states.rate[part] ** 2, ground.imag], axis=-1)
+            for row, each in guides:
+                found.setdefault(each.support, []).append((each, np.einsum("nk,nk->n", table.force[:, row], terms)))
         demands = []
         for support, parts_of in found.items():
             way = parts_of[0][0].normal
@@ -284,44 +283,45 @@ class Contacts:
 
     def _summed_up(self, history: History, states: _States, most: Reals, joint: Places, shear: float) -> ContactDemand:
         friction, time = self.mechanism.friction, states.time
-        thrown = {direction: self._impulses[direction] for direction in _ended(history)}
-        hits = [found for found in thrown.values() if found is not None]
-        lost, lost_joint = self._lost(history, states, most[PULL], joint[PULL])
         if not states.rocks.any():
-            return ContactDemand(
-                NONE, "", NONE, NONE, NONE, NONE, NONE, NONE, "", False, friction, NONE, "", None, time, most[DEMAND]
-            )  # fmt: skip
+            return ContactDemand(times=time, demand=most[DEMAND])
+        thrown = [self._impulses[direction] for direction in _ended(history)]
+        hits = [found for found in thrown if found is not None]
+        lost, lost_joint = self._lost(history, states, most[PULL], joint[PULL])
         most[DEMAND, time > lost] = 0.0  # what is needed beyond that is of no motion that there is
         peak = int(np.where(states.rocks, most[DEMAND], -1.0).argmax())
         needed = float(most[DEMAND, peak])
         starts, ends = _stretches(time, most[DEMAND], NEAR_PEAK * needed if friction is None else friction)
+        slides = None
         if friction is None:
             around = (starts <= time[peak]) & (time[peak] <= ends)
             starts, ends = starts[around], ends[around]
-        slides = int((most[DEMAND] > friction).argmax()) if friction is not None and starts.size else None
+        elif starts.size:
+            slides = int((most[DEMAND] > friction).argmax())
         loaded = int(most[USED].argmax())
+        crushing = None
+        if np.isfinite(most[USED, loaded]):
+            crushing = CrushingDemand(
+                float(most[USED, loaded]), self._letter(states, joint[USED], loaded), float(time[loaded])
+            )
         return ContactDemand(
+            times=time,
+            demand=most[DEMAND],
             friction_needed=needed,
             joint=self._letter(states, joint[DEMAND], peak),
             time=float(time[peak]),
             duration=float((ends - starts).max(initial=0.0)),
             base_shear=shear,
             least_normal=-float(most[PULL].max()),
-            impact_friction=max((_ratio(found) for found in hits), default=NONE) if len(hits) == len(thrown) else NONE,
+            impact_friction=max(map(_ratio, hits), default=NONE) if len(hits) == len(thrown) else NONE,
             lost=lost,
             lost_joint=lost_joint,
             whole=any(found.is_whole for found in self._at_uplift.values()),
-            friction=friction,
-            slides=float(starts[0]) if slides is not None else NONE,
-            slides_joint=self._letter(states, joint[DEMAND], slides) if slides is not None else "",
-            crushing=CrushingDemand(
-                float(most[USED, loaded]), self._letter(states, joint[USED], loaded), float(time[loaded])
-            )
-            if np.isfinite(most[USED, loaded])
-            else None,
-            times=time,
-            demand=most[DEMAND],
             shared=any(found.shared for found in self._at_uplift.values()),
+            friction=friction,
+            slides=NONE if slides is None else float(starts[0]),
+            slides_joint="" if slides is None else self._letter(states, joint[DEMAND], slides),
+            crushing=crushing,
         )
 
     def _lost(self, history: History, states: _States, pull: Reals, joint: Places) -> tuple[float, str]:

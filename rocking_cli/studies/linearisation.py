@@ -155,13 +155,13 @@ def compare(
     structure.ask("linear models")
     mechanism, equivalence = structure.mechanism, structure.equivalence
     directions = [mechanism.directions[0]] if equivalence.symmetric else list(Direction)
-    r = np.linspace(0.01, 0.99, CURVE)
-    a = np.geomspace(1.02, max(STRONGEST, *accelerations), CURVE)
 
     def of(ratios: ArrayLike, times: ArrayLike) -> list[Linearisation]:
         return [linearisation(mechanism, each, ratios, times, equivalence=equivalence) for each in directions]
 
-    return of(r, a), of(amplitudes, accelerations)
+    asked = of(amplitudes, accelerations)
+    strongest = max(STRONGEST, *accelerations)
+    return of(np.linspace(0.01, 0.99, CURVE), np.geomspace(1.02, strongest, CURVE)), asked
 
 
 @dataclass(frozen=True)

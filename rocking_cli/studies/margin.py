@@ -62,53 +62,29 @@ class Margin:
         return self.overturned + self.unknown
 
     @property
-    def itself(self) -> float:
-        """The share of neighbours that overturns at a factor of 1."""
-        return float(self.overturned[np.searchsorted(self.factors, 1.0)])
-
-    @property
-    def itself_at_most(self) -> float:
-        """The share that overturns at a factor of 1 if all neighbours of unknown outcome do."""
-        return float(self.at_most[np.searchsorted(self.factors, 1.0)])
-
-    @property
     def share(self) -> NeighbourShare:
         """The share of neighbours that overturns at a factor of 1."""
-        return NeighbourShare(self.itself, self.itself_at_most, self.around.count)
+        one = np.searchsorted(self.factors, 1.0)
+        return NeighbourShare(float(self.overturned[one]), float(self.at_most[one]), self.around.count)
 
-    def first(self, level: float) -> float | None:
-        """Return the least factor at which at least a share `level` overturns; None if there is none."""
-        return self._first(self.overturned >= level)
-
-    def possible(self, level: float) -> float | None:
-        """Return the least factor at which a share `level` overturns or is unknown; None if there is none."""
-        return self._first(self.at_most >= level)
-
-    def _first(self, reached: NDArray[np.bool_]) -> float | None:
+    def first(self, level: float, *, unknown: bool = False) -> float | None:
+        """Return the least factor at which a share `level` overturns, or is unknown if so asked; None without one."""
+        reached = self._shares(unknown) >= level
         return float(self.factors[reached.argmax()]) if reached.any() else None
 
-    def last_below(self, level: float) -> float | None:
-        """Return the largest factor at which less than a share `level` overturns; None if there is none."""
-        return self._last(self.overturned < level)
-
-    def last_possible_below(self, level: float) -> float | None:
-        """Return the largest factor at which less than a share `level` overturns or is unknown; None without one."""
-        return self._last(self.at_most < level)
-
-    def _last(self, below: NDArray[np.bool_]) -> float | None:
+    def last_below(self, level: float, *, unknown: bool = False) -> float | None:
+        """Return the largest factor at which less than a share `level` overturns (or is unknown); None without one."""
+        below = self._shares(unknown) < level
         return float(self.factors[np.flatnonzero(below)[-1]]) if below.any() else None
 
-    def always(self, level: float) -> float | None:
-        """Return the least factor from which on a share of `level` or more overturns at all factors, or None."""
-        return self._always(self.overturned < level)
+    def always(self, level: float, *, unknown: bool = False) -> float | None:
+        """Return the least factor from which on a share of `level` or more overturns (or is unknown), or None."""
+        last = self.last_below(level, unknown=unknown)
+        above = self.factors if last is None else self.factors[self.factors > last]
+        return float(above[0]) if above.size else None
 
-    def always_possible(self, level: float) -> float | None:
-        """Return the least factor from which on a share of `level` or more overturns or is unknown, or None."""
-        return self._always(self.at_most < level)
-
-    def _always(self, below: NDArray[np.bool_]) -> float | None:
-        start = int(np.flatnonzero(below)[-1]) + 1 if below.any() else 0
-        return float(self.factors[start]) if start < self.factors.size else None
+    def _shares(self, unknown: bool) -> Reals:
+        return self.at_most if unknown else self.overturned
 
     def islands(self, level: float) -> list[tuple[float, float]]:
         """Return the first and last factor of each range in which at least a share `level` overturns."""
@@ -197,6 +173,6 @@ def conclusion(structure: Structure, motion: GroundMotion, polarities: Sequence[
         The margin.
     """
     runs = {sign: respond(structure, motion.scaled(sign), models=["nonlinear"]) for sign in polarities}
-    from_factor = found.possible(LEAST_SHARE)
+    from_factor = found.first(LEAST_SHARE, unknown=True)
     ratio = inf if from_factor is None else from_factor
     return replace(concluded(runs, {}, motion.name), share=found.share, ratio=ratio)

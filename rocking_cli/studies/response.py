@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.dynamics.verdict import remedy
+from rocking_cli.dynamics.verdict import Agreement, agreements, remedy
 from rocking_cli.engines import respond
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
@@ -38,11 +38,19 @@ def concluded(runs: Runs, near: Mapping[int, Neighbours], motion: str = "") -> C
     motion : str
         Name of the motion; empty for a release.
     """
+    return _together(_of_each(runs, near, motion))
+
+
+def _of_each(runs: Runs, near: Mapping[int, Neighbours], motion: str) -> dict[int, Conclusion]:
     best: ModelName = "nonlinear" if "nonlinear" in next(iter(runs.values())) else next(iter(next(iter(runs.values()))))
-    each = [_of_run(run[best], near.get(sign), motion, sign) for sign, run in runs.items()]
-    governs = worst(each)
-    alike = len(each) > 1 and all(are_alike(one, governs) for one in each)
-    return replace(governs, polarity=None if alike else governs.polarity, polarities=list(runs))
+    return {sign: _of_run(run[best], near.get(sign), motion, sign) for sign, run in runs.items()}
+
+
+def _together(each: Mapping[int, Conclusion]) -> Conclusion:
+    """Return the conclusion of the worse polarity; neither governs if both are alike."""
+    governs = worst(each.values())
+    alike = len(each) > 1 and all(are_alike(one, governs) for one in each.values())
+    return replace(governs, polarity=None if alike else governs.polarity, polarities=list(each))
 
 
 def _of_run(run: History, near: Neighbours | None, motion: str, sign: int) -> Conclusion:
@@ -96,41 +104,52 @@ class Question:
     release_is_angle: bool = False
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Response(Mapping[ModelName, History]):
     """Response of a structure to one ground motion: histories by model, those of the first polarity if there are two.
 
     Parameters
     ----------
     given : Scaled or None
-        The motion as read; None for a free release.
+        The motion as read; None for a free release, and for a pulse fitted to a motion.
     first : GroundMotion or None
         The scaled motion in the first requested polarity.
     runs : mapping of int to mapping of str to History
         The histories under each polarity.
     neighbours : mapping of int to Neighbours
         Outcomes of the neighbours of the motion, under each polarity; empty if none were requested.
-    fit, to_pulse : PulseFit and mapping of str to History, optional
-        The pulse fitted to the motion, and the histories under this pulse alone.
     contacts : mapping of int to ContactDemand
         Check of the contacts in the nonlinear history, under each polarity; empty without that history.
-    to_pulse_contact : ContactDemand, optional
-        Check of the contacts under the pulse alone.
+    fit, to_pulse : PulseFit and Response, optional
+        The pulse fitted to the motion, and the response to this pulse alone.
     """
 
     given: Scaled | None
     first: GroundMotion | None
     runs: Runs
     neighbours: Mapping[int, Neighbours]
+    contacts: Mapping[int, ContactDemand]
     fit: PulseFit | None = None
-    to_pulse: Histories | None = None
-    contacts: Mapping[int, ContactDemand] = field(default_factory=dict)
-    to_pulse_contact: ContactDemand | None = None
+    to_pulse: Response | None = None
 
-    @property
+    @cached_property
+    def conclusions(self) -> Mapping[int, Conclusion]:
+        """What is concluded under each polarity."""
+        return _of_each(self.runs, self.neighbours, self.given.motion.name if self.given is not None else "")
+
+    @cached_property
     def conclusion(self) -> Conclusion:
         """What is concluded, and what governs."""
-        return concluded(self.runs, self.neighbours, self.given.motion.name if self.given is not None else "")
+        return _together(self.conclusions)
+
+    @cached_property
+    def agreement(self) -> Mapping[int, Mapping[ModelName, Agreement]]:
+        """How well the equivalent blocks agree with the nonlinear model under each polarity."""
+        return {sign: agreements(histories) for sign, histories in self.runs.items()}
+
+    def assumed_friction(self, polarity: int) -> float | None:
+        """Return the friction that the result assumes in a polarity, see `ContactDemand`."""
+        return self.contacts[polarity].assumed_friction if polarity in self.contacts else None
 
     def __getitem__(self, model: ModelName) -> History:
         return next(iter(self.runs.values()))[model]
@@ -166,10 +185,21 @@ def response_of(structure: Structure, names: Sequence[ModelName], given: Scaled 
         for sign, motion in under.items()
         if asked.around.count
     }
-    checked = {sign: contacts.check(run["nonlinear"], under[sign]) for sign, run in runs.items() if "nonlinear" in run}
-    if fit is None or first is None:
-        return Response(given, first, runs, near, contacts=checked)
-    pulse = fit.alone(first)
-    alone = follow(pulse)
-    checked_alone = contacts.check(alone["nonlinear"], pulse) if "nonlinear" in alone else None
-    return Response(given, first, runs, near, fit, alone, checked, checked_alone)
+
+    def checked(runs: Runs, under: Mapping[int, GroundMotion | None]) -> dict[int, ContactDemand]:
+        return {sign: contacts.check(run["nonlinear"], under[sign]) for sign, run in runs.items() if "nonlinear" in run}
+
+    to_pulse = None
+    if fit is not None and first is not None:
+        pulse = fit.alone(first)
+        alone = {1: follow(pulse)}
+        to_pulse = Response(given=None, first=pulse, runs=alone, neighbours={}, contacts=checked(alone, {1: pulse}))
+    return Response(
+        given=given,
+        first=first,
+        runs=runs,
+        neighbours=near,
+        contacts=checked(runs, under),
+        fit=fit,
+        to_pulse=to_pulse,
+    )

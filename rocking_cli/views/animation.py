@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
-from rocking_cli.names import UNKNOWN, percent
+from rocking_cli.names import UNKNOWN
 from rocking_cli.structure import Structure
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.neighbours import Neighbours
-from rocking_cli.views.neighbours import neighbours_cells, neighbours_data, neighbours_in_words
+from rocking_cli.views.column import Column, of, table_of
+from rocking_cli.views.neighbours import neighbour_columns, neighbours_data, neighbours_in_words
 from rocking_cli.views.response import ending, known_data, not_checked
 from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.verdict import verdict, why_unknown
-from rocking_cli.views.view import ABSENT, Table, View, heading
+from rocking_cli.views.view import View, heading
 
 
 def view(
@@ -43,19 +45,29 @@ def view(
     return View(data, [*filter(None, said), *not_checked(structure.mechanism, [history])])
 
 
-def row(film: Film, near: Neighbours | None) -> list[str]:
-    """Return the table row of one of several motions: name, outcome, and shares of its neighbours."""
+class FilmRow(NamedTuple):
+    """The row of one of several motions: its name, the outcome in words, and its neighbours."""
+
+    name: str
+    fate: str
+    near: Neighbours | None
+
+
+def row(film: Film, near: Neighbours | None) -> FilmRow:
+    """Return the row of one of several motions."""
     run = film.history
     fate = f"{UNKNOWN} after {run.known_to:.4g} s, as {why_unknown(run)}" if run.unknown else verdict_of(film)
-    return [film.motion.name, fate, *neighbours_cells(near)[:2]]
+    return FilmRow(film.motion.name, fate, near)
 
 
-def several(structure: Structure, film: Film, rows: Sequence[Sequence[str]]) -> View:
+def several(structure: Structure, film: Film, rows: Sequence[FilmRow]) -> View:
     """Show the outcomes of several motions by their rows; `film` is one of them."""
-    heads = ["under", film.history.model, "neighbours\noverturn", "are\nunknown"]
-    if all(each[-1] in (ABSENT, percent(0)) for each in rows):
-        heads, rows = heads[:-1], [each[:-1] for each in rows]
-    table = Table(heading(structure.mechanism), heads, rows, numbers=range(2, len(heads)))
+    columns: list[Column[FilmRow]] = [
+        Column("", of("name"), head="under", text=True),
+        Column("", of("fate"), head=film.history.model, text=True),
+        *neighbour_columns(of("near"), doubtful=any(row.near is not None and row.near.unknown for row in rows))[:2],
+    ]
+    table = table_of(heading(structure.mechanism), columns, rows)
     return View({}, [table, restitution_used(structure), *not_checked(structure.mechanism, [film.history])])
 
 

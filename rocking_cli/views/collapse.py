@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import isclose, isfinite
+from operator import itemgetter
 from typing import Any
 
-from rocking_cli.core import CollapseMechanism, Direction, Mechanism
+from rocking_cli.core import CollapseHinge, CollapseMechanism, Direction, Mechanism
 from rocking_cli.core.contacts import MASONRY
 from rocking_cli.names import digits_apart
 from rocking_cli.text import in_short
+from rocking_cli.views.column import Column, data_of, frame_of, of, rounded, table_of
 from rocking_cli.views.view import Table, View, force_unit, heading, number
 
 FEW = 6  # blocks of a part, all of which are named
@@ -47,12 +49,7 @@ def _hinges(direction: Direction, found: CollapseMechanism) -> Table | str:
     title = f"{direction.label.capitalize()} direction: lambda = {number(found.lambda_)} g"
     if not found.hinges:
         return f"{title}, without hinges."
-    large = any(len(group) > FEW for group in found.groups)
-    rows = []
-    for each in found.hinges:
-        between = each.joint if large and each.joint else " and ".join(each.between)
-        rows.append([each.letter, between, number(each.at.real), number(each.at.imag)])
-    return Table(title, ["hinge", "between", "x [m]", "y [m]"], rows, numbers=(2, 3))
+    return table_of(title, _of_hinge(by_joint=any(len(group) > FEW for group in found.groups)), found.hinges)
 
 
 def _part(found: CollapseMechanism, group: Sequence[str]) -> str:
@@ -133,59 +130,81 @@ def _thrust(direction: Direction, found: CollapseMechanism, per: float, unit: st
         rest = f"{len(found.thrust)} joints bear; the JSON output has the forces in all of them."
     if not shown:
         return [rest] if rest else []
-    rows = [
-        [where, number(at.real), number(at.imag), number(force.real / per, 4), number(force.imag / per, 4)]
-        for where, at, force in shown
-    ]
-    heads = ["joint", "x [m]", "y [m]", f"Fx [{unit}]", f"Fy [{unit}]"]
     title = f"Joint forces at the onset of the mechanism, {direction.label}"
-    return [Table(title, heads, rows, numbers=(1, 2, 3, 4)), *([rest] if rest else [])]
+    return [table_of(title, _of_joint(per, unit), shown), *([rest] if rest else [])]
 
 
 def table(found: Mapping[Direction, CollapseMechanism]) -> dict[str, list[Any]]:
     """Return a table with a row for each hinge."""
-    rows = [(d.label, each.lambda_, hinge) for d, each in found.items() for hinge in each.hinges]
+    rows = [(direction, each, hinge) for direction, each in found.items() for hinge in each.hinges]
     return {
-        "direction": [row[0] for row in rows],
-        "lambda": [row[1] for row in rows],
-        "hinge": [row[2].letter for row in rows],
-        "between": [" and ".join(row[2].between) for row in rows],
-        "x [m]": [row[2].at.real for row in rows],
-        "y [m]": [row[2].at.imag for row in rows],
+        "direction": [direction.label for direction, _, _ in rows],
+        "lambda": [each.lambda_ for _, each, _ in rows],
+        **frame_of(_of_hinge(), [hinge for _, _, hinge in rows]),
     }
+
+
+def _of_hinge(*, by_joint: bool = False) -> list[Column[CollapseHinge]]:
+    """Return the columns of a hinge; tables show its joint if groups of blocks have too many names."""
+
+    def between(hinge: CollapseHinge) -> str:
+        return hinge.joint if by_joint and hinge.joint else " and ".join(hinge.between)
+
+    return [
+        Column("name", of("letter"), head="hinge", name="hinge", text=True),
+        Column("between", lambda hinge: list(hinge.between), name=None),
+        Column("", between, head="between", name="between", text=True),
+        Column("joint", of("joint"), name=None),
+        Column("at", lambda hinge: _pair(hinge.at), name=None),
+        Column("", of("at.real"), "m", "x [m]", number, "x"),
+        Column("", of("at.imag"), "m", "y [m]", number, "y"),
+    ]
+
+
+def _of_joint(per: float = 1.0, unit: str = "N") -> list[Column[tuple[str, complex, complex]]]:
+    """Return the columns of the forces in a joint; tables have them in a unit of `per` N."""
+    return [
+        Column("joint", itemgetter(0), head="joint", text=True),
+        Column("at", lambda row: _pair(row[1])),
+        Column("", lambda row: row[1].real, "m", "x [m]", number),
+        Column("", lambda row: row[1].imag, "m", "y [m]", number),
+        Column("force", lambda row: _pair(row[2])),
+        Column("", lambda row: row[2].real / per, unit, f"Fx [{unit}]", rounded(4)),
+        Column("", lambda row: row[2].imag / per, unit, f"Fy [{unit}]", rounded(4)),
+    ]
+
+
+def _pair(point: complex) -> list[float]:
+    return [point.real, point.imag]
+
+
+def _finite(value: float | None) -> float | None:
+    return value if value is not None and isfinite(value) else None
+
+
+MECHANISM: tuple[Column[CollapseMechanism], ...] = (
+    Column("lambda", of("lambda_")),
+    Column("hinges", lambda found: [data_of(_of_hinge(), each) for each in found.hinges]),
+    Column("groups", lambda found: [list(group) for group in found.groups]),
+    Column("rest", lambda found: list(found.rest)),
+    Column("idle", lambda found: list(found.idle)),
+    Column("lifted", lambda found: list(found.lifted)),
+    Column("slides", lambda found: list(found.slides)),
+    Column("glued", lambda found: list(found.glued)),
+    Column("lambda_with_usual", of("with_usual")),
+    Column("confined", of("confined")),
+    Column("lambda_associated", lambda found: _finite(found.associated)),
+    Column("search_complete", of("complete")),
+    Column("no_model", lambda found: found.no_model or None),
+    Column("lead", lambda found: found.lead or None),
+    Column("friction_needed", of("friction_needed")),
+    Column("valid_to", of("valid_to")),
+    Column("opens", lambda found: found.opens or None),
+    Column("held_by", of("held_by")),
+    Column("thrust", lambda found: [data_of(_of_joint(), each) for each in found.thrust]),
+)
 
 
 def data(found: CollapseMechanism) -> dict[str, Any]:
     """Return the mechanism of a direction as plain data."""
-    return {
-        "lambda": found.lambda_,
-        "hinges": [
-            {
-                "name": each.letter,
-                "between": list(each.between),
-                "joint": each.joint,
-                "at": [each.at.real, each.at.imag],
-            }
-            for each in found.hinges
-        ],
-        "groups": [list(group) for group in found.groups],
-        "rest": list(found.rest),
-        "idle": list(found.idle),
-        "lifted": list(found.lifted),
-        "slides": list(found.slides),
-        "glued": list(found.glued),
-        "lambda_with_usual": found.with_usual,
-        "confined": found.confined,
-        "lambda_associated": found.associated if found.associated is not None and isfinite(found.associated) else None,
-        "search_complete": found.complete,
-        "no_model": found.no_model or None,
-        "lead": found.lead or None,
-        "friction_needed": found.friction_needed,
-        "valid_to": found.valid_to,
-        "opens": found.opens or None,
-        "held_by": found.held_by,
-        "thrust": [
-            {"joint": where, "at": [at.real, at.imag], "force": [force.real, force.imag]}
-            for where, at, force in found.thrust
-        ],
-    }
+    return data_of(MECHANISM, found)

@@ -20,6 +20,7 @@ from rocking_cli.studies.conclusion import (
     worst,
 )
 from rocking_cli.studies.verification.results import Remark, Verification
+from rocking_cli.text import in_short
 from rocking_cli.views.sheet.language import ENGLISH, Language
 from rocking_cli.views.verdict import REMEDIES
 
@@ -89,6 +90,42 @@ def digits_beside_one(ratio: float) -> int:
     return next((n for n in range(3, MOST_DIGITS) if (float(f"{ratio:.{n}g}") < 1) == (ratio < 1)), MOST_DIGITS)
 
 
+CLAUSES = {
+    Concluded.OVERTURNS: names.OVERTURNS,
+    Concluded.UNKNOWN: "has an unknown outcome",
+    Concluded.ROCKS: names.ROCKS,
+    Concluded.NO_UPLIFT: names.NO_UPLIFT,
+}
+"""What a structure does, the worst first."""
+NAMED = 6  # motions that a sentence names
+
+
+def counted(ends: Sequence[Conclusion], over: str) -> str:
+    """Return a sentence on under how many motions a structure does what, the worst first, and which motion governs.
+
+    Parameters
+    ----------
+    ends : sequence of Conclusion
+        The conclusion under each motion, at least one.
+    over : str
+        Reference of the peaks, see `names.peaks_over`.
+    """
+    if len(ends) == 1:
+        return f"under {ends[0].motion}, {does(ends[0], over)}."
+    count, said = len(ends), list[str]()
+    for what, clause in CLAUSES.items():
+        under = [end.motion for end in ends if end.concluded is what]
+        if len(under) == count and what is Concluded.NO_UPLIFT:
+            return f"the structure uplifts under none of {count} motions."
+        if under:
+            of = f"all {count}" if len(under) == count else f"{len(under)}{'' if said else f' of {count}'}"
+            bad = what in (Concluded.OVERTURNS, Concluded.UNKNOWN) and len(under) < count
+            named = f" ({in_short(under, most=NAMED)})" if bad else ""
+            said.append(f"{clause} under {of}{'' if said else ' motions'}{named}")
+    *before, last = said
+    return f"the structure {', '.join(before)}{' and ' if before else ''}{last}. {governing(ends, over)}"
+
+
 def governing(ends: Sequence[Conclusion], over: str) -> str:
     """Return a sentence on which motion governs, or which ones alike; empty if none uplifts the structure.
 
@@ -104,16 +141,16 @@ def governing(ends: Sequence[Conclusion], over: str) -> str:
     if end.concluded is Concluded.NO_UPLIFT and not (end.share is not None and end.share.highest):
         return ""
     if len(which) > 1:
-        return f"{', '.join(which[:-1])} and {which[-1]} govern alike: under each, {_does(end, over)}."
-    return f"{which[0]} governs: {_does(end, over)}."
+        return f"{', '.join(which[:-1])} and {which[-1]} govern alike: under each, {does(end, over)}."
+    return f"{which[0]} governs: {does(end, over)}."
 
 
 def governing_polarity(ends: Mapping[int, Conclusion], governs: int | None, over: str) -> str:
     """Return a sentence on which of two polarities governs; arguments are those of `governing`."""
     if governs is None:
-        return f"Neither polarity governs: with the motion as given and reversed, {_does(ends[1], over)}."
+        return f"Neither polarity governs: with the motion as given and reversed, {does(ends[1], over)}."
     way, other = (WAYS[governs], WAYS[-governs])
-    said = f"with the motion {way}, {_does(ends[governs], over)}; {other}, {_does(ends[-governs], over)}"
+    said = f"with the motion {way}, {does(ends[governs], over)}; {other}, {does(ends[-governs], over)}"
     return f"Polarity {governs} governs: {said}."
 
 
@@ -127,11 +164,11 @@ def of_margin(end: Conclusion, over: str) -> str:
         if isfinite(end.ratio)
         else f"At no factor tried may {some} overturn."
     )
-    return " ".join(filter(None, [f"{which} a factor of 1, {_does(end, over)}.", factor, next_in_words(end)]))
+    return " ".join(filter(None, [f"{which} a factor of 1, {does(end, over)}.", factor, next_in_words(end)]))
 
 
-def _does(end: Conclusion, over: str) -> str:
-    """Return what the structure does, and the share of its neighbours that overturn."""
+def does(end: Conclusion, over: str) -> str:
+    """Return what the structure does, and the share of its neighbours that overturn; arguments as of `governing`."""
     if end.concluded is Concluded.UNKNOWN:
         itself = f"the outcome is {names.UNKNOWN} after {end.known_until:.4g} s"
     elif end.concluded is Concluded.ROCKS:

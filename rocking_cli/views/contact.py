@@ -2,43 +2,33 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from math import isnan
 from typing import Any
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.contacts import MASONRY
 from rocking_cli.studies.contact import NEAR_PEAK, ContactDemand, SupportDemand
-from rocking_cli.views.column import Column, of, rounded
+from rocking_cli.views.column import Column, data_of, of, rounded
 from rocking_cli.views.restitution import restitution_source
 from rocking_cli.views.view import ABSENT, force_unit, number
 
 BEYOND = ": the result is not valid beyond that time"
 
 
+SUPPORTS: tuple[Column[SupportDemand], ...] = (
+    Column("support", of("support")),
+    Column("way", lambda each: [each.way.real, each.way.imag]),
+    Column("most", of("most")),
+    Column("least", of("least")),
+)
+
+
 def contact_data(found: ContactDemand, mechanism: Mechanism) -> dict[str, Any]:
     """Return the demands as plain data; missing values are null."""
-    crushing = found.crushing
     return {
-        "friction_needed": found.friction_needed,
-        "joint": found.joint or None,
-        "time": found.time,
-        "duration": found.duration,
-        "base_shear": found.base_shear,
-        "least_normal": found.least_normal,
-        "impact_friction": found.impact_friction,
-        "lost": found.lost,
-        "lost_joint": found.lost_joint or None,
-        "friction": found.friction,
-        "slides": found.slides,
-        "slides_joint": found.slides_joint or None,
-        "strength": None
-        if crushing is None
-        else {"used": crushing.used, "joint": crushing.joint, "time": crushing.time},
+        **data_of(contact_columns(mechanism), found),
         **({} if found.opens is None else {"opens": found.opens, "opens_joint": found.opens_joint or None}),
-        "supports": [
-            {"support": each.support, "way": [each.way.real, each.way.imag], "most": each.most, "least": each.least}
-            for each in found.supports
-        ],
         "sums": _sums(found, mechanism),
         "per_unit_mass": not mechanism.has_mass,
     }
@@ -52,14 +42,20 @@ def contact_columns(mechanism: Mechanism) -> list[Column[ContactDemand]]:
         return ABSENT if isnan(value) else f"{number(value / per, 4)} {unit}"
 
     return [
-        Column("", of("friction_needed"), head="friction required", form=rounded(3)),
-        Column("", lambda found: found.joint or None, head="at joint", text=True),
-        Column("", of("time"), head="at [s]", form=rounded(3)),
-        Column("", of("duration"), head="for [s]", form=rounded(3)),
-        Column("", of("impact_friction"), head="at impacts", form=rounded(3)),
-        Column("", of("base_shear"), head="base shear, without impacts", form=force),
-        Column("", of("least_normal"), head="least normal force", form=force, text=True),
-        Column("", of("lost"), head="contact lost", form=_lost, text=True),
+        Column("friction_needed", of("friction_needed"), head="friction required", form=rounded(3)),
+        Column("joint", lambda found: found.joint or None, head="at joint", text=True),
+        Column("time", of("time"), head="at [s]", form=rounded(3)),
+        Column("duration", of("duration"), head="for [s]", form=rounded(3)),
+        Column("impact_friction", of("impact_friction"), head="at impacts", form=rounded(3)),
+        Column("base_shear", of("base_shear"), head="base shear, without impacts", form=force),
+        Column("least_normal", of("least_normal"), head="least normal force", form=force, text=True),
+        Column("lost", of("lost"), head="contact lost", form=_lost, text=True),
+        Column("lost_joint", lambda found: found.lost_joint or None),
+        Column("friction", of("friction")),
+        Column("slides", of("slides")),
+        Column("slides_joint", lambda found: found.slides_joint or None),
+        Column("strength", lambda found: None if found.crushing is None else asdict(found.crushing)),
+        Column("supports", lambda found: [data_of(SUPPORTS, each) for each in found.supports]),
     ]
 
 

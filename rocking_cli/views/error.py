@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import isfinite, isnan
+from math import inf, isfinite, isnan
 from typing import Any
 
 import numpy as np
@@ -39,7 +39,7 @@ def view(
         Table(
             title if len(asked) == 1 else f"{title}, {each.direction.label} direction",
             ["error of", "at", "kappa1", "kappa2"],
-            _rows(each, mechanism.gravity),
+            rows(each, mechanism.gravity),
             numbers=(2, 3),
         )
         for each in asked
@@ -47,58 +47,42 @@ def view(
     return View(data, [*tables, verdict])
 
 
-def _rows(each: Linearisation, gravity: float) -> list[list[str]]:
-    rows = [["uplift acceleration", "", _percent(each.uplift_ratio1), _percent(each.uplift_ratio2)]]
-    steps = [_percent(ratio) for ratio in velocity_ratios(each.block, gravity)]
-    rows.append(["overturning velocity", f"v_imp = {each.block.v_imp:.4g} m/s", *steps])
-    rows += [
-        ["free period", f"phi/phi_cr = {r:g}", _percent(ratio), _percent(ratio)]
-        for r, ratio in zip(each.amplitude.tolist(), each.period_ratio.tolist(), strict=True)
+def rows(each: Linearisation, gravity: float) -> list[list[str]]:
+    """Return the rows of a table of errors: of what, at which amplitude or acceleration, and with each kappa."""
+    times = zip(each.acceleration, each.overturning_ratio1, each.overturning_ratio2, strict=True)
+    ratios = [
+        ("uplift acceleration", "", each.uplift_ratio1, each.uplift_ratio2),
+        ("overturning velocity", f"v_imp = {each.block.v_imp:.4g} m/s", *velocity_ratios(each.block, gravity)),
+        *(
+            ("free period", f"phi/phi_cr = {r:g}", ratio, ratio)
+            for r, ratio in zip(each.amplitude, each.period_ratio, strict=True)
+        ),
+        *(("overturning time", f"a/lambda = {a:g}", one, two) for a, one, two in times),
     ]
-    rows += [
-        ["overturning time", f"a/lambda = {a:g}", _percent(one), _percent(two)]
-        for a, one, two in zip(
-            each.acceleration.tolist(), each.overturning_ratio1.tolist(), each.overturning_ratio2.tolist(), strict=True
-        )
-    ]
-    return rows
+    return [[what, at, _percent(one), _percent(two)] for what, at, one, two in ratios]
 
 
 def _percent(ratio: float) -> str:
     if isnan(ratio):
         return ABSENT
-    if ratio == float("inf"):
+    if ratio == inf:
         return "no uplift"
     error = 100 * (ratio - 1)
     return f"{error:+.0f} %" if abs(error) >= 99.95 else f"{error:+.3g} %"
 
 
 def _data(each: Linearisation, gravity: float) -> dict[str, Any]:
-    one, other = velocity_ratios(each.block, gravity)
+    def of_both(one: float, two: float) -> dict[str, float | None]:
+        return {"kappa1": one if one < inf else None, "kappa2": two if two < inf else None}
 
-    def finite(value: float) -> float | None:
-        return value if value < float("inf") else None
-
+    periods = zip(each.amplitude, each.period, each.period_ratio, strict=True)
+    times = zip(each.acceleration, each.overturning, each.overturning_ratio1, each.overturning_ratio2, strict=True)
     return {
-        "uplift_ratio": {"kappa1": each.uplift_ratio1, "kappa2": each.uplift_ratio2},
+        "uplift_ratio": of_both(each.uplift_ratio1, each.uplift_ratio2),
         "v_imp": each.block.v_imp,
-        "v_imp_ratio": {"kappa1": finite(one), "kappa2": finite(other)},
-        "free_period": [
-            {"amplitude": r, "period": T, "ratio": ratio}
-            for r, T, ratio in zip(
-                each.amplitude.tolist(), each.period.tolist(), each.period_ratio.tolist(), strict=True
-            )
-        ],
-        "overturning_time": [
-            {"acceleration": a, "time": t, "ratio": {"kappa1": finite(one), "kappa2": two}}
-            for a, t, one, two in zip(
-                each.acceleration.tolist(),
-                each.overturning.tolist(),
-                each.overturning_ratio1.tolist(),
-                each.overturning_ratio2.tolist(),
-                strict=True,
-            )
-        ],
+        "v_imp_ratio": of_both(*velocity_ratios(each.block, gravity)),
+        "free_period": [{"amplitude": r, "period": T, "ratio": ratio} for r, T, ratio in periods],
+        "overturning_time": [{"acceleration": a, "time": t, "ratio": of_both(*both)} for a, t, *both in times],
     }
 
 
@@ -155,19 +139,16 @@ def _ranges(curves: Sequence[Linearisation], kappa: int) -> list[str]:
     """Return sentences on the ranges in which errors are no longer small."""
     said = []
     far = [each.amplitude[np.abs(each.period_ratio - 1) > SMALL] for each in curves]
-    wide = [values for values in far if values.size]
-    if wide:
-        low, high = min(values.min() for values in wide), max(values.max() for values in wide)
-        where = (
-            "at every amplitude"
-            if any(values.size == each.amplitude.size for values, each in zip(far, curves, strict=True))
-            else f"for phi/phi_cr from {low:.2g} to {high:.2g}"
-        )
+    if any(values.size for values in far):
+        wide = np.concatenate(far)
+        where = f"for phi/phi_cr from {wide.min():.2g} to {wide.max():.2g}"
+        if any(values.size == each.amplitude.size for values, each in zip(far, curves, strict=True)):
+            where = "at every amplitude"
         said.append(f"The free period is off by more than {percent(SMALL)} {where}.")
     slow = [each.acceleration[np.abs(getattr(each, f"overturning_ratio{kappa}") - 1) > SMALL] for each in curves]
-    late = [values.max() for values in slow if values.size]
-    if late:
-        everywhere = any(values.size == each.acceleration.size for values, each in zip(slow, curves, strict=True))
-        where = "at every acceleration" if everywhere else f"for accelerations below {max(late):.3g} times uplift"
+    if any(values.size for values in slow):
+        where = f"for accelerations below {np.concatenate(slow).max():.3g} times uplift"
+        if any(values.size == each.acceleration.size for values, each in zip(slow, curves, strict=True)):
+            where = "at every acceleration"
         said.append(f"The overturning time with kappa{kappa} is off by more than {percent(SMALL)} {where}.")
     return said

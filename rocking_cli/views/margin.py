@@ -55,8 +55,9 @@ def view(
         "the smallest factor at which so many of them overturn the structure; 'always from' the smallest from which on "
         "no factor tried (up to 5) has fewer.",
         Table("", heads, cells, numbers=range(1, len(heads))),
-        *_doubtful(rows),
     ]
+    if any(row.margin.unknown.any() for row in rows):
+        parts.append(f"The row '{MAY}' governs; the row below it alone does not prove that the structure stands.")
     parts += [f"{row.name}: {in_words(row.margin, row.pga)}" for row in rows] if len(rows) <= FEW else []
     parts += [f"Caution: {text}" for text in cautions_of(mechanism)]
     if not all(row.margin.checked for row in rows):
@@ -67,29 +68,12 @@ def view(
 def _cells(row: MarginRow) -> Iterator[list[str]]:
     """Yield the row that governs, and below it, if outcomes are unknown, what is known to overturn."""
     found, doubt = row.margin, bool(row.margin.unknown.any())
-    yield [
-        f"{row.name}: {MAY}" if doubt else row.name,
-        f"{row.pga:.3g}",
-        number(found.uplift, 3),
-        percent(found.itself_at_most),
-        *(number(found.possible(level), 3) for level in LEVELS),
-        *(number(found.always_possible(level), 3) for level in LEVELS),
-    ]
-    if doubt:
-        yield [
-            "  known to overturn",
-            "",
-            "",
-            percent(found.itself),
-            *(number(found.first(level), 3) for level in LEVELS),
-            *(number(found.always(level), 3) for level in LEVELS),
-        ]
-
-
-def _doubtful(rows: Sequence[MarginRow]) -> Iterator[str]:
-    """Yield which of two rows governs, if outcomes are unknown."""
-    if any(row.margin.unknown.any() for row in rows):
-        yield (f"The row '{MAY}' governs; the row below it alone does not prove that the structure stands.")
+    of_motion = [f"{row.name}: {MAY}" if doubt else row.name, f"{row.pga:.3g}", number(found.uplift, 3)]
+    for unknown in (True, False) if doubt else (True,):
+        share = found.share.highest if unknown else found.share.lowest
+        first = (number(found.first(level, unknown=unknown), 3) for level in LEVELS)
+        always = (number(found.always(level, unknown=unknown), 3) for level in LEVELS)
+        yield [*(of_motion if unknown else ["  known to overturn", "", ""]), percent(share), *first, *always]
 
 
 def _data(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood) -> dict[str, Any]:
@@ -116,7 +100,7 @@ def margin_data(found: Margin) -> dict[str, Any]:
     """Return a margin as plain data: the shares, and the factors at which they pass each level."""
     return {
         "uplift": found.uplift,
-        "overturned": found.itself,
+        "overturned": found.share.lowest,
         "factors": found.factors.tolist(),
         "shares": found.overturned.tolist(),
         "unknown": found.unknown.tolist() if found.checked else None,
@@ -124,8 +108,8 @@ def margin_data(found: Margin) -> dict[str, Any]:
             f"{100 * level:g}": {
                 "first": found.first(level),
                 "last_below": found.last_below(level),
-                "first_or_unknown": found.possible(level),
-                "last_below_or_unknown": found.last_possible_below(level),
+                "first_or_unknown": found.first(level, unknown=True),
+                "last_below_or_unknown": found.last_below(level, unknown=True),
                 "islands": found.islands(level),
             }
             for level in LEVELS

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict
 from math import inf, isinf
-from typing import Any
+from typing import Any, TypeVar
 
 from rocking_cli import names
 from rocking_cli.names import percent
 from rocking_cli.studies.neighbours import FRACTILES, Neighbourhood, Neighbours
-from rocking_cli.views.view import ABSENT
+from rocking_cli.views.column import Column
 
+R = TypeVar("R")
 ENOUGH = 20  # neighbours from which on the peaks of 16 and 84 % are told: of fewer, one or two decide them
 
 
@@ -72,10 +74,32 @@ def neighbours_data(near: Neighbours) -> dict[str, Any]:
     }
 
 
-def neighbours_cells(near: Neighbours | None) -> list[str]:
-    """Return the shares of the neighbours of a motion that overturn and are of unknown outcome, and the median peak."""
-    if near is None:
-        return [ABSENT] * 3
-    none = names.OVERTURNS if near.half_overturn else names.UNKNOWN
-    peak = none if isinf(near.peak_ratio[1]) else f"{near.peak_ratio[1]:.3g}"
-    return [percent(near.overturned), ABSENT if near.unknown is None else percent(near.unknown), peak]
+def neighbour_columns(of: Callable[[R], Neighbours | None], *, doubtful: bool) -> list[Column[R]]:
+    """Return the shares of the neighbours of a motion that overturn and are of unknown outcome, and the median peak.
+
+    Parameters
+    ----------
+    of : callable
+        Returns the neighbours of a row, if it has any.
+    doubtful : bool
+        Whether any outcome is unknown, which the table then shows.
+    """
+
+    def cell(show: Callable[[Neighbours], str | None]) -> Callable[[R], str | None]:
+        return lambda row: None if (near := of(row)) is None else show(near)
+
+    return [
+        Column("", cell(lambda near: percent(near.overturned)), head="neighbours\noverturn"),
+        Column("", cell(_unknown), head="are\nunknown" if doubtful else None),
+        Column("", cell(_median), head="their\nmedian"),
+    ]
+
+
+def _unknown(near: Neighbours) -> str | None:
+    return None if near.unknown is None else percent(near.unknown)
+
+
+def _median(near: Neighbours) -> str:
+    if isinf(near.peak_ratio[1]):
+        return names.OVERTURNS if near.half_overturn else names.UNKNOWN
+    return f"{near.peak_ratio[1]:.3g}"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from math import nan
 from typing import Any
 
@@ -11,7 +12,6 @@ from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.advice import Grade, grade, uplift_error
 from rocking_cli.dynamics.exact import ExactResponse
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.pulse_response import ClosedForm
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.names import percent
@@ -20,6 +20,7 @@ from rocking_cli.studies.conclusion import Concluding
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.pulse_on_structure import KAPPAS, Answer, outcome, scaled
 from rocking_cli.studies.sampled_pulse import SampledHistory
+from rocking_cli.views.column import Column, data_of, lines_of, rounded
 from rocking_cli.views.conclusion import conclusion_data
 from rocking_cli.views.pulse import (
     CONDITIONS,
@@ -33,7 +34,9 @@ from rocking_cli.views.pulse import (
 from rocking_cli.views.response import known_data, model_heads, not_checked, pulse_data
 from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.verdict import NO_JOINTS, SENSE, joints_in_words, uplift_in_words
-from rocking_cli.views.view import ABSENT, Table, View, heading, in_degrees, number
+from rocking_cli.views.view import Table, View, heading, in_degrees, number
+
+EXACT = {True: "exact", False: "sampled"}
 
 
 def view(
@@ -60,7 +63,11 @@ def view(
     seen = {label: scaled(mechanism, block, pulse) for label, block in blocks.items()}
     polarity, first = next(iter(answers.items()))
     each = {
-        str(sign): {"responses": {name: _data(answer, found) for name, answer in found.items()}}
+        str(sign): {
+            "responses": {
+                name: data_of(_columns(found), answer) | known_data(outcome(answer)) for name, answer in found.items()
+            }
+        }
         for sign, found in answers.items()
     }
     data = {
@@ -97,25 +104,49 @@ def view(
     return View(data, [*parts, restitution_used(structure), *not_checked(mechanism, runs)])
 
 
-def _data(answer: Answer, answers: Mapping[str, Answer]) -> dict[str, Any]:
-    found = outcome(answer)
-    return {
-        "exact": isinstance(answer, ExactResponse),
-        "overturned": found.overturned,
-        "overturning_direction": Direction(found.fell_to).label if found.fell else None,
-        "overturning_time": found.overturning_time,
-        "impacts_before_overturning": impacts_before(found),
-        "peak_positive": found.peak_positive,
-        "peak_negative": found.peak_negative,
-        "peak_ratio": found.peak_ratio,
-        "uplift_time": found.uplift_time,
-        "first_impact": found.first_impact,
-        "first_excursion": found.first_excursion if isinstance(found, ExactResponse) else None,
-        "first_rebound": found.first_rebound if isinstance(found, ExactResponse) else None,
-        "samples_per_period": answer.per_period if isinstance(answer, SampledHistory) else None,
-        "over_nonlinear": _over_nonlinear(answer, answers),
-        **known_data(found),
-    }
+def _columns(answers: Mapping[str, Answer], *, unknown: bool = False) -> list[Column[Answer]]:
+    """Return the columns of a response; beside an unknown outcome of the structure, tables have none of its blocks."""
+
+    def value(name: str) -> Callable[[Answer], Any]:
+        return lambda answer: getattr(outcome(answer), name)
+
+    def exactly(name: str) -> Callable[[Answer], Any]:
+        return lambda answer: getattr(answer, name) if isinstance(answer, ExactResponse) else None
+
+    def ends(answer: Answer) -> str | None:
+        found = outcome(answer)
+        if unknown and not found.unknown:
+            return None
+        said = names.outcome(uplifts=found.lifted, overturned=found.fell, unknown=found.unknown)
+        return f"{said}\n{after_impacts(found)}" if found.fell else said  # one that is still rocking rocks
+
+    def bound(answer: Answer) -> float | None:
+        return outcome(answer).lower_bound if outcome(answer).unknown else None
+
+    def way(answer: Answer) -> str | None:
+        return Direction(outcome(answer).fell_to).label if outcome(answer).fell else None
+
+    until, least = ("known until", "lower bound of peak / phi_cr") if unknown else (None, None)
+    over = partial(_over_nonlinear, answers=answers)
+    return [
+        Column("exact", lambda answer: isinstance(answer, ExactResponse), "", "pulse", EXACT.__getitem__),
+        Column("", ends, head="outcome"),
+        Column("", value("known_to"), "s", until, rounded(5)),
+        Column("peak_ratio", value("peak_ratio"), "", "peak rotation / phi_cr", rounded(5)),
+        Column("over_nonlinear", over, "", "  over that of nonlinear", rounded(5)),
+        Column("", bound, "", least, rounded(5)),
+        Column("peak_positive", value("peak_positive"), "deg", "peak rotation, clockwise", in_degrees),
+        Column("peak_negative", value("peak_negative"), "deg", "peak rotation, anticlockwise", in_degrees),
+        Column("first_excursion", exactly("first_excursion"), "", "first excursion", rounded(5)),
+        Column("first_rebound", exactly("first_rebound"), "", "first rebound", rounded(5)),
+        Column("uplift_time", value("uplift_time"), "s", "uplift", rounded(5)),
+        Column("first_impact", value("first_impact"), "s", "first impact", rounded(5)),
+        Column("overturned", value("overturned")),
+        Column("overturning_time", value("overturning_time"), "s", "overturning time", rounded(5)),
+        Column("overturning_direction", way),
+        Column("impacts_before_overturning", lambda answer: impacts_before(outcome(answer))),
+        Column("samples_per_period", lambda each: each.per_period if isinstance(each, SampledHistory) else None),
+    ]
 
 
 def _over_nonlinear(answer: Answer, answers: Mapping[str, Answer]) -> float:
@@ -127,33 +158,10 @@ def _over_nonlinear(answer: Answer, answers: Mapping[str, Answer]) -> float:
 
 
 def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
-    found = [outcome(each) for each in answers.values()]
-    unknown = any(each.unknown for each in found)
-    exact = [isinstance(each, ExactResponse) for each in found]
-    rows = [
-        ["pulse", *("exact" if each else "sampled" for each in exact), ""],
-        ["outcome", *(ABSENT if unknown and not each.unknown else _ends(each) for each in found), ""],
-        ["peak rotation / phi_cr", *(number(each.peak_ratio, 5) for each in found), ""],
-        ["  over that of nonlinear", *(number(_over_nonlinear(each, answers), 5) for each in answers.values()), ""],
-        ["peak rotation, clockwise", *(in_degrees(each.peak_positive) for each in found), "deg"],
-        ["peak rotation, anticlockwise", *(in_degrees(each.peak_negative) for each in found), "deg"],
-        ["first excursion", *(number(_data(each, answers)["first_excursion"], 5) for each in answers.values()), ""],
-        ["first rebound", *(number(_data(each, answers)["first_rebound"], 5) for each in answers.values()), ""],
-        ["uplift", *(number(each.uplift_time, 5) for each in found), "s"],
-        ["first impact", *(number(each.first_impact, 5) for each in found), "s"],
-        ["overturning time", *(number(each.overturning_time, 5) for each in found), "s"],
-    ]
-    if unknown:
-        rows.insert(2, ["known until", *(number(each.known_to, 5) for each in found), "s"])
-        least = (each.lower_bound if each.unknown else nan for each in found)
-        rows.insert(5, ["lower bound of peak / phi_cr", *(number(each, 5) for each in least), ""])
-    return Table(title, ["", *model_heads(answers, unknown=unknown), "unit"], rows, numbers=range(1, len(found) + 1))
-
-
-def _ends(found: OneOutcome) -> str:
-    """Return the outcome in words; a motion that is still rocking counts as rocking."""
-    said = names.outcome(uplifts=found.lifted, overturned=found.fell, unknown=found.unknown)
-    return f"{said}\n{after_impacts(found)}" if found.fell else said
+    unknown = any(outcome(each).unknown for each in answers.values())
+    heads = ["", *model_heads(answers, unknown=unknown), "unit"]
+    rows = lines_of(_columns(answers, unknown=unknown), list(answers.values()))
+    return Table(title, heads, rows, numbers=range(1, len(answers) + 1))
 
 
 def _verdict(answers: Mapping[str, Answer], mechanism: Mechanism) -> str:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import fields
-from math import nan, sqrt
-from types import MappingProxyType
+from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,18 +15,17 @@ from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.history import FELT, History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import OneOutcome
-from rocking_cli.dynamics.verdict import agreements
+from rocking_cli.dynamics.verdict import Agreement
 from rocking_cli.dynamics.vertical import contact_lost
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.structure import Structure
-from rocking_cli.studies.contact import ContactDemand
-from rocking_cli.studies.movements import Movements, Watched
-from rocking_cli.studies.neighbours import Neighbours
-from rocking_cli.studies.response import Histories, Question, Response, Runs, concluded
+from rocking_cli.studies.movements import Movements, PointPeak, TiePeak, Watched
+from rocking_cli.studies.response import Histories, Question, Response, Runs
 from rocking_cli.views import processing
 from rocking_cli.views.cautions import cautions_of
+from rocking_cli.views.column import Column, data_of, lines_of, of, rounded, table_of
 from rocking_cli.views.conclusion import conclusion_data, governing_polarity, headline, next_in_words
 from rocking_cli.views.contact import contact_data, contact_words
 from rocking_cli.views.neighbours import neighbours_data, neighbours_in_words
@@ -37,47 +35,6 @@ from rocking_cli.views.view import ABSENT, Table, View, force_unit, in_degrees, 
 
 Reals = NDArray[np.float64]
 FIRST = 12  # impacts of a model in its table; the data have all
-
-
-class HistoryDetails(NamedTuple):
-    """What is shown of each history beside its outcome.
-
-    Parameters
-    ----------
-    watched : Watched or None
-        Points and ties, whose movement is shown.
-    contacts : mapping of int to ContactDemand
-        Contact demands of the nonlinear history, by polarity.
-    mechanism : Mechanism or None
-        The structure that they are of.
-    etas : tuple of float, or None
-        Restitution of impacts that end positive and negative motion; with it the impacts are listed.
-    """
-
-    watched: Watched | None = None
-    etas: tuple[float, float] | None = None
-    contacts: Mapping[int, ContactDemand] = MappingProxyType({})
-    mechanism: Mechanism | None = None
-
-    def contact(self, polarity: int, name: ModelName) -> dict[str, Any] | None:
-        """Return the contact demands of a history; None for a linear model, which has no joints."""
-        if name != "nonlinear" or polarity not in self.contacts or self.mechanism is None:
-            return None
-        return contact_data(self.contacts[polarity], self.mechanism)
-
-    def assumed_friction(self, polarity: int) -> float | None:
-        """Return the friction that the result assumes in a polarity, see `ContactDemand`."""
-        return self.contacts[polarity].assumed_friction if polarity in self.contacts else None
-
-    def contact_words(self, polarity: int) -> list[str]:
-        """Return the contact demands as sentences, if there are any."""
-        if polarity not in self.contacts or self.mechanism is None:
-            return []
-        said = contact_words(self.contacts[polarity], self.mechanism)
-        return [said] if said else []
-
-
-NOTHING_MORE = HistoryDetails()
 
 
 def record_data(motion: GroundMotion, factor: float, polarity: str, pulse: Pulse | None) -> dict[str, Any]:
@@ -127,48 +84,65 @@ def _motion_data(motion: GroundMotion) -> dict[str, Any]:
     }
 
 
-def runs_data(
-    runs: Runs, near: Mapping[int, Neighbours], shown: HistoryDetails = NOTHING_MORE, motion: str = ""
-) -> dict[str, Any]:
-    """Return responses, neighbours and the conclusion as plain data, by polarity if there are two."""
-    each = {
-        str(polarity): {
-            "responses": histories_data(histories, shown, polarity),
-            "agreement": agreement_data(histories),
-            "neighbours": neighbours_data(near[polarity]) if polarity in near else None,
-            "verdict": verdict(histories, agreements(histories), shown.assumed_friction(polarity)),
-        }
-        for polarity, histories in runs.items()
-    }
-    found = concluded(runs, near, motion)
-    both = {"polarities": each, "governs": found.polarity}
-    return {"conclusion": conclusion_data(found)} | (each.popitem()[1] if len(each) == 1 else both)
+AGREEMENT: tuple[Column[Agreement], ...] = (
+    Column("grade", of("grade.key")),
+    Column("uplift_error", of("uplift_error")),
+    Column("peak_error", of("peak_error")),
+    Column("delay", of("peak_delay")),
+    Column("rms_difference", of("difference")),
+)
 
 
-def histories_data(histories: Histories, shown: HistoryDetails = NOTHING_MORE, polarity: int = 1) -> dict[str, Any]:
-    """Return the response of each model as plain data."""
-    return {
-        name: {**_history_data(run, shown), "contact": shown.contact(polarity, name)} for name, run in histories.items()
-    }
+def runs_data(found: Response, watched: Watched, etas: tuple[float, float] | None = None) -> dict[str, Any]:
+    """Return responses, neighbours and the conclusion as plain data, by polarity if there are two.
 
-
-def agreement_data(histories: Histories) -> dict[str, Any]:
-    """Return, as plain data, how the models compare with the nonlinear one; empty without it.
-
-    If the outcome of the nonlinear model is unknown, each value is null.
+    Parameters
+    ----------
+    found : Response
+        The response of the structure.
+    watched : Watched
+        Points and ties of the structure, whose movement is listed.
+    etas : tuple of float, optional
+        Restitution of impacts that end positive and negative motion; with it the impacts are listed.
     """
-    if "nonlinear" in histories and histories["nonlinear"].unknown:
-        return {name: None for name in histories if name != "nonlinear"}
-    return {
-        name: {
-            "grade": found.grade.key,
-            "uplift_error": found.uplift_error,
-            "peak_error": found.peak_error,
-            "delay": found.peak_delay,
-            "rms_difference": found.difference,
+    each = {
+        str(sign): {
+            "responses": histories_data(found, sign, watched, etas),
+            # An equivalent block, which has no joints, is not compared with what is not known.
+            "agreement": {
+                name: data_of(AGREEMENT, found.agreement[sign][name]) if name in found.agreement[sign] else None
+                for name in histories
+                if name != "nonlinear" and "nonlinear" in histories
+            },
+            "neighbours": neighbours_data(found.neighbours[sign]) if sign in found.neighbours else None,
+            "verdict": verdict(histories, found.agreement[sign], found.assumed_friction(sign)),
         }
-        for name, found in agreements(histories).items()
+        for sign, histories in found.runs.items()
     }
+    both = {"polarities": each, "governs": found.conclusion.polarity}
+    return {"conclusion": conclusion_data(found.conclusion)} | (each.popitem()[1] if len(each) == 1 else both)
+
+
+def histories_data(
+    found: Response, sign: int, watched: Watched, etas: tuple[float, float] | None = None
+) -> dict[str, Any]:
+    """Return the response of each model under one polarity as plain data; arguments are those of `runs_data`."""
+    data: dict[str, Any] = {}
+    for name, run in found.runs[sign].items():
+        moved = watched.peaks(run)
+        data[name] = {
+            **data_of(_columns(), run),
+            **known_data(run),
+            "impact_velocity": moved.impact_velocity,
+            "points": {each.name: data_of(POINTS, each) for each in moved.points},
+            "ties": {each.name: data_of(TIES, each) for each in moved.ties},
+        }
+        if etas is not None:
+            data[name]["impact_list"] = [data_of(IMPACTS, each) for each in _impacts(run.impacts, etas)]
+        # A linear model has no joints.
+        checked = found.contacts[sign] if name == "nonlinear" and sign in found.contacts else None
+        data[name]["contact"] = contact_data(checked, watched.mechanism) if checked is not None else None
+    return data
 
 
 def models_used(models: Iterable[ModelName]) -> Iterator[str]:
@@ -191,17 +165,28 @@ def ending(outcome: OneOutcome) -> str:
     return "overturned" if outcome.fell else "still_rocking" if outcome.still_rocking else "at_rest"
 
 
+def _why(outcome: OneOutcome) -> str | None:
+    return why_unknown(outcome) if isinstance(outcome, History) else None
+
+
+def _is_unknown(outcome: OneOutcome) -> bool | None:
+    """Return whether an outcome is unknown; None if the joints of the structure were not checked."""
+    checked = not isinstance(outcome, History) or outcome.model != "nonlinear" or outcome.check is not None
+    return outcome.unknown if outcome.unknown or checked else None
+
+
+KNOWN: tuple[Column[OneOutcome], ...] = (
+    Column("unknown", _is_unknown),
+    Column("known_to", lambda outcome: outcome.known_to if outcome.unknown else None),
+    Column("known_to_reason", _why),
+    Column("peak_lower_bound", lambda outcome: outcome.lower_bound if outcome.unknown else None),
+    Column("opening", of("opening")),
+)
+
+
 def known_data(outcome: OneOutcome) -> dict[str, Any]:
     """Return, as plain data, until when a motion is known and why; linear models are always known."""
-    history = outcome if isinstance(outcome, History) else None
-    checked = history is None or history.model != "nonlinear" or history.check is not None
-    return {
-        "unknown": outcome.unknown if outcome.unknown or checked else None,
-        "known_to": outcome.known_to if outcome.unknown else None,
-        "known_to_reason": None if history is None else why_unknown(history),
-        "peak_lower_bound": outcome.lower_bound if outcome.unknown else None,
-        "opening": outcome.opening,
-    }
+    return data_of(KNOWN, outcome)
 
 
 def not_checked(mechanism: Mechanism, histories: Iterable[History]) -> list[str]:
@@ -211,48 +196,74 @@ def not_checked(mechanism: Mechanism, histories: Iterable[History]) -> list[str]
     return [unchecked(why=mechanism.unchecked)]
 
 
-def _history_data(history: History, shown: HistoryDetails) -> dict[str, Any]:
-    found: dict[str, Any] = {
-        "peak_positive": history.peak_positive,
-        "peak_negative": history.peak_negative,
-        "peak_ratio": history.peak_ratio,
-        "overturned": history.overturned,
-        "overturning_time": history.overturning_time,
-        "overturning_direction": Direction(history.fell_to).label if history.fell else None,
-        "uplift_time": history.uplift_time,
-        "impacts": len(history.felt),
-        "impacts_all": history.impact_count,
-        "outcome": ending(history),
-        "contact_lost": history.contact_lost,
-        "ratio_of": "limit" if any(history.ends_at_limit) else "phi_cr",
-        **known_data(history),
-    }
-    if shown.watched is not None:
-        found |= _movements_data(shown.watched.peaks(history))
-    if shown.etas is not None:
-        found["impact_list"] = [
-            {"time": time, "direction": direction.label, "rate_before": before, "rate_after": after}
-            for time, direction, before, after in _impacts(history.impacts, shown.etas)
-        ]
-    return found
+def _columns(*, unknown: bool = False, over: str = "phi_cr") -> list[Column[History]]:
+    """Return the columns of a history, without those of `KNOWN`.
+
+    Parameters
+    ----------
+    unknown : bool
+        Whether the outcome of the structure is unknown: the table then leaves out those of its blocks.
+    over : str
+        What peaks are divided by.
+    """
+
+    def of_structure(value: Callable[[History], Any]) -> Callable[[History], Any]:
+        return lambda run: None if unknown and not run.unknown else value(run)
+
+    until, bound = ("known until", f"lower bound of peak / {over}") if unknown else (None, None)
+    return [
+        Column("outcome", ending),
+        Column("", of_structure(of("words")), head="outcome"),
+        Column("", of("known_to"), "s", until, rounded(5)),
+        Column("peak_ratio", of("peak_ratio"), "", f"peak rotation / {over}", rounded(5)),
+        Column("", lambda run: run.lower_bound if run.unknown else None, "", bound, rounded(5)),
+        Column("peak_positive", of("peak_positive"), "deg", "peak rotation, clockwise", in_degrees),
+        Column("peak_negative", of("peak_negative"), "deg", "peak rotation, anticlockwise", in_degrees),
+        Column("uplift_time", of("uplift_time"), "s", "first uplift", rounded(5)),
+        Column("overturned", of("overturned")),
+        Column("overturning_time", of("overturning_time")),
+        Column("", of_structure(of("overturning_time")), "s", "overturning time", rounded(5)),
+        Column("overturning_direction", lambda run: Direction(run.fell_to).label if run.fell else None),
+        Column("impacts", lambda run: len(run.felt), head="impacts"),
+        Column("impacts_all", of("impact_count")),
+        Column("contact_lost", of("contact_lost")),
+        Column("ratio_of", lambda run: "limit" if any(run.ends_at_limit) else "phi_cr"),
+    ]
 
 
-def _movements_data(moved: Movements) -> dict[str, Any]:
-    """Return peak displacements of points, peak forces of ties and the impact velocity as plain data."""
-    return {
-        "impact_velocity": moved.impact_velocity,
-        "points": {
-            each.name: {"at": [each.at.real, each.at.imag], "horizontal": each.horizontal, "vertical": each.vertical}
-            for each in moved.points
-        },
-        "ties": {each.name: {"peak_force": each.force, "peak_elongation": each.elongation} for each in moved.ties},
-    }
+POINTS: tuple[Column[PointPeak], ...] = (
+    Column("at", lambda point: [point.at.real, point.at.imag]),
+    Column("horizontal", of("horizontal")),
+    Column("vertical", of("vertical")),
+)
+TIES: tuple[Column[TiePeak], ...] = (
+    Column("peak_force", of("force")),
+    Column("peak_elongation", of("elongation")),
+)
 
 
-def _impacts(impacts: Reals, etas: tuple[float, float]) -> list[tuple[float, Direction, float, float]]:
-    """Return time [s], direction that ends, and rates before and after [rad/s] of impacts of a history."""
-    rows = ((time, Direction(int(sign)), rate) for time, sign, rate in impacts.tolist())
-    return [(time, direction, rate, etas[0 if direction > 0 else 1] * rate) for time, direction, rate in rows]
+class Impact(NamedTuple):
+    """An impact: its time [s], the direction that ends, and the rates before and after [rad/s]."""
+
+    time: float
+    direction: Direction
+    before: float
+    after: float
+
+
+IMPACTS: tuple[Column[Impact], ...] = (
+    Column("time", of("time"), "s", "time [s]", "{:.4f}".format),
+    Column("direction", of("direction.label")),
+    Column("", of("direction"), head="ends motion", form=SENSE.__getitem__, text=True),
+    Column("rate_before", of("before"), "rad/s", "before [rad/s]", rounded(4)),
+    Column("rate_after", of("after"), "rad/s", "after [rad/s]", rounded(4)),
+)
+
+
+def _impacts(impacts: Reals, etas: tuple[float, float]) -> Iterator[Impact]:
+    """Yield impacts of a history; after each, the rate is eta of that before."""
+    for time, sign, rate in impacts.tolist():
+        yield Impact(time, Direction(int(sign)), rate, etas[0 if sign > 0 else 1] * rate)
 
 
 def view(
@@ -285,41 +296,42 @@ def view(
         Whether to list the impacts: the first in a table, without chatter, all in the data.
     """
     mechanism, given = structure.mechanism, found.given
-    shown = HistoryDetails(Watched(mechanism), structure.etas if impacts else None, found.contacts, mechanism)
+    watched, etas = Watched(mechanism), structure.etas if impacts else None
     notes = vertical_notes(found.first, mechanism.gravity)
     data: dict[str, Any] = {
         "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
         "record": record_data(given.motion, given.factor, polarity, given.pulse) if given else None,
         "release": asked.release,
         "restitution": restitution_data(structure),
-        **runs_data(found.runs, found.neighbours, shown, found.conclusion.motion),
+        **runs_data(found, watched, etas),
     }
     if found.fit is None or found.to_pulse is None:
-        parts = _tables(title, found.runs, found.neighbours, shown)
+        parts = _tables(title, found, watched, etas)
     else:
-        checked = {1: found.to_pulse_contact} if found.to_pulse_contact is not None else {}
-        of_pulse = shown._replace(contacts=checked)
-        data |= {"pulse": fit_data(found.fit), "pulse_responses": histories_data(found.to_pulse, of_pulse)}
-        parts = _tables(f"{title}, under the record", found.runs, found.neighbours, shown)
-        alone = f"{title}, under the {found.fit.pulse.title} alone"
-        parts += ["", *_tables(alone, {1: found.to_pulse}, {}, of_pulse)]
-        parts.append(share_of_pulse(next(iter(found.runs.values())), found.to_pulse, found.fit.pulse.title))
+        pulse = found.fit.pulse.title
+        data |= {"pulse": fit_data(found.fit), "pulse_responses": histories_data(found.to_pulse, 1, watched, etas)}
+        parts = [
+            *_tables(f"{title}, under the record", found, watched, etas),
+            "",
+            *_tables(f"{title}, under the {pulse} alone", found.to_pulse, watched, etas),
+            share_of_pulse(found, found.to_pulse, pulse),
+        ]
     first = next(iter(found.runs.values()))
     caution = [f"Caution: {text}" for text in cautions_of(mechanism)]
     if structure.misleading and any(name != "nonlinear" for name in first):
         caution.append(f"Caution: {structure.misleading}.")
-    caution += [f"Caution: {text}" for text in apart(shown.watched, found.runs)]
+    caution += [f"Caution: {text}" for text in apart(watched, found.runs)]
     caution += not_checked(mechanism, first.values())
     joints = ["Joints are named as in `rocking draw`."] if any(each.joint for each in found.contacts.values()) else []
     said = [*parts, *joints, *models_used(first), restitution_used(structure), *notes, *caution]
     return View({**data, "notes": [*doubts, *notes, *caution]}, said)
 
 
-def apart(watched: Watched | None, runs: Runs) -> Iterator[str]:
+def apart(watched: Watched, runs: Runs) -> Iterator[str]:
     """Warn if blocks of crossing walls have slid out of one another."""
-    interlock = watched.mechanism.interlock if watched is not None else None
+    interlock = watched.mechanism.interlock
     every = [run for histories in runs.values() for run in histories.values()]
-    if watched is not None and interlock is not None and any(map(watched.is_torn_apart, every)):
+    if interlock is not None and any(map(watched.is_torn_apart, every)):
         yield (
             f"at the crossing walls the structure moves by more than their overlap of {1000 * interlock.overlap:.0f} "
             "mm: the blocks have then separated and the friction assumed here is lost. The result is not valid."
@@ -356,75 +368,47 @@ def vertical_notes(motion: GroundMotion | None, gravity: float) -> list[str]:
     return said
 
 
-def runs_view(title: str, runs: Runs, mechanism: Mechanism, contacts: Mapping[int, ContactDemand]) -> View:
-    """Show responses without neighbours, in one polarity or both."""
-    shown = HistoryDetails(Watched(mechanism), contacts=contacts, mechanism=mechanism)
-    caution = [f"Caution: {text}" for text in apart(shown.watched, runs)]
-    return View(lambda: runs_data(runs, {}, shown), [*_tables(title, runs, {}, shown), *caution])
-
-
 def _tables(
-    title: str, runs: Runs, near: Mapping[int, Neighbours], shown: HistoryDetails = NOTHING_MORE
-) -> list[Table | str]:  # fmt: skip
+    title: str, found: Response, watched: Watched, etas: tuple[float, float] | None = None
+) -> list[Table | str]:
     """Return a table and sentences for each polarity, and which of two governs."""
     parts: list[Table | str] = []
-    for polarity, histories in runs.items():
-        of = f"{title}, polarity {polarity}" if len(runs) > 1 else title
-        end = concluded({polarity: histories}, near)
-        heading = f"{of} ({headline(end)})"
-        parts += [
-            _table(heading, histories, shown, polarity),
-            verdict(histories, agreements(histories), shown.assumed_friction(polarity)),
-        ]
-        parts += (
-            [f"{neighbours_in_words(near[polarity])} {'' if end.remedy else next_in_words(end)}".rstrip()]
-            if polarity in near
-            else []
-        )
-        parts += shown.contact_words(polarity)
-        if shown.etas is not None:
+    free = next(iter(found.values())).ends_at_limit
+    for sign, histories in found.runs.items():
+        under = f"{title}, polarity {sign}" if len(found.runs) > 1 else title
+        end = found.conclusions[sign]
+        parts.append(outcome_table(f"{under} ({headline(end)})", found, sign, watched))
+        parts.append(verdict(histories, found.agreement[sign], found.assumed_friction(sign)))
+        if sign in found.neighbours:
+            following = "" if end.remedy else next_in_words(end)
+            parts.append(f"{neighbours_in_words(found.neighbours[sign])} {following}".rstrip())
+        if sign in found.contacts and (said := contact_words(found.contacts[sign], watched.mechanism)):
+            parts.append(said)
+        if etas is not None:
             for name, run in histories.items():
-                parts += ["", *_impact_table(f"{of}: impacts, {name}", run, shown.etas)]
-        parts += [""] if len(runs) > 1 else []
-    if len(runs) > 1:
-        ends = {sign: concluded({sign: histories}, near) for sign, histories in runs.items()}
-        free = next(iter(next(iter(runs.values())).values())).ends_at_limit
-        parts.append(governing_polarity(ends, concluded(runs, near).polarity, names.peaks_over(list(free))))
+                parts += ["", *_impact_table(f"{under}: impacts, {name}", run, etas)]
+        parts += [""] if len(found.runs) > 1 else []
+    if len(found.runs) > 1:
+        parts.append(governing_polarity(found.conclusions, found.conclusion.polarity, names.peaks_over(free)))
     return parts
 
 
-def _table(title: str, histories: Histories, shown: HistoryDetails, polarity: int) -> Table:
-    runs = list(histories.values())
+def outcome_table(title: str, found: Response, sign: int, watched: Watched) -> Table:
+    """Return a table of outcomes, peaks and times under one polarity, with a column for each model."""
+    runs = list(found.runs[sign].values())
     unknown = any(run.unknown for run in runs)
     free = runs[0].ends_at_limit
     over = "limit" if all(free) else "phi_cr or limit" if any(free) else "phi_cr"
-    rows = [
-        ["outcome", *(ABSENT if unknown and not run.unknown else run.words for run in runs), ""],
-        [f"peak rotation / {over}", *(number(run.peak_ratio, 5) for run in runs), ""],
-        ["peak rotation, clockwise", *(in_degrees(run.peak_positive) for run in runs), "deg"],
-        ["peak rotation, anticlockwise", *(in_degrees(run.peak_negative) for run in runs), "deg"],
-        ["first uplift", *(number(run.uplift_time, 5) for run in runs), "s"],
-        [
-            "overturning time",
-            *(ABSENT if unknown and not run.unknown else number(run.overturning_time, 5) for run in runs),
-            "s",
-        ],
-        ["impacts", *(str(len(run.felt)) for run in runs), ""],
-    ]
-    if unknown:
-        rows.insert(1, ["known until", *(number(run.known_to, 5) for run in runs), "s"])
-        rows.insert(3, [f"lower bound of peak / {over}", *(number(_bound(run), 5) for run in runs), ""])
-    if shown.watched is not None:
-        rows += _movement_rows([shown.watched.peaks(run) for run in runs])
-    if polarity in shown.contacts and shown.mechanism is not None:
-        per, unit = force_unit(shown.mechanism)
-        shear = number(shown.contacts[polarity].base_shear / per, 4)
-        rows.append(
-            ["base shear, without impacts", *(shear if run.model == "nonlinear" else ABSENT for run in runs), unit]
-        )
+    moved = [watched.peaks(run) for run in runs]
+    rows = [*lines_of(_columns(unknown=unknown, over=over), runs), *_movement_rows(moved)]
+    if sign in found.contacts:
+        per, unit = force_unit(watched.mechanism)
+        shear = number(found.contacts[sign].base_shear / per, 4)
+        cells = (shear if run.model == "nonlinear" else ABSENT for run in runs)
+        rows.append(["base shear, without impacts", *cells, unit])
     heads = [
         f"{head},\nuntil {number(run.known_to, 4)} s" if run.unknown else head
-        for head, run in zip(model_heads(histories, unknown=unknown), runs, strict=True)
+        for head, run in zip(model_heads(found.runs[sign], unknown=unknown), runs, strict=True)
     ]
     return Table(title, ["", *heads, "unit"], rows, numbers=range(1, len(runs) + 1))
 
@@ -434,32 +418,18 @@ def model_heads(models: Iterable[str], *, unknown: bool) -> list[str]:
     return [f"block,\n{model}" if unknown and model != "nonlinear" else model for model in models]
 
 
-def _bound(run: History) -> float:
-    return run.lower_bound if run.unknown else nan
-
-
-def _movement_rows(moved: Sequence[Movements]) -> list[list[str]]:
-    rows = [["peak impact velocity", *(number(each.impact_velocity, 4) for each in moved), "m/s"]]
-    for k, point in enumerate(moved[0].points):
-        rows.append(
-            [
-                f"{point.name}, horizontal displacement",
-                *(number(1000 * each.points[k].horizontal, 4) for each in moved),
-                "mm",
-            ]
-        )
-    for k, tie in enumerate(moved[0].ties):
-        rows.append([f"{tie.name}, force", *(number(each.ties[k].force / 1000, 4) for each in moved), "kN"])
-        rows.append([f"{tie.name}, elongation", *(number(1000 * each.ties[k].elongation, 4) for each in moved), "mm"])
-    return rows
+def _movement_rows(moved: Sequence[Movements]) -> Iterator[list[str]]:
+    yield ["peak impact velocity", *(number(each.impact_velocity, 4) for each in moved), "m/s"]
+    for points in zip(*(each.points for each in moved), strict=True):
+        cells = (number(1000 * point.horizontal, 4) for point in points)
+        yield [f"{points[0].name}, horizontal displacement", *cells, "mm"]
+    for ties in zip(*(each.ties for each in moved), strict=True):
+        yield [f"{ties[0].name}, force", *(number(tie.force / 1000, 4) for tie in ties), "kN"]
+        yield [f"{ties[0].name}, elongation", *(number(1000 * tie.elongation, 4) for tie in ties), "mm"]
 
 
 def _impact_table(title: str, history: History, etas: tuple[float, float]) -> list[Table | str]:
-    rows = [
-        [f"{time:.4f}", SENSE[direction], number(before, 4), number(after, 4)]
-        for time, direction, before, after in _impacts(history.felt[:FIRST], etas)
-    ]
-    table = Table(title, ["time [s]", "ends motion", "before [rad/s]", "after [rad/s]"], rows, numbers=(0, 2, 3))
+    table = table_of(title, IMPACTS, _impacts(history.felt[:FIRST], etas))
     felt, chatter = len(history.felt), history.impact_count - len(history.felt)
     said = [f"{felt - FIRST} more impacts follow"] if felt > FIRST else []
     said += [f"{chatter} weaker than {100 * FELT:g} % of the strongest are left out"] if chatter else []

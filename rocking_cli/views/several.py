@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from typing import NamedTuple
 
 from rocking_cli import names
 from rocking_cli.core.contacts import MASONRY
@@ -18,23 +20,23 @@ from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
 from rocking_cli.studies.response import Histories, Response
 from rocking_cli.text import in_short
 from rocking_cli.views.cautions import cautions_of
-from rocking_cli.views.conclusion import governing
+from rocking_cli.views.column import Column, of, table_of
+from rocking_cli.views.conclusion import NAMED, counted
 from rocking_cli.views.contact import contact_words
-from rocking_cli.views.neighbours import deviations, neighbours_cells
+from rocking_cli.views.neighbours import deviations, neighbour_columns
 from rocking_cli.views.response import apart, model_heads, models_used
 from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.verdict import unchecked, unknown_after
 from rocking_cli.views.view import Table, heading, number
 
-NAMED = 6  # motions that a sentence names
-CLAUSES = {
-    names.OVERTURNS: names.OVERTURNS,
-    names.UNKNOWN: "has an unknown outcome",
-    names.ROCKS: names.ROCKS,
-    names.NO_UPLIFT: names.NO_UPLIFT,
-}
-"""What a structure does, by its outcome, the worst first."""
-BAD = (names.OVERTURNS, names.UNKNOWN)  # the motions are named under which the outcome is one of these
+
+class MotionRow(NamedTuple):
+    """A row of the table: name, PGA [g], what becomes of each model, and the neighbours."""
+
+    name: str
+    pga: float
+    fates: Mapping[ModelName, str]
+    near: Neighbours | None
 
 
 class Several:
@@ -56,9 +58,8 @@ class Several:
         self._restitution = restitution_used(structure)
         self._models = models
         self._best: ModelName = "nonlinear" if "nonlinear" in models else models[0]
-        self._rows: list[list[str]] = []
+        self._rows: list[MotionRow] = []
         self._ends: list[Conclusion] = []
-        self._outcomes: dict[str, list[str]] = {outcome: [] for outcome in CLAUSES}
         self._asked = asked
         self._checked, self._doubtful = True, False
         self._until: dict[str, str] = {}
@@ -73,7 +74,7 @@ class Several:
     def add(self, found: Response) -> None:
         """Add the response to one motion."""
         assert found.given is not None
-        pga = f"{abs(found.given.factor) * found.given.motion.of_ground.pga_g:.4g}"
+        pga = abs(found.given.factor) * found.given.motion.of_ground.pga_g
         for sign, histories in found.runs.items():
             reversed_ = ", reversed" if sign < 0 and len(found.runs) > 1 else ""
             near = found.neighbours.get(sign)
@@ -89,34 +90,29 @@ class Several:
                 self._contacts[name] = found.contacts[sign]
         if found.fit is not None and found.to_pulse is not None:
             own = found.fit.pulse
-            self._row(f"  its {own.name} pulse alone", f"{own.amplitude / STANDARD_GRAVITY:.4g}", found.to_pulse, None)
+            self._row(f"  its {own.name} pulse alone", own.amplitude / STANDARD_GRAVITY, found.to_pulse, None)
         self._ends.append(found.conclusion)
-        ends = {histories[self._best].words for histories in found.runs.values()}
-        worst = next((end for end in CLAUSES if end in ends), names.ROCKS)  # still rocking: it does not overturn
-        self._outcomes[worst].append(found.given.motion.name)
         for text in apart(self._watched, found.runs):
             self._torn.setdefault(text, []).append(found.given.motion.name)
 
-    def _row(self, what: str, pga: str, histories: Histories, near: Neighbours | None) -> None:
-        self._rows.append([what, pga, *(_fate(histories[name]) for name in self._models), *neighbours_cells(near)])
+    def _row(self, name: str, pga: float, histories: Histories, near: Neighbours | None) -> None:
+        self._rows.append(MotionRow(name, pga, {model: _fate(histories[model]) for model in self._models}, near))
+
+    def _columns(self) -> Iterator[Column[MotionRow]]:
+        yield Column("", of("name"), head=f"peak phi/{'limit' if any(self._free) else 'phi_cr'}\nunder", text=True)
+        yield Column("", of("pga"), head="PGA\n[g]")
+        for model, head in zip(self._models, model_heads(self._models, unknown=bool(self._until)), strict=True):
+            yield Column("", partial(_fate_of, model), head=head)
+        if self._around is not None:
+            yield from neighbour_columns(of("near"), doubtful=self._doubtful)
 
     def parts(self, left_out: Sequence[str] = ()) -> Iterator[Table | str]:
         """Yield how many motions overturn the structure, which governs and which are left out, and the table."""
-        heads = [f"peak phi/{'limit' if any(self._free) else 'phi_cr'}\nunder", "PGA\n[g]"]
-        heads += model_heads(self._models, unknown=bool(self._until))
-        rows = self._rows
-        if self._around is None:
-            rows = [row[:-3] for row in rows]
-        elif self._doubtful:
-            heads += ["neighbours\noverturn", "are\nunknown", "their\nmedian"]
-        else:
-            heads += ["neighbours\noverturn", "their\nmedian"]
-            rows = [[*row[:-2], row[-1]] for row in rows]
-        yield f"By the {self._best} model, {self._counted()} {governing(self._ends, peaks_over(self._free))}".rstrip()
+        yield f"By the {self._best} model, {counted(self._ends, peaks_over(self._free))}"
         if (lost := self._asked - len(self._ends)) > 0:
             named = f" ({in_short(left_out, most=NAMED)})" if left_out else ""
             yield f"Not counted: {lost} of {self._asked} motions{named}, which could not be used."
-        yield Table(self._title, heads, rows, numbers=range(1, len(heads)))
+        yield table_of(self._title, self._columns(), self._rows)
         if self._around is not None:
             yield f"Neighbours: {self._around.count} neighbouring motions for each motion, {deviations(self._around)}."
         yield from self._joints()
@@ -126,20 +122,6 @@ class Several:
         yield from (f"Caution: under {in_short(each, most=NAMED)}, {text}" for text, each in self._torn.items())
         if not self._checked:
             yield unchecked(why=self._mechanism.unchecked)
-
-    def _counted(self) -> str:
-        """Return a sentence on under how many motions the structure has each outcome, the worst first."""
-        count, said = len(self._ends), list[str]()
-        if len(self._outcomes[names.NO_UPLIFT]) == count:
-            return f"the structure uplifts under none of {count} motions."
-        for outcome, under in self._outcomes.items():
-            if not under:
-                continue
-            of = f"all {count}" if len(under) == count else f"{len(under)}{'' if said else f' of {count}'}"
-            named = f" ({in_short(under, most=NAMED)})" if outcome in BAD and len(under) < count else ""
-            said.append(f"{CLAUSES[outcome]} under {of}{'' if said else ' motions'}{named}")
-        *before, last = said
-        return f"the structure {', '.join(before)}{' and ' if before else ''}{last}."
 
     def _joints(self) -> Iterator[str]:
         """Yield until when motions are known, the friction that each requires, and the joints that fail.
@@ -173,6 +155,10 @@ class Several:
             return f"{each}; the {there:g} {of} is enough under all"
         assumed = ": the results assume that nothing slides" if given is None else ""
         return f"{each}; it is more than the {there:g} {of} under {in_short(more, most=NAMED)}{assumed}"
+
+
+def _fate_of(model: ModelName, row: MotionRow) -> str:
+    return row.fates[model]
 
 
 def _fate(history: History) -> str:
