@@ -195,10 +195,11 @@ class TestEachCheck:
         found = checked("records")
         assert found.passed is False and 1e-12 < found.found < 2e-11
 
-    def test_records_name_all_formats_that_are_not_read(self, monkeypatch):
+    def test_records_name_all_formats_that_are_not_read(self, monkeypatch, tmp_path):
         files = checks.FILES
-        monkeypatch.setitem(files, "esm", files["esm"]._replace(content=lambda: "nothing"))
-        monkeypatch.setitem(files, "smc", files["smc"]._replace(content=files["knet"].content))
+        (tmp_path / "nothing").write_text("nothing")
+        monkeypatch.setitem(files, "esm", files["esm"]._replace(path=tmp_path / "nothing"))
+        monkeypatch.setitem(files, "smc", files["smc"]._replace(path=files["knet"].path))
         found = checked("records")
         assert found.passed is False
         assert re.match(r"esm: .*: not a record format that can be read: [^;]*; smc: ", found.why)
