@@ -56,13 +56,13 @@ from rocking_cli.core.registry import Registry as Registry
 from rocking_cli.dynamics.batch import Runs as Runs
 from rocking_cli.dynamics.batch import respond_many as respond_many
 from rocking_cli.dynamics.exact import ExactResponse as ExactResponse
+from rocking_cli.dynamics.exact import closed_form as closed_form
+from rocking_cli.dynamics.exact import exact_pulse as exact_pulse
 from rocking_cli.dynamics.exact import exact_response as exact_response
 from rocking_cli.dynamics.exact_batch import exact_many as exact_many
 from rocking_cli.dynamics.history import History as History
 from rocking_cli.dynamics.model import Model as Model
 from rocking_cli.dynamics.outcome import Outcome as Outcome
-from rocking_cli.dynamics.pulse_response import closed_form as closed_form
-from rocking_cli.dynamics.pulse_response import exact_pulse as exact_pulse
 from rocking_cli.errors import InputError as InputError
 from rocking_cli.errors import MechanismError as MechanismError
 from rocking_cli.errors import Problem as Problem

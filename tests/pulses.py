@@ -3,11 +3,11 @@
 from math import isnan
 from types import SimpleNamespace
 
-from rocking_cli.dynamics import pulse_response
+from rocking_cli.dynamics import exact
 from rocking_cli.views.column import data_of
 from rocking_cli.views.pulse import EXACT
 
 
 def exact_pulse(a, omega, eta, shape="sine"):
-    data = data_of(EXACT, pulse_response.exact_pulse(a, omega, eta, shape))
+    data = data_of(EXACT, exact.exact_pulse(a, omega, eta, shape))
     return SimpleNamespace(**{name: None if isnan(value or 0) else value for name, value in data.items()})

@@ -11,8 +11,7 @@ from pytest import approx
 from rocking_cli import load_structure
 from rocking_cli.cli.main import main
 from rocking_cli.core import equivalent_block
-from rocking_cli.dynamics.exact import exact_response
-from rocking_cli.dynamics.pulse_response import closed_form
+from rocking_cli.dynamics.exact import closed_form, exact_response
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.structure import Structure
 from rocking_cli.studies.sampled_pulse import sampled_history

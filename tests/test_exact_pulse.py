@@ -20,11 +20,10 @@ from mechanisms.block import Block
 from rocking_cli import load_structure
 from rocking_cli.core import Equivalence, equivalent_block
 from rocking_cli.dynamics import pulse_motion
-from rocking_cli.dynamics.exact import exact_response, segments_of, sides_of
+from rocking_cli.dynamics.exact import SHAPES, closed_form, exact_response, segments_of, sides_of
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.dynamics.outcome import OUTCOME
 from rocking_cli.dynamics.pulse_motion import RESULTS, Side
-from rocking_cli.dynamics.pulse_response import SHAPES, closed_form
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, Segment
 from tests.following import respond

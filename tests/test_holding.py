@@ -11,7 +11,7 @@ import pytest
 
 import rocking_cli as rk
 from rocking_cli.core import Direction
-from rocking_cli.dynamics.checked import checked_joints
+from rocking_cli.dynamics.joints import checked_joints
 from rocking_cli.dynamics.resting import FEET
 from rocking_cli.structure import build_models
 from rocking_cli.studies.contact import Contacts
@@ -57,7 +57,7 @@ def test_joints_that_are_checked_are_named_by_kind(structure, said):
 @pytest.mark.parametrize("name", ["frame", "linkage", "portal"])
 def test_all_joints_of_the_tables_are_named_and_no_others(name, monkeypatch):
     """A joint has one letter in each direction in which it is a hinge, and the name of both bodies if in none."""
-    monkeypatch.setattr("rocking_cli.dynamics.checked.LISTED", 1000)
+    monkeypatch.setattr("rocking_cli.dynamics.joints.LISTED", 1000)
     made = rk.load_structure(next(EXAMPLES.rglob(f"{name}.yaml")))
     (model,) = build_models(made, ("nonlinear",))
     named = [each for kind in model.joints.checked for each in re.sub(r"^(closed )?\w+ ", "", kind).split(", ")]

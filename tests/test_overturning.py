@@ -17,8 +17,7 @@ from mechanisms.block import Block
 from rocking_cli.cli.main import main
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.exact import exact_response
-from rocking_cli.dynamics.pulse_response import closed_form
+from rocking_cli.dynamics.exact import closed_form, exact_response
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import COARSE

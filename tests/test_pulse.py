@@ -25,7 +25,7 @@ from pytest import approx
 from mechanisms.block import Block
 from rocking_cli.cli.main import main
 from rocking_cli.core import equivalent_block
-from rocking_cli.dynamics.pulse_response import closed_form
+from rocking_cli.dynamics.exact import closed_form
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.views.pulse import why_not_valid
@@ -463,7 +463,7 @@ def test_extreme_pulses_have_finite_answers_or_none(point):
 def test_a_block_that_bounces_without_loss_is_answered_or_refused_at_once():
     """It overturns after 313 000 impacts; giving up on the way is no reason to call it safe."""
     script = """
-from rocking_cli.dynamics.pulse_response import exact_pulse
+from rocking_cli.dynamics.exact import exact_pulse
 from rocking_cli.errors import RockingError
 try:
     print(exact_pulse(1.0000036, 0.003, 1.0).overturns)

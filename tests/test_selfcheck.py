@@ -24,8 +24,8 @@ from rocking_cli.ask.watcher import Watcher
 from rocking_cli.cli.main import main
 from rocking_cli.dynamics import batch, exact_batch, kernels, shipped, ways
 from rocking_cli.dynamics.calling import SETS
+from rocking_cli.dynamics.exact import closed_form
 from rocking_cli.dynamics.parallel import in_parts
-from rocking_cli.dynamics.pulse_response import closed_form
 from rocking_cli.excitation.records import record_units
 from rocking_cli.excitation.records.registry import Readers
 from rocking_cli.studies import selfcheck as run

@@ -18,8 +18,7 @@ from rocking_cli.core.rates import Rates, VelocityTerm
 from rocking_cli.core.released import ONE, PUSH, RATE, Pieces, Undetermined, _check_count, released
 from rocking_cli.dynamics import modes as of_modes
 from rocking_cli.dynamics.joints import joints_of
-from rocking_cli.dynamics.modes import _edges, _Placed, _thrown, modes
-from rocking_cli.dynamics.stuck import stuck
+from rocking_cli.dynamics.modes import _edges, _Placed, _thrown, modes, stuck
 from rocking_cli.dynamics.tables import tabulate
 from rocking_cli.views.contact import contact_words
 from tests.conftest import EXAMPLES

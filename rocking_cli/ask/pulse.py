@@ -111,7 +111,7 @@ def pulse(
 
 
 def _on_block(a: float | None, omega: float | None, eta: float, shape: str) -> MappingAnswer[Any, Any]:
-    from rocking_cli.dynamics.pulse_response import SHAPES, closed_form, exact_pulse
+    from rocking_cli.dynamics.exact import SHAPES, closed_form, exact_pulse
     from rocking_cli.views.pulse import view
 
     if a is None or omega is None:

@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.deck import MOST_IMPACTS, lay_out, read_marks, run_deck
-from rocking_cli.dynamics.history import RTOL, check_rtol
-from rocking_cli.dynamics.in_step import out_of_step
+from rocking_cli.dynamics.history import RTOL, check_rtol, out_of_step
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import ceil
@@ -11,10 +12,10 @@ from numpy.typing import NDArray
 
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, lay_out, read_marks, run_deck
-from rocking_cli.dynamics.in_step import out_of_step
 from rocking_cli.dynamics.joints import JointCheck, check_of
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME, Outcome
+from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.dynamics.vertical import contact_lost
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import GroundMotion
@@ -24,7 +25,8 @@ FINEST_RTOL = 1e-14  # below it rounding refuses steps
 RTOL = 1e-9  # local error of a step, of the lower order of the pair: peaks are then right to 1e-11
 TAIL = 10.0  # s of motion kept after the record
 MOST_SAMPLES = 20_000_000
-
+ALONE = 256  # histories of columns alone that a thread takes at a time
+LEAST_ETA = 1e-3  # of a column alone whose restitution is shifted with that of the structure
 FELT = 0.02  # of the rate of rotation before the strongest impact: weaker ones are chatter
 
 
@@ -178,3 +180,54 @@ def follow(
         check=check_of(model.joints, marks[0]),
         apart=bool(marks[0, kernels.REASON] == kernels.APART),
     )
+
+
+def out_of_step(
+    models: Sequence[Model],
+    motions: Sequence[GroundMotion | None],
+    rows: Reals,
+    marks: Reals,
+    tilts: Reals,
+    *,
+    rtol: float,
+    most_impacts: int,
+    threads: int | None = None,
+) -> NDArray[np.bool_]:
+    """Return for each run whether a column alone ends otherwise than the structure after a first impact, shape (n,).
+
+    From the first impact of three or more columns under one beam, statics does not determine which of them carries it.
+    The least favourable distribution leaves one without any load, so that it rocks alone. Where its outcome differs
+    from that of the structure in step, the outcome is unknown from the first impact on.
+
+    Parameters
+    ----------
+    models : sequence of Model
+        Models of the runs; only those with models of columns alone are simulated again.
+    motions : sequence of GroundMotion or None
+        The ground motions.
+    rows, marks : ndarray, shape (n, ...)
+        Runs of the kernel, and what it found.
+    tilts : ndarray, shape (n,)
+        Signed rotation from which each run starts, over phi_cr.
+    rtol, most_impacts, threads
+        As in `respond_many`.
+    """
+    differs = np.zeros(len(rows), bool)
+    own = rows[:, kernels.STRUCTURE].astype(np.int64)
+    for k, model in enumerate(models):
+        mine = np.flatnonzero((own == k) & (marks[:, kernels.IMPACTS] > 0))
+        for column in model.columns if mine.size else ():
+            there, found = rows[mine].copy(), np.full((mine.size, kernels.MARKS), np.nan)
+            there[:, kernels.STRUCTURE] = 0
+            there[:, kernels.START] = [column.q(tilt) for tilt in tilts[mine].tolist()]
+            for place, eta, of in zip((kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE), column.eta, model.eta, strict=True):
+                there[:, place] = np.clip(eta + there[:, place] - of, LEAST_ETA, 1.0)  # NaN stays
+            deck = lay_out([column], motions)
+            run = partial(run_deck, deck, there, found, rtol=rtol, most_impacts=most_impacts, brief=True)
+            in_parts(run, len(there), ALONE, threads, None)
+            alone, whole = (
+                read_marks(each, np.array([of.phi_cr]), np.array([of.reach]))
+                for each, of in ((found, column), (marks[mine], model))
+            )
+            differs[mine] |= alone.unknown | (alone.fell != whole.fell)
+    return differs

@@ -7,10 +7,9 @@ from math import pi
 from typing import Literal
 
 from rocking_cli.core import EquivalentBlock, Mechanism
-from rocking_cli.dynamics.exact import ExactResponse, exact_response
+from rocking_cli.dynamics.exact import ClosedForm, ExactResponse, closed_form, exact_response
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.dynamics.pulse_response import ClosedForm, closed_form
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluding

@@ -8,9 +8,8 @@ from math import isnan
 from typing import Any, TypeVar
 
 from rocking_cli import names
-from rocking_cli.dynamics.exact import ExactResponse
+from rocking_cli.dynamics.exact import ClosedForm, ExactResponse
 from rocking_cli.dynamics.outcome import OneOutcome
-from rocking_cli.dynamics.pulse_response import ClosedForm
 from rocking_cli.names import percent
 from rocking_cli.views.column import Column, data_of, of
 from rocking_cli.views.view import ABSENT, Table, View, number

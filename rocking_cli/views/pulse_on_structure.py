@@ -10,9 +10,8 @@ from typing import Any
 from rocking_cli import names
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.advice import Grade, grade, uplift_error
-from rocking_cli.dynamics.exact import ExactResponse
+from rocking_cli.dynamics.exact import ClosedForm, ExactResponse
 from rocking_cli.dynamics.history import History
-from rocking_cli.dynamics.pulse_response import ClosedForm
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
