@@ -194,7 +194,7 @@ class TestSameBits:
         shipped_bits = bits_of_shipped(choose)
         made = {each.module: compiled(import_module(each.module)) for each in SETS.values()}
         by_name = {name: made[each.module][each.function] for name, each in SETS.items()}
-        monkeypatch.setattr(ways, "_choose", lambda: ("numba", by_name))
+        monkeypatch.setattr(ways, "_chosen", lambda: ("numba", by_name))
         found = bits_of_histories(), bits_of_pulses()
         monkeypatch.undo()
         assert found == shipped_bits

@@ -264,7 +264,9 @@ class TestEachCheck:
             return kernel
 
         monkeypatch.setattr(ways, "in_python", spoilt)
+        ways.forget()
         found = checked("kernels")
+        ways.forget()
         assert found.passed is False and found.found >= 1
 
     @pytest.mark.parametrize(

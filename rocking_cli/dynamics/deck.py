@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from math import ceil
 from typing import TYPE_CHECKING, TypeVar
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.dynamics import kernels, ways
-from rocking_cli.dynamics.calling import HISTORIES, TIED, KernelSet
+from rocking_cli.dynamics.calling import HISTORIES, TIED
 from rocking_cli.dynamics.joints import laid_out
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcome
@@ -42,13 +42,9 @@ def run_deck(
     phi: Reals = NOTHING,
     rate: Reals = NOTHING,
     impacts: Reals = NO_IMPACTS,
-    kernel_of: Callable[[KernelSet], ways.Kernel] = ways.kernel,
 ) -> None:
-    """Run the kernel; it fills `marks` and, if given, the samples and the impacts of the last history.
-
-    `kernel_of` returns the function of a kernel: by default, that of the way in which kernels are run here.
-    """
-    run = kernel_of(TIED if deck.forces.ndim == 4 else HISTORIES)
+    """Run the kernel; it fills `marks` and, if given, the samples and the impacts of the last history."""
+    run = ways.kernel(TIED if deck.forces.ndim == 4 else HISTORIES)
     samples = kernels.Samples(every, phi, rate, impacts, np.empty(kernels.MARKS))
     most = int(deck.joints.sizes[:, 1].max(initial=0))
     room = kernels.Room(

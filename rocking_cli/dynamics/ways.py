@@ -11,7 +11,8 @@ import importlib
 import os
 import threading
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from math import ceil
 from types import FunctionType
 from typing import Any
@@ -27,31 +28,45 @@ READY, PYTHON = "ready", "python"
 
 Kernel = Callable[..., None]
 _LOCK = threading.RLock()
+_forced: str | None = None
 
 
 def kernel(of: KernelSet) -> Kernel:
     """Return the function of a kernel, with the arguments that it has in its source."""
-    with _LOCK:  # the threads of a batch come at once
-        return _choose()[1][of.name]
+    return _chosen()[1][of.name]
 
 
 def way() -> str:
     """Return the way in which kernels are run: `READY` or `PYTHON`."""
-    with _LOCK:
-        return _choose()[0]
+    return _chosen()[0]
+
+
+@contextmanager
+def forced(way: str) -> Iterator[None]:
+    """Run kernels in one way, whatever the environment says."""
+    global _forced
+    before, _forced = _forced, way
+    try:
+        yield
+    finally:
+        _forced = before
 
 
 def forget() -> None:
-    """Forget the chosen way, for tests with another environment."""
+    """Forget what is loaded, for tests with other libraries."""
     from rocking_cli.dynamics import shipped
 
     _choose.cache_clear()
     shipped.library.cache_clear()
 
 
+def _chosen() -> tuple[str, dict[str, Kernel]]:
+    with _LOCK:  # the threads of a batch come at once
+        return _choose(_forced or os.environ.get(CHOSEN) or None)
+
+
 @functools.cache
-def _choose() -> tuple[str, dict[str, Kernel]]:
-    asked = os.environ.get(CHOSEN) or None
+def _choose(asked: str | None) -> tuple[str, dict[str, Kernel]]:
     if asked not in (None, READY, PYTHON):
         raise InputError(f"{CHOSEN} is {asked!r}: give one of {READY}, {PYTHON}")
     if asked != PYTHON:

@@ -20,15 +20,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.core.registry import Registry
-from rocking_cli.dynamics import batch, exact_batch, pulse_motion, ways
-from rocking_cli.dynamics import kernels as source
+from rocking_cli.dynamics import batch, exact_batch, ways
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.calling import PULSES, KernelSet
-from rocking_cli.dynamics.deck import lay_out, run_deck
-from rocking_cli.dynamics.exact import segments_of, sides_of
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.dynamics.history import follow
-from rocking_cli.dynamics.model import Model, ModelName
+from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import OUTCOME, Outcomes
 from rocking_cli.errors import BrokenKernels, RockingError
 from rocking_cli.excitation.base import GroundMotion
@@ -41,7 +37,6 @@ from rocking_cli.studies.selfcheck import NotRun
 from rocking_cli.units import KINDS, read
 
 Reals = NDArray[np.float64]
-KernelOf = Callable[[KernelSet], ways.Kernel]
 GRAVITY = 9.80665  # m/s2, written here as all that the checks expect
 MOTIONS = tuple(
     GroundMotion(f"motion {k}", dt, np.array(samples, dtype=np.float64))
@@ -480,7 +475,6 @@ def units(quick: bool) -> float:
 
 THREADS = 4
 TIE = {"name": "bar", "from": {"ground": [-3.0, 2.8]}, "to": {"at": [-0.35, 2.8]}, "area": 1e-5, "modulus": 2e11}
-KEPT = 2000  # samples
 
 
 def threads(quick: bool) -> float:
@@ -531,44 +525,27 @@ def kernels(quick: bool) -> float:
         raise RockingError(str(fault)) from fault
     if fault is not None:
         raise NotRun(f"{fault}; Python computes histories") from fault
-    arrays = (_computed(kernel_of, quick) for kernel_of in (ways.as_shipped, ways.in_python))
-    return sum(different_values(*pair) for pair in zip(*arrays, strict=True))
+    computed = []
+    for way in (ways.READY, ways.PYTHON):
+        with ways.forced(way):
+            computed.append(list(_computed(quick)))
+    return sum(different_values(*pair) for pair in zip(*computed, strict=True))
 
 
-def _computed(kernel_of: KernelOf, quick: bool) -> Iterator[Reals]:
+def _computed(quick: bool) -> Iterator[NDArray[Any]]:
     """Yield all arrays that the kernels fill."""
-    yield _of_pulses(kernel_of)
     free, two = block(0.7, 2.8).structure, made("wall", thickness=0.3, height=3.0)
     tied = made("block", width=0.7, height=2.8, mass=1000.0, ties=[TIE])
-    models = [*free.models(("nonlinear", "linear2")), two.model("nonlinear"), tied.model("nonlinear")]
+    amplitudes, periods = np.geomspace(2.0, 20.0, 50), np.geomspace(3.0, 0.3, 50)
+    found = exact_many(free.equivalence, Sine(1.0, 1.0), amplitudes, periods, kappa=2, gravity=GRAVITY)
+    yield from (getattr(found, name) for name in OUTCOME)
     for motion in MOTIONS[:1] if quick else MOTIONS:
         both = replace(motion, vertical=GroundMotion("vertical", 0.07, motion.acceleration[::-1] / 2))
-        for model in models:
-            yield from _of_history(kernel_of, model, motion)
-            yield from _of_history(kernel_of, model, both)
-
-
-def _of_history(kernel_of: KernelOf, model: Model, motion: GroundMotion) -> tuple[Reals, ...]:
-    """Return marks, rotations, rates and impacts of a history."""
-    rows, marks = np.zeros((1, source.RUN_COLUMNS)), np.zeros((1, source.MARKS))
-    rows[0, [source.FACTOR, source.V_FACTOR, source.SIZE, source.SLENDER]] = 1.0
-    rows[0, [source.ETA_POSITIVE, source.ETA_NEGATIVE]] = 0.9
-    phi, rate, impacts = np.zeros(KEPT), np.zeros(KEPT), np.zeros((20, 3))
-    deck = lay_out([model], [motion])
-    run_deck(
-        deck, rows, marks, rtol=1e-9, most_impacts=20, phi=phi, rate=rate, impacts=impacts, kernel_of=kernel_of
-    )  # fmt: skip
-    return marks, phi, rate, impacts
-
-
-def _of_pulses(kernel_of: KernelOf) -> Reals:
-    """Return the results of pulses on a linear block."""
-    sides = sides_of(block(0.7, 2.8).structure.equivalence, kappa=2, gravity=GRAVITY)
-    amplitudes, periods = np.geomspace(2.0, 20.0, 50), np.geomspace(3.0, 0.3, 50)
-    results = np.zeros((50, pulse_motion.RESULTS))
-    segments = np.array(segments_of(Sine(1.0, 1.0)), dtype=np.float64)
-    kernel_of(PULSES)(sides, segments, amplitudes, periods, 0, len(results), results)
-    return results
+        for model in (*free.models(("nonlinear", "linear2")), two.model("nonlinear"), tied.model("nonlinear")):
+            for each in (motion, both):
+                history = follow(model, each, eta=0.9, most_kept=20)
+                yield from (history.phi, history.rate, history.impacts)
+                yield np.array([getattr(history, name) for name in OUTCOME], dtype=np.float64)
 
 
 # --- records ---------------------------------------------------------------------------------------------------------
