@@ -285,59 +285,6 @@ def test_equal_columns_are_the_symmetric_frame(case):
     assert got.symmetric
 
 
-@pytest.mark.parametrize("case", range(12))
-@pytest.mark.parametrize("direction", BOTH)
-def test_the_mirror_image_swaps_the_directions(case, direction):
-    values = fields(2 * case + 1)  # by masses
-    mirrored = {
-        **values,
-        "left_height": values["right_height"], "right_height": values["left_height"],
-        "left_mass": values["right_mass"], "right_mass": values["left_mass"],
-    }  # fmt: skip
-    frame, mirror = AsymmetricFrame(**values), AsymmetricFrame(**mirrored)
-    one, two = equivalent_block(frame)[direction], equivalent_block(mirror)[direction.opposite]
-    # What does not depend on which column measures the rotation: both rest rates H/H1 are the same in both directions.
-    assert one.lambda_ == approx(two.lambda_, rel=1e-10)
-    assert one.p == approx(two.p, rel=1e-9)
-    assert one.eta == approx(two.eta, rel=1e-10)
-    energies = [
-        m.potential_energy(np.array([block.phi_cr]), way)[0]
-        for m, block, way in ((frame, one, direction), (mirror, two, direction.opposite))
-    ]
-    assert energies[0] == approx(energies[1], rel=1e-10)
-    # What does: the mirror's rotation is that of the right column here.
-    scan = Scan(values, int(direction))
-    v_CD = scan.angles(np.array([0.0, one.phi_cr]))[2]
-    assert two.phi_cr == approx(direction * (v_CD[0] - v_CD[1]), rel=1e-9)
-    f_CD = scan.rates(one.phi_cr)[1]
-    assert (one.I_eq, one.G_eq, one.B_eq) == approx((two.I_eq * f_CD**2, two.G_eq * f_CD**2, two.B_eq * f_CD), rel=1e-9)
-    if abs(values["left_height"] / values["right_height"] - 1) > 0.05:
-        assert abs(one.phi_cr / two.phi_cr - 1) > 1e-3
-
-
-@pytest.mark.parametrize("scale", [0.2, 7.0])
-def test_size_only_sets_the_time_scale(scale):
-    values = fields(0)
-    lengths = {key: scale * values[key] for key in ("column_width", "left_height", "right_height", "spacing")}
-    big = {**values, **lengths, "beam_depth": scale * values["beam_depth"]}
-    one, two = equivalent_block(AsymmetricFrame(**values)), equivalent_block(AsymmetricFrame(**big))
-    for direction in BOTH:
-        small, large = one[direction], two[direction]
-        assert large.p == approx(small.p / np.sqrt(scale), rel=1e-11)
-        for name in ("phi_cr", "lambda_", "lambda_lin", "kappa1", "kappa2", "eta"):
-            assert getattr(large, name) == approx(getattr(small, name), rel=1e-11)
-
-
-def test_density_and_masses_describe_the_same_frame():
-    values = fields(4)
-    scan = Scan(values, 1)
-    by_mass = {key: value for key, value in values.items() if key not in ("density", "depth")}
-    by_mass |= {"left_mass": scan.m_AB, "beam_mass": scan.m_BC, "right_mass": scan.m_CD}
-    one, two = equivalent_block(AsymmetricFrame(**values)), equivalent_block(AsymmetricFrame(**by_mass))
-    for direction in BOTH:
-        assert one[direction].as_dict() == approx(two[direction].as_dict(), rel=1e-12)
-
-
 def test_lagranges_equation_in_symbols_gives_the_coefficients():
     """T and V of three bodies on a moving ground by sympy, Lagrange's equation with multipliers for the loop.
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from decimal import Decimal
-from math import atan, cos, inf, pi, sin, sqrt, tan
+from math import atan, cos, pi, sin, sqrt, tan
 
 import numpy as np
 import pytest
@@ -101,20 +101,6 @@ def test_loads_with_shares_by_hand():
     force = reactions(block, 1, 0.0, 0.0, u=-block.uplift(1) * G, v=0.0)["foot"]
     assert force.x / G == pytest.approx(-block.uplift(1) * (1 + h * M), rel=1e-10)
     assert force.y / G == pytest.approx(1 + w * M, rel=1e-10)
-
-
-def test_inerter_and_damper_by_hand():
-    block = TALL.with_tie((GROUND, 0j), ("block", 0j), inertance=3.0, damping=7.0, exponent=0.5)
-    lever = 0.5 * cos(0.1)  # e = 2 b sin(phi/2)
-    it = block.terms(1, 0.2)
-    assert it.inertia == pytest.approx(26 / 3 + 3 * lever**2, rel=1e-12)
-    assert it.d_inertia / 2 == pytest.approx(-3 * lever * 0.25 * sin(0.1), rel=1e-10)
-    drag = 7 * sqrt(lever * 0.4) * lever
-    still = (it.dV + it.d_inertia / 2 * 0.16) / it.inertia
-    assert block.acceleration(1, 0.2, 0.4) == pytest.approx(-still - drag / it.inertia, rel=1e-12)
-    assert block.acceleration(-1, 0.2, -0.4) == pytest.approx(-still + drag / it.inertia, rel=1e-12)
-    inner = -(26 / 3 - 0.5) + 3 * 0.25  # e = b phi in both directions
-    assert block.eta(1) == pytest.approx(-inner / (26 / 3 + 3 * 0.25), rel=1e-12)
 
 
 def test_a_constant_force_on_a_facade():
@@ -335,21 +321,10 @@ TIED = HEAVY.with_tie((GROUND, -10 + 2j), ("block", -0.5 + 4j), k=2e5)
 HANGINGS = {
     "nothing": HEAVY,
     "slack": HEAVY.with_tie((GROUND, 0j), ("block", 5j), k=2e5, n0=-300.0),
-    "yielding": HEAVY.with_tie((GROUND, -10 + 2j), ("block", -0.5 + 4j), k=2e5, acts="both", yields=900.0),
-    "yielding in tension": HEAVY.with_tie((GROUND, 0j), ("block", 0j), k=2e5, n0=100.0, yields=600.0),
-    "breaking": HEAVY.with_tie((GROUND, -10 + 4j), ("block", -0.5 + 4j), k=2e4, breaks=0.01),
     "prop": HEAVY.with_tie((GROUND, 2 + 4j), ("block", 0.5 + 4j), k=2e5, acts="compression"),
-    "damper": HEAVY.with_tie((GROUND, 2 + 4j), ("block", 0.5 + 4j), damping=200.0),
-    "inerter": HEAVY.with_tie((GROUND, 2 + 4j), ("block", 0.5 + 4j), inertance=300.0),
     "bed": HEAVY.with_bed("block", -0.5 + 0j, 0.5 + 0j, k=1e5, n0=20.0),
     "frame": FRAME.with_load("beam", 3 + 7j, 500.0, weight=0.5, vertical=1 / 3),
     "wall": Wall(0.3, 3.0, 1000.0, hinge=(0.8, 0.85), overburden=300.0, seat=0.05).with_force("lower", 1j, 40 + 0j),
-}
-HAPPENS = {
-    "slack": {"bears", "slack"},
-    "yielding": {"yields", "unloads"},
-    "yielding in tension": {"yields", "unloads", "slack"},
-    "breaking": {"breaks"},
 }
 
 
@@ -357,10 +332,10 @@ HAPPENS = {
 @pytest.mark.parametrize("name", HANGINGS)
 def test_energy_put_in_less_what_is_lost_is_stored(name):
     motion = simulate(HANGINGS[name], SHAKING, until=1.2)
-    moved = abs(motion.put_in) + motion.in_impacts + motion.in_springs + motion.in_dampers
+    moved = abs(motion.put_in) + motion.in_impacts
     assert motion.uplifts and moved > 1.0
     assert abs(motion.imbalance) < 1e-9 * moved
-    assert {event.what for event in motion.events} >= HAPPENS.get(name, set())
+    assert {event.what for event in motion.events} >= ({"bears", "slack"} if name == "slack" else set())
 
 
 def test_a_mirror_image_moves_as_the_mirror_image():
@@ -402,10 +377,3 @@ def test_it_comes_to_rest_and_stays_below_uplift():
     assert motion.ended == "rest" and motion.end < 20.0 and motion.stored == pytest.approx(0.0, abs=1e-9)
     assert [impact.side for impact in motion.impacts[:4]] == [-1, 1, -1, 1]
     assert simulate(HEAVY, Ground([0.0, 1.0], [0.0, 0.19 * G]), until=2.0).uplifts == []
-
-
-def test_what_cannot_yield_or_break_is_elastic():
-    loose = HEAVY.with_tie((GROUND, 0j), ("block", 0j), k=1e4, yields=inf)
-    bound = HEAVY.with_tie((GROUND, 0j), ("block", 0j), k=1e4, yields=1e9, breaks=pi)
-    first, second = (simulate(block, release=0.1, impacts=2) for block in (loose, bound))
-    assert first.impacts[1].time == pytest.approx(second.impacts[1].time, rel=1e-10)

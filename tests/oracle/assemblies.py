@@ -103,7 +103,7 @@ class Assembly(Structure):
         blocks = self.mass[::3]
         heights = of_all[:, 1::3] @ blocks
         energy = self.mass @ speed**2, 2 * self.mass @ (speed * bend)
-        return Terms(*energy, *(self.gravity * heights), heights[1], speed[::3] @ blocks, np.zeros(0))
+        return Terms(*energy, *(self.gravity * heights), heights[1], speed[::3] @ blocks)
 
     @cached_property
     def outlines(self) -> list[Complexes]:

@@ -56,7 +56,7 @@ class Peak(NamedTuple):
 
 
 class Event(NamedTuple):
-    """What a spring did: "bears", "slack", "yields", "unloads" or "breaks"."""
+    """What a spring did: "bears" or "slack"."""
 
     time: float
     what: str
@@ -79,16 +79,13 @@ class History:
     at_first: float = 0.0
     put_in: float = 0.0
     in_impacts: float = 0.0
-    in_springs: float = 0.0  # yielded or broken
-    in_dampers: float = 0.0
     stored: float = 0.0
     flights: list[tuple[float, float, int, Callable[[Any], Any]]] = field(default_factory=list, repr=False)
 
     @property
     def imbalance(self) -> float:
         """Energy that came from nowhere."""
-        lost = self.in_impacts + self.in_springs + self.in_dampers
-        return self.stored - (self.at_first + self.put_in - lost)
+        return self.stored - (self.at_first + self.put_in - self.in_impacts)
 
     def at(self, time: float) -> tuple[float, float]:
         """The signed rotation and its rate; zero at rest."""
@@ -129,7 +126,7 @@ def simulate(
     if history.ended == "time" and motion.resting:
         history.ended = "rest"
     history.end, history.side = motion.since if motion.resting else motion.t, motion.s
-    history.phi, history.rate, history.put_in, history.in_dampers = (float(x) for x in motion.y)
+    history.phi, history.rate, history.put_in = (float(x) for x in motion.y)
     history.stored = motion.energy()
     return history
 
@@ -139,13 +136,11 @@ class _Motion:
         self.structure, self.history = structure, History()
         self.s = -1 if release < 0 else 1
         self.t = 0.0
-        self.y = np.array([abs(release), rate, 0.0, 0.0])  # phi, phi., energy put in, energy in dampers
+        self.y = np.array([abs(release), rate, 0.0])  # phi, phi., energy put in
         self.resting, self.since = release == 0 and rate == 0, 0.0
         self.sides: tuple[int, ...] = SIDES
         self.eta: dict[int, float] = {}
         self.mode = structure.fresh(self.s, abs(release))
-        self._commit(abs(release))
-        self.history.in_springs = 0.0  # of what was yielded before nothing is counted
         self.limit = {s: structure.limit(s) for s in SIDES}
         self.faint = FAINT * 0.1 * max(structure.terms(s, 0.0).dV for s in SIDES)
         self.rest_energy = structure.terms(1, 0.0).V
@@ -154,20 +149,9 @@ class _Motion:
         return np.asarray(self.structure.elongations(self.s, np.array([phi])).real[:, 0], float)
 
     def energy(self) -> float:
-        """T + V, less V at rest; what has yielded is in the offsets, so that every spring that bears is elastic."""
-        elastic = self.mode.copy()
-        elastic.yields[:] = 0.0
-        it = self.structure.terms(self.s, float(self.y[0]), elastic)
+        """T + V, less V at rest."""
+        it = self.structure.terms(self.s, float(self.y[0]), self.mode)
         return float(it.inertia * self.y[1] ** 2 / 2 + it.V - self.rest_energy)
-
-    def _commit(self, phi: float) -> None:
-        """Put what has yielded so far into the offset of its spring."""
-        row, mode = self.structure.springs, self.mode
-        on = mode.yields != 0
-        if on.any():
-            offset = self.e(phi)[on] - (mode.yields[on] * row.yields[on] - row.n0[on]) / row.k[on]
-            self.history.in_springs += float(row.yields[on] @ abs(offset - mode.offset[on]))
-            mode.offset[on] = offset
 
     def follow(self, start: float, end: float, first: Reals, last: Reals, impacts: float) -> None:
         """From `start` to `end`, the ground accelerations straight in between."""
@@ -187,7 +171,7 @@ class _Motion:
 
     def _demand(self, s: int, t: float) -> float:
         """The force that holds the structure down in direction s."""
-        mode = self.structure.settled(self.mode, s)
+        mode = self.structure.settled(s)
         it = self.structure.terms(s, 0.0, mode)
         u, v = self._accelerations(t)
         return float(it.dV + v * it.G + u * it.X)
@@ -205,7 +189,7 @@ class _Motion:
             return False
         self.t, self.s = min(found)
         self.y[:2] = 0.0
-        self.mode = self.structure.settled(self.mode, self.s)
+        self.mode = self.structure.settled(self.s)
         self.resting = False
         self.history.uplifts.append(self.t)
         return True
@@ -214,52 +198,27 @@ class _Motion:
         it = self.structure.terms(self.s, y[0], self.mode)
         u, v = self._accelerations(t)
         power = -(u * it.X + v * it.G)
-        drag = self.structure.drag(it, y[1])
-        return [
-            y[1],
-            (power - it.d_inertia / 2 * y[1] ** 2 - it.dV - drag) / it.inertia,
-            power * y[1],
-            drag * y[1],
-        ]
+        return [y[1], (power - it.d_inertia / 2 * y[1] ** 2 - it.dV) / it.inertia, power * y[1]]
 
     def _room(self, y: Reals) -> Reals:
-        """How far every spring is from the end of its mode, in numbers without dimension: contact, yielding, break."""
-        row, mode = self.structure.springs, self.mode
-        e = self.e(y[0])
-        n = self.structure.trial(mode, e)
+        """How far every spring is from going slack or taut, in numbers without dimension."""
+        row = self.structure.springs
+        n = self.structure.trial(self.e(y[0]))
         size = abs(row.n0) + row.k + 1e-300
-        steady = (row.acts == 0) | (row.k == 0) | (mode.yields != 0)
-        contact = np.where(steady, inf, np.where(mode.bears, 1, -1) * row.acts * n / size)
-        plastic = np.where(np.isinf(row.yields), inf, (row.cap - abs(n)) / size)
-        if mode.yields.any():
-            speed = self.structure.levers(self.s, y[0]) * y[1]
-            plastic = np.where(mode.yields != 0, mode.yields * speed, plastic)
-        plastic = np.where(mode.bears, plastic, inf)
-        return np.where(mode.broken, inf, np.array([contact, plastic, row.breaks - e]))
+        steady = (row.acts == 0) | (row.k == 0)
+        return np.where(steady, inf, np.where(self.mode, 1, -1) * row.acts * n / size)
 
     def _switch(self) -> None:
         """A spring leaves its mode."""
-        it, mode = self.structure, self.mode
         room = self._room(self.y)
-        e = self.e(self.y[0])
-        self._commit(self.y[0])
-        n, stored = it.trial(mode, e), it.stored(mode, e)
-        for kind, spring in np.argwhere(room <= room.min() + 1e-11).tolist():  # equal springs do the same
-            if kind == 0:
-                mode.bears[spring] ^= True
-                what = "bears" if mode.bears[spring] else "slack"
-            elif kind == 1:
-                what = "unloads" if mode.yields[spring] else "yields"
-                mode.yields[spring] = 0.0 if mode.yields[spring] else np.sign(n[spring])
-            else:
-                self.history.in_springs += float(stored[spring])
-                mode.broken[spring], mode.yields[spring] = True, 0.0
-                what = "breaks"
-            self.history.events.append(Event(self.t, what, spring))
+        self.mode = self.mode.copy()
+        for spring in np.flatnonzero(room <= room.min() + 1e-11).tolist():  # equal springs do the same
+            self.mode[spring] ^= True
+            self.history.events.append(Event(self.t, "bears" if self.mode[spring] else "slack", spring))
 
     def _fly(self, end: float) -> None:
         """To `end`, or to the next impact, change of a spring, or fall."""
-        floor = 1e-16 * np.array([1.0, 1.0, self.faint / FAINT, self.faint / FAINT])
+        floor = 1e-16 * np.array([1.0, 1.0, self.faint / FAINT])
 
         def hits(t: float, y: Reals) -> float:
             return float(y[0])
@@ -296,14 +255,11 @@ class _Motion:
             event = hits if self.y[0] < 1e-11 and self.y[1] < 0 else event
             self._sharpen(event, float(solution.t[-2]), solution.y[:, -2], options)
         self.history.flights.append((start, self.t, self.s, solution.sol))
-        if event is None:
-            self._commit(self.y[0])
-        elif event is hits:
+        if event is hits:
             self._impact()
         elif event is falls:
-            self._commit(self.y[0])
             self.history.ended = "overturned"
-        else:
+        elif event is not None:
             self._switch()
 
     def _sharpen(self, event: Any, before: float, y: Reals, options: Any) -> None:
@@ -321,7 +277,6 @@ class _Motion:
     def _impact(self) -> None:
         """The end of a direction; or, one-sided, a rebound."""
         it = self.structure
-        self._commit(0.0)
         before, s = -self.y[1], self.s
         self.s = s if len(self.sides) == 1 else -s
         after = self.eta[s] * before
@@ -330,7 +285,7 @@ class _Motion:
         ]
         lost = energies[0] - energies[1]
         self.y[:2] = 0.0, after
-        self.mode = it.settled(self.mode, self.s)
+        self.mode = it.settled(self.s)
         self.history.in_impacts += lost
         self.history.impacts.append(Impact(self.t, s, float(before), float(after), float(lost)))
         if energies[1] < self.faint and all(self._demand(side, self.t) >= 0 for side in self.sides):

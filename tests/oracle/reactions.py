@@ -88,13 +88,8 @@ def reactions(
     h, vert, w, x, y = structure.masses(bodies)
     ax, ay = derivatives(x, 2, within)[2], derivatives(y, 2, within)[2]
     turning = derivatives(np.array([np.broadcast_to(body.psi, time.shape) for body in bodies]), 2, within)[2]
-    # Springs in phi: at rest their length is a square root in time.
-    lever, bend = structure.derivatives(s, phi, lambda circle: structure.elongations(s, circle), 2)[1:]
     e = np.real(structure.elongations(s, np.array([phi])))[:, 0]
-    speed = lever * rate
-    row = structure.springs
-    axial = structure.pull(mode, e) + row.damping * abs(speed) ** row.exponent * np.sign(speed)
-    axial = axial + row.inertance * (lever * pace + bend * rate**2)
+    axial = structure.pull(mode, e)
     inertia = np.array([piece.inertia for piece in structure.pieces()])
 
     def work(joint: str, along: complex) -> float:
@@ -121,6 +116,6 @@ def impulses(structure: Structure, s: int, eta: float | None = None) -> dict[str
         along = []
         for axis in (1 + 0j, 1j):
             move = _shift(structure, -s, 0.0, joint, axis)
-            along.append(float(jump @ np.concatenate([move.x, move.y, move.spin, move.springs])))
+            along.append(float(jump @ np.concatenate([move.x, move.y, move.spin])))
         found[joint] = Force(*along)
     return found

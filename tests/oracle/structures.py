@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import inf, pi
+from math import pi
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -68,21 +68,11 @@ class Load:
 
 
 class Springs(NamedTuple):
-    """Springs, dampers and inerters in a row."""
+    """Springs in a row."""
 
     k: Reals
     n0: Reals
     acts: Reals  # 1: tension only, -1: compression only, 0: both
-    yields: Reals
-    breaks: Reals
-    damping: Reals
-    exponent: Reals
-    inertance: Reals
-
-    @property
-    def cap(self) -> Reals:
-        """The force at which a spring yields, 0 of one that does not."""
-        return np.where(np.isinf(self.yields), 0.0, self.yields)
 
 
 @dataclass(frozen=True)
@@ -93,17 +83,7 @@ class Link:
     springs: Springs
 
 
-@dataclass
-class Mode:
-    """The state of every spring: whether it bears, which way it yields, how long it has become, whether it is gone."""
-
-    bears: Booleans
-    yields: Reals
-    offset: Reals
-    broken: Booleans
-
-    def copy(self) -> Mode:
-        return Mode(self.bears.copy(), self.yields.copy(), self.offset.copy(), self.broken.copy())
+Mode = Booleans  # whether every spring bears
 
 
 class Terms(NamedTuple):
@@ -116,7 +96,6 @@ class Terms(NamedTuple):
     ddV: float
     G: float  # sum w M y'
     X: float  # sum h M x'
-    lever: Reals  # L' of each spring
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,22 +153,15 @@ class Structure(ABC):
         k: Any = 0.0,
         n0: Any = 0.0,
         acts: str = "tension",
-        yields: Any = inf,
-        breaks: float = inf,
-        damping: Any = 0.0,
-        exponent: float = 1.0,
-        inertance: Any = 0.0,
     ) -> Self:
         """With a tie over the points of `path`, each a body (or "ground") and a point of it: N = n0 + k e.
 
-        `acts` in "tension", "compression" or in "both"; it yields at the force `yields` [N] and breaks at the
-        elongation `breaks` [m]. The force of a damper is damping |e.|^exponent, that of an inerter inertance e..
+        `acts` in "tension", "compression" or in "both".
         """
         points = tuple((body, np.atleast_1d(np.asarray(point, complex))) for body, point in path)
         size = max(len(point) for _, point in points)
         sense = {"tension": 1, "compression": -1, "both": 0}[acts]
-        numbers = (k, n0, sense, yields, breaks, damping, exponent, inertance)
-        springs = Springs(*(np.broadcast_to(np.asarray(number, float), size) for number in numbers))
+        springs = Springs(*(np.broadcast_to(np.asarray(number, float), size) for number in (k, n0, sense)))
         return replace(self, links=(*self.links, Link(points, springs)))
 
     def with_bed(
@@ -261,20 +233,19 @@ class Structure(ABC):
             rows.append(total)
         return np.concatenate(rows) if rows else np.zeros((0, np.size(phi)))
 
-    def trial(self, mode: Mode, e: Any) -> Any:
-        """n0 + k e, e from where yielding has left it."""
-        return self.springs.n0 + self.springs.k * (e - mode.offset)
+    def trial(self, e: Any) -> Any:
+        """n0 + k e."""
+        return self.springs.n0 + self.springs.k * e
 
     def pull(self, mode: Mode, e: Any) -> Any:
         """The axial forces at elongations e, as if no spring changed its mode."""
-        n = np.where(mode.yields != 0, mode.yields * self.springs.cap, self.trial(mode, e))
-        return np.where(mode.bears & ~mode.broken, n, 0.0)
+        return np.where(mode, self.trial(e), 0.0)
 
     def stored(self, mode: Mode, e: Any) -> Any:
         """The elastic energy in the springs: N^2/2k also with a prestress or a slack, n0 e of a constant force."""
         k, n0 = self.springs.k, self.springs.n0
-        energy = np.where(k == 0, n0 * e, self.trial(mode, e) ** 2 / (2 * np.where(k == 0, 1.0, k)))
-        return np.where(mode.bears & ~mode.broken, energy, 0.0)
+        energy = np.where(k == 0, n0 * e, self.trial(e) ** 2 / (2 * np.where(k == 0, 1.0, k)))
+        return np.where(mode, energy, 0.0)
 
     # Derivatives.
 
@@ -299,14 +270,7 @@ class Structure(ABC):
 
     def fresh(self, s: int, phi: float) -> Mode:
         """The springs after a first slow push from rest to phi."""
-        none = np.zeros(len(self.springs.k))
-        mode = Mode(none == 0, none.copy(), none.copy(), none > 0)
-        e = self.elongations(s, np.array([phi]))[:, 0]
-        n = self.trial(mode, e)
-        mode.bears = self._bearing(n, self.levers(s, phi))
-        mode.yields = np.where(mode.bears & (abs(n) > self.springs.yields), np.sign(n), 0.0)
-        mode.broken = e >= self.springs.breaks
-        return mode
+        return self._bearing(self.trial(self.elongations(s, np.array([phi]))[:, 0]), self.levers(s, phi))
 
     def levers(self, s: int, phi: float) -> Reals:
         """L' of every spring."""
@@ -322,14 +286,9 @@ class Structure(ABC):
         """Forces that are none."""
         return np.asarray(1e-12 * (abs(self.springs.n0) + self.springs.k))
 
-    def settled(self, mode: Mode, s: int) -> Mode:
+    def settled(self, s: int) -> Mode:
         """The springs where a motion sets out from phi = 0 in direction s."""
-        mode = mode.copy()
-        n, rate = self.trial(mode, np.zeros(len(mode.bears))), self.levers(s, 0.0)
-        mode.bears = self._bearing(n, rate)
-        pulled_on = (abs(n) >= self.springs.yields - self._tiny) & (n * rate > 0)
-        mode.yields = np.where(mode.bears & pulled_on, np.sign(n), 0.0)
-        return mode
+        return self._bearing(self.springs.n0, self.levers(s, 0.0))
 
     # Lagrange.
 
@@ -342,21 +301,20 @@ class Structure(ABC):
         h, v, w, x, y = self.masses(bodies)
         spin = np.array([np.broadcast_to(body.psi, circle.shape) for body in bodies])
         e = self.elongations(s, circle, bodies)
-        speeds = [differentiated(values, radius) for values in (x, y, spin, e)]
+        speeds = [differentiated(values, radius) for values in (x, y, spin)]
         moments = [piece.inertia for piece in self._points[0]]
         inertia: Any = 0.0
-        for shares, speed in zip((h, v, moments, self.springs.inertance), speeds, strict=True):
+        for shares, speed in zip((h, v, moments), speeds, strict=True):
             inertia = inertia + np.asarray(shares) @ speed**2
         V = self.gravity * (w @ (y - self._rest_heights[:, None]))
         for name, at, force in self.forces:
             px, py = self.body(bodies, name).at(at)
             V = V - force.real * (px - at.real) - force.imag * (py - at.imag)
-        constant = mode.yields * self.springs.cap * ~mode.broken  # what yields pulls as much wherever it is
-        V = V + constant @ e + self.stored(mode, e.T)[:, mode.yields == 0].sum(axis=1)
+        V = V + self.stored(mode, e.T).sum(axis=1)
         A, dA = derivatives(inertia, 1, radius)
         V0, dV, ddV = derivatives(V, 2, radius)
         G, X = (float(derivatives(sums, 1, radius)[1]) for sums in (w @ y, h @ x))
-        return Terms(float(A), float(dA), float(V0), float(dV), float(ddV), G, X, derivatives(e, 1, radius)[1])
+        return Terms(float(A), float(dA), float(V0), float(dV), float(ddV), G, X)
 
     @cached_property
     def _rest_heights(self) -> Reals:
@@ -368,12 +326,7 @@ class Structure(ABC):
     ) -> float:
         """phi.. by d/dt (dT/dphi.) - dT/dphi + dV/dphi = 0 in the frame of a ground that accelerates by u and v."""
         it = self.terms(s, phi, mode)
-        return -(it.d_inertia / 2 * rate**2 + it.dV + v * it.G + u * it.X + self.drag(it, rate)) / it.inertia
-
-    def drag(self, it: Terms, rate: float) -> float:
-        """The generalised force of the dampers, against the motion."""
-        speed = it.lever * rate
-        return float((self.springs.damping * abs(speed) ** self.springs.exponent * np.sign(speed)) @ it.lever)
+        return -(it.d_inertia / 2 * rate**2 + it.dV + v * it.G + u * it.X) / it.inertia
 
     # What follows at once.
 
@@ -421,14 +374,13 @@ class Structure(ABC):
         return float(np.sqrt(2 * rest.inertia * barrier) / abs(rest.X))
 
     def fields(self, s: int) -> tuple[Reals, Reals]:
-        """Velocities per unit phi. at rest of all that has inertia, and the inertias: x, y, rotations, inerters."""
+        """Velocities per unit phi. at rest of all that has inertia, and the inertias: x, y, rotations."""
         circle = around(0.0)
         bodies = self.place(s, circle)
         h, v, _, x, y = self.masses(bodies)
         spin = np.array([np.broadcast_to(body.psi, circle.shape) for body in bodies])
         inertia = [piece.inertia for piece in self._points[0]]
-        all_of_it = np.concatenate([x, y, spin, self.elongations(s, circle, bodies)])
-        return derivatives(all_of_it, 1)[1], np.concatenate([h, v, inertia, self.springs.inertance])
+        return derivatives(np.concatenate([x, y, spin]), 1)[1], np.concatenate([h, v, inertia])
 
     def eta(self, s: int) -> float:
         """Restitution where direction s ends: the jump of momentum does no work in the new mechanism."""
