@@ -38,9 +38,6 @@ class TestInPlaceOfARecord:
 
     def test_json_says_which_pulse(self):
         record = run_json("respond", "--pulse", "mavroeidis:0.3g:0.8s:45deg:1.5")["record"]
-        assert list(record) == [
-            "name", "npts", "dt", "unit", "pga", "format", "processing", "pulse", "vertical", "scale", "polarity"
-        ]  # fmt: skip
         assert (record["name"], record["format"]) == ("mavroeidis:0.3g:0.8s:45deg:1.5", "pulse")
         assert record["pga"] == pytest.approx(0.3, rel=1e-4)
         assert record["pulse"] == {
@@ -168,10 +165,6 @@ class TestInARecord:
 class TestWithPulse:
     def test_json_has_the_pulse_and_the_responses_to_it_alone(self, made):
         data = run_json("respond", FRAME, "--record", made, "--with-pulse", "sine", "--polarity", "-1")
-        assert list(data) == [
-            "structure", "record", "release", "restitution", "conclusion", "responses", "agreement", "neighbours",
-            "verdict", "pulse", "pulse_responses", "notes",
-        ]  # fmt: skip
         assert list(data["pulse"]) == KEYS and data["pulse"]["sign"] == 1
         motion = read_record(made).scaled(-1)
         alone = fit_pulse(motion, "sine", "velocity").alone(motion)

@@ -524,9 +524,9 @@ class TestStarter:
     @pytest.mark.parametrize(
         ("words", "said"),
         [
-            (("site", "--code", "UNI-dmo"), "did you mean UNI-demo? known: NTC2018, UNI-demo, bad_sheet"),
-            (("site", "--code", "EN1998"), "the code 'EN1998' does not exist"),
-            (("site", "--code"), "--code has no value\n  known: NTC2018"),
+            (("site", "--code", "UNI-dmo"), "did you mean UNI-demo?"),
+            (("site", "--code", "EN1998"), "unknown code: EN1998"),
+            (("site", "--code"), "unknown code:  (known: NTC2018"),
             (("block", "--code", "UNI-demo"), "--code requires `site`"),
             (("study", "--code", "UNI-demo"), "--code requires `site`"),
             (("--code", "UNI-demo"), "Missing argument 'NAME'"),

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from difflib import get_close_matches
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from rocking_cli.cli import complete, options, terminal
-
-if TYPE_CHECKING:
-    from rocking_cli.studies.verification.code import Code
 
 STARTERS = ("facade", "parapet", "gable", "pinnacle", "corner", "bell_cell", "column_with_tendon", "statue")
 """Common structures, each a file in the data of the package. A mechanism of the same name has priority."""
@@ -127,11 +124,12 @@ def _print_site(asked: str | None, *, as_json: bool) -> None:
     from rocking_cli.io.yaml_file import parse
     from rocking_cli.plugins.errors import blame
     from rocking_cli.studies.verification.check import site_in
+    from rocking_cli.studies.verification.installed import codes
     from rocking_cli.studies.verification.site_file import HINT, USUAL
     from rocking_cli.views.template import starter
 
     key = USUAL if asked is None else asked
-    code = _code(key)
+    code = codes()[key]
     getting = f"rocking new site --code {quoted(key)}"
     text = starter(code, [f"{getting} > site.yaml", "rocking verify block.yaml --site site.yaml"])
     try:
@@ -143,20 +141,6 @@ def _print_site(asked: str | None, *, as_json: bool) -> None:
         with blame(f"the code {key} failed in the schema of its site", type(code).__module__):
             schema = code.site.model_json_schema()
     _print({"site": key, "yaml": text, "schema": schema}, as_json=as_json)
-
-
-def _code(key: str) -> Code:
-    """Return an installed code. Raises `InputError` with those that are installed."""
-    from rocking_cli.errors import InputError, Problem
-    from rocking_cli.studies.verification.installed import codes
-    from rocking_cli.text import cut, did_you_mean
-
-    if key in codes():
-        return codes()[key]
-    known = f"known: {', '.join(codes())}"
-    guess = did_you_mean(key, list(codes())) or known
-    hint = guess if guess == known else f"{guess} {known}"
-    raise InputError(Problem(f"the code {cut(repr(key))} does not exist" if key else "`code` has no value", hint=hint))
 
 
 def _warn(what: str, error: Exception) -> None:

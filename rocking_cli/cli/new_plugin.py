@@ -110,12 +110,11 @@ def write(name: str, out: str | None, kind: PluginKind, *, printed: Collection[s
     InputError
         If the name is not valid, or the folder cannot be made.
     """
-    from rocking_cli.io.files import check_new_folder, write_folder
+    from rocking_cli.io.files import write_folder
     from rocking_cli.views.plugin import view
 
     check_name(name, kind, printed)
     folder = Path(f"rocking-{_hyphened(name)}" if out is None else out)
-    check_new_folder(folder)
     write_folder(folder, kind.package(name))
     found = shutil.which("python")  # the one that has rocking-cli, or else a path
     here = found is not None and Path(found).parent == Path(sys.executable).parent

@@ -13,7 +13,7 @@ import click
 from rocking_cli.cli import complete
 from rocking_cli.cli.defaults import from_default
 from rocking_cli.cli.help import RecordOption
-from rocking_cli.cli.quantities import AMPLITUDE, NUMBER, PERIOD, SHARE, Parsed, quantity_of
+from rocking_cli.cli.quantities import AMPLITUDE, FRACTION, PERIOD, SHARE, Parsed, quantity_of
 from rocking_cli.processing.reading_options import CORRECTIONS, READING, SCALING, Option
 
 STANDARD_OUTPUT = "-"
@@ -36,15 +36,6 @@ HELP = {
 as_json: Decorator = click.option(
     "--json", "as_json", is_flag=True, help="Print the result as one JSON object, and nothing else."
 )
-
-
-def share(ctx: click.Context, param: click.Parameter, value: float | None) -> float | None:
-    """Check a number from 0 to below 1, as a callback of click."""
-    if value is not None and not 0 <= value < 1:
-        raise click.BadParameter(
-            f"{value:g} is out of range: give a number from 0 up to, but not including, 1.", ctx, param
-        )
-    return value
 
 
 def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str | None], Path | None]:
@@ -298,25 +289,22 @@ around: Decorator = in_order(
     ),
     click.option(
         "--amplitude-deviation",
-        type=SHARE,
+        type=FRACTION,
         default=0.04,
         show_default=True,
         metavar="SHARE",
-        callback=share,
         help="Standard deviation of ln amplitude of the neighbours.",
     ),
     click.option(
         "--slenderness-deviation",
-        type=SHARE,
+        type=FRACTION,
         metavar="SHARE",
-        callback=share,
         help="Standard deviation of ln slenderness; by default that of the file, or 10 %.",
     ),
     click.option(
         "--restitution-deviation",
-        type=NUMBER,
+        type=FRACTION,
         metavar="ETA",
-        callback=share,
         help="Standard deviation of restitution; by default that of the file, 0.03 of a given value, or 0.05.",
     ),
 )

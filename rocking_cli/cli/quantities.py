@@ -111,6 +111,13 @@ def share(text: str) -> float:
     return found
 
 
+def fraction(text: str) -> float:
+    """Return a number from 0 to below 1."""
+    if not 0 <= (found := share(text)) < 1:
+        raise ValueError(f"{found:g} is out of range: give a number from 0 up to, but not including, 1")
+    return found
+
+
 def angle(text: str, unit: str) -> float:
     """Return the number of an angle, which is in this unit if the text gives none. Raises `UnitError`."""
     parts = split(text)
@@ -125,7 +132,7 @@ def tilt(text: str) -> Any:
 
 
 NUMBER, POSITIVE, SHARE = Parsed("number", number), Parsed("number", positive), Parsed("share", share)
-TILT = Parsed("tilt", tilt)
+FRACTION, TILT = Parsed("share", fraction), Parsed("tilt", tilt)
 
 
 def quantity(kind: QuantityKind, text: str, example: str = "") -> float:

@@ -14,7 +14,7 @@ import click
 from rocking_cli.cli import options, terminal
 from rocking_cli.cli.groups import Output, ReadingOptions
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.quantities import PERIOD, SHARE, range_of
+from rocking_cli.cli.quantities import FRACTION, PERIOD, range_of
 from rocking_cli.cli.written import write_picture, write_table
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.views.view import View
@@ -63,7 +63,7 @@ if TYPE_CHECKING:
 @click.option(
     "--period", type=range_of(PERIOD), metavar="LOW:HIGH", help="Periods of the spectrum, in s.  [default: 0.02:10]"
 )
-@click.option("--damping", type=SHARE, callback=options.share, help=f"{options.HELP['damping']}  [default: 5%]")
+@click.option("--damping", type=FRACTION, help=f"{options.HELP['damping']}  [default: 5%]")
 @options.plot("Plot one record, or the spectra")
 @options.as_json
 @click.pass_context

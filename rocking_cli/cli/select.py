@@ -11,7 +11,7 @@ import click
 from rocking_cli.cli import complete, options
 from rocking_cli.cli.groups import Output, ReadingOptions
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.quantities import PERIOD, SHARE, QuantityKind, range_of
+from rocking_cli.cli.quantities import FRACTION, PERIOD, QuantityKind, range_of
 
 RATIO = QuantityKind("ratio", "", "0.9", "0.9:1.3", 1e-3, 1e3)
 FACTOR = QuantityKind("factor", "", "0.5", "0.5:3", 1e-6, 1e6)
@@ -46,10 +46,9 @@ MOST = 1000  # records of a set
 )
 @click.option(
     "--damping",
-    type=SHARE,
+    type=FRACTION,
     default="5%",
     show_default=True,
-    callback=options.share,
     metavar="SHARE",
     help=options.HELP["damping"],
 )

@@ -95,32 +95,13 @@ def folder(name: str) -> Path:
     return path
 
 
-def check_new_folder(path: Path) -> None:
-    """Raise `InputError`, before any work, if no new folder can be made at a path.
-
-    An existing empty folder is accepted.
-    """
-    shown, elsewhere = str(path), "move it away, or name another folder"
-    if path.is_dir():
-        if not os.access(path, os.R_OK | os.W_OK):
-            raise InputError(Problem("this folder cannot be written to", shown))
-        if any(path.iterdir()):
-            raise InputError(Problem("this folder already exists and is not empty", shown, hint=elsewhere))
-    elif os.path.lexists(path):
-        raise InputError(Problem("there is a file of this name already", shown, hint=elsewhere))
-    elif not path.parent.is_dir():
-        raise InputError(Problem(f"the folder {path.parent} does not exist", shown, hint="create it first"))
-    elif not os.access(path.parent, os.W_OK):
-        raise InputError(Problem(f"the folder {path.parent} cannot be written to", shown))
-
-
 def write_folder(path: Path, files: Mapping[str, bytes]) -> None:
-    """Write a new folder through a temporary one, so that an incomplete one is never visible.
+    """Write a new folder; an existing one must be empty.
 
     Parameters
     ----------
     path : Path
-        Path of the new folder, which does not exist or is empty.
+        Path of the folder.
     files : mapping of str to bytes
         Content of each file by its path in the folder, with `/` between names.
 
@@ -131,25 +112,23 @@ def write_folder(path: Path, files: Mapping[str, bytes]) -> None:
     Refused
         If the system refuses, as with a full disk; nothing is then left behind.
     """
-    check_new_folder(path)
-    filled = path.is_dir()  # it may be where somebody is: it stays, and what is new is moved into it
-    made = (path if filled else path.parent) / f".{path.name[:40]}.{os.urandom(8).hex()}"
-    moved: list[Path] = []
+    shown, there = str(path), path.is_dir()
+    hint = "move it away, or name another folder"
+    if there and any(path.iterdir()):
+        raise InputError(Problem("this folder already exists and is not empty", shown, hint=hint))
+    if not there and os.path.lexists(path):
+        raise InputError(Problem("there is a file of this name already", shown, hint=hint))
+    if not path.parent.is_dir():
+        raise InputError(Problem(f"the folder {path.parent} does not exist", shown, hint="create it first"))
     try:
         for name, content in files.items():
-            file = made / name
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_bytes(content)
-        if not filled:
-            os.rename(made, path)  # noqa: PTH104
-            return
-        for each in sorted(made.iterdir()):
-            os.rename(each, path / each.name)  # noqa: PTH104
-            moved.append(path / each.name)
-        made.rmdir()
+            (path / name).parent.mkdir(parents=True, exist_ok=True)
+            (path / name).write_bytes(content)
     except BaseException as error:
-        for each in [made, *moved]:
-            shutil.rmtree(each, ignore_errors=True) if each.is_dir() else each.unlink(missing_ok=True)
+        for each in path.iterdir() if path.is_dir() else ():
+            shutil.rmtree(each) if each.is_dir() else each.unlink()
+        if path.is_dir() and not there:
+            path.rmdir()
         if isinstance(error, OSError):
             raise _cannot(path, error) from error
         raise
