@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -18,7 +19,7 @@ from rocking_cli.core.statics import STRAIGHT
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.io.dotted import copied, put, words
+from rocking_cli.io.dotted import put, words
 from rocking_cli.io.field_problems import fields_at, is_plural, lists_models, names_at, of_arguments, types_at, unit_at
 from rocking_cli.io.yaml_file import Place
 from rocking_cli.text import cut, did_you_mean
@@ -182,7 +183,7 @@ class Structure:
 
     def varied(self, field: str, value: float) -> Structure:
         """Return the structure with another value of a field. Raises `InputError` if it cannot be built."""
-        data, cls = copied(self._data), type(self.mechanism)
+        data, cls = deepcopy(self._data), type(self.mechanism)
         put(data, words(field), value, is_list=partial(lists_models, cls), grow=False)
         folder = Path(self.file).parent if self.file is not None else None
         try:
@@ -200,7 +201,7 @@ class Structure:
         Raises `InputError` if the field does not exist or is not numeric.
         """
         cls, path = type(self.mechanism), words(field)
-        place = put(copied(self._data), path, 1.0, is_list=partial(lists_models, cls), grow=False)
+        place = put(deepcopy(self._data), path, 1.0, is_list=partial(lists_models, cls), grow=False)
         found: Place = ()
         for k, part in enumerate(place):
             if isinstance(part, str):

@@ -1,8 +1,6 @@
 """`rocking pulse` on a structure, and its messages if it cannot do what is requested."""
 
 import json
-import subprocess
-import sys
 
 import pytest
 from click.testing import CliRunner
@@ -183,13 +181,3 @@ def test_the_dimensionless_block_takes_other_shapes_without_a_closed_form(shape)
     assert got["closed_form"] is None
     assert got["exact"]["max_ratio"] == exact_pulse(2, 8, 0.9, shape).max_ratio
     assert "No closed form exists for this shape" in run("--a", 2, "--omega", 8, "--shape", shape).stdout
-
-
-@pytest.mark.parametrize("shape", ["sine", "rectangular"])
-def test_the_dimensionless_block_needs_no_numpy(shape):
-    code = (
-        f"import sys, rocking_cli.cli.main as m; m.main(['pulse', '--a', '2', '--omega', '3', '--shape', {shape!r}], "
-        "standalone_mode=False); print('numpy' in sys.modules, file=sys.stderr)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stderr.strip() == "False"

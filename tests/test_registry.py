@@ -534,10 +534,6 @@ def test_the_same_entry_listed_twice_is_one(monkeypatch):
     assert Registry()["block"] is Block
 
 
-def test_an_unknown_name_is_no_key():
-    assert Registry().get("nope") is None
-
-
 def test_an_unknown_name_comes_with_a_guess():
     with pytest.raises(InputError, match="did you mean symmetric_frame"):
         Registry()["symetric_frame"]

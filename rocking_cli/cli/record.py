@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -112,7 +112,6 @@ def command(
     clean = _clean_paths(out, motions, signs, alone=alone) if out is not None else {}
     outputs = [("--plot", plot), ("--spectrum", kept), *(("--out", path) for path in clean.values())]
     keep_apart(outputs, [*(str(each.path) for each in motions.records), more["structure"]])
-    _make_room(out, clean.values())
     if more["structure"] is not None:
         from rocking_cli.cli import structures
 
@@ -140,14 +139,21 @@ def command(
 
 
 def _clean_paths(out: Path, motions: Motions, signs: Sequence[int], *, alone: bool) -> dict[tuple[int, int], Path]:
-    """Return the clean file of each record, by its place and polarity; in a folder, named after record and channel."""
+    """Return the clean file of each record, by its place and polarity; in a folder, named after record and channel.
+
+    All are checked: they can be written, and files that were not named and are not clean records are kept.
+    """
+    from rocking_cli.excitation.record_csv import is_record_csv
     from rocking_cli.excitation.records.opening import name_of
+    from rocking_cli.io.files import check_writable, folder
     from rocking_cli.processing.listed import Listed
 
-    if _is_file(out):
+    if out.suffix.lower() == ".csv" and not out.is_dir():
         if not alone:
             raise click.UsageError("--out FILE.csv takes one record: give one FILE and one polarity, or a folder.")
+        check_writable(out)
         return {(0, signs[0]): out}
+    folder(str(out))
     paths: dict[tuple[int, int], Path] = {}
     for k, record in enumerate(motions.sources):
         if not isinstance(record, Listed):
@@ -158,31 +164,14 @@ def _clean_paths(out: Path, motions: Motions, signs: Sequence[int], *, alone: bo
             turned = "-reversed" if len(signs) > 1 and sign < 0 else ""
             path = out / f"{Path(name_of(record.path)).stem}{suffix}{turned}.csv"
             if path in paths.values():
-                raise InputError(
-                    Problem("two records would be written to the same file", str(path), hint="write them one by one")
-                )
+                what = "two records would be written to the same file"
+                raise InputError(Problem(what, str(path), hint="write them one by one"))
+            if path.exists() and not is_record_csv(path):
+                what = "--out would overwrite a file that rocking did not write"
+                raise InputError(Problem(what, str(path), hint="move it, or name another folder"))
+            check_writable(path)
             paths[k, sign] = path
     return paths
-
-
-def _is_file(out: Path) -> bool:
-    return out.suffix.lower() == ".csv" and not out.is_dir()
-
-
-def _make_room(out: Path | None, paths: Iterable[Path]) -> None:
-    """Check that the files can be written; files that were not named and are not clean records are kept."""
-    from rocking_cli.excitation.record_csv import is_record_csv
-    from rocking_cli.io.files import check_writable, folder
-
-    if out is None:
-        return
-    if not _is_file(out):
-        folder(str(out))
-    for path in paths:
-        if not _is_file(out) and path.exists() and not is_record_csv(path):
-            hint = "move it, or name another folder"
-            raise InputError(Problem("--out would overwrite a file that rocking did not write", str(path), hint=hint))
-        check_writable(path)
 
 
 def _give_spectra(examined: Sequence[Examined], file: Path, plot: Path | None) -> None:

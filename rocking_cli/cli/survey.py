@@ -41,18 +41,16 @@ class SurveyOutput:
         if self.plot is not None:
             write_picture(self.plot, answer.figure())
         if self.page is not None:
-            self._write_page(self.page, answer.result, file)
+            from rocking_cli import __version__
+            from rocking_cli.documents.survey import render
+            from rocking_cli.io.files import write_whole
+
+            today = datetime.now(UTC).strftime("%d %B %Y").lstrip("0")
+            origin = f"Written on {today} with rocking-cli {__version__}."
+            page = render(answer.result, Path(file).name, [origin]).encode()
+            write_whole(self.page, lambda stream: stream.write(page))
+            terminal.note(f"wrote {self.page} ({len(page) / 1e6:.2g} MB)")
         terminal.show(answer.view, as_json=self.as_json)
-
-    def _write_page(self, place: Path, found: Survey, file: str) -> None:
-        from rocking_cli import __version__
-        from rocking_cli.documents.survey import render
-        from rocking_cli.io.files import write_whole
-
-        today = datetime.now(UTC).strftime("%d %B %Y").lstrip("0")
-        page = render(found, Path(file).name, [f"Written on {today} with rocking-cli {__version__}."]).encode()
-        write_whole(place, lambda stream: stream.write(page))
-        terminal.note(f"wrote {place} ({len(page) / 1e6:.2g} MB)")
 
 
 @click.command(cls=Command, short_help="Rank the structures of a table, the most vulnerable first.")

@@ -9,7 +9,7 @@ import os
 import re
 import sys
 import warnings
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, redirect_stdout
 from time import monotonic
 from typing import TYPE_CHECKING, Any, BinaryIO, TextIO
@@ -51,21 +51,17 @@ def plugins_apart() -> Iterator[None]:
     """Keep what plugins print out of the results, and show warnings about them as the others of this program."""
     with results_only(), warnings.catch_warnings():
         warnings.simplefilter("always", PluginWarning)
-        warnings.showwarning = _show(warnings.showwarning)
+        otherwise = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
+            if not issubclass(category, (PluginWarning, KernelWarning)):
+                otherwise(message, category, *where, **more)
+                return
+            warning(str(message))
+            debug_traceback(message.__cause__ if isinstance(message, Warning) else None)
+
+        warnings.showwarning = show
         yield
-
-
-def _show(otherwise: Callable[..., None]) -> Callable[..., None]:
-    """Show warnings about plugins and slow kernels as the other warnings of this program."""
-
-    def show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
-        if not issubclass(category, (PluginWarning, KernelWarning)):
-            otherwise(message, category, *where, **more)
-            return
-        warning(str(message))
-        debug_traceback(message.__cause__ if isinstance(message, Warning) else None)
-
-    return show
 
 
 @contextmanager

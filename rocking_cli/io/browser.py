@@ -7,7 +7,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
 
 from rocking_cli.errors import InputError, Problem, Refused
@@ -33,22 +32,17 @@ def browser() -> str:
     InputError
         If there is no browser.
     """
-    found = next(_there(), None)
-    if found is None:
+    if chosen := os.environ.get(CHOSEN):
+        if (path := shutil.which(chosen)) is None:
+            raise InputError(
+                Problem(f"there is no browser {chosen}", CHOSEN, hint="name one that is there, or unset it")
+            )
+        return path
+    found = [*filter(None, map(shutil.which, NAMES)), *(path for path in ELSEWHERE if Path(path).is_file())]
+    if not found:
         hint = f"install Chromium, Chrome or Edge, or name one in {CHOSEN}; or write .html and print it yourself"
         raise InputError(Problem("a PDF is printed by a browser, and none is found here", hint=hint))
-    return found
-
-
-def _there() -> Iterator[str]:
-    chosen = os.environ.get(CHOSEN)
-    if chosen:
-        if (path := shutil.which(chosen)) is None:
-            hint = "name one that is there, or unset it"
-            raise InputError(Problem(f"there is no browser {chosen}", CHOSEN, hint=hint))
-        yield path
-    yield from filter(None, map(shutil.which, NAMES))
-    yield from (path for path in ELSEWHERE if Path(path).is_file())
+    return found[0]
 
 
 def as_pdf(page: bytes) -> bytes:

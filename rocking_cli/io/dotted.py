@@ -13,7 +13,7 @@ from rocking_cli.io.yaml_file import DEEPEST, Place
 from rocking_cli.text import cut, did_you_mean
 
 MOST = 10_000  # entries of a list
-HOLE = object()
+HOLE: Any = ...
 """An entry of a list that nothing has been put in yet."""
 
 
@@ -113,13 +113,6 @@ def _known(word: str, names: list[Any]) -> str:
     numbers = f"numbers count from 0, here to {len(names) - 1}" if names else "it has none"
     guess = did_you_mean(word, named) if named else None
     return f"{guess} {numbers}" if guess and guess.endswith("?") else f"{guess}; {numbers}" if guess else numbers
-
-
-def copied(data: Any) -> Any:
-    """Return a deep copy of plain data."""
-    if isinstance(data, dict):
-        return {key: copied(value) for key, value in data.items()}
-    return [copied(each) for each in data] if isinstance(data, list) else data
 
 
 def closed(data: Any) -> Any:

@@ -215,7 +215,7 @@ def types_at(model: type[BaseModel], place: Place) -> set[Any]:
 def lists_models(model: type[BaseModel], place: Place) -> bool:
     """Return whether the value at a place is a list of mappings, such as `loads`."""
     held = _held(model, place)[:1] if place and isinstance(place[-1], str) else []
-    return any("list[" in str(annotation) and _models(annotation) for _, annotation in held)
+    return any("list[" in str(each) and any(map(_is_model, _choices(each))) for _, each in held)
 
 
 def names_at(model: type[BaseModel], place: Place) -> bool:
@@ -272,10 +272,3 @@ def _field(annotation: Any, name: str) -> Any:
 def _spelt(model: type[BaseModel]) -> dict[str, Any]:
     """Return the fields of a model by the names that users write."""
     return {info.alias or name: info for name, info in model.model_fields.items()}
-
-
-def _models(annotation: Any) -> list[type[BaseModel]]:
-    """Return the models in an annotation, such as `list[A | B] | None`."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return [annotation]
-    return [inner for part in get_args(annotation) for inner in _models(part)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import cache, partial
@@ -15,7 +16,7 @@ import yaml
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.errors import InputError, MechanismError, Problem
-from rocking_cli.io.dotted import closed, copied, put, replace_at, words
+from rocking_cli.io.dotted import closed, put, replace_at, words
 from rocking_cli.io.field_problems import lists_models, types_at
 from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Spreadsheet, read_sheet
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text, spell
@@ -276,7 +277,7 @@ class TableRow:
         based = table.base_of(row)
         folder, default = table.folder, self.name
         if based:
-            document.data = copied(self._base(based, document))
+            document.data = deepcopy(self._base(based, document))
             folder = (table.folder / based).parent
             default = one_line(Path(based).stem) or default
         self._fill(document, based)
