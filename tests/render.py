@@ -30,7 +30,8 @@ from rocking_cli.plotting.overturning import draw_map
 from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.fragility.assess import Bivariate
-from rocking_cli.studies.fragility.curves import Observations, fit_curve, fit_surface
+from rocking_cli.studies.fragility.curves import fit_curve, fit_surface
+from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.studies.margin import FACTORS, Margin
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.studies.overturning import OverturningMap, overturning_map

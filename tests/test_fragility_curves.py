@@ -14,14 +14,12 @@ from scipy.stats import CensoredData, binom, chi2, lognorm, norm
 from scipy.stats import t as student
 from statsmodels.discrete.discrete_model import Logit, Probit
 
-from rocking_cli.errors import InputError
 from rocking_cli.studies.fragility import curves
 from rocking_cli.studies.fragility import fit as fitting
-from rocking_cli.studies.fragility.curves import FragilityCurve, Observations, fit_capacities, fit_surface
-from rocking_cli.studies.fragility.fit import NO_ERRORS, fit_outcomes
+from rocking_cli.studies.fragility.curves import FragilityCurve, fit_capacities, fit_surface
+from rocking_cli.studies.fragility.fit import NO_ERRORS, fit_outcomes, separable
 from rocking_cli.studies.fragility.goodness import goodness_of_runs
-from rocking_cli.studies.fragility.likelihood import separable
-from rocking_cli.studies.fragility.observed import HELD
+from rocking_cli.studies.fragility.observed import HELD, Observations
 from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape
 from tests.conftest import PROJECT
 
@@ -654,28 +652,6 @@ class TestWords:
                 adds = "first" if found.p_values[0] < 0.05 else "second"
                 assert f"a curve over the {adds} measure alone is sufficient" in found.why
         assert seen > 20
-
-
-class TestRefused:
-    @pytest.mark.parametrize("x", [0.0, -1.0, np.nan, np.inf])
-    def test_an_intensity_without_a_logarithm(self, x):
-        with pytest.raises(InputError, match="record 1"):
-            fit_curve(one_each([1.0, x], [0, 1]))
-
-    def test_no_runs_and_lengths_that_differ(self):
-        with pytest.raises(InputError, match="a fragility curve needs at least one run"):
-            fit_curve(one_each([], []))
-        with pytest.raises(InputError, match="2 intensities"):
-            fit_curve(Runs(np.ones(2), np.ones(3, dtype=bool), np.arange(2)))
-
-    @pytest.mark.parametrize("bracket", [(2.0, 1.0), (1.0, 1.0), (-1.0, 2.0), (np.nan, 1.0)])
-    def test_an_empty_bracket(self, bracket):
-        with pytest.raises(InputError, match="capacity 1"):
-            fit_capacities(np.array([0.0, bracket[0]]), np.array([1.0, bracket[1]]))
-
-    def test_a_surface_over_nothing(self):
-        with pytest.raises(InputError, match="second intensity"):
-            fit_surface(np.ones(2), np.zeros(2), np.array([True, False]), np.arange(2))
 
 
 class TestGoodness:

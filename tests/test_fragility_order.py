@@ -9,17 +9,19 @@ import numpy as np
 import pytest
 
 import rocking_cli as rk
-from rocking_cli.studies.fragility import openquake, ranking, tally
+from rocking_cli.studies.fragility import ranking, tally
 from rocking_cli.studies.fragility.assess import Fragility, curves
-from rocking_cli.studies.fragility.curves import FragilityCurve, Observations
+from rocking_cli.studies.fragility.curves import FragilityCurve
 from rocking_cli.studies.fragility.definition import implies
 from rocking_cli.studies.fragility.fit import Fit
 from rocking_cli.studies.fragility.hazard_curve import HazardCurve, annual_rate
-from rocking_cli.studies.fragility.onset import accelerations
-from rocking_cli.studies.fragility.openquake import chosen
+from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
+from rocking_cli.studies.fragility.thresholds import accelerations
+from rocking_cli.views import nrml as openquake
 from rocking_cli.views.fragility import _curve_data, _curves
+from rocking_cli.views.nrml import chosen
 from tests.conftest import EXAMPLES
 
 LIMITS = ["uplift", 0.1, 0.5, "25 mm", "overturning"]

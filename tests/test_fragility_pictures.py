@@ -14,7 +14,8 @@ from scipy.stats import binomtest
 
 from rocking_cli.plotting.fragility import LabelledCurve, draw_curves, draw_ida, draw_surface
 from rocking_cli.studies.fragility.assess import Bivariate
-from rocking_cli.studies.fragility.curves import Observations, fit_curve, fit_surface
+from rocking_cli.studies.fragility.curves import fit_curve, fit_surface
+from rocking_cli.studies.fragility.observed import Observations
 
 LEVELS = np.array([0.2, 0.4, 0.6, 0.8])
 

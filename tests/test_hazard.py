@@ -10,9 +10,9 @@ from scipy.integrate import quad
 from scipy.stats import norm
 
 from rocking_cli.errors import InputError
-from rocking_cli.studies.fragility.curves import Estimate, FragilityCurve
-from rocking_cli.studies.fragility.fit import Fit
-from rocking_cli.studies.fragility.hazard_curve import HazardCurve, annual_rate, read_hazard
+from rocking_cli.studies.fragility.curves import FragilityCurve
+from rocking_cli.studies.fragility.fit import Estimate, Fit
+from rocking_cli.studies.fragility.hazard_curve import HazardCurve, annual_rate, read_hazard, wrong_points
 
 COVARIANCE = np.array([[0.02, 0.015], [0.015, 0.03]])
 
@@ -103,10 +103,6 @@ class TestRate:
         assert under.rate == pytest.approx(2e-2)
         assert under.rate + under.below == pytest.approx(2e-2 * 2**k)
 
-    def test_of_no_curve_is_refused_with_the_reason(self):
-        with pytest.raises(InputError, match="none of the 9 runs exceed"):
-            annual_rate(FragilityCurve("none", "none of the 9 runs exceed", 0.95, 9, 0), BENT)
-
 
 class TestHazardCurve:
     def test_is_straight_in_logarithms_and_unknown_outside(self):
@@ -114,20 +110,18 @@ class TestHazardCurve:
         np.testing.assert_allclose(BENT.rate(x), [np.nan, 2e-2, np.sqrt(9e-3 * 9e-4), 1e-5, np.nan])
 
     @pytest.mark.parametrize(
-        ("x", "rate", "words"),
+        ("x", "rate", "point"),
         [
-            ([0.1, 0.1], [1, 0.5], "point 2: the intensity 0.1 does not exceed the 0.1"),
-            ([0.1, 0.2], [1, 2], "point 2: the annual rate 2 is above the 1"),
-            ([0, 0.2], [1, 0.5], "point 1: the intensity is 0"),
-            ([0.1, 0.2], [1, 0], "point 2: the annual rate is 0"),
-            ([0.1, np.nan], [1, 0.5], "the intensity is nan"),
-            ([0.1], [1], "at least two"),
-            ([0.1, 0.2, 0.3], [1, 0.5], "point 3: an intensity without a rate"),
+            ([0.1, 0.1], [1, 0.5], 1),
+            ([0.1, 0.2], [1, 2], 1),
+            ([0, 0.2], [1, 0.5], 0),
+            ([0.1, 0.2], [1, 0], 1),
+            ([0.1, np.nan], [1, 0.5], 1),
+            ([0.1], [1], 1),
         ],
     )
-    def test_refuses_what_is_none(self, x, rate, words):
-        with pytest.raises(InputError, match=words):
-            HazardCurve(np.array(x, dtype=float), np.array(rate, dtype=float))
+    def test_points_that_make_no_curve(self, x, rate, point):
+        assert [k for k, _ in wrong_points(np.array(x, dtype=float), np.array(rate, dtype=float))] == [point]
 
 
 class TestFile:

@@ -14,10 +14,10 @@ from scipy.stats import lognorm, norm
 
 from rocking_cli.errors import InputError
 from rocking_cli.studies.fragility.assess import Fragility
-from rocking_cli.studies.fragility.curves import Observations, fit_curve
-from rocking_cli.studies.fragility.openquake import chosen, identifier, intensity_type, limit_id
-from rocking_cli.views.fragility_table import blocks
-from rocking_cli.views.nrml import nrml
+from rocking_cli.studies.fragility.curves import fit_curve
+from rocking_cli.studies.fragility.observed import Observations
+from rocking_cli.views.fragility_table import curve_blocks
+from rocking_cli.views.nrml import chosen, identifier, intensity_type, limit_id, nrml
 from tests.conftest import EXAMPLES
 from tests.stores import command
 
@@ -268,7 +268,7 @@ def test_curves_as_a_table(store, tmp_path, ending):
 
 
 def test_a_curve_that_is_not_there_is_named_and_a_table_of_none_has_its_heading(store, tmp_path):
-    assert [list(each) for each in blocks([])] == [list(next(iter(blocks(some()))))]
+    assert [list(each) for each in curve_blocks([])] == [list(next(iter(curve_blocks(some()))))]
     study = tmp_path / "study.yaml"
     text = (EXAMPLES / "study" / "pedestal.yaml").read_text(encoding="utf-8").replace("../", f"{EXAMPLES}/")
     study.write_text(re.sub("limit_states:.*", "limit_states: [30.0]", text), encoding="utf-8")

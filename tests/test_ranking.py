@@ -14,9 +14,10 @@ from rocking_cli import fragility
 from rocking_cli.excitation.base import Origin
 from rocking_cli.studies.fragility import ranking, sources
 from rocking_cli.studies.fragility.campaign import prepare, steps
-from rocking_cli.studies.fragility.ranking import Ranked, Ranking, judge, line, serves
+from rocking_cli.studies.fragility.ranking import Ranked, Ranking, line, serves
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
+from rocking_cli.views.ranking import judge
 from tests.conftest import EXAMPLES
 from tests.stores import command
 

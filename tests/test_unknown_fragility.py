@@ -19,15 +19,17 @@ from rocking_cli.errors import InputError
 from rocking_cli.plotting.fragility import LabelledCurve, draw_curves, draw_ida, draw_surface
 from rocking_cli.plotting.quantiles import draw_quantiles
 from rocking_cli.studies.contact import Contacts
-from rocking_cli.studies.fragility import assess, openquake, quantiles, store, tally
+from rocking_cli.studies.fragility import assess, quantiles, store, tally
 from rocking_cli.studies.fragility.assess import Fragility
 from rocking_cli.studies.fragility.curves import fit_curve
 from rocking_cli.studies.fragility.displacements import kept
 from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.studies.fragility.quantiles import all_quantiles
-from rocking_cli.studies.fragility.ranking import judge, rank
+from rocking_cli.studies.fragility.ranking import rank
 from rocking_cli.studies.fragility.store import UNKNOWN, Endings, Store
 from rocking_cli.studies.fragility.study import load_study
+from rocking_cli.views import nrml as openquake
+from rocking_cli.views.ranking import judge
 from tests.conftest import EXAMPLES
 from tests.following import build_model
 from tests.stores import command
@@ -120,7 +122,7 @@ def test_the_store_says_it_in_words(whole):
     with closing(sqlite3.connect(whole.place)) as connection:
         (version,) = connection.execute("PRAGMA user_version").fetchone()
         words = connection.execute("SELECT outcome, known_to, fell_to FROM runs").fetchall()
-    assert version == 6
+    assert version == store.VERSION
     assert [each[0] == "unknown" for each in words] == [each.unknown for each in whole.histories]
     assert all((word == "unknown") == (known_to is not None) for word, known_to, _ in words)
     assert not any(fell_to for word, _, fell_to in words if word == "unknown")

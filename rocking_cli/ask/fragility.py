@@ -83,8 +83,8 @@ def fragility(
     the curves are fitted.
     """
     from rocking_cli.ask.results import results
-    from rocking_cli.studies.fragility.reached import held
     from rocking_cli.studies.fragility.study import load_study
+    from rocking_cli.studies.fragility.thresholds import held
 
     if isinstance(study, Mapping):
         store = Path(store or "study.db")

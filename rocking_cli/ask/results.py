@@ -155,10 +155,10 @@ def _fitted(
 
 def _blocks(place: Path) -> Iterator[Columns]:
     """Yield the runs of a store as columns, in blocks of rows."""
-    from rocking_cli.studies.fragility import table
+    from rocking_cli.views.fragility_table import run_blocks
 
     with Store.reading(place) as store:
-        yield from table.blocks(store, store.plan(), _definition(store).asked_measures)
+        yield from run_blocks(store, store.plan(), _definition(store).asked_measures)
 
 
 def _columns(place: Path) -> Columns:

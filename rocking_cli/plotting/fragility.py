@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from rocking_cli import names
 from rocking_cli.plotting import style
 from rocking_cli.studies.fragility.assess import Bivariate, Fragility
-from rocking_cli.studies.fragility.curves import FragilityCurve, Observations, Surface
+from rocking_cli.studies.fragility.curves import FragilityCurve, Surface
+from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.studies.fragility.quantiles import FEWEST
 
 Reals = NDArray[np.float64]
@@ -98,7 +99,7 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
     """
     figure = style.new_figure(4.6 + BAND * sum(each.lower is not None for each in drawn))
     axes = figure.subplots()
-    _head(axes, title)
+    style.heading(axes, title)
     reach = np.concatenate([each.observations.x for each in drawn])
     start, stop = float(reach.min()), float(reach.max())
     if stop > WIDEST * start:
@@ -293,7 +294,7 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str, records: in
     """
     figure = style.new_figure(4.6)
     axes = figure.subplots()
-    _head(axes, title)
+    style.heading(axes, title)
     fallen, doubtful = np.isnan(peaks), np.isposinf(peaks)
     floor = 1.05 * max(1.0, float(np.max(peaks, initial=0.0, where=np.isfinite(peaks))))  # of the bands
     high = 0.15 * floor
@@ -363,7 +364,7 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
     """
     figure = style.new_figure(4.9)
     axes = figure.subplots()
-    _head(axes, title)
+    style.heading(axes, title)
     surface, spared, exceeding = found.surface, found.runs - found.exceeding, (found.lower or found).exceeding
     doubtful = found.exceeding - exceeding
     share = max(sum(int(np.count_nonzero(each)) for each in (spared, exceeding, doubtful)), 1)
@@ -435,7 +436,3 @@ def _some(found: Bivariate, number: Integers, every: int) -> tuple[Reals, Reals]
     """Return the two intensities of every n-th of some runs, n being `every`."""
     there = np.flatnonzero(number)[::every]
     return found.x1[there], found.x2[there]
-
-
-def _head(axes: Axes, title: str) -> None:
-    style.heading(axes, title)

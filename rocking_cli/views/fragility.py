@@ -17,8 +17,9 @@ from rocking_cli.views.view import ABSENT, Table, View, number
 
 if TYPE_CHECKING:  # fits need scipy, and what would be run needs no fit
     from rocking_cli.studies.fragility.assess import Bivariate, Fragility, UnknownRuns
-    from rocking_cli.studies.fragility.curves import Cut, Estimate, FragilityCurve, Surface
+    from rocking_cli.studies.fragility.curves import Cut, FragilityCurve, Surface
     from rocking_cli.studies.fragility.definition import Definition, Limit
+    from rocking_cli.studies.fragility.fit import Estimate
     from rocking_cli.studies.fragility.hazard_curve import Rate
     from rocking_cli.studies.fragility.plan import Plan
     from rocking_cli.studies.fragility.store import Store

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from rocking_cli.names import UNKNOWN
+from rocking_cli.studies.fragility.definition import Limit
+from rocking_cli.studies.fragility.ranking import FEWEST, TREND, Ranked, Ranking
 from rocking_cli.views.column import Column, data_of, of, rounded, table_of
 from rocking_cli.views.fragility import limit_name
 from rocking_cli.views.view import Table, View
-
-if TYPE_CHECKING:
-    from rocking_cli.studies.fragility.definition import Limit
-    from rocking_cli.studies.fragility.ranking import Ranked, Ranking
 
 NARROW = 12  # characters of a heading
 
@@ -42,8 +41,6 @@ def added(shown: View, rankings: Sequence[Ranking]) -> View:
 
 def parts(ranking: Ranking) -> Iterator[Table | str]:
     """Yield a table of the measures of a structure, and sentences on it."""
-    from rocking_cli.studies.fragility.ranking import judge
-
     limits = ranking.measures[0].dispersions if ranking.measures else ()
     shown = [
         *COLUMNS,
@@ -71,8 +68,6 @@ def _dispersion(limit: Limit) -> str:
 
 
 def _data(ranking: Ranking) -> dict[str, Any]:
-    from rocking_cli.studies.fragility.ranking import judge
-
     return {
         "structure": ranking.structure,
         "against": list(ranking.against),
@@ -82,3 +77,43 @@ def _data(ranking: Ranking) -> dict[str, Any]:
         "unknown": ranking.unknown,
         "verdict": judge(ranking),
     }
+
+
+def judge(ranking: Ranking) -> list[str]:
+    """Return sentences on a ranking: the most efficient measure, the runs left out, and trends of the residuals."""
+    if not ranking.measures:
+        none = f"{ranking.structure}: no measure can be ranked: fewer than three runs rock and stand."
+        return [none, *_left_out(ranking)]
+    best = ranking.measures[0]
+    of = f"{best.runs:,} runs of {best.records} record{'s' * (best.records != 1)} that rock and stand"
+    first = (
+        f"Of {len(ranking.measures)} measures {best.measure} is the most efficient over the {of}: "
+        f"ln(phi/phi_cr) scatters by {best.efficiency:.2g} about its line."
+    )
+    return [first, *_left_out(ranking), *_of_trends(ranking), "Other records may give another order."]
+
+
+def _left_out(ranking: Ranking) -> list[str]:
+    if not ranking.unknown:
+        return []
+    runs = f"{ranking.unknown:,} run{'s' * (ranking.unknown != 1)}"
+    return [f"{runs} of {UNKNOWN} outcome {'are' if ranking.unknown != 1 else 'is'} left out."]
+
+
+def _of_trends(ranking: Ranking) -> list[str]:
+    """Return a sentence on the most efficient measure among those whose residuals have no trend."""
+    if not ranking.against:
+        return ["What its residuals depend on is not tested: the store has no data to test them against."]
+    tested = [each for each in ranking.measures if each.sufficient is not None]
+    if not tested:
+        return [f"With fewer than {FEWEST} records no trend with {' and '.join(ranking.against)} can be told."]
+    free = [each for each in tested if each.sufficient]
+    over = " or ".join(ranking.against)
+    if not free:
+        return [f"The residuals of each have a trend with {over}: none is sufficient."]
+    best = free[0]
+    which = "It" if best is ranking.measures[0] else f"{best.measure}, with {best.efficiency:.2g},"
+    return [
+        f"{which} is the most efficient of the {len(free)} whose residuals show no trend with {over} "
+        f"(p of {TREND:g} or more); the absence of a detected trend does not prove that there is none."
+    ]

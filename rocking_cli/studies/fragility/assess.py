@@ -10,7 +10,6 @@ import numpy as np
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.studies.fragility.curves import (
     FragilityCurve,
-    Observations,
     Surface,
     exact_step,
     fit_capacities,
@@ -18,12 +17,13 @@ from rocking_cli.studies.fragility.curves import (
     fit_surface,
 )
 from rocking_cli.studies.fragility.definition import LAMBDA, UPLIFT, Definition, Limit, implies
+from rocking_cli.studies.fragility.fit import Bools, Integers, Reals
 from rocking_cli.studies.fragility.hazard_curve import HazardCurve, Rate, annual_rate
-from rocking_cli.studies.fragility.likelihood import Bools, Integers, Reals
-from rocking_cli.studies.fragility.onset import Onset
+from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.tally import Cells, Counted, Tally, count, intensities
+from rocking_cli.studies.fragility.thresholds import Onset
 
 MOST_UNKNOWN = 0.02  # share of runs of which it is not known whether they exceed, up to which one curve is enough
 

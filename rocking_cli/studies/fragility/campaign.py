@@ -20,13 +20,12 @@ from rocking_cli.studies.fragility.definition import SLIDING, Definition
 from rocking_cli.studies.fragility.displacements import FACT, asked_for
 from rocking_cli.studies.fragility.intensity import PGA, PGV
 from rocking_cli.studies.fragility.measuring import complete
-from rocking_cli.studies.fragility.onset import FACT as ONSET
-from rocking_cli.studies.fragility.onset import accelerations
 from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
-from rocking_cli.studies.fragility.reached import rotations
 from rocking_cli.studies.fragility.sources import KeptMotions
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import Sample, Study, digest
+from rocking_cli.studies.fragility.thresholds import FACT as ONSET
+from rocking_cli.studies.fragility.thresholds import accelerations, rotations
 from rocking_cli.studies.fragility.work_units import carry_out, unit_size, units
 from rocking_cli.studies.fragility.workers import Workers
 

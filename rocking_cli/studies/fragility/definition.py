@@ -21,13 +21,11 @@ from rocking_cli.processing.reading import Reading, reading_of
 from rocking_cli.processing.steps import parse_steps
 from rocking_cli.studies.file_part import Part, Sound, problems_of
 from rocking_cli.studies.fragility.displacements import is_quantity, metres, spelt
-from rocking_cli.studies.fragility.distributions import Distribution, Positive
+from rocking_cli.studies.fragility.distributions import Distribution, Positive, in_units_of_fields
 from rocking_cli.studies.fragility.hazard_curve import wrong_points
 from rocking_cli.studies.fragility.intensity import PGA, no_levels, spelled
 from rocking_cli.studies.fragility.intensity import SCALE as SCALE
 from rocking_cli.studies.fragility.observed import SAME
-from rocking_cli.studies.fragility.sets import among
-from rocking_cli.studies.fragility.varied import in_units_of_fields
 
 UPLIFT, OVERTURNING, SLIDING = "uplift", "overturning", "sliding"
 LAMBDA = "lambda"  # what a motion reaches that uplifts a structure, though no limit state to be asked of
@@ -340,9 +338,10 @@ def _wrong_sets(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, st
         return
     known = Levels.model_validate(levels).levels()
     for k in of_sets:
-        if sound("records", k) and not among(entries[k]["level"], known):
+        level = entries[k]["level"] if sound("records", k) else None
+        if level is not None and not any(abs(level - each) <= SAME * abs(each) for each in known):
             shown = ", ".join(f"{level:g}" for level in known[:10]) + (", ..." if len(known) > 10 else "")
-            yield ("records", k, "level"), f"{entries[k]['level']:g} is not one of the levels {shown}"
+            yield ("records", k, "level"), f"{level:g} is not one of the levels {shown}"
 
 
 def checks_sliding(given: dict[str, Any]) -> bool:

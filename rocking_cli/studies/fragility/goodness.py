@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking_cli.studies.fragility.fit import Counts, Fit
-from rocking_cli.studies.fragility.likelihood import (
+from rocking_cli.studies.fragility.fit import (
     FARTHEST,
     Brackets,
+    Counts,
+    Fit,
     Integers,
     Reals,
     cumulative,

@@ -13,7 +13,7 @@ import numpy as np
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.records.text import numbers_in
 from rocking_cli.studies.fragility.curves import FragilityCurve
-from rocking_cli.studies.fragility.likelihood import Reals
+from rocking_cli.studies.fragility.fit import Reals
 from rocking_cli.studies.fragility.observed import SAME
 
 NODES = 16  # of Gauss's rule in a piece
@@ -31,20 +31,10 @@ class HazardCurve:
         Intensities, positive and increasing, in the measure and the unit of the fragility curve.
     annual_rate : ndarray, shape (n,)
         Rates of exceedance at these intensities, positive and never increasing [1/year].
-
-    Raises
-    ------
-    InputError
-        If intensities or rates violate these conditions, or there are fewer than two points.
     """
 
     intensity: Reals
     annual_rate: Reals
-
-    def __post_init__(self) -> None:
-        problems = wrong_points(self.intensity, self.annual_rate)
-        if problems:
-            raise InputError(*(f"hazard curve, point {k + 1}: {message}" for k, message in problems))
 
     def rate(self, x: Reals) -> Reals:
         """Return the annual rate of exceeding the intensity x [1/year]; NaN outside the points."""
@@ -54,8 +44,6 @@ class HazardCurve:
 
 def wrong_points(intensity: Reals, rate: Reals) -> list[tuple[int, str]]:
     """Return the invalid points of a hazard curve, counted from 0, each with a message."""
-    if intensity.size != rate.size:
-        return [(min(intensity.size, rate.size), "an intensity without a rate, or a rate without an intensity")]
     found = []
     for k, (x, value) in enumerate(zip(intensity, rate, strict=True)):
         if not 0 < x < math.inf:
@@ -159,25 +147,22 @@ def annual_rate(curve: FragilityCurve, hazard: HazardCurve) -> Rate:
     Parameters
     ----------
     curve : FragilityCurve
-        A curve over the measure of the hazard curve, in the same unit.
+        A curve over the measure of the hazard curve, in the same unit, and not of kind `none`.
     hazard : HazardCurve
         The hazard curve of the site.
-
-    Raises
-    ------
-    InputError
-        If the fragility curve is of kind `none`.
 
     Notes
     -----
     The integral is by Gauss's rule in pieces of ln x. For a lognormal curve and one power law, rate = k0 x^-k, it is
     rate(median) exp(k^2 dispersion^2/2) [Cornell et al. 2002, J. Struct. Eng. 128, 526-533].
     """
-    if curve.kind == "none":
-        raise InputError(f"no fragility curve exists to convolve: {curve.why}")
     last = float(hazard.annual_rate[-1])
     if curve.step is not None and not curve.implied:
-        at, low, high = (_rate_at(hazard, x) for x in (curve.step.value, curve.step.high, curve.step.low))
+        first, end = hazard.intensity[[0, -1]]  # below the first point its rate, beyond the last one none
+        at, low, high = (
+            0.0 if x > end * (1 + SAME) else float(hazard.rate(np.clip([x], first, end))[0])
+            for x in (curve.step.value, curve.step.high, curve.step.low)
+        )
         above = last if curve.step.value > hazard.intensity[-1] * (1 + SAME) else 0.0
         return Rate(at, low, high, above, _beyond(hazard, curve.step.value))
     end = hazard.intensity[-1:]
@@ -207,14 +192,6 @@ def _integral(hazard: HazardCurve, probability: Callable[[Reals], Reals], jumps:
     k = slope[np.searchsorted(logs, middle, side="right") - 1]
     x = np.exp(at)
     return float((half * weights * probability(x) * k * hazard.rate(x)).sum())
-
-
-def _rate_at(hazard: HazardCurve, x: float) -> float:
-    """Return the rate at an intensity [1/year]: below the first point the rate of that point, beyond the last one 0."""
-    first, last = hazard.intensity[[0, -1]]
-    if x > last * (1 + SAME):
-        return 0.0
-    return float(hazard.rate(np.clip([x], first, last))[0])
 
 
 def _first_slope(hazard: HazardCurve) -> float:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import nan, prod
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +14,158 @@ from rocking_cli.core import Equivalence, EquivalentBlock
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.processing.intensity import Reference, parse_measure
 from rocking_cli.studies.fragility.intensity import PGA, PGV, SCALE
-from rocking_cli.studies.fragility.measured import Measured
-from rocking_cli.studies.fragility.sets import Sets
+from rocking_cli.studies.fragility.observed import SAME
 from rocking_cli.studies.fragility.sources import Record
 from rocking_cli.studies.under_pulses import uplift
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
+EVERY = -1
+
+
+@dataclass(frozen=True, eq=False)
+class Sets:
+    """The levels at which the records of a study are run; each field is an ndarray with an entry for each record.
+
+    Parameters
+    ----------
+    level : ndarray of int
+        Index of the one level at which the record is run; -1 for a record that is run at all levels.
+    weight : ndarray
+        Relative weight of the record, positive.
+    one : ndarray of int
+        Index of the first entry that is the same record, in another set or another direction.
+    scaled : bool
+        Whether records are scaled to their levels; otherwise they are used as they are, and a level only names its set.
+    """
+
+    level: Integers
+    weight: Reals
+    one: Integers
+    scaled: bool = True
+
+    @classmethod
+    def of(
+        cls,
+        levels: Sequence[float],
+        at: Sequence[float | None],
+        weights: Sequence[float],
+        files: Sequence[str],
+        *,
+        scaled: bool = True,
+    ) -> Sets:
+        """Build sets from the level (if any), the weight and the file of each record."""
+        values = np.array(levels)
+        places = [EVERY if each is None else int(np.argmin(np.abs(values - each))) for each in at]
+        first = {file: len(files) - 1 - k for k, file in enumerate(reversed(files))}
+        return cls(
+            np.array(places, dtype=np.int64),
+            np.array(weights, dtype=np.float64),
+            np.array([first[file] for file in files], dtype=np.int64),
+            scaled,
+        )
+
+    @classmethod
+    def plain(cls, records: int) -> Sets:
+        """Build sets in which every record is run at every level with equal weight."""
+        return cls.of([0.0], [None] * records, [1.0] * records, [str(k) for k in range(records)])
+
+    @property
+    def weighted(self) -> bool:
+        """Whether the records have different weights."""
+        return bool(np.ptp(self.weight) > SAME * self.weight.max()) if self.weight.size else False
+
+    def there(self, record: int, levels: int) -> NDArray[np.bool_]:
+        """Return a mask of the levels at which a record is run."""
+        return np.ones(levels, dtype=bool) if self.level[record] == EVERY else np.arange(levels) == self.level[record]
+
+
+def described(description: dict[str, Any], weights: Sequence[float]) -> Sets:
+    """Build the sets of a store from the description of its study and the weights last requested."""
+    records, levels = description["records"], description["levels"]
+    return Sets.of(
+        levels["values"],
+        [each.get("level") for each in records],
+        weights,
+        [each.get("file", each["name"]) for each in records],
+        scaled=levels.get("scaled", True),
+    )
+
+
+class Value(NamedTuple):
+    """One value as a store keeps it. Indices on which the value does not depend are None; a missing value is None."""
+
+    measure: str
+    sample: int | None
+    record: int | None
+    level: int | None
+    value: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Values measured for a study, by name; NaN where there is none.
+
+    Parameters
+    ----------
+    of_record : mapping of str to ndarray, shape (records,)
+        Measures of the unscaled motions, by their standard spelling.
+    of_sample : mapping of str to ndarray, shape (samples,)
+        Fields of `Reference` that trials lack.
+    of_run : mapping of str to ndarray, shape (samples, records, levels)
+        Measures that are not proportional to a power of the factor on the record.
+    """
+
+    of_record: Mapping[str, Reals] = field(default_factory=dict)
+    of_sample: Mapping[str, Reals] = field(default_factory=dict)
+    of_run: Mapping[str, Reals] = field(default_factory=dict)
+
+    def __bool__(self) -> bool:
+        return bool(self.of_record or self.of_sample or self.of_run)
+
+    def values(self) -> Iterator[Value]:
+        """Yield all values that are not NaN, one at a time."""
+        for name, values in self.of_record.items():
+            yield from (Value(name, None, k, None, value) for (k,), value in _there(values))
+        for name, values in self.of_sample.items():
+            yield from (Value(name, k, None, None, value) for (k,), value in _there(values))
+        for name, values in self.of_run.items():
+            yield from (Value(name, s, r, k, value) for (s, r, k), value in _there(values))
+
+    @classmethod
+    def of(cls, values: Iterator[Value], shape: tuple[int, int, int]) -> Measured:
+        """Collect single values of a study with a given number of samples, records and levels.
+
+        Raises
+        ------
+        ValueError
+            If the indices of a value are not those of a record, a sample or a run.
+        IndexError
+            If an index is out of range.
+        """
+        samples, records, levels = shape
+        kinds: tuple[tuple[dict[str, Reals], tuple[int, ...]], ...] = (
+            ({}, (records,)),
+            ({}, (samples,)),
+            ({}, (samples, records, levels)),
+        )
+        patterns = ((False, True, False), (True, False, False), (True, True, True))
+        for value in values:
+            places = (value.sample, value.record, value.level)
+            arrays, size = kinds[patterns.index(tuple(place is not None for place in places))]
+            if value.measure not in arrays:
+                arrays[value.measure] = np.full(size, np.nan)
+            place = tuple(place for place in places if place is not None)
+            if min(place) < 0:
+                raise IndexError(place)
+            arrays[value.measure][place] = np.nan if value.value is None else value.value
+        return cls(*(arrays for arrays, _ in kinds))
+
+
+def _there(values: Reals) -> Iterator[tuple[Any, float]]:
+    """Return the index and the value of every entry that is not NaN."""
+    places = np.argwhere(~np.isnan(values)).tolist()
+    return zip((tuple(place) for place in places), values[~np.isnan(values)].tolist(), strict=True)
 
 
 @dataclass(frozen=True)

@@ -26,9 +26,7 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.json_text import json_text
 from rocking_cli.studies.fragility.definition import SLIDING
-from rocking_cli.studies.fragility.measured import Measured, Value
-from rocking_cli.studies.fragility.plan import Plan, Trial
-from rocking_cli.studies.fragility.sets import described
+from rocking_cli.studies.fragility.plan import Measured, Plan, Trial, Value, described
 from rocking_cli.studies.fragility.sources import Record
 from rocking_cli.studies.fragility.store_file import (
     AT_WORK,

@@ -39,7 +39,7 @@ from rocking_cli.studies.fragility.definition import (
 )
 from rocking_cli.studies.fragility.distributions import draw
 from rocking_cli.studies.fragility.hazard_curve import HazardCurve, read_hazard
-from rocking_cli.studies.fragility.sets import Sets
+from rocking_cli.studies.fragility.plan import Sets
 from rocking_cli.studies.fragility.sources import Source
 from rocking_cli.text import did_you_mean, one_line
 

@@ -1,21 +1,28 @@
-"""The rotations at which the top of a structure reaches the horizontal displacement of a limit state."""
+"""Thresholds of a structure: the PGA at which it uplifts, and the rotations at which its top has moved a distance."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from math import isclose
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core import Direction, Mechanism, both_statics, equivalent_block
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.studies.fragility.displacements import asked_for, metres
-from rocking_cli.studies.fragility.plan import Trial
+from rocking_cli.studies.fragility.intensity import PGA
+from rocking_cli.studies.fragility.plan import Plan, Trial
 from rocking_cli.studies.fragility.study import Sample, Study
 from rocking_cli.studies.movements import is_held, top
+from rocking_cli.studies.under_pulses import uplift
 
 Reals = NDArray[np.float64]
 Pair = tuple[float | None, float | None]
-"""Rotations in the positive and the negative direction [rad]; None where the displacement is not reached."""
+"""Values in the positive and the negative direction; None where a structure never gets there."""
 
 WAY = 512  # rotations from rest to the end of a mechanism at which it is looked how far the top has moved
 CLOSER = 32  # of a step, in each look at it from closer by
@@ -128,3 +135,65 @@ def _peak(moved: Callable[[Reals], Reals], low: float, high: float, wanted: floa
             return float(fine[k])
         low, high = float(fine[max(k - 1, 0)]), float(fine[min(k + 1, CLOSER)])
     return None
+
+
+FACT = "uplift"
+"""Name under which a store keeps the uplift accelerations of its structures."""
+SAME = 1e-9  # relative difference of accelerations that differ only by rounding
+
+
+class Onset(NamedTuple):
+    """Intensity up to which no motion uplifts a structure, and whether every motion uplifts it beyond."""
+
+    at: float
+    exact: bool
+
+
+def accelerations(study: Study, plan: Plan) -> dict[str, Pair]:
+    """Return the uplift accelerations over g of each structure, in its first sample that can be simulated.
+
+    Empty if a motion has a vertical component or is that of a floor: its horizontal PGA then does not decide.
+    """
+    if any(source.vertical is not None or source.reading.floor is not None for source in study.sources):
+        return {}
+    found: dict[str, Pair] = {}
+    for sample, trial in zip(study.samples, plan.trials, strict=True):
+        if trial.reason is None and trial.structure not in found:
+            found[trial.structure] = _of_both(sample.mechanism, study.definition.model)
+    return found
+
+
+def _of_both(mechanism: Mechanism, model: ModelName) -> Pair:
+    if model == "nonlinear":
+        one, other = (side.lambda_ for side in both_statics(mechanism))
+    else:
+        block = equivalent_block(mechanism)
+        one, other = uplift(block.positive, model), uplift(block.negative, model)
+    return (one, other) if mechanism.rocks_both_ways else (max(one, other), None)
+
+
+def onset(plan: Plan, samples: range, pair: Pair | None, measure: str) -> Onset | None:
+    """Return at which intensity a structure uplifts; None if that is not known over a measure.
+
+    Parameters
+    ----------
+    plan : Plan
+        The plan of the study's runs.
+    samples : range
+        Indices of the structure's samples.
+    pair : (float or None, float or None), optional
+        Its uplift accelerations over g, as the store keeps them.
+    measure : str
+        The measure: PGA, or PGA over the uplift acceleration.
+    """
+    asked = parse_measure(measure)
+    if pair is None or str(asked.base) != PGA or asked.power != 1:
+        return None
+    usable = [k for k in samples if plan.trials[k].reason is None]
+    accelerations = np.array([plan.trials[k].lambda_ * plan.trials[k].gravity for k in usable])
+    if np.ptp(accelerations) > SAME * accelerations.max():  # a property varies on which it depends
+        return None
+    pga = accelerations[:1] / STANDARD_GRAVITY
+    at = float(asked.relative(pga, plan.reference(np.array(usable[:1])))[0])
+    one, other = pair
+    return Onset(at, one is not None and other is not None and isclose(one, other, rel_tol=SAME))
