@@ -18,7 +18,7 @@ from rocking_cli.processing.oscillator import response_spectrum
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
 from tests.conftest import EXAMPLES
-from tests.stores import command, version_of
+from tests.stores import command
 
 STUDY = f"""\
 structures:
@@ -203,38 +203,6 @@ class TestStore:
         assert [row[2:5] for row in rows] == [(None, k, None) for k in range(3)]
         expected = [response_spectrum(motion, 1.0).sa[0] for motion in motions()]
         assert [row[5] for row in rows] == pytest.approx(expected) and levels == (2 * 3 * 4,)
-
-    @pytest.mark.parametrize(
-        "statement",
-        [
-            "UPDATE measured SET value = 1.01 * value WHERE measure = 'Sa(1.0)' AND record = 1",
-            "DELETE FROM measured WHERE id = 3",
-            "DROP TABLE measured",
-            "UPDATE measured SET record = 77 WHERE id = 1",
-            "UPDATE measured SET measure = 'Du' WHERE measure = 'Sa(1.0)'",
-        ],
-    )
-    def test_damage_is_found(self, measured, tmp_path, statement):
-        place = tmp_path / "study.db"
-        place.write_bytes((measured[0] / "study.db").read_bytes())
-        with closing(sqlite3.connect(place, isolation_level=None)) as connection:
-            connection.executescript(statement)
-        for arguments in (("results", place), ("fragility", write(tmp_path), "--store", place)):
-            shown = command(*arguments)
-            assert shown.exit_code == 2 and "the store is damaged" in shown.stderr
-
-    def test_a_damaged_run_costs_no_value(self, measured, tmp_path):
-        place = tmp_path / "study.db"
-        place.write_bytes((measured[0] / "study.db").read_bytes())
-        with closing(sqlite3.connect(place, isolation_level=None)) as connection:
-            connection.execute("UPDATE run SET peak_ratio = 0.123 WHERE id = 5")
-            values = connection.execute("SELECT * FROM measured").fetchall()
-        path = write(tmp_path, more="measures: [sa(1), Du, d5-95, arias, PGV/v_imp]\nbivariate: [[PGV, D5-95]]\n")
-        shown = command("fragility", path, "--json")
-        assert shown.exit_code == 0 and "1 run is damaged" in shown.stderr
-        assert json.loads(shown.stdout)["curves"] == measured[1]["curves"] and version_of(place) == 6
-        with closing(sqlite3.connect(place)) as connection:
-            assert connection.execute("SELECT * FROM measured").fetchall() == values
 
     def test_a_measure_that_is_not_installed_any_more_is_said_and_keeps_the_runs(self, measured, tmp_path):
         place = tmp_path / "study.db"

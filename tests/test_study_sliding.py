@@ -171,14 +171,6 @@ def test_all_else_is_as_without_it(whole, tmp_path):
     assert versions == [store_file.VERSION] * 2
 
 
-@pytest.mark.every(3)
-@pytest.mark.parametrize("size", [1, 7, 1000])
-def test_it_is_the_same_whatever_the_units(whole, tmp_path, monkeypatch, size):
-    monkeypatch.setattr("rocking_cli.studies.fragility.campaign.unit_size", lambda runs, workers: size)
-    carry_out(whole[0], tmp_path / "other.db", jobs=3)
-    assert dump(tmp_path / "other.db") == dump(whole[2])
-
-
 def test_a_unit_can_be_sent_elsewhere(whole, tmp_path):
     with Store.writing(tmp_path / "study.db") as kept:
         prepared = prepare(load_study(whole[0]), kept)
@@ -230,14 +222,6 @@ class TestTheStore:
         assert found == pytest.approx(rows.slide_time.tolist(), nan_ok=True)
         assert any(each.name.startswith("sliding") for each in (tmp_path / "pictures").iterdir())
         assert "sliding  " in command("results", whole[2]).stdout
-
-    def test_any_program_reads_it(self, whole):
-        connection = sqlite3.connect(whole[2])
-        (count,) = connection.execute("SELECT count(*) FROM runs WHERE slide_time >= uplift_time").fetchone()
-        names = [row[1] for row in connection.execute("PRAGMA table_info(run)")]
-        connection.close()
-        rows = rows_of(whole[2])
-        assert count == np.isfinite(rows.slide_time).sum() and tuple(names) == (*rows.columns, "checksum")
 
     def test_damage_is_found(self, whole, tmp_path):
         place = tmp_path / "study.db"
