@@ -49,21 +49,10 @@ def test_loads_and_ties_press_on_it():
         {"name": "floor", "mass": 2000.0, "at": [0.0, 6.0], "weight": 0.5},
         {"name": "vault", "force": [3000.0, -7000.0], "at": [0.0, 5.0]},
     ]
+    ends = {"tendon": ([0.0, 0.0], [0.0, 0.0], 50e3), "stay": ([-4.0, 5.0], [-0.3, 8.0], 10e3)}
     ties = [
-        {
-            "name": "tendon",
-            "from": {"ground": [0.0, 0.0]},
-            "to": {"at": [0.0, 0.0]},
-            "stiffness": 1e5,
-            "prestress": 50e3,
-        },
-        {
-            "name": "stay",
-            "from": {"ground": [-4.0, 5.0]},
-            "to": {"at": [-0.3, 8.0]},
-            "stiffness": 1e5,
-            "prestress": 10e3,
-        },
+        {"name": name, "from": {"ground": low}, "to": {"at": high}, "stiffness": 1e5, "prestress": force}
+        for name, (low, high, force) in ends.items()
     ]
     found = facade(loads=loads, ties=ties)
     stay = 10e3 * 3.0 / np.hypot(3.7, 3.0)

@@ -100,14 +100,8 @@ def corners(page):
 
 def point(page, time, plot=0):
     """Pixels of a time on a chart, from the numbers of its axis."""
-    ticks = (
-        page.locator(".plot")
-        .nth(plot)
-        .locator(".tick")
-        .evaluate_all(
-            "all => all.map(t => [parseFloat(t.textContent), (b => b.x + b.width / 2)(t.getBoundingClientRect())])"
-        )
-    )
+    middle = "all => all.map(t => [parseFloat(t.textContent), (b => b.x + b.width / 2)(t.getBoundingClientRect())])"
+    ticks = page.locator(".plot").nth(plot).locator(".tick").evaluate_all(middle)
     if ticks[0][0] == 0:
         ticks = ticks[1:]  # the first has its unit beside it
     t, x = np.array(ticks).T
@@ -342,15 +336,8 @@ def test_on_paper_everything_is_there_and_nothing_to_press(browser, report):
     with opened(browser, report, color_scheme="dark") as page:
         page.emulate_media(media="print", color_scheme="dark")
         assert not any(page.locator("button, input, select, nav").nth(k).is_visible() for k in range(5))
-        for part in (
-            "#summary",
-            "#drawing svg",
-            "#parameters table",
-            ".stage",
-            ".plot svg",
-            "#pulses svg",
-            "#error svg",
-        ):
+        shown = ("#summary", "#drawing svg", "#parameters table", ".stage", ".plot svg", "#pulses svg", "#error svg")
+        for part in shown:
             assert page.locator(part).first.is_visible(), part
         assert "yaml" in page.locator("#inputs").inner_text()
         found = page.evaluate(CONTRASTS)
@@ -362,10 +349,8 @@ def test_names_stay_text(browser, folder):
     where = folder / "odd"
     where.mkdir()
     structure = where / "block.yaml"
-    structure.write_text(
-        f"mechanism: block\nname: {json.dumps(EVIL)}\nwidth: 0.7\nheight: 2.8\n# </script><b id=evil>\n",
-        encoding="utf-8",
-    )
+    text = f"mechanism: block\nname: {json.dumps(EVIL)}\nwidth: 0.7\nheight: 2.8\n# </script><b id=evil>\n"
+    structure.write_text(text, encoding="utf-8")
     record = where / '<img src=x onerror=alert(1)> & "q"\'.csv'
     record.write_bytes(ACCEL.read_bytes())
     path = where / "report.html"

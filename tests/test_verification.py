@@ -284,19 +284,6 @@ class TestCurves:
         wide = verified(rk.Block(width=1.0, height=5.0, mass=1e4, loads=[{**floor, "seat": 0.9}]))
         assert wide.states == free.states and "seat" not in remarks(wide)
 
-    def test_a_roof_that_has_fallen_passes_no_limit_state(self):
-        """By hand: the top of the block goes 0.15 m, and its centroid h/2 sin(phi) + b (1 - cos(phi))."""
-        roof = {"name": "roof", "mass": 3000.0, "at": [0.0, 8.0], "floor": "sliding", "seat": 0.15}
-        found = verified(rk.Block(**TIED, loads=[roof]), SLC={k: v for k, v in SITE.items() if k != "FC"})
-        phi = _slid(0.3, 8.0, 0.15)
-        d = 4 * sin(phi) + 0.3 * (1 - cos(phi))
-        W, R = 0.6 * 8.0 * 5.0 * 18000, 3000.0 * G / 2  # the other half rests elsewhere
-        end = atan(0.3 * (W + R) / (W * 4.0 + R * 8.0))
-        assert 0.4 * found.d0 == pytest.approx(0.4 * (4 * sin(end) + 0.3 * (1 - cos(end))), rel=1e-9)
-        assert d == pytest.approx(0.075026, abs=6e-7) and 0.4 * found.d0 > 1.5 * d
-        assert [each.d for each in found.states.values()] == pytest.approx([d, d], rel=1e-9)
-        assert not found.passes("SLV") and not found.states["SLC"].passes
-
     def test_a_facade_whose_roof_loses_its_seat_by_hand(self):
         """The nonlinear method by hand on a short seat: zeta_E is 0.83, and not the 2.22 of 0.4 d0*."""
         forces = [("thrust", 24e3, [-0.10, 9.5]), ("ties", -202.5e3, [-0.35, 7.0])]
@@ -427,9 +414,8 @@ class TestWhatMayChangeNothing:
 
         whole, pieces = verified(FACADE), verified(Cut(width=0.6, height=8.0))
         assert len(pieces.chain.blocks) == 1 and len(pieces.chain.blocks[0].bodies) == 2
-        for one, other in zip((whole.a0, whole.d0, whole.chain.e_star), (pieces.a0, pieces.d0, pieces.chain.e_star),
-                              strict=True):  # fmt: skip
-            assert one == pytest.approx(other, rel=1e-12)
+        numbers = [[each.a0, each.d0, each.chain.e_star] for each in (whole, pieces)]
+        assert numbers[0] == pytest.approx(numbers[1], rel=1e-12)
         assert a_g(whole)["nonlinear"] == pytest.approx(a_g(pieces)["nonlinear"], rel=1e-9)
 
 
@@ -602,17 +588,6 @@ class TestMethods:
         shaken = verified(wall, SLC={**slc, "ag": 0.25})
         assert not shaken.passes("SLC") and shaken.methods["damage_SLC"].zeta < 1
         assert verified(FACADE, SLC=slc).governing == {"SLV": "nonlinear", "SLC": "nonlinear_SLC"}
-
-    def test_the_workings_hold_the_numbers(self):
-        found = verified(OPPENHEIM, SLC={k: v for k, v in SITE.items() if k != "FC"})
-        lines = {line.symbol: line for line in found.workings}
-        assert lines["e*"].value == found.chain.e_star and lines["a0*"].value == found.a0
-        assert lines["d0*"].value == pytest.approx(found.d0, rel=1e-12)
-        assert lines["T_SLC"].value == found.states["SLC"].T and lines["a_g,damage"].value == a_g(found)["damage"]
-        assert lines["M*"].standing == "ours" if "M*" in lines else not OPPENHEIM.has_mass
-        for line in lines.values():  # what is put in gives what comes out
-            if line.numbers and line.symbol in ("alpha0", "e*", "a0*", "d0*", "d_SLV"):
-                assert eval(line.numbers.replace("^", "**")) == pytest.approx(line.value, rel=2e-5)
 
 
 TABLE = [[30, 0.060, 2.45, 0.27], [101, 0.105, 2.40, 0.29], [475, 0.200, 2.45, 0.32], [2475, 0.330, 2.55, 0.36]]

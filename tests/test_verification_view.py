@@ -302,18 +302,6 @@ def test_the_sheet_cites_the_code_alike(damage, linear, tmp_path):
     assert ("a_g,linear (capacity as a ground acceleration on rock)" in " ".join(said.split())) == (linear == "‡")
 
 
-@pytest.mark.parametrize(
-    ("language", "remark"),
-    [("en", "times the capacity at SLV: it accepts 2 times"), ("it", "volte la capacità allo SLV: ammette 2 volte")],
-)
-def test_the_sheet_has_the_remark_on_the_linear_method(language, remark, tmp_path):
-    site, sheet = EXAMPLES / "verify" / "site.yaml", tmp_path / "sheet.html"
-    run("verify", EXAMPLES / "walls" / "gable.yaml", "--site", site, "--sheet", sheet, "--language", language)
-    page = sheet.read_text(encoding="utf-8")
-    heading = {"en": "Remarks", "it": "Osservazioni"}[language]
-    assert remark in page.partition(f">{heading}<")[2].partition("<h2")[0]
-
-
 class TestStanding:
     """How far formulas were checked, of a code that has any of the kinds."""
 

@@ -116,8 +116,10 @@ def report(
     from rocking_cli.documents.page import render
     from rocking_cli.io.files import check_writable, write_whole
     from rocking_cli.studies.assessment import gather, steps
+    from rocking_cli.studies.verification.check import refuse
     from rocking_cli.studies.verification.motions import Histories
     from rocking_cli.views.assessment import view
+    from rocking_cli.views.sheet.build import sheet_of
 
     if file is not None:
         check_writable(Path(file))
@@ -127,7 +129,10 @@ def report(
     if not neighbours:
         raise InputError("a report shows how close the result is: `neighbours` must be at least 1")
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
-    site = _site(verify, motions=bool(given)) if verify is not None else None
+    site = site_of(verify) if verify is not None else None
+    if site is not None:  # before any work
+        sheet_of(site)
+        refuse(site, motions=bool(given))
     ready = structure_of(structure, opening)
     origin = origin or SheetOrigin.of("rocking_cli.report(...)", ready)
     title = Head(project, place, author, logo).block(origin)
@@ -144,17 +149,6 @@ def report(
         watch.note(f"wrote {file} ({len(page) / 1e6:.2g} MB)")
     shown = view(found, verified.found if verified is not None else None)
     return Answer("report", found, shown, partial(_columns, found), partial(_figure, found))
-
-
-def _site(given: SiteLike, *, motions: bool) -> SiteFile:
-    """Read the site of a report. Raises `InputError`, before any work, if its code has no part in a report."""
-    from rocking_cli.studies.verification.check import refuse
-    from rocking_cli.views.sheet.build import sheet_of
-
-    site = site_of(given)
-    sheet_of(site)
-    refuse(site, motions=motions)
-    return site
 
 
 def _verified(

@@ -19,9 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rocking_cli.ask.sheets import SheetOrigin
-    from rocking_cli.core import Mechanism
     from rocking_cli.processing.scaled import Scaled
-    from rocking_cli.studies.verification.control import Control
 
 
 @takes_numbers
@@ -105,6 +103,7 @@ def verify(
     """
     from rocking_cli.studies.verification.check import refuse, with_histories
     from rocking_cli.studies.verification.check import verify as study
+    from rocking_cli.studies.verification.control import control_at
     from rocking_cli.studies.verification.motions import Histories
     from rocking_cli.views.verification import table, view
 
@@ -117,7 +116,7 @@ def verify(
 
         sheets.check(Path(sheet), known, language)
     ready = structure_of(structure, opening)
-    found = study(ready, known, _point(ready.mechanism, *control) if control is not None else None)
+    found = study(ready, known, None if control is None else control_at(ready.mechanism, *control))
     chosen: list[Scaled] = []
     if given:
         chosen = given.gather(ready.growth, watch)
@@ -131,12 +130,6 @@ def verify(
         sheets.write(Path(sheet), content, found, watch)
     shown = view(found, known.site.name, every_step=every_step)
     return Answer("verification", found, shown, partial(table, found), partial(_figure, found))
-
-
-def _point(mechanism: Mechanism, x: float, y: float, body: str | None = None) -> Control:
-    from rocking_cli.studies.verification.control import control_at
-
-    return control_at(mechanism, x, y, body)
 
 
 def _figure(found: Verification) -> Figure:

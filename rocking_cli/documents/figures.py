@@ -1,10 +1,13 @@
-"""The plots of a report: matplotlib figures as SVG inside a page."""
+"""What pages share: their templates, and matplotlib figures as SVG inside a page."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from io import StringIO
 
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
+from markupsafe import Markup
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
@@ -15,7 +18,17 @@ SANS = "system-ui, 'Segoe UI', Helvetica, Arial, 'DejaVu Sans', sans-serif"
 STILL = 'aria-hidden="true" focusable="false" style="stroke-linejoin: round; stroke-linecap: butt"'
 
 
-def inline_svg(figure: Figure, prefix: str) -> str:
+def template(name: str, **filters: Callable[[str], object]) -> Template:
+    """Return the template of a page, with filters of its own; whatever it is given is escaped."""
+    environment = Environment(
+        loader=PackageLoader("rocking_cli", "documents/templates"), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
+    environment.filters.update(filters)
+    return environment.get_template(name)
+
+
+def inline_svg(figure: Figure, prefix: str) -> Markup:
     """Return a figure as an svg element to put inside an HTML page.
 
     Parameters
@@ -33,7 +46,8 @@ def inline_svg(figure: Figure, prefix: str) -> str:
     text = text[text.index("<svg") :]
     # A style would hold for all of the page; the comments repeat every text.
     text = re.sub(r"<(metadata|style)\b.*?</\1>|\s*<!--.*?-->", "", text, flags=re.DOTALL)
-    return re.sub(r"<[^>]*>", lambda tag: _tag(tag[0], prefix), text)  # what a name says is left alone
+    # What a name says is left alone.
+    return Markup(re.sub(r"<[^>]*>", lambda tag: _tag(tag[0], prefix), text))
 
 
 def _tag(tag: str, prefix: str) -> str:

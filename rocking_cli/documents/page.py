@@ -9,12 +9,10 @@ from math import degrees, isnan
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
-from matplotlib.figure import Figure
 
 from rocking_cli.core import Angle, Length
-from rocking_cli.documents.figures import inline_svg
+from rocking_cli.documents.figures import inline_svg, template
 from rocking_cli.documents.hung import hung_on
 from rocking_cli.documents.sheet_page import parts
 from rocking_cli.dynamics.history import History
@@ -100,15 +98,10 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
     verified : VerifiedReport, optional
         A verification to include in the report.
     """
-    environment = Environment(
-        loader=PackageLoader("rocking_cli", "documents/templates"), autoescape=True, undefined=StrictUndefined,
-        trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
-    environment.filters["symbols"] = symbols
-    environment.filters["greek"] = _greek
     bins = int(np.clip(BINS // max(1, len(content.results)), FEWEST, MOST))
     demands = [column for column in contact_columns(content.mechanism) if column.head is not None]
-    page = environment.get_template("report.html").render(
+    margins = {each.given.motion.name: each.margin for each in content.results}
+    page = template("report.html", symbols=symbols, greek=_greek).render(
         content=content,
         verified=verified,
         verification=parts(verified.within, content.mechanism, level=3) if verified is not None else "",
@@ -119,7 +112,7 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         doubts=words.doubts(content),
         cautioned=cautioned(verified.found) if verified is not None else [],
         restitution=_greek(restitution_used(content.structure)),
-        drawing=_still(draw_structure(content.picture, content.name), "drawing"),
+        drawing=inline_svg(draw_structure(content.picture, content.name), "drawing"),
         measured=_dimensions(content),
         directions=_directions(content),
         hung=hung_on(content),
@@ -141,13 +134,11 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         ],
         checked=any(contact.followed for each in content.results for contact in each.contacts.values()),
         contact_columns=["ground motion", *(column.head for column in demands), "outcome known"],
-        margins=_still(draw_margins({each.given.motion.name: each.margin for each in content.results}, ""), "margins")
-        if content.results
-        else None,
+        margins=inline_svg(draw_margins(margins, ""), "margins") if margins else None,
         around=content.results[0].margin.around if content.results else None,
         deviations=deviations(content.results[0].margin.around) if content.results else "",
         maps=[_map(each, k) for k, each in enumerate(content.maps)],
-        errors=_still(draw_linearisation(content.curves, content.asked, ""), "errors") if content.curves else None,
+        errors=inline_svg(draw_linearisation(content.curves, content.asked, ""), "errors") if content.curves else None,
         error_tables=[
             (
                 each.direction.label if len(content.asked) > 1 else "",
@@ -170,10 +161,6 @@ def symbols(text: str) -> Markup:
 def _greek(text: str) -> str:
     """Return a text of this package with the names of symbols replaced by the symbols."""
     return re.sub("|".join(GREEK), lambda word: GREEK[word[0]], text)
-
-
-def _still(figure: Figure, prefix: str) -> Markup:
-    return Markup(inline_svg(figure, prefix))
 
 
 def _over(content: Assessment) -> str:
@@ -322,7 +309,7 @@ def _map(each: PulseMap, k: int) -> dict[str, Any]:
     return {
         "title": each.found.shape.title,
         "shape": each.found.shape.name,
-        "picture": _still(draw_map(each.found, "", dimensionless=False, marks=places), f"map-{k}"),
+        "picture": inline_svg(draw_map(each.found, "", dimensionless=False, marks=places), f"map-{k}"),
         "share": f"{100 * share(each.found):.0f} %",
         "unknown": f"{100 * each.found.shares[Region.UNKNOWN]:.0f} %" if each.found.outcome.unknown.any() else "",
         "p": _number(shaken.p),

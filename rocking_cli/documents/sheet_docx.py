@@ -14,7 +14,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.plotting import style
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.text import printable
-from rocking_cli.views.sheet.document import Drawing, Item, Listing, Sentence, Sheet, SheetPart, Steps
+from rocking_cli.views.sheet.document import Drawing, Item, Listing, Sheet, SheetPart, Steps
 from rocking_cli.views.view import Table
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ class _Writer:
             self._logo(sheet.logo)
         self._text(self.document.add_heading(level=0), sheet.heading)
         self._text(self.document.add_paragraph(), sheet.subtitle)
-        self._grid(["", ""], [[*each] for each in sheet.about.items()], heads=False)
+        self._table([[[name], [text]] for name, text in sheet.about.items()])
         for each in sheet.parts:
             self._part(each, 1)
 
@@ -119,80 +119,57 @@ class _Writer:
             self._part(each, level + 1)
 
     def _item(self, item: Item) -> None:
+        from docx.shared import Cm, Pt
+
         if isinstance(item, Table):
             caption = self.document.add_paragraph()
             caption.paragraph_format.keep_with_next = True
             self._text(caption, item.title)
-            self._grid(item.columns, item.rows)
+            self._table([[[each] for each in row] for row in (item.columns, *item.rows)], heads=True)
         elif isinstance(item, Steps):
-            self._steps(item.rows)
+            self._table([self._step(row) for row in item.rows], widths=(1.1, 10.1, 3.2, 2.6))
         elif isinstance(item, Drawing):
-            self._drawing()
+            stream = BytesIO()
+            style.save(figure_of(self.sheet, self.mechanism), stream, format="png")
+            stream.seek(0)
+            self.document.add_picture(stream, width=Cm(WIDTH))
         elif isinstance(item, Listing):
-            self._listing(item.text)
-        elif isinstance(item, Sentence):
+            for line in item.text.split("\n"):
+                paragraph = self.document.add_paragraph()
+                paragraph.paragraph_format.space_after = Pt(0)
+                run = paragraph.add_run(printable(line))
+                run.font.name, run.font.size = "Courier New", Pt(8)
+        else:
             self._text(self.document.add_paragraph(), item.text, bold=item.answers)
 
-    def _listing(self, text: str) -> None:
-        from docx.shared import Pt
+    def _step(self, row: Working) -> list[list[str]]:
+        """Return the cells of a step: number, meaning and formula with numbers, result, clause."""
+        written = row.formula if not row.numbers else f"{row.formula} = {row.numbers}"
+        joined = ": " if row.formula and not row.numbers else " = "
+        work = f"{row.symbol}{joined}{written}" if written else row.symbol
+        result = f"{self.sheet.language.number(row.value)} {row.unit}".strip()
+        return [[str(next(self.steps))], [row.meaning, work], [result], [f"{row.clause}{MARKS[row.standing]}"]]
 
-        for line in text.split("\n"):
-            paragraph = self.document.add_paragraph()
-            paragraph.paragraph_format.space_after = Pt(0)
-            run = paragraph.add_run(printable(line))
-            run.font.name, run.font.size = "Courier New", Pt(8)
-
-    def _drawing(self) -> None:
-        from docx.shared import Cm
-
-        figure = figure_of(self.sheet, self.mechanism)
-        stream = BytesIO()
-        style.save(figure, stream, format="png")
-        stream.seek(0)
-        self.document.add_picture(stream, width=Cm(WIDTH))
-
-    def _steps(self, rows: Sequence[Working]) -> None:
-        """Write a row for each step: number, meaning, formula with numbers, result, clause."""
-        from docx.shared import Cm
-
-        say = self.sheet.language
-        table: Any = self.document.add_table(rows=0, cols=4, style="Table Grid")
-        table.autofit = False
-        for row in rows:
-            cells = table.add_row().cells
-            self._keep_whole(table.rows[-1])
-            self._small(cells[0].paragraphs[0], str(next(self.steps)))
-            self._small(cells[1].paragraphs[0], row.meaning)
-            written = row.formula if not row.numbers else f"{row.formula} = {row.numbers}"
-            joined = ": " if row.formula and not row.numbers else " = "
-            self._small(cells[1].add_paragraph(), f"{row.symbol}{joined}{written}" if written else row.symbol)
-            self._small(cells[2].paragraphs[0], f"{say.number(row.value)} {row.unit}".strip(), bold=True)
-            self._small(cells[3].paragraphs[0], f"{row.clause}{MARKS[row.standing]}")
-            for cell, width in zip(cells, (1.1, 10.1, 3.2, 2.6), strict=True):
-                cell.width = Cm(width)
-        self.document.add_paragraph()
-
-    def _grid(self, columns: Sequence[str], rows: Sequence[Sequence[str]], *, heads: bool = True) -> None:
-        table: Any = self.document.add_table(rows=0, cols=len(columns), style="Table Grid")
-        for k, row in enumerate([columns, *rows] if heads else rows):
-            cells = table.add_row().cells
-            self._keep_whole(table.rows[-1])
-            for cell, text in zip(cells, row, strict=True):
-                self._small(cell.paragraphs[0], text, bold=heads and k == 0)
-        self.document.add_paragraph()
-
-    @staticmethod
-    def _keep_whole(row: Any) -> None:
-        """Keep a row from breaking across pages."""
+    def _table(
+        self, rows: Sequence[Sequence[Sequence[str]]], *, heads: bool = False, widths: Sequence[float] = ()
+    ) -> None:
+        """Write a table of cells with paragraphs; rows are not broken across pages, and headings and results bold."""
         from docx.oxml import OxmlElement
+        from docx.shared import Cm, Pt
 
-        row._tr.get_or_add_trPr().append(OxmlElement("w:cantSplit"))
-
-    def _small(self, paragraph: Paragraph, text: str, *, bold: bool = False) -> None:
-        from docx.shared import Pt
-
-        paragraph.paragraph_format.space_after = Pt(0)
-        self._text(paragraph, text, bold=bold, size=SMALL)
+        table: Any = self.document.add_table(rows=0, cols=len(rows[0]), style="Table Grid")
+        table.autofit = not widths
+        for k, row in enumerate(rows):
+            cells = table.add_row().cells
+            table.rows[-1]._tr.get_or_add_trPr().append(OxmlElement("w:cantSplit"))
+            for n, (cell, texts) in enumerate(zip(cells, row, strict=True)):
+                for text in texts:
+                    paragraph = cell.paragraphs[0] if text is texts[0] else cell.add_paragraph()
+                    paragraph.paragraph_format.space_after = Pt(0)
+                    self._text(paragraph, text, bold=(heads and k == 0) or (bool(widths) and n == 2), size=SMALL)
+                if widths:
+                    cell.width = Cm(widths[n])
+        self.document.add_paragraph()
 
     def _text(self, paragraph: Paragraph, text: str, *, bold: bool = False, size: float | None = None) -> None:
         """Write a text with its sub- and superscripts; characters that XML cannot hold are spelled out."""

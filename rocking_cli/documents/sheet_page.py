@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import count
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from rocking_cli.core import Mechanism
-from rocking_cli.documents.figures import inline_svg
+from rocking_cli.documents.figures import inline_svg, template
 from rocking_cli.plotting.moving import asset
 from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.studies.picture import picture
@@ -33,24 +32,19 @@ def render(sheet: Sheet, mechanism: Mechanism) -> str:
     mechanism : Mechanism
         The mechanism to draw.
     """
-    page = (
-        _environment()
-        .get_template("sheet.html")
-        .render(
-            sheet=sheet, say=sheet.language, parts=parts(sheet, mechanism), motion_style=Markup(asset("motion.css"))
-        )
+    page = template("sheet.html").render(
+        sheet=sheet, say=sheet.language, parts=parts(sheet, mechanism), motion_style=Markup(asset("motion.css"))
     )
     return printable(page)
 
 
 def parts(sheet: Sheet, mechanism: Mechanism, level: int = 2) -> Markup:
     """Return the sections of a sheet alone as HTML, with headings from a given level, such as for a report."""
-    template = _environment().get_template("sheet_parts.html")
     has_drawing = any(isinstance(item, Drawing) for each in sheet.parts for item in each.items)
     steps = count(1)
-    text = template.render(
-        sheet=sheet, level=level, drawing=_drawing(sheet, mechanism) if has_drawing else "", step=lambda: next(steps),
-        number=sheet.language.number, marks=MARKS,
+    text = template("sheet_parts.html", formula=formula).render(
+        sheet=sheet, level=level, step=lambda: next(steps), number=sheet.language.number, marks=MARKS,
+        drawing=inline_svg(figure_of(sheet, mechanism), "sheet-drawing") if has_drawing else "",
     )  # fmt: skip
     return Markup(text)
 
@@ -67,10 +61,6 @@ def figure_of(sheet: Sheet, mechanism: Mechanism) -> Figure:
     return figure
 
 
-def _drawing(sheet: Sheet, mechanism: Mechanism) -> Markup:
-    return Markup(inline_svg(figure_of(sheet, mechanism), "sheet-drawing"))
-
-
 def runs(text: str) -> Iterator[tuple[str, str]]:
     """Yield the pieces of a text, each with its place: "sub", "sup" or neither."""
     end = 0
@@ -85,12 +75,3 @@ def formula(text: str) -> Markup:
     """Return a text with its sub- and superscripts as HTML."""
     pieces = (Markup(f"<{place}>{escape(text)}</{place}>") if place else escape(text) for text, place in runs(text))
     return Markup("").join(pieces)
-
-
-def _environment() -> Environment:
-    environment = Environment(
-        loader=PackageLoader("rocking_cli", "documents/templates"), autoescape=True, undefined=StrictUndefined,
-        trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
-    environment.filters["formula"] = formula
-    return environment

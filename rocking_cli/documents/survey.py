@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from rocking_cli.documents.figures import inline_svg
+from rocking_cli.documents.figures import inline_svg, template
 from rocking_cli.documents.page import symbols
 from rocking_cli.plotting.moving import asset
 from rocking_cli.plotting.survey import draw_survey
@@ -31,19 +30,14 @@ def render(found: Survey, source: str, about: Sequence[str]) -> str:
     about : sequence of str
         Further lines of the heading: date and command.
     """
-    environment = Environment(
-        loader=PackageLoader("rocking_cli", "documents/templates"), autoescape=True, undefined=StrictUndefined,
-        trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
-    environment.filters["symbols"] = symbols
     rows = table(found, MOST, longest=None)
     left_out = max(0, len(found.rows) - MOST)
-    page = environment.get_template("survey.html").render(
+    page = template("survey.html", symbols=symbols).render(
         source=source,
         about=about,
         title=title(found),
         said=[each.replace("`", "") for each in (*counts(found), *sentences(found))],
-        picture=Markup(inline_svg(draw_survey(found, ""), "survey")) if found.rows else None,
+        picture=inline_svg(draw_survey(found, ""), "survey") if found.rows else None,
         columns=[_symbolic(each) for each in rows.columns],
         words=[k for k in range(len(rows.columns)) if k not in rows.numbers],
         rows=rows.rows,

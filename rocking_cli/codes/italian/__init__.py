@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import partial
 from importlib.resources import files
 from typing import Any, ClassVar
 
 from rocking_cli.codes.italian import method
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.method import EDITION, KEY, NAME
-from rocking_cli.codes.italian.results import ItalianVerification, ItalianVerified
+from rocking_cli.codes.italian.results import ItalianVerification
 from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, NONLINEAR
 from rocking_cli.codes.italian.site import ItalianSite, of_each
 from rocking_cli.core import Mechanism
@@ -21,11 +20,7 @@ from rocking_cli.studies.verification.motions import Histories
 
 
 def _zeta(key: str) -> Number:
-    return Number(f"capacity over demand, by the {key} method of `verify`", of=partial(_zeta_of, key))
-
-
-def _zeta_of(key: str, found: ItalianVerified) -> float | None:
-    return found.methods[key].zeta
+    return Number(f"capacity over demand, by the {key} method of `verify`", of=lambda found: found.methods[key].zeta)
 
 
 class Italian(Code):

@@ -21,21 +21,37 @@ LEAST = 1e-9  # of the largest virtual displacement: a control point that moves 
 
 @dataclass(frozen=True)
 class Weight:
-    """A mass of the chain: its position, the weight that is carried, and the weight that moves sideways.
+    """A mass of the chain.
 
     Parameters
     ----------
+    name : str
     spot : Spot
         Position of the mass.
-    carried : float
-        P, the part of its weight that the block carries [N].
-    inertial : float
-        P + Q, the weight of the mass that moves sideways with the block [N].
+    mass : float
+        The mass [kg].
+    w, h : float
+        The shares of it that the block carries, and that move sideways with the block.
+    gravity : float
+        Acceleration of gravity [m/s2].
     """
 
+    name: str
     spot: Spot
-    carried: float
-    inertial: float
+    mass: float
+    w: float
+    h: float
+    gravity: float
+
+    @property
+    def carried(self) -> float:
+        """P, the part of its weight that the block carries [N]."""
+        return self.w * self.mass * self.gravity
+
+    @property
+    def inertial(self) -> float:
+        """P + Q, the weight of the mass that moves sideways with the block [N]."""
+        return self.h * self.mass * self.gravity
 
 
 @dataclass(frozen=True)
@@ -88,12 +104,12 @@ class Chain:
         moving = {name for name, number in parts(self.mechanism, self.direction).items() if number}
         g = self.mechanism.gravity
         own = [
-            Weight(Spot(body.name, body.centroid), body.mass * g, body.mass * g)
+            Weight(body.name, Spot(body.name, body.centroid), body.mass, 1.0, 1.0, g)
             for body in self.mechanism.weighed()
             if body.name in moving
         ]
         return own + [
-            Weight(thing.spot, thing.weight * thing.mass * g, thing.horizontal * thing.mass * g)
+            Weight(thing.name, thing.spot, thing.mass, thing.weight, thing.horizontal, g)
             for thing in self.mechanism.attached
             if isinstance(thing, PointMass) and thing.spot.body in moving
         ]

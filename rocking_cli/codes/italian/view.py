@@ -9,15 +9,15 @@ from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.remarks import differences
 from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, ItalianVerified, LimitState
 from rocking_cli.codes.italian.sheet import dynamic
-from rocking_cli.codes.italian.sheet.states import ties
-from rocking_cli.codes.italian.sheet.steps import TERMINAL
+from rocking_cli.codes.italian.sheet.steps import TERMINAL, ties
 from rocking_cli.codes.italian.sheet.summary import methods, verdicts
 from rocking_cli.codes.italian.ties import pulls
 from rocking_cli.studies.verification.working import in_plain
 from rocking_cli.views.column import Column, frame_of, of
+from rocking_cli.views.conclusion import headline
 from rocking_cli.views.sheet.document import Sentence
-from rocking_cli.views.verification import METHODS, MethodRow, Showing, cited, rows_of
-from rocking_cli.views.view import Table, number
+from rocking_cli.views.verification import METHODS, MethodRow, Showing, cited, rows_of, shown
+from rocking_cli.views.view import Table, heading, number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -69,10 +69,33 @@ class ItalianShowing(Showing[ItalianVerification, ItalianVerified]):
         return frame_of(COLUMNS, rows_of(found))
 
     def draw(self, found: ItalianVerification) -> Figure:
-        """Draw the capacity curves."""
-        from rocking_cli.codes.italian.curves import draw_verification
+        """Draw the capacity curves of each direction, with capacity and demand at each limit state."""
+        from rocking_cli.plotting import style
 
-        return draw_verification(found)
+        sides = shown(found)
+        figure = style.new_figure(3.4 * len(sides))
+        every = figure.subplots(len(sides), 1, squeeze=False)[:, 0]
+        for axes, (where, side) in zip(every, sides.items(), strict=True):
+            d, a = side.exact.points()
+            axes.plot(d, a, color=style.INK, linewidth=style.BOLD, label="exact curve")
+            line = {"color": style.MEASURE, "linestyle": "--", "linewidth": style.MEDIUM}
+            axes.plot([0, side.d0], [side.a0, 0], label="straight line", **line)
+            for k, (name, at) in enumerate(side.states.items()):
+                look = style.distinct(k + 1)
+                color, dashes = look["color"], look["linestyle"]
+                axes.plot(at.d, at.a, marker=look["marker"], color=color, linestyle="none", label=f"capacity d_{name}")
+                if at.demand is not None:
+                    label = f"demand at {name}"
+                    axes.axvline(at.demand, color=color, linestyle=dashes, linewidth=style.MEDIUM, label=label)
+            axes.set_xlim(left=0)
+            axes.set_ylim(bottom=0)
+            axes.set_ylabel("acceleration a* [m/s2]", fontsize=style.LABEL)
+            axes.legend(**style.LEGEND)
+            what = f"{where.lower()}, FC = {side.exact.confidence:g}"
+            style.heading(axes, f"{heading(found.mechanism)}, {what} ({headline(found.conclusion)})")
+            style.tidy(axes)
+        every[-1].set_xlabel("displacement d of the single-degree-of-freedom system [m]", fontsize=style.LABEL)
+        return figure
 
 
 def _capacity(each: ItalianVerified, where: str) -> Table:

@@ -6,34 +6,57 @@ from dataclasses import replace
 from numbers import Real
 from pathlib import Path
 
+from pydantic import ValidationError
+
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.resting import early_failures
 from rocking_cli.errors import InputError, PluginError, Problem
-from rocking_cli.io.yaml_file import Document
+from rocking_cli.io.yaml_file import Document, parse, read_text
 from rocking_cli.plugins.errors import blame
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import LeftOut
-from rocking_cli.studies.verification import site_file
+from rocking_cli.studies.file_part import problems_of
 from rocking_cli.studies.verification.code import Code
 from rocking_cli.studies.verification.control import Control
 from rocking_cli.studies.verification.installed import codes
 from rocking_cli.studies.verification.motions import Histories
 from rocking_cli.studies.verification.results import Verification, Verified
-from rocking_cli.studies.verification.site_file import Site, SiteFile
+from rocking_cli.studies.verification.site_file import HINT, USUAL, SiteFile
+from rocking_cli.text import did_you_mean
 
 
 def read_site(path: Path) -> SiteFile:
     """Read a site file, for any installed code. Raises `InputError` with every problem of the file."""
-    return site_file.read_site(path, codes(), _fields_of)
+    return site_in(parse(read_text(path, "site"), str(path), "site", HINT))
 
 
 def site_in(document: Document) -> SiteFile:
-    """Return the site in a parsed file. Raises `InputError` with every problem of the file."""
-    return site_file.site_of(document, codes(), _fields_of)
+    """Return the site in a parsed file.
 
+    Parameters
+    ----------
+    document : Document
+        The file.
 
-def _fields_of(code: str) -> type[Site]:
-    return codes()[code].site
+    Raises
+    ------
+    InputError
+        With every problem of the file: place, field, and valid values.
+    """
+    code = document.data.get("code", USUAL)
+    if isinstance(code, str) and code not in codes():
+        problem = document.at(("code",), f"there is no code {code!r}", did_you_mean(code, list(codes())))
+        raise InputError(*document.problems, problem)
+    code = code if isinstance(code, str) else USUAL
+    model, site = codes()[code].site, None
+    lister = HINT if code == USUAL else f"`rocking new site` prints one to start from, if given the code {code}"
+    try:
+        site = model.model_validate(document.data)
+    except ValidationError as error:
+        document.problems += problems_of(document, model, error, owner="the site", lister=lister)
+    document.check()
+    assert site is not None  # else there is a problem
+    return SiteFile(site, document)
 
 
 def code_of(site: SiteFile) -> Code:

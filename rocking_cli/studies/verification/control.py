@@ -17,7 +17,7 @@ class Control:
     body: str | None = None
 
 
-def control_at(mechanism: Mechanism, x: float, y: float, body: str | None) -> Control:
+def control_at(mechanism: Mechanism, x: float, y: float, body: str | None = None) -> Control:
     """Return a control point of a body; one body may be left out. Raises `InputError` if the point is not on it."""
     try:
         spot = mechanism.carrier.spot(body, complex(x, y), (), "control")

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianVerification
 from rocking_cli.codes.italian.sheet import dynamic, site, summary
-from rocking_cli.codes.italian.sheet.steps import of_direction
+from rocking_cli.codes.italian.sheet.steps import DirectionSteps
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.core import Direction
 from rocking_cli.views.sheet.build import SheetOfCode
@@ -33,7 +33,7 @@ def parts(say: Language, found: ItalianVerification, given: ItalianSite) -> Iter
     yield site.part(say, ground)
     for where, each in shown.items():
         key = each.direction.label
-        below = list(of_direction(say, ground, each))
+        below = list(DirectionSteps(say, ground, each).parts())
         if each.dynamic is not None:
             items = list(dynamic.items(say, each.dynamic, each.exact.confidence))
             below.append(SheetPart(f"{key}-dynamic", say("Dynamic method"), items))

@@ -9,7 +9,6 @@ from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.displaced import DisplacedChain, Moved
-from rocking_cli.core.hung.attached import PointMass
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import Item, SheetPart, Steps
 from rocking_cli.views.sheet.language import Language
@@ -67,21 +66,14 @@ def part(say: Language, curve: ExactCurve, key: str) -> SheetPart:
 
 def _weights(say: Language, chain: Chain, scale: Scale) -> Table:
     """Return a table of every mass that moves, with its shares in P and in P + Q."""
-    mechanism, moving = chain.mechanism, {name for block in chain.blocks for name in block.bodies}
-    named = [(body.name, body.mass, 1.0, 1.0) for body in mechanism.weighed() if body.name in moving]
-    named += [
-        (thing.name, thing.mass, thing.weight, thing.horizontal)
-        for thing in mechanism.attached
-        if isinstance(thing, PointMass) and thing.spot.body in moving
-    ]
     rows = []
-    for (name, mass, w, h), each in zip(named, chain.weights, strict=True):
+    for each in chain.weights:
         block = next(k for k, block in enumerate(chain.blocks, 1) if each.spot.body in block.bodies)
-        numbers = [each.spot.at.real, each.spot.at.imag, mass, w, h]
+        numbers = [each.spot.at.real, each.spot.at.imag, each.mass, each.w, each.h]
         forces = [scale.weight(each.carried), scale.weight(each.inertial)]
-        rows.append([name, str(block), *(say.number(value) for value in [*numbers, *forces])])
+        rows.append([each.name, str(block), *map(say.number, numbers + forces)])
     heads = [say("weight"), say("block"), "x [m]", "y [m]", "M [kg]", "w", "h"]
-    caption = say("weights", g=say.number(mechanism.gravity))
+    caption = say("weights", g=say.number(chain.mechanism.gravity))
     return Table(caption, [*heads, f"P [{scale.unit}]", f"P + Q [{scale.unit}]"], rows, range(1, 9))
 
 
@@ -106,11 +98,10 @@ def at_work(say: Language, position: DisplacedChain, scale: Scale) -> Table:
     """Return a table of the motion of each block in a position: centre of rotation, barycentres, displacements."""
     rows = []
     for k, each in enumerate(position.blocks, 1):
-        centre = ["–", "–"] if each.centre is None else [say.number(scale.near(z)) for z in _xy(each.centre)]
-        at = [say.number(scale.near(z)) for z in _xy(each.at)]
-        shown = [say.number(value) for value in (each.turns, scale.near(each.dx), scale.near(each.dy))]
-        rows.append([str(k), say.number(scale.near(each.gone)), *at, say.number(_x_of_P(position, each, scale)),
-                     shown[0], *centre, *shown[1:]])  # fmt: skip
+        lengths = [each.gone, each.at.real, each.at.imag, _x_of_P(position, each), each.dx, each.dy]
+        gone, x_G, y_G, x_P, dx, dy = map(scale.near, lengths)
+        centre = (None, None) if each.centre is None else map(scale.near, (each.centre.real, each.centre.imag))
+        rows.append([str(k), *map(say.number, (gone, x_G, y_G, x_P, each.turns, *centre, dx, dy))])
     caption = say("at_work_rest" if position.phi == 0 else "at_work", phi=say.number(position.phi), across="@")
     caption = caption.replace("@", "(x_[O] − x_[P])" if position.chain.direction > 0 else "(x_[P] − x_[O])")
     heads = [say("block"), "Δx [m]", "x_[G] [m]", "y_[G] [m]", "x_[P] [m]", "θ′", "x_[O] [m]", "y_[O] [m]",
@@ -118,15 +109,11 @@ def at_work(say: Language, position: DisplacedChain, scale: Scale) -> Table:
     return Table(caption, heads, rows, range(1, 10))
 
 
-def _x_of_P(position: DisplacedChain, each: Moved, scale: Scale) -> float:
+def _x_of_P(position: DisplacedChain, each: Moved) -> float:
     """Return the horizontal position of the barycentre of P of a block [m]; of P + Q if it carries nothing."""
     if each.centre is None or not each.block.P:
-        return scale.near(each.at.real)
-    return scale.near(each.centre.real - position.chain.direction * each.dy / each.turns)
-
-
-def _xy(z: complex) -> tuple[float, float]:
-    return z.real, z.imag
+        return each.at.real
+    return each.centre.real - position.chain.direction * each.dy / each.turns
 
 
 def held(say: Language, position: DisplacedChain, scale: Scale) -> list[Item]:
@@ -134,10 +121,7 @@ def held(say: Language, position: DisplacedChain, scale: Scale) -> list[Item]:
     if not position.held:
         return []
     rows = [
-        [
-            each.name,
-            *(say.number(v) for v in (scale.weight(each.force), scale.near(each.rate), scale.weight(each.work))),
-        ]
+        [each.name, *map(say.number, (scale.weight(each.force), scale.near(each.rate), scale.weight(each.work)))]
         for each in position.held
     ]
     heads = [say("force or tie"), f"F, N [{scale.unit}]", "r′, L′ [m]", f"−F r′, N L′ [{scale.unit} m]"]

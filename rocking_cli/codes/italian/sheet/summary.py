@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from rocking_cli.codes.italian.remarks import differences
 from rocking_cli.codes.italian.results import HISTORIES, ItalianVerification, ItalianVerified
 from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, NONLINEAR, OF_STATE
-from rocking_cli.codes.italian.sheet.methods import title
+from rocking_cli.codes.italian.sheet.steps import title
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.studies.verification.results import Remark
 from rocking_cli.studies.verification.working import in_plain
