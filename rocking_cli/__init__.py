@@ -46,6 +46,7 @@ _HOME = {
     "ask.shares": ["shares"],
     "ask.spectrum": ["spectrum"],
     "ask.motions": ["correct", "on_floor", "respond_around"],
+    "ask.several": ["Answers"],
     "ask.selection": ["select"],
     "ask.selfcheck": ["selfcheck"],
     "ask.survey": ["survey"],

@@ -40,6 +40,7 @@ from rocking_cli.ask.results import results as results
 from rocking_cli.ask.score import score as score
 from rocking_cli.ask.selection import select as select
 from rocking_cli.ask.selfcheck import selfcheck as selfcheck
+from rocking_cli.ask.several import Answers as Answers
 from rocking_cli.ask.shares import shares as shares
 from rocking_cli.ask.spectrum import spectrum as spectrum
 from rocking_cli.ask.survey import survey as survey

@@ -13,6 +13,9 @@ OVERTURNS = "overturns"
 STILL_ROCKING = "still rocking"
 UNKNOWN = "unknown"
 
+OPENING = 0.005
+"""Largest opening of a joint up to which an outcome is known, over D_cr, unless another one is given."""
+
 
 def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False, unknown: bool = False) -> str:
     """Return the outcome of a motion, in the words above.

@@ -22,7 +22,10 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.dotted import put, words
 from rocking_cli.io.field_problems import fields_at, is_plural, lists_models, names_at, of_arguments, types_at, unit_at
 from rocking_cli.io.yaml_file import Place
+from rocking_cli.names import OPENING
 from rocking_cli.text import cut, did_you_mean
+
+WIDEST_OPENING = 1000.0  # over D_cr: then every outcome is known
 
 
 def with_restitution(mechanism: Mechanism, eta: float) -> Mechanism:
@@ -40,9 +43,17 @@ def with_restitution(mechanism: Mechanism, eta: float) -> Mechanism:
         raise InputError(Problem(f"{name}: {reason[0].lower()}{reason[1:]}", field=field)) from None
 
 
-def build_models(mechanism: Mechanism, names: Sequence[ModelName] = MODELS) -> list[Model]:
-    """Build models of a mechanism: `Structure(mechanism).models(names)`. Raises `InputError` or `MechanismError`."""
-    return Structure(mechanism).models(names)
+def build_models(
+    mechanism: Mechanism, names: Sequence[ModelName] = MODELS, *, opening: float = OPENING
+) -> list[Model]:  # fmt: skip
+    """Build models of a mechanism, see `Structure`. Raises `InputError` or `MechanismError`."""
+    return Structure(mechanism, opening=opening).models(names)
+
+
+def check_opening(opening: float) -> None:
+    """Raise `InputError` if a largest opening of joints, over D_cr, is out of range."""
+    if not 0 <= opening <= WIDEST_OPENING:
+        raise InputError(Problem(f"must be from 0 to {WIDEST_OPENING:g}, got {opening:g}", field="`opening`"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,11 +66,27 @@ class Structure:
         Mechanism, with its loads and ties.
     file : str, optional
         File of the structure, for messages on fields whose errors show only when they are used.
+    opening : float
+        Largest opening of a joint up to which its time histories are valid, over D_cr: the displacement of its farthest
+        block at the critical rotation.
+
+    Raises
+    ------
+    InputError
+        If the opening is out of range.
     """
 
     mechanism: Mechanism
     file: str | None = None
+    opening: float = OPENING
     _models: dict[ModelName, Model] = field(default_factory=dict, repr=False)
+
+    def __post_init__(self) -> None:
+        check_opening(self.opening)
+
+    def of(self, mechanism: Mechanism) -> Structure:
+        """Return the structure with another mechanism, such as its own with another field."""
+        return replace(self, mechanism=mechanism, _models={})
 
     @property
     def name(self) -> str:
@@ -154,7 +181,7 @@ class Structure:
         if name not in self._models:
             statics, equivalence = self.statics, self.equivalence if name != "nonlinear" else None
             with self.named():
-                self._models[name] = build(self.mechanism, statics, equivalence, name)
+                self._models[name] = build(self.mechanism, statics, equivalence, name, self.opening)
         return self._models[name]
 
     def models(self, names: Sequence[ModelName] = MODELS) -> list[Model]:
@@ -163,7 +190,7 @@ class Structure:
 
     def with_eta(self, eta: float) -> Structure:
         """Return the structure with another restitution of all impacts. Raises `InputError` if it is not valid."""
-        return Structure(with_restitution(self.mechanism, eta), self.file)
+        return self.of(with_restitution(self.mechanism, eta))
 
     def unit_of(self, field: str) -> str:
         """Return the unit of a numeric field, empty if dimensionless. Raises `InputError` if the field does not exist.
@@ -187,7 +214,7 @@ class Structure:
         put(data, words(field), value, is_list=partial(lists_models, cls), grow=False)
         folder = Path(self.file).parent if self.file is not None else None
         try:
-            return Structure(cls.from_fields(data, folder))
+            return self.of(cls.from_fields(data, folder))
         except ValidationError as error:
             raise InputError(*of_arguments(cls, error.errors(include_url=False), cls.mechanism)) from None
 

@@ -9,9 +9,7 @@ from pydantic import ValidationError
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
-from rocking_cli.io.field_problems import (
-    problems,
-)
+from rocking_cli.io.field_problems import problems
 from rocking_cli.io.yaml_file import Document, parse, read_text
 from rocking_cli.text import cut, did_you_mean, one_line
 
@@ -40,8 +38,12 @@ def load_structure(path: str | Path, registry: Registry | None = None) -> Mechan
     MechanismError
         If the mechanism's plugin cannot be used.
     """
-    name = one_line(Path(path).stem).strip() or "structure"
-    return parse_structure(read_text(Path(path), "structure"), str(path), name, registry)
+    return parse_structure(read_text(Path(path), "structure"), str(path), default_name(path), registry)
+
+
+def default_name(path: str | Path) -> str:
+    """Return the name of a structure whose file gives none: that of the file."""
+    return one_line(Path(path).stem).strip() or "structure"
 
 
 def parse_structure(text: str, file: str, default_name: str, registry: Registry | None = None) -> Mechanism:

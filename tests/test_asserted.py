@@ -62,11 +62,11 @@ def test_a_roof_that_slides_ends_what_is_known_and_one_that_is_anchored_does_not
 
 def test_a_top_slides_from_where_its_force_exceeds_friction_under_what_the_roof_weighs_then():
     """The force by the equations of each body; the weight with the acceleration of the top by difference quotients."""
-    wall = rk.SpanningWall(**{**ROOF, "overburden": 6000.0}, friction=0.8, opening=10.0)
+    wall = rk.SpanningWall(**{**ROOF, "overburden": 6000.0}, friction=0.8)
     motion = GroundMotion("fine", 0.001, 1.3 * G * np.sin(np.pi * np.arange(1001) * 0.001 / 0.5))
     assert not resting(wall).modes  # it rocks before its top slides
-    found = nonlinear(wall, motion)
-    held = nonlinear(wall.model_copy(update={"support": 0.0}), motion)
+    found = nonlinear(wall, motion, opening=10.0)
+    held = nonlinear(wall.model_copy(update={"support": 0.0}), motion, opening=10.0)
     np.testing.assert_array_equal(found.phi, held.phi)  # what slides is an estimate beside the motion
     first = np.isfinite(found.phi)
     phi, rate, time = np.abs(found.phi[first]), np.gradient(np.abs(found.phi[first]), 0.001), found.time[first]
@@ -138,7 +138,7 @@ def test_an_impact_on_a_prop_throws_it_back():
     time = np.arange(41) * 0.01
     half = GroundMotion("half", 0.01, np.append(-0.4 * G * np.sin(np.pi * time / 0.4), 0.0))
     found = nonlinear(rk.load_structure(SLAB), half)
-    wide = nonlinear(rk.load_structure(SLAB).model_copy(update={"opening": 100.0}), half)
+    wide = nonlinear(rk.load_structure(SLAB), half, opening=100.0)
     hit = wide.first_impact
     assert found.unknown and hit < found.known_to < hit + 0.2
     assert wide.warned == pytest.approx(hit, abs=1e-9)

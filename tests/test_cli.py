@@ -563,7 +563,7 @@ def test_the_example_in_the_package_docstring_holds():
 
 
 def test_the_default_block_is_a_structure():
-    from rocking_cli.cli.structures import DEFAULT
+    from rocking_cli.ask.given import DEFAULT
 
     assert parse_structure(DEFAULT, "default", "default").mechanism == "block"
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+import rocking_cli as rk
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.records import read_record
@@ -58,7 +59,7 @@ class TestRespond:
         def refuse(*_, **__):
             raise InputError("no answer")
 
-        monkeypatch.setattr("rocking_cli.ask.respond.respond", refuse)
+        monkeypatch.setattr("rocking_cli.studies.response.response_of", refuse)
         result = run("respond", BLOCK, "--record", "bad.csv", "--record", "r/east.csv", code=InputError.exit_code)
         assert result.stdout == "" and "bad.csv" in result.stderr and "east.csv: no answer" in result.stderr
 
@@ -214,3 +215,55 @@ def test_what_governs_is_over_the_limit_where_nothing_is_critical(tmp_path):
     assert "of the limit" in said and "governs" in said and "phi_cr." not in said.split("governs")[1].split(".")[0]
     governs = re.search(r"governs: the structure rocks to [\d.]+ ([a-z_ ]+), and", said)
     assert governs is not None and governs[1] == "of the limit"
+
+
+class TestPython:
+    """What commands do of several, verbs do of a sequence."""
+
+    def test_motions(self, records, tmp_path):
+        typed = lines("respond", FRAME, "--record", records, "--neighbours", 0, "--impacts")
+        found = rk.respond(FRAME, [records], impacts=True, out="o.csv", plot="p.svg")
+        assert list(found) == ["east.csv", "north.csv", "west.csv"]
+        assert [json.loads(json.dumps(each)) for each in found.to_dict().values()] == typed
+        table = rk.respond(FRAME, records).to_frame()
+        frame = found.to_frame()
+        assert list(dict.fromkeys(frame["motion"])) == list(found) and frame.equals(table)
+        assert (
+            frame.query("motion == 'north.csv'")
+            .drop(columns="motion")
+            .reset_index(drop=True)
+            .equals(rk.respond(FRAME, "r/north.csv").to_frame())
+        )
+        assert found.frames["west.csv"].equals(found["west.csv"].to_frame())
+        impacts = found["west.csv"].frames["impacts"]
+        runs = found["west.csv"].result.runs[1].values()
+        assert len(impacts) == sum(len(run.impacts) for run in runs) > 0
+        files = {
+            f"{stem}-{name}{end}" for stem, end in (("o", ".csv"), ("p", ".svg")) for name in ("east", "north", "west")
+        }
+        assert {each.name for each in tmp_path.glob("[op]-*")} == files
+        with pytest.raises(InputError, match="several motions have no common plot"):
+            found.plot()
+        with pytest.raises(InputError, match=r"bad.csv:3"):
+            rk.respond(FRAME, ["bad.csv", records])
+
+    def test_animations(self, records):
+        found = rk.animate(BLOCK, ["r/east.csv", "r/north.csv"], "m.html", neighbours=0)
+        assert [Path(each.to_dict()["file"]).name for each in found.values()] == ["m-east.html", "m-north.html"]
+        assert all(Path(each.to_dict()["file"]).is_file() for each in found.values())
+
+    def test_structures(self):
+        found = rk.equiv([FRAME, BLOCK])
+        assert list(found.to_dict().values()) == lines("equiv", FRAME, BLOCK)
+        assert len(found.to_frame()) == sum(len(rk.equiv(each).to_frame()) for each in (FRAME, BLOCK))
+
+    def test_all_azimuths(self, records):
+        pair = {"other": "r/west.csv", "azimuth": "all", "models": "nonlinear"}
+        found = rk.respond(BLOCK, "r/north.csv", **pair)
+        asked = ("respond", BLOCK, "--record", "r/north.csv", "--with", "r/west.csv", "--azimuth", "all")
+        assert lines(*asked, "--model", "nonlinear") == [found.to_dict()]
+        for given in ({"polarity": "both"}, {"neighbours": 5}, {"tail": 3.0}, {"impacts": True}):
+            with pytest.raises(InputError, match=f"`{next(iter(given))}` cannot be combined with all azimuths"):
+                rk.respond(BLOCK, "r/north.csv", **pair, **given)
+        with pytest.raises(InputError, match="`azimuth` must be a number, got the text 'all'"):
+            rk.margin(BLOCK, "r/north.csv", other="r/west.csv", azimuth="all")

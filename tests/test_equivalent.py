@@ -17,15 +17,23 @@ from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import parse_pulse
+from rocking_cli.names import OPENING
 from rocking_cli.plotting.equivalent_pulses import draw_equivalent
+from rocking_cli.structure import Structure
 from rocking_cli.structure_file import load_structure, parse_structure
-from rocking_cli.studies.equivalent_pulses import equivalent
+from rocking_cli.studies import equivalent_pulses as study
 from rocking_cli.views.equivalent_pulses import judge
 from tests.conftest import EXAMPLES
 from tests.following import respond
 from tests.pulses import exact_pulse
 
 PULSE = parse_pulse("sine:0.6g:0.5s")
+
+
+def equivalent(mechanisms, *given, opening=OPENING, **more):
+    return study.equivalent([Structure(each, opening=opening) for each in mechanisms], *given, **more)
+
+
 SMALL, LARGE = Block(name="small", width=0.7, height=2.8), Block(name="large", width=7.0, height=28.0)
 BLOCK, WALL, ARCH, FRAME = (str(EXAMPLES / f"{name}.yaml") for name in ("block", "wall", "arch", "frame"))
 
@@ -228,8 +236,8 @@ class TestCommand:
 
 
 def test_the_picture_has_the_pulses_above_and_the_responses_below():
-    wall = parse_structure("mechanism: wall\nheight: 1\nthickness: 0.2\nopening: 1\n", "w", "w")
-    found = equivalent([SMALL, LARGE, wall], PULSE)
+    wall = parse_structure("mechanism: wall\nheight: 1\nthickness: 0.2\n", "w", "w")
+    found = equivalent([SMALL, LARGE, wall], PULSE, opening=1.0)
     above, below = draw_equivalent(found, "sine").axes
     assert "[g]" in above.get_ylabel() and "time [s]" in above.get_xlabel()
     curves = {line.get_label(): line for line in below.get_lines() if not line.get_label().startswith("_")}

@@ -243,7 +243,7 @@ def test_the_joints_that_are_checked_change_nothing_of_the_motion(amplitude, rel
     free = nonlinear(arch(UncheckedArch), dt, samples, release=release)
     assert free.check is None and not free.unknown and np.isnan(free.opening)
     for voussoirs, opening in ((None, 1.0), (None, 0.005), (9, 0.02), (9, 0.0)):
-        history = nonlinear(arch(voussoirs=voussoirs, opening=opening), dt, samples, release=release)
+        history = nonlinear(arch(voussoirs=voussoirs), dt, samples, release=release, opening=opening)
         free = nonlinear(arch(UncheckedArch, voussoirs=voussoirs), dt, samples, release=release)
         until = history.known_to if history.unknown else np.inf
         known = free.time <= until
@@ -261,7 +261,7 @@ def test_the_joints_that_are_checked_change_nothing_of_the_motion(amplitude, rel
 @pytest.mark.parametrize(("amplitude", "limit"), [(2.5, 0.05), (1.4, 0.05), (1.1, 1.0)])
 def test_joints_of_a_symmetric_structure_open_alike_under_the_reversed_record(amplitude, limit):
     dt, samples = pulse("arch", amplitude, 5.0)
-    one, other = (nonlinear(arch(opening=limit), dt, sign * samples) for sign in (1, -1))
+    one, other = (nonlinear(arch(), dt, sign * samples, opening=limit) for sign in (1, -1))
     assert one.unknown == other.unknown == (limit < 1)
     assert other.warned == pytest.approx(one.warned, abs=1e-9) and np.isfinite(one.warned)
     assert other.known_to == pytest.approx(one.known_to, abs=1e-9, nan_ok=True)

@@ -233,7 +233,7 @@ def test_a_restitution_for_all_that_a_structure_cannot_have_is_refused(eta):
     with pytest.raises(InputError, match=r"must be at most 0\.99"):
         Structure(frame).with_eta(eta)
     with pytest.raises(InputError, match=r"must be at most 0\.99"):
-        equivalent([frame], parse_pulse("sine:0.5g:1s"), eta=eta)
+        equivalent([Structure(frame)], parse_pulse("sine:0.5g:1s"), eta=eta)
     asked = ("overturning", EXAMPLES / "frame.yaml", "--eta", eta, "--points", 3)
     said = " ".join(run(*asked, code=2).stderr.split())
     assert "restitution: valley bridge" in said and "would add energy at an impact" in said
@@ -241,9 +241,9 @@ def test_a_restitution_for_all_that_a_structure_cannot_have_is_refused(eta):
 
 def test_one_restitution_for_all_is_the_rebound_of_what_rocks_to_one_side():
     sided = made("block", width=0.6, height=8.0, one_sided="positive")
-    assert shape_of(sided, "nonlinear", 0.5).structure.model.eta == (0.5, 0.5)
+    assert shape_of(Structure(sided), "nonlinear", 0.5).structure.model.eta == (0.5, 0.5)
     with pytest.raises(InputError, match="less than 1"):
-        shape_of(sided, "nonlinear", 1.0)
+        shape_of(Structure(sided), "nonlinear", 1.0)
 
 
 LADEN = {"width": 0.6, "height": 8.0, "one_sided": "positive", "density": 1800.0, "depth": 1.0}
@@ -291,7 +291,7 @@ class TestWithoutARebound:
 def test_what_rocks_to_one_side_is_equivalent_to_no_block_of_two(order):
     pair = [made("block", width=0.6, height=8.0, one_sided="positive"), made("block", width=0.7, height=2.8)]
     with pytest.raises(InputError, match="rocks in the positive direction only"):
-        equivalent(pair[::order], parse_pulse("sine:0.5g:1s"))
+        equivalent([Structure(each) for each in pair[::order]], parse_pulse("sine:0.5g:1s"))
 
 
 def test_a_rebound_of_nothing_stays_where_it_hits():

@@ -270,7 +270,7 @@ def test_the_verdict_is_that_of_its_own_numbers(structure, asked, tmp_path):
 def test_equiv_error_and_respond_disregard_the_same_kappa1(tmp_path):
     for structure in (VALLEY, TALL, wall_of(0.3), arch_of(1.5, 157.5)):
         file = tmp_path / "s.yaml"
-        fields = {**structure.model_dump(exclude_none=True), "restitution": 0.6, "opening": 1000.0}
+        fields = {**structure.model_dump(exclude_none=True), "restitution": 0.6}
         file.write_text(json.dumps({"mechanism": structure.mechanism, **fields}), encoding="utf-8")
         block = equivalent_block(structure)
         off = max((block[side].lambda_lin / block[side].lambda_ - 1 for side in Direction), key=abs)
@@ -278,7 +278,7 @@ def test_equiv_error_and_respond_disregard_the_same_kappa1(tmp_path):
         assert ("disregard kappa1" in run("equiv", file).stdout) == unfit
         assert unfit <= (run_json("error", file)["grades"]["kappa1"] == "disregard")
         top = 0.7 * max(block[side].lambda_ for side in Direction)
-        asked = ("respond", file, "--neighbours", 0, "--pulse", f"sine:{2 * top:.4g}g:0.5s", "--model")
+        asked = "respond", file, "--neighbours", 0, "--opening", 1000, "--pulse", f"sine:{2 * top:.4g}g:0.5s", "--model"
         data = run_json(*asked, "nonlinear,linear1")
         assert data["agreement"]["linear1"]["uplift_error"] == pytest.approx(off, rel=1e-12)
         assert ("Disregard linear1: its uplift acceleration" in data["verdict"]) == unfit

@@ -38,13 +38,13 @@ PORTAL = load_structure(EXAMPLES / "masonry" / "portal.yaml")
 ACCEL = read_record(EXAMPLES / "accel.csv")
 
 
-def alone(mechanism, motion, amplitude, slender, etas):
+def alone(mechanism, motion, opening, amplitude, slender, etas):
     """The history of one neighbour by itself: the ground pushes the more slender the less, and lifts it as much."""
     given = {"positive_to_negative": etas[0], "negative_to_positive": etas[1]}
     single = type(mechanism).model_validate({**mechanism.model_dump(by_alias=True), "restitution": given})
     level = replace(motion, vertical=None).scaled(amplitude / slender)
     up = motion.vertical and motion.vertical.scaled(amplitude)
-    return respond(single, replace(level, vertical=up), models=("nonlinear",))["nonlinear"]
+    return respond(single, replace(level, vertical=up), opening, models=("nonlinear",))["nonlinear"]
 
 
 def fate(history):
@@ -127,15 +127,16 @@ LIFTED = replace(ACCEL, vertical=GroundMotion("up", 0.02, 4.0 * np.sin(np.arange
 @pytest.mark.parametrize("scale", [0.6, 0.9])
 def test_neighbours_are_what_each_would_be_alone(mechanism, scale, motion):
     around = Neighbourhood(30, 0.05, 0.03, 0.08)
-    mechanism = mechanism.model_copy(update={"opening": 1.0})  # joints feel the ground as it is: see below
-    model, motion = build_model(mechanism, "nonlinear"), motion.scaled(scale)
-    fates = np.array([fate(alone(mechanism, motion, *each)) for each in zip(*around.drawn(model), strict=True)])
+    opening = 1.0  # joints feel the ground as it is: see below
+    model, motion = build_model(mechanism, "nonlinear", opening), motion.scaled(scale)
+    drawn = zip(*around.drawn(model), strict=True)
+    fates = np.array([fate(alone(mechanism, motion, opening, *each)) for each in drawn])
     found = neighbours(model, motion, around)
     assert found.overturned == np.isinf(fates).mean()
     assert found.unknown == 0
     ranks = np.sort(fates)[[int(np.ceil(share * 30)) - 1 for share in (0.16, 0.5, 0.84)]]
     np.testing.assert_allclose(found.peak_ratio, ranks, rtol=1e-6)
-    itself = respond(mechanism, motion, models=("nonlinear",))["nonlinear"].fell
+    itself = respond(mechanism, motion, opening, models=("nonlinear",))["nonlinear"].fell
     assert found.as_itself == (np.isinf(fates) == itself).mean()
     assert found.sensitive == (found.as_itself < 0.9)
 
@@ -146,17 +147,17 @@ def test_neighbours_are_what_each_would_be_alone(mechanism, scale, motion):
     [("arch", 0.005, 1.0, 0.3, 0.0), ("arch", 0.005, 1.1, 0.6, 0.0), ("wall", 0.0, 2.5, 0.3, 0.3)],
 )
 def test_neighbours_of_unknown_outcome_are_what_each_would_be_alone(file, opening, scale, some, fell):
-    structure = load_structure(EXAMPLES / f"{file}.yaml").model_copy(update={"opening": opening})
+    structure = load_structure(EXAMPLES / f"{file}.yaml")
     around, motion = Neighbourhood(20, 0.1, 0.03, 0.0), ACCEL.scaled(scale)
-    model = build_model(structure, "nonlinear")
-    histories = [alone(structure, motion, *each) for each in zip(*around.drawn(model), strict=True)]
+    model = build_model(structure, "nonlinear", opening)
+    histories = [alone(structure, motion, opening, *each) for each in zip(*around.drawn(model), strict=True)]
     found = neighbours(model, motion, around)
     assert found.unknown == np.mean([each.unknown for each in histories]) and some <= found.unknown < 1
     assert found.overturned == np.mean([each.fell for each in histories]) >= fell
     assert found.at_most == pytest.approx(np.mean([np.isinf(fate(each)) for each in histories]), abs=1e-12)
     ranks = np.sort([fate(each) for each in histories])[[int(np.ceil(share * 20)) - 1 for share in (0.16, 0.5, 0.84)]]
     np.testing.assert_allclose(found.peak_ratio, ranks, rtol=1e-6)
-    itself = respond(structure, motion, models=("nonlinear",))["nonlinear"]
+    itself = respond(structure, motion, opening, models=("nonlinear",))["nonlinear"]
     assert found.as_itself == np.mean([each.words == itself.words for each in histories])
 
 

@@ -19,6 +19,7 @@ from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.joints import _calm
 from rocking_cli.dynamics.modes import modes
 from rocking_cli.dynamics.outcome import OUTCOME
+from rocking_cli.errors import InputError
 from rocking_cli.structure import build_models
 from rocking_cli.views.verdict import joints_in_words
 from tests.conftest import EXAMPLES, SHARED
@@ -35,8 +36,8 @@ def structure(name, **fields):
     return made.model_copy(update=fields) if fields else made
 
 
-def history(made, factor=1.0):
-    return respond(made, read_record(ACCEL).scaled(factor), models=("nonlinear",))["nonlinear"]
+def history(made, factor=1.0, **how):
+    return respond(made, read_record(ACCEL).scaled(factor), models=("nonlinear",), **how)["nonlinear"]
 
 
 # Of each: first warning, when an opening of 0.5 % is passed [s], and the largest opening over D_cr. By two programs.
@@ -72,8 +73,8 @@ def test_motion_and_openings_are_those_of_a_program_that_shares_nothing(name, fa
     assert found.check.reach == pytest.approx(theirs.reach, rel=1e-9)
     assert found.opening == pytest.approx(theirs.largest, rel=0.001)
     assert found.known_to == pytest.approx(theirs.passed, abs=0.0015)  # each says it at its next node
-    made = structure(name, opening=1.0)
-    whole = history(made, factor)
+    made = structure(name)
+    whole = history(made, factor, opening=1.0)
     assert whole.uplift_time == pytest.approx(theirs.motion.uplifts[0], abs=1e-9)
     for impact in theirs.motion.impacts:
         if impact.before > 1e-3:  # not those of before rest, which comes a little sooner or later
@@ -217,7 +218,7 @@ def test_a_lone_block_that_jumps_is_known_no_further():
     u = 2.25 * g * np.sin(6 * np.pi * np.arange(4000) * dt)
     motion, made = GroundMotion("sine", dt, u), Registry()["block"](width=2.0, height=2.0)
     found = respond(made, motion, models=("nonlinear",))["nonlinear"]
-    whole = respond(made.model_copy(update={"opening": 1e3}), motion, models=("nonlinear",))["nonlinear"]
+    whole = respond(made, motion, opening=1e3, models=("nonlinear",))["nonlinear"]
     part = slice(0, u.size)
     lever = np.pi / 4 - abs(whole.phi[part])
     bend = -3 / (4 * r) * (g * np.sin(lever) + np.sign(whole.phi[part]) * u * np.cos(lever))  # Eq. 1
@@ -391,7 +392,7 @@ def test_samples_end_with_the_record_where_nothing_later_is_a_result():
     motion = read_record(ACCEL)
     short = replace(motion, acceleration=2 * motion.acceleration[:361])
     found = respond(structure("masonry/portal.yaml"), short, models=("nonlinear",))["nonlinear"]
-    whole = respond(structure("masonry/portal.yaml", opening=1e3), short, models=("nonlinear",))["nonlinear"]
+    whole = respond(structure("masonry/portal.yaml"), short, opening=1e3, models=("nonlinear",))["nonlinear"]
     assert found.unknown and found.known_to < short.duration < whole.impacts[-1, 0]  # it rocks on after the record
     assert found.time[-1] == pytest.approx(short.duration) and whole.time[-1] > short.duration
 
@@ -411,10 +412,10 @@ def test_what_to_do_next_depends_on_what_the_joint_does():
 def test_the_lower_bound_is_the_largest_rotation_until_the_first_warning(name, factor, tilted):
     """The block slides at an impact, the portal on its way back: both have rocked further by then."""
     if name == "block":
-        made = Registry()["block"](width=1.0, height=5.0, friction=0.3, opening=1e3)
+        made = Registry()["block"](width=1.0, height=5.0, friction=0.3)
     else:
-        made = structure("masonry/portal.yaml", opening=1e3)
-    found = history(made, factor)
+        made = structure("masonry/portal.yaml")
+    found = history(made, factor, opening=1e3)
     ratio = abs(found.ratio)
     now = np.interp(found.warned, found.time, ratio) / found.lower_bound
     assert now == pytest.approx(tilted, abs=0.01)
@@ -424,14 +425,14 @@ def test_the_lower_bound_is_the_largest_rotation_until_the_first_warning(name, f
 
 def test_what_slides_in_one_motion_adds_to_what_slid_before():
     """At rest the rate ends and the slip stays: of two pulses with quiet between the slip is that of either alone."""
-    made = Registry()["block"](width=1.0, height=5.0, friction=0.1, restitution=0.01, opening=1e3)
+    made = Registry()["block"](width=1.0, height=5.0, friction=0.1, restitution=0.01)
     time = 0.005 * np.arange(1600)
     one, other = (
         np.where((time > at) & (time < at + 0.4), size * 9.80665 * np.sin(2 * np.pi * (time - at) / 0.4), 0.0)
         for at, size in ((0.5, 0.5), (5.0, 0.3))
     )
     slips = [
-        respond(made, GroundMotion("pulses", 0.005, a), models=("nonlinear",))["nonlinear"].check.largest
+        respond(made, GroundMotion("pulses", 0.005, a), opening=1e3, models=("nonlinear",))["nonlinear"].check.largest
         for a in (one, other, one + other)
     ]
     assert min(slips) > 0.1 and slips[2] == pytest.approx(slips[0] + slips[1], rel=1e-9)
@@ -461,8 +462,17 @@ def test_an_opening_and_a_slip_step_by_step(end, before, accelerations, time, af
 
 
 def test_a_wider_limit_keeps_the_result():
-    assert not history(structure("masonry/portal.yaml", opening=0.01), 1.75).unknown
-    assert history(structure("masonry/portal.yaml", opening=0.0), 1.5).unknown
+    assert not history(structure("masonry/portal.yaml"), 1.75, opening=0.01).unknown
+    assert history(structure("masonry/portal.yaml"), 1.5, opening=0.0).unknown
+
+
+def test_the_limit_is_one_of_the_analysis_and_a_file_that_has_it_says_so(tmp_path):
+    file = tmp_path / "portal.yaml"
+    file.write_text(f"{(EXAMPLES / 'masonry' / 'portal.yaml').read_text(encoding='utf-8')}opening: 0.01\n", "utf-8")
+    with pytest.raises(InputError, match=r"portal.yaml:\d+:\d+: opening .*give `opening` to the analysis"):
+        load_structure(file)
+    with pytest.raises(InputError, match="`opening` must be from 0 to 1000, got 1001"):
+        history(structure("masonry/portal.yaml"), opening=1001)
 
 
 def test_a_structure_of_another_size_opens_as_far():
@@ -474,7 +484,7 @@ def test_a_structure_of_another_size_opens_as_far():
 
 
 def test_joints_of_more_slender_neighbours_bear_the_whole_acceleration():
-    (model,) = build_models(structure("masonry/portal.yaml", opening=1.0), ("nonlinear",))
+    (model,) = build_models(structure("masonry/portal.yaml"), ("nonlinear",), opening=1.0)
     runs = Runs.of(0, 0, scale=[1.5, 1.8], slender=[1.0, 1.2])
     plain, slender = respond_many([model], [read_record(ACCEL)], runs).peak_ratio
     assert plain == pytest.approx(slender, rel=1e-9)  # the motion over phi_cr is that of a weaker ground motion

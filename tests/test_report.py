@@ -31,16 +31,7 @@ FRAME, BLOCK, ARCH = (EXAMPLES / f"{name}.yaml" for name in ("frame", "block", "
 ACCEL = EXAMPLES / "accel.csv"
 FEW = ("--neighbours", "20")  # of a motion: what is tested here is not their number, and 200 take their time
 LARGEST = 3e6  # bytes
-LOOSE = "the arch, whose joints may open as far as they do"
-
-
-def of(structure, folder):
-    """The file of a structure."""
-    if structure != LOOSE:
-        return structure
-    file = folder / "loose.yaml"
-    file.write_text(f"{ARCH.read_text(encoding='utf-8')}opening: 1000\n", encoding="utf-8")
-    return file
+LOOSE = ARCH, "--opening", 1000  # its joints may open as far as they do
 
 
 class Reader(HTMLParser):
@@ -128,21 +119,20 @@ class TestContent:
     @pytest.mark.parametrize(
         ("structure", "pulse", "said"),
         [
-            (BLOCK, "sine:0.1g:1s", "Any of them"),
-            (FRAME, "sine:0.5g:0.5s", "Any of them"),
+            ((BLOCK,), "sine:0.1g:1s", "Any of them"),
+            ((FRAME,), "sine:0.5g:0.5s", "Any of them"),
             (LOOSE, "sine:0.8g:0.8s", "The nonlinear model, "),
             (LOOSE, "sine:0.9g:1.2s", "No single one: the models disagree"),
-            (BLOCK, "sine:1g:2s", "Any of them"),
-            (ARCH, "sine:0.8g:0.8s", "The nonlinear model until 0.1878 s, and none beyond"),
+            ((BLOCK,), "sine:1g:2s", "Any of them"),
+            ((ARCH,), "sine:0.8g:0.8s", "The nonlinear model until 0.1878 s, and none beyond"),
         ],
     )
-    def test_which_model_to_trust(self, structure, pulse, said, tmp_path):
+    def test_which_model_to_trust(self, structure, pulse, said):
         # By `respond`: no uplift, motions within 12 %, linear1 far off, linear2 alone rocks, all overturn, unknown.
-        file = of(structure, tmp_path)
-        (motion,) = run_json("report", *FEW, file, "--pulse", pulse, "--polarity", "1")["motions"]
+        (motion,) = run_json("report", *FEW, *structure, "--pulse", pulse, "--polarity", "1")["motions"]
         assert motion["answers"]["Which model to trust?"].startswith(said)
         ends = {each["overturned"] for each in motion["responses"].values()}
-        assert (None in ends) == (structure == ARCH)
+        assert (None in ends) == (structure == (ARCH,))
         assert (ends == {False, True}) == said.startswith("No single one")
 
     def test_models_that_disagree_on_uplift_do_not_agree(self):
@@ -172,9 +162,8 @@ class TestContent:
         assert any("scaled by large factors" in each for each in found["doubts"])
 
     @pytest.mark.rest
-    def test_a_motion_beyond_the_critical_rotation_is_told_as_such(self, tmp_path):
-        loose = of(LOOSE, tmp_path)
-        (motion,) = run_json("report", *FEW, loose, "--pulse", "sine:1.2g:1.2s", "--polarity", "1")["motions"]
+    def test_a_motion_beyond_the_critical_rotation_is_told_as_such(self):
+        (motion,) = run_json("report", *FEW, *LOOSE, "--pulse", "sine:1.2g:1.2s", "--polarity", "1")["motions"]
         assert motion["responses"]["nonlinear"]["peak_ratio"] > 1
         assert "is brought back only by the subsequent ground motion" in motion["answers"]["How close is that?"]
 

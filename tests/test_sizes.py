@@ -19,6 +19,7 @@ from rocking_cli.core import Body, Direction, Mechanism, box, equivalent_block, 
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting.spectrum import draw_spectra
+from rocking_cli.structure import Structure
 from rocking_cli.studies.spectrum import count_histories, shape_of, spectra
 from tests.following import respond
 
@@ -60,7 +61,7 @@ def by_hand(scale):
 
 @pytest.mark.parametrize("model", ["nonlinear", "linear1", "linear2"])
 def test_every_size_is_the_structure_scaled_by_hand(model):
-    shape = shape_of(LADEN, model)
+    shape = shape_of(Structure(LADEN), model)
     (found,) = spectra([shape], PERIODS, MOTIONS)
     assert found.scales.size == 5 and found.scales[found.given] == 1.0
     assert np.ptp(found.uplifts) > 0.05
@@ -77,7 +78,7 @@ def test_every_size_is_the_structure_scaled_by_hand(model):
 
 
 def test_shape_alone_would_say_otherwise():
-    shape = shape_of(LADEN, "nonlinear")
+    shape = shape_of(Structure(LADEN), "nonlinear")
     assert shape.own is not None
     (right,) = spectra([shape], PERIODS, MOTIONS)
     (wrong,) = spectra([type(shape)(shape.structure)], PERIODS, MOTIONS)
@@ -105,7 +106,7 @@ def test_shape_alone_would_say_otherwise():
     ids=lambda each: each.mechanism,
 )
 def test_where_all_masses_keep_their_ratios_shape_alone_decides(structure):
-    assert shape_of(structure, "linear2").own is None
+    assert shape_of(Structure(structure), "linear2").own is None
 
 
 @pytest.mark.parametrize("scale", [0.25, 3.0])
@@ -118,20 +119,19 @@ def test_enlarging_multiplies_lengths_in_lists_and_defaults_too_and_nothing_else
 
 
 def test_of_several_motions_and_both_polarities_every_history_is_counted_and_progress_told():
-    shape, done = shape_of(LADEN, "linear2"), []
+    shape, done = shape_of(Structure(LADEN), "linear2"), []
     (found,) = spectra([shape], PERIODS, MOTIONS, polarities=(1, -1), progress=done.append)
     assert sum(done) == count_histories([shape], PERIODS, 2, (1, -1)) and found.peak_ratio.shape == (2, 5)
 
 
 def test_a_size_that_cannot_be_built_is_named():
     with pytest.raises(InputError, match=r"laden at scale .* cannot be built: depth must be at most 1e\+06 m"):
-        spectra([shape_of(LADEN, "linear2")], np.array([1e5]), MOTIONS)
+        spectra([shape_of(Structure(LADEN), "linear2")], np.array([1e5]), MOTIONS)
 
 
 def test_the_command_says_so(tmp_path, monkeypatch):
-    from rocking_cli.cli import structures
-
-    monkeypatch.setattr(structures, "load", lambda files: [LADEN])
+    monkeypatch.setattr("rocking_cli.ask.given.parse_structure", lambda *text: LADEN)
+    (tmp_path / "laden.yaml").touch()
     asked = ["spectrum", "laden.yaml", "--pulse", "sine:0.5g:0.7s", "--sizes", "1:4:5"]
     result = CliRunner().invoke(main, [*asked, "--plot", "s.png", "--out", "s.csv"])
     assert result.exit_code == 0, result.output
@@ -144,7 +144,7 @@ def test_the_command_says_so(tmp_path, monkeypatch):
 
 
 def test_the_second_axis_of_the_picture_goes_through_the_sizes():
-    (found,) = spectra([shape_of(LADEN, "linear2")], PERIODS, MOTIONS[:1])
+    (found,) = spectra([shape_of(Structure(LADEN), "linear2")], PERIODS, MOTIONS[:1])
     figure = draw_spectra([found], (0.5,), "title")
     figure.draw_without_rendering()
     (above,) = figure.axes[0].child_axes

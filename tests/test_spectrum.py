@@ -17,6 +17,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting.spectrum import draw_spectra
+from rocking_cli.structure import Structure
 from rocking_cli.studies.spectrum import (
     Spectrum,
     SpectrumShape,
@@ -76,7 +77,7 @@ class TestAgainstOtherCode:
             lambda s: Block(**enlarged(BLOCK, s)),
             lambda s: RigidBody(polygon=[[s * x, s * y] for x, y in STONE]),
         ]
-        shapes = [shape_of(make(1.0), model) for make in makes]
+        shapes = [shape_of(Structure(make(1.0)), model) for make in makes]
         kinds = set()
         for make, found in zip(makes, spectra(shapes, np.array([1.2, 2.5, 6.0]), [motion]), strict=True):
             assert found.scales.size == 4
@@ -99,7 +100,7 @@ class TestAgainstOtherCode:
 
     def test_blocks_of_a_slenderness_are_blocks(self):
         alpha = atan(BLOCK["width"] / BLOCK["height"])
-        own, blocks = shape_of(Block(**BLOCK), "nonlinear"), blocks_of(alpha, "nonlinear")
+        own, blocks = shape_of(Structure(Block(**BLOCK)), "nonlinear"), blocks_of(alpha, "nonlinear")
         here = np.array([own.period])
         assert blocks.scales(here)[0] == pytest.approx(np.hypot(0.35, 1.4))  # R in m
         found, other = spectra([own, blocks], here, [a_record(pga=0.3)])
@@ -119,7 +120,7 @@ class TestAgainstOtherCode:
 class TestTheStructureItself:
     def test_it_is_run_at_scale_one_whatever_the_sizes(self):
         motion, frame = a_record(), AsymmetricFrame(**FRAME, density=2500.0)
-        shape = shape_of(frame, "nonlinear")
+        shape = shape_of(Structure(frame), "nonlinear")
         for periods in (np.array([1.0, 2.0]), np.array([3.0, 9.0]), shape.period * np.array([0.5, 1 + 1e-12, 2])):
             (found,) = spectra([shape], periods, [motion])
             assert found.scales.size == 3 and (np.diff(found.scales) > 0).all()
@@ -128,7 +129,7 @@ class TestTheStructureItself:
 
     def test_of_both_polarities_the_worse_counts(self):
         stone, motions = RigidBody(polygon=STONE), [a_record(k) for k in range(3)]
-        shape, done = shape_of(stone, "nonlinear"), []
+        shape, done = shape_of(Structure(stone), "nonlinear"), []
         periods = np.array([shape.period])
         (found,) = spectra([shape], periods, motions, polarities=(1, -1), progress=done.append)
         each = [[worst(stone, motion.scaled(sign)) for motion in motions] for sign in (1, -1)]
@@ -143,7 +144,7 @@ class TestTheStructureItself:
         assert count_histories([shape], periods, 1, (1, -1)) == 5
 
     def test_a_restitution_given_is_that_of_every_impact(self):
-        shape = shape_of(Block(**BLOCK), "nonlinear", 0.8)
+        shape = shape_of(Structure(Block(**BLOCK)), "nonlinear", 0.8)
         (found,) = spectra([shape], np.array([shape.period]), [a_record(pga=0.4)])
         assert shape.structure.eta == 0.8
         assert found.peak_ratio[0, 0] == worst(Block(**BLOCK, restitution=0.8), a_record(pga=0.4))
@@ -197,7 +198,7 @@ class TestWrongInput:
 class TestPicture:
     @pytest.fixture
     def shapes(self):
-        return [shape_of(Block(**BLOCK, name="a $1 stone"), "linear2"), blocks_of(0.1, "linear2")]
+        return [shape_of(Structure(Block(**BLOCK, name="a $1 stone")), "linear2"), blocks_of(0.1, "linear2")]
 
     def test_of_several_motions_it_has_the_share_below_and_marks_the_structure(self, shapes):
         found = spectra(shapes, np.geomspace(1, 10, 12), [a_record(k) for k in range(4)])

@@ -120,7 +120,7 @@ class TestMap:
             assert plane.outcome.known_to[row, column] == pytest.approx(alone.known_to, nan_ok=True)
 
     def test_what_is_known_does_not_depend_on_where_knowledge_ends(self, plane):
-        looser = pulsed_model(Structure(PORTAL.model_copy(update={"opening": 0.5})), "nonlinear", SINE)
+        looser = pulsed_model(Structure(PORTAL, opening=0.5), "nonlinear", SINE)
         other = overturning_map(looser, SINE, plane.omega, plane.a)
         known = ~plane.outcome.unknown
         assert other.outcome.unknown.sum() < plane.outcome.unknown.sum()
@@ -236,7 +236,7 @@ class TestCurves:
 
 class TestSpectrum:
     def test_the_structure_is_that_of_respond(self, histories):
-        shape = shape_of(PORTAL, "nonlinear")
+        shape = shape_of(Structure(PORTAL), "nonlinear")
         (found,) = spectra([shape], np.array([1.0, 10.0]), [RECORD])
         alone = histories["nonlinear"]
         assert found.unknown[0, found.given] and found.lower_bound[0, found.given] == alone.lower_bound
@@ -266,7 +266,7 @@ class TestSpectrum:
 
     def test_data_words_and_picture(self):
         motions = [RECORD, RECORD.scaled(0.5), parse_pulse("sine:1g:0.5s").sampled()]
-        found = spectra([shape_of(PORTAL, "nonlinear")], np.geomspace(1, 10, 6), motions)
+        found = spectra([shape_of(Structure(PORTAL), "nonlinear")], np.geomspace(1, 10, 6), motions)
         results = spectrum_views.ShownSpectra(found, [Scaled(each, 1.0) for each in motions], (0.16, 0.5, 0.84), "1")
         view = spectrum_views.view(results)
         (data,) = view.data()["spectra"]
@@ -288,8 +288,8 @@ class TestSpectrum:
     def test_a_strength_makes_every_size_a_structure_of_its_own(self):
         stone = {"width": 0.7, "height": 2.8, "density": 2000, "depth": 1}
         weak = Block(**stone, strength={"stress": 1e6, "width": 0.05}, name="weak")
-        assert shape_of(Block(**stone, name="stone"), "nonlinear").own is None
-        shape = shape_of(weak, "nonlinear")
+        assert shape_of(Structure(Block(**stone, name="stone")), "nonlinear").own is None
+        shape = shape_of(Structure(weak), "nonlinear")
         (found,) = spectra([shape], shape.periods(np.array([0.5, 4.0])), [parse_pulse("sine:0.3g:0.8s").sampled()])
         assert found.unknown[0].tolist() == [False, False, True]  # its weight grows faster than its strength
 
@@ -298,7 +298,7 @@ class TestPulses:
     def test_equivalent_structures_of_which_one_is_unknown(self):
         others = [load_structure(EXAMPLES / f"{name}.yaml") for name in ("block", "frame")]
         pulse = parse_pulse("sine:0.75g:0.6s")
-        found = equivalent([PORTAL, *others], pulse)
+        found = equivalent([Structure(each) for each in (PORTAL, *others)], pulse)
         assert np.isnan(found.spread) and np.isnan(found.relative_spread)
         first, *rest = judge(found)
         assert "portal is unknown after 0.497 s" in first and "the other 2" in rest[0]

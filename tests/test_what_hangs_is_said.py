@@ -80,8 +80,8 @@ def test_blocks_that_have_slid_apart_are_said(tmp_path):
 
 def test_one_history_that_tears_it_apart_is_enough_in_whatever_order():
     courses = {"courses": 40, "overlap": 0.2, "thickness": 0.5, "walls": 2, "height": 8.0}
-    watched = Watched(Block(**FACADE, interlock=courses, opening=1000.0))  # it would leave the ground
-    model = build_model(watched.mechanism, "nonlinear")
+    watched = Watched(Block(**FACADE, interlock=courses))
+    model = build_model(watched.mechanism, "nonlinear", 1000.0)  # it would leave the ground
     weak, strong = follow(model, WEAK), follow(model, STRONG.scaled(8.0))
     assert strong.overturned and watched.is_torn_apart(strong) and not watched.is_torn_apart(weak)
     for runs in ({"nonlinear": weak, "linear1": strong}, {"nonlinear": strong, "linear1": weak}):

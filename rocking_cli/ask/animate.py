@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -13,8 +14,11 @@ from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, models_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.several import Answers, answers, are_several, ask_each, places_of
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.names import OPENING
+from rocking_cli.processing.scaled import Scaled
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
 from rocking_cli.views.view import heading
@@ -49,7 +53,7 @@ class Animation:
 @takes_numbers
 def animate(
     structure: StructureLike,
-    motion: Motion | Motions,
+    motion: Motion | Motions | Sequence[Motion],
     file: str | Path,
     *,
     model: str = "nonlinear",
@@ -60,20 +64,20 @@ def animate(
     amplitude_deviation: float = Neighbourhood.amplitude,
     slenderness_deviation: float | None = None,
     restitution_deviation: float | None = None,
-    opening: float | None = None,
+    opening: float = OPENING,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
-) -> Answer[Animation]:
-    """Animate a structure under a ground motion, as a GIF or as a page with a slider.
+) -> Answer[Animation] | Answers[Answer[Animation]]:
+    """Animate a structure under ground motions, as a GIF or as a page with a slider.
 
     Parameters
     ----------
     structure : Mechanism, str or Path
         The structure, or its YAML file.
-    motion : GroundMotion, Pulse, str or Path
-        The motion, its file, or a pulse as text.
+    motion : GroundMotion, Pulse, str or Path, or a sequence of these
+        The motion, its file, or a pulse as text; a pattern such as "records/*.AT2", or a sequence, gives several.
     file : str or Path
-        File to write: .gif, or .html for a page.
+        File to write: .gif, or .html for a page. Of several motions each has its own, with its name in the file name.
     model : str
         Model "nonlinear", "linear1" or "linear2".
     polarity : {"1", "-1"}
@@ -87,17 +91,18 @@ def animate(
     amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
         Standard deviations of the neighbours: of ln amplitude, of ln slenderness and of restitution; by default those
         of the structure.
-    opening : float, optional
-        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
     watch : Watcher
-        Told what was read and written, and how far the work is.
+        Told what was read and written, how far the work is, and which of several motions cannot be used.
     **options
         How the motion is read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
 
     Returns
     -------
     Answer of Animation
-        `film` has the time history, and when it starts and ends; `neighbours` are the outcomes of the neighbours.
+        `film` has the time history, and when it starts and ends; `neighbours` are the outcomes of the neighbours. For
+        several motions, `Answers` with one for each, by its name.
 
     Raises
     ------
@@ -125,29 +130,47 @@ def animate(
     from rocking_cli.studies.contact import Contacts
     from rocking_cli.studies.neighbours import neighbours as outcomes
     from rocking_cli.studies.picture import picture
-    from rocking_cli.views.animation import view
+    from rocking_cli.views import animation as views
 
     path, (name,), signs = Path(file), models_of(model), signs_of(polarity)
     _check(path, signs, speed, fps)
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
-    ready = structure_of(structure, opening)
+    ready = structure_of(structure, watch, opening)
     own = ready.model(name)
-    given = Motions.of(motion, options).one(ready.growth, watch)
-    scaled = given.motion.scaled(signs[0] * given.factor)
-    history = follow(ready, scaled, model=name)
-    assumed = Contacts(ready.mechanism).check(history, scaled).assumed_friction if name == "nonlinear" else None
-    film = Film(picture(ready.mechanism), history, scaled, assumed)
-    if path.suffix.lower() == ".html":
-        speed, frames = speed or 1.0, None
-        _write_page(path, film, heading(ready.mechanism), speed)
-    else:
-        speed = speed or max(1.0, (film.end - film.start) / LONGEST)
-        frames = _write_gif(path, film, f"{heading(ready.mechanism)}, under {scaled.name}", speed, fps, watch)
-    watch.note(f"wrote {path}")
-    near = outcomes(own, scaled, around) if neighbours else None
-    shown = view(ready, film, near, {"speed": speed, "frames": frames, "file": str(path)})
-    figure = partial(_figure, film, ready)
-    return Answer("animation", Animation(film, near), shown, partial(_columns, film), figure)
+    motions = Motions.of(motion, options)
+    chosen = motions.gather(ready.growth, watch)
+    several = are_several(motion, motions)
+
+    def one(given: Scaled, place: Path) -> Answer[Animation]:
+        scaled = given.motion.scaled(signs[0] * given.factor)
+        history = follow(ready, scaled, model=name)
+        assumed = Contacts(ready.mechanism).check(history, scaled).assumed_friction if name == "nonlinear" else None
+        film = Film(picture(ready.mechanism), history, scaled, assumed)
+        if place.suffix.lower() == ".html":
+            pace, frames = speed or 1.0, None
+            _write_page(place, film, heading(ready.mechanism), pace)
+        else:
+            pace = speed or max(1.0, (film.end - film.start) / LONGEST)
+            frames = _write_gif(place, film, f"{heading(ready.mechanism)}, under {scaled.name}", pace, fps, watch)
+        watch.note(f"wrote {place}")
+        near = outcomes(own, scaled, around) if neighbours else None
+        shown = views.view(ready, film, near, {"speed": pace, "frames": frames, "file": str(place)})
+        figure = partial(_figure, film, ready)
+        return Answer("animation", Animation(film, near), shown, partial(_columns, film), figure)
+
+    if not several:
+        return one(chosen[0], path)
+    rows, films = list[views.FilmRow](), list[Film]()
+    places = places_of("file", path, chosen, [ready.file, *(each.path for each in motions.records)])
+
+    def row(given: Scaled, k: int) -> Answer[Animation]:
+        answer = one(given, places[k] or path)
+        rows.append(views.row(answer.film, answer.neighbours))
+        films[:] = [answer.film]
+        return answer
+
+    found, _ = ask_each(chosen, row, watch)
+    return answers("animations", "motion", found, views.several(ready, films[0], rows).parts)
 
 
 def _check(file: Path, signs: tuple[int, ...], speed: float | None, fps: float) -> None:

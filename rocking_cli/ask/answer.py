@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from html import escape
 from importlib.util import find_spec
@@ -46,6 +46,8 @@ class Answer(Generic[R]):
         Returns the plot of the result.
     blocks : callable, optional
         Returns the columns in blocks of rows, one after the other, if there may be very many.
+    tables : mapping of str to callable
+        Return further tables of the result as columns, by name.
     """
 
     question: str
@@ -54,13 +56,16 @@ class Answer(Generic[R]):
     columns: Callable[[], Columns]
     figure: Callable[[], Figure]
     blocks: Callable[[], Iterable[Columns]] | None = None
+    tables: Mapping[str, Callable[[], Columns]] = field(default_factory=dict)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a pickle keeps: everything but a plot whose function is not that of a module."""
         data = self.view.data() if callable(self.view.data) else self.view.data
         columns, figure = partial(_kept, self.columns()), self.figure
         figure = figure if isinstance(figure, partial) else partial(_not_kept, self.question)
-        return {**vars(self), "view": View(data, self.view.parts), "columns": columns, "figure": figure, "blocks": None}
+        tables = {name: partial(_kept, each()) for name, each in self.tables.items()}
+        view = View(data, self.view.parts)
+        return {**vars(self), "view": view, "columns": columns, "figure": figure, "blocks": None, "tables": tables}
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name == "result":
@@ -88,11 +93,12 @@ class Answer(Generic[R]):
         InputError
             If pandas is not installed.
         """
-        if find_spec("pandas") is None:
-            raise InputError(Problem("a frame requires the package pandas", hint="pip install pandas"))
-        from pandas import DataFrame
+        return _frame(self.columns)
 
-        return DataFrame(dict(self.columns()))
+    @property
+    def frames(self) -> dict[str, pandas.DataFrame]:
+        """Further tables of the result as frames, by name. Raises as `to_frame`."""
+        return {name: _frame(each) for name, each in self.tables.items()}
 
     def plot(self, file: str | Path | None = None) -> Figure:
         """Plot the result.
@@ -136,6 +142,14 @@ class MappingAnswer(Answer[Mapping[K, V]], Mapping[K, V]):
 
 _DRAWING = RLock()
 """Held while a plot is drawn or written: matplotlib is not made for several threads."""
+
+
+def _frame(columns: Callable[[], Columns]) -> pandas.DataFrame:
+    if find_spec("pandas") is None:
+        raise InputError(Problem("a frame requires the package pandas", hint="pip install pandas"))
+    from pandas import DataFrame
+
+    return DataFrame(dict(columns()))
 
 
 def _write(figure: Figure, path: Path) -> None:

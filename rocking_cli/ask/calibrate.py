@@ -98,9 +98,8 @@ def calibrate(
     check_known(options)
     if (free is None) == (tests is None):
         raise InputError("give either `free`, a trace of free rocking, or `tests`, a table of shake-table tests")
-    source = Path(structure) if isinstance(structure, str | Path) else None
-    ready = structure_of(structure)
-    source = Path(ready.file) if source is None and ready.file is not None else source
+    ready = structure_of(structure, watch)
+    source = Path(ready.file) if ready.file is not None else None
     if free is not None:
         of_tests: dict[str, object] = {
             "slenderness": slenderness, "restitution": restitution, "points": points, "neighbours": neighbours,

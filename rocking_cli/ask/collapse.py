@@ -6,16 +6,19 @@ from functools import partial
 
 from rocking_cli.ask.answer import MappingAnswer
 from rocking_cli.ask.given import StructureLike, structure_figure, structure_of
+from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core import CollapseMechanism, Direction
 
 
-def collapse(structure: StructureLike) -> MappingAnswer[Direction, CollapseMechanism]:
+def collapse(structure: StructureLike, *, watch: Watcher = SILENT) -> MappingAnswer[Direction, CollapseMechanism]:
     """Find the weakest mechanism of an assembly of rigid blocks in each direction, by limit analysis.
 
     Parameters
     ----------
     structure : Mechanism, str or Path
         Assembly, or its YAML file.
+    watch : Watcher
+        Told what is doubtful about the structure.
 
     Returns
     -------
@@ -44,7 +47,7 @@ def collapse(structure: StructureLike) -> MappingAnswer[Direction, CollapseMecha
     from rocking_cli.studies.collapse import collapses
     from rocking_cli.views.collapse import table, view
 
-    mechanism = structure_of(structure).mechanism
+    mechanism = structure_of(structure, watch).mechanism
     found = collapses(mechanism)
 
     columns, figure = partial(table, found), partial(structure_figure, mechanism, found)

@@ -13,6 +13,7 @@ from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core.size import doubtful_size
 from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.names import OPENING
 from rocking_cli.structure import Structure
 from rocking_cli.studies.design import POINTS, Aim, Design, Span
 from rocking_cli.studies.metrics import Excitation, Metric
@@ -36,7 +37,7 @@ def design(
     restitution_deviation: float | None = None,
     site: SiteLike | None = None,
     points: int = POINTS,
-    opening: float | None = None,
+    opening: float = OPENING,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
 ) -> Answer[Design]:
@@ -67,8 +68,8 @@ def design(
         Fields of a site file, or the file.
     points : int
         Number of values in the first scan.
-    opening : float, optional
-        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
     watch : Watcher
         Told what was read, how far the work is, what is doubtful, and which of several motions cannot be used.
     **options
@@ -100,7 +101,7 @@ def design(
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     signs, given = signs_of(polarity), Motions.of(motions, options)
     _check(aim.metric, motions=bool(given), neighbours=neighbours, site=site is not None)
-    ready = structure_of(structure, opening)
+    ready = structure_of(structure, watch, opening)
     ends = span.in_unit(ready.unit_of(span.field))
     _warn_of_sizes(ready, span.field, ends, watch)
     where = site_of(site) if site is not None else None

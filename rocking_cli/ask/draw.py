@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, structure_of
 from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.views.view import heading
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @takes_numbers
-def draw(structure: StructureLike, *, at: float | None = None) -> Answer[Picture]:
+def draw(structure: StructureLike, *, at: float | None = None, watch: Watcher = SILENT) -> Answer[Picture]:
     """Draw a structure at rest with its dimensions, and displaced in both directions.
 
     Parameters
@@ -29,6 +30,8 @@ def draw(structure: StructureLike, *, at: float | None = None) -> Answer[Picture
     at : float, optional
         Rotation to draw, as a multiple of phi_cr, or of the kinematic limit if there is no phi_cr; at most the
         kinematic limit. By default 1, or a rotation that is easy to see.
+    watch : Watcher
+        Told what is doubtful about the structure.
 
     Returns
     -------
@@ -58,7 +61,7 @@ def draw(structure: StructureLike, *, at: float | None = None) -> Answer[Picture
 
     if at is not None and not at > 0:
         raise InputError(Problem(f"must be a multiple of phi_cr above 0, got {at:g}", field="`at`"))
-    ready = structure_of(structure)
+    ready = structure_of(structure, watch)
     with ready.named():
         found = picture(ready.mechanism)
     if at is not None and at > found.furthest:

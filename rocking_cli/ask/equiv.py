@@ -2,29 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, structure_figure, structure_of
+from rocking_cli.ask.given import StructureLike, structure_figure, structure_of, structures_of
+from rocking_cli.ask.ground_motions import each_of
+from rocking_cli.ask.several import Answers, answers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core import Equivalence
+from rocking_cli.errors import MechanismError
+from rocking_cli.structure import Structure
 
 
-def equiv(structure: StructureLike, *, watch: Watcher = SILENT) -> Answer[Equivalence | None]:
-    """Compute the equivalent single rocking block of a structure, in both directions.
+def equiv(
+    structures: StructureLike | Sequence[StructureLike], *, watch: Watcher = SILENT
+) -> Answer[Equivalence | None] | Answers[Answer[Equivalence | None]]:
+    """Compute the equivalent single rocking block of structures, in both directions.
 
     Parameters
     ----------
-    structure : Mechanism, str or Path
-        The structure, or its YAML file.
+    structures : Mechanism, str or Path, or a sequence of these
+        The structure, or its YAML file; or several.
     watch : Watcher
-        Told how to read the parameters.
+        Told what is doubtful about the structures, how to read the parameters, and which structures cannot be used.
 
     Returns
     -------
     Answer of Equivalence or None
         `positive` and `negative` are the blocks; see `equivalent_block`. None if no single block is equivalent; its
-        sentences and `to_dict` give the reason.
+        sentences and `to_dict` give the reason. For a sequence of structures, `Answers` with one for each, by its name.
 
     Raises
     ------
@@ -46,12 +53,31 @@ def equiv(structure: StructureLike, *, watch: Watcher = SILENT) -> Answer[Equiva
     >>> round(answer.positive.lambda_, 6)
     0.25
     """
+    given = each_of(structures)
+    if not isinstance(structures, list | tuple):
+        return _of_one(structure_of(given[0], watch), watch)
+    ready = structures_of(given, watch)
+    found, refused = dict[str, Answer[Equivalence | None]](), list[MechanismError]()
+    for structure in ready:
+        try:
+            found[structure.name] = answer = _of_one(structure, watch)
+        except MechanismError as error:
+            refused.append(error)
+            if len(refused) == len(ready):
+                raise
+            watch.leave_out(error)
+        else:
+            watch.take(answer)
+    parts = [part for each in found.values() for part in each.view.parts]
+    return answers("equivalent blocks", "structure", found, parts)
+
+
+def _of_one(structure: Structure, watch: Watcher) -> Answer[Equivalence | None]:
     from rocking_cli.views import equivalent_block as views
 
-    ready = structure_of(structure)
-    found = ready.equivalence if ready.why_no_block is None else None
-    shown = views.view(ready)
-    for text in views.notes(ready.mechanism):
+    found = structure.equivalence if structure.why_no_block is None else None
+    shown = views.view(structure)
+    for text in views.notes(structure.mechanism):
         watch.note(text)
-    columns, figure = partial(views.table, [ready]), partial(structure_figure, ready.mechanism)
+    columns, figure = partial(views.table, [structure]), partial(structure_figure, structure.mechanism)
     return Answer("equivalent block", found, shown, columns, figure)

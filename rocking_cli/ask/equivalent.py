@@ -7,11 +7,12 @@ from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, sized_pulse, structure_of, structures_of, told_apart, warn_misleading
+from rocking_cli.ask.given import StructureLike, sized_pulse, structure_of, structures_of, warn_misleading
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.pulses import Pulse, parse_pulse
+from rocking_cli.names import OPENING
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,7 +31,7 @@ def equivalent(
     polarity: str | int = "1",
     kappa: str | int = "2",
     eta: float | Literal["first", "own"] = "first",
-    opening: float | None = None,
+    opening: float = OPENING,
     watch: Watcher = SILENT,
 ) -> Answer[EquivalentResponses]:
     """Find the pulses to which structures are equally vulnerable; the given pulse is for the first.
@@ -51,8 +52,8 @@ def equivalent(
         Equivalent block by which the pulses are scaled: "1" for kappa1, "2" for kappa2.
     eta : float, "first" or "own"
         Coefficient of restitution of all structures: a number, that of the first structure, or that of each.
-    opening : float, optional
-        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structures.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
     watch : Watcher
         Told which structures cannot be used, and for which the linear models mislead.
 
@@ -95,11 +96,10 @@ def equivalent(
         pulse = sized_pulse(shape, ag, period)
     elif isinstance(pulse, str):
         pulse = parse_pulse(pulse)
-    read = partial(structure_of, opening=opening)
-    ready = told_apart([read(structures[0]), *structures_of(structures[1:], watch, read)])
-    mechanisms = [each.mechanism for each in ready]
+    first = structure_of(structures[0], watch, opening)
+    ready = structures_of([first, *structures[1:]], watch, opening, least=2)
     scaling: Literal[1, 2] = 1 if str(kappa) == "1" else 2
-    found = study.equivalent(mechanisms, pulse, polarity=int(polarity), kappa=scaling, eta=eta)
+    found = study.equivalent(ready, pulse, polarity=int(polarity), kappa=scaling, eta=eta)
     warn_misleading(ready, watch)
     shown = views.view(found)
     return Answer("equivalent pulses", found, shown, partial(views.table, found), partial(_figure, found))

@@ -11,6 +11,7 @@ import numpy as np
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, structure_of
 from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.views.view import heading
 
@@ -24,7 +25,11 @@ if TYPE_CHECKING:
 
 @takes_numbers
 def error(
-    structure: StructureLike, *, at: Sequence[float] = (0.5,), a: Sequence[float] = (2.0,)
+    structure: StructureLike,
+    *,
+    at: Sequence[float] = (0.5,),
+    a: Sequence[float] = (2.0,),
+    watch: Watcher = SILENT,
 ) -> Answer[list[Linearisation]]:
     """Compute the errors of the equivalent block of a structure, in each direction.
 
@@ -36,6 +41,8 @@ def error(
         Amplitudes phi/phi_cr for the free period.
     a : sequence of float
         Constant accelerations for the overturning time, as multiples of the uplift acceleration.
+    watch : Watcher
+        Told what is doubtful about the structure.
 
     Returns
     -------
@@ -69,7 +76,7 @@ def error(
         for value in values:
             if why := why_not(value):
                 raise InputError(Problem(why, field=field))
-    ready = structure_of(structure)
+    ready = structure_of(structure, watch)
     with ready.named():
         curves, found = compare(ready, at, a)
     shown = view(ready.mechanism, ready.equivalence, curves, found)

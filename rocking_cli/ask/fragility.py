@@ -37,6 +37,7 @@ def fragility(
     restart: bool = False,
     rank_measures: bool = False,
     quantiles: bool = False,
+    nrml: str | Path | None = None,
     watch: Watcher = SILENT,
 ) -> Answer[Any]:
     """Run a fragility study, or continue it, and fit its curves.
@@ -60,6 +61,8 @@ def fragility(
         Whether to rank the intensity measures as well, by how well they predict the outcome.
     quantiles : bool
         Whether the quantiles of the peak rotation are shown in words too.
+    nrml : str or Path, optional
+        File for the curves that OpenQuake can read (.xml).
     watch : Watcher
         Told what is doubtful, which records and samples cannot be run, and how far the runs are.
 
@@ -99,7 +102,7 @@ def fragility(
     if check:
         return _planned(asked, watch)
     _bring_up_to_date(asked, place, workers_of(jobs, scheduler), watch, restart=restart, rank_measures=rank_measures)
-    return results(place, quantiles=quantiles, rank_measures=rank_measures, watch=watch)
+    return results(place, quantiles=quantiles, rank_measures=rank_measures, nrml=nrml, watch=watch)
 
 
 def workers_of(jobs: int | None, scheduler: str | None) -> AbstractContextManager[Workers]:

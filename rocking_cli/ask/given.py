@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from math import inf
 from pathlib import Path
@@ -13,12 +14,15 @@ from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
 from rocking_cli.core.size import doubts
 from rocking_cli.dynamics.model import MODELS, ModelName
-from rocking_cli.errors import InputError, MechanismError, Problem, RockingError
+from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
 from rocking_cli.io.json_text import json_text
+from rocking_cli.io.yaml_file import decoded, read_text
+from rocking_cli.names import OPENING
 from rocking_cli.structure import Structure
-from rocking_cli.structure_file import load_structure
+from rocking_cli.structure_file import default_name, parse_structure
 from rocking_cli.text import one_line
 from rocking_cli.views.view import heading
 
@@ -27,35 +31,112 @@ if TYPE_CHECKING:
 
     from rocking_cli.studies.verification.site_file import SiteFile
 
-WIDEST_OPENING = 1000.0  # over D_cr
 StructureLike = Mechanism | Structure | str | Path
-"""Mechanism, or its YAML file, or a structure that was prepared."""
+"""Mechanism, or its YAML file, "-" for standard input; or a structure that was opened before."""
 SiteLike = Mapping[str, Any] | str | Path
 """Fields of a site file, or the file."""
+HERE = Path("rocking.yaml")
+"""The structure of a command without one: this very object is the file in the current folder, or the default block."""
+DEFAULT = "mechanism: block\nname: default block, 0.7 m x 2.8 m\nwidth: 0.7\nheight: 2.8\n"
+SLOW, MANY, MEASURED = 100, 500, 1000  # polygons: that take a second, that take more, at most that were timed
 
 
-def structure_of(given: StructureLike, opening: float | None = None) -> Structure:
-    """Read a structure from its file, or take a mechanism, named by its kind if it has no name.
+def structure_of(given: StructureLike, watch: Watcher = SILENT, opening: float = OPENING) -> Structure:
+    """Open a structure, and warn of doubts about it: a mechanism, named by its kind if it has no name, or a file.
 
-    A given `opening` replaces that of its file: the largest opening of a joint, over D_cr, up to which a history is
-    valid.
+    Parameters
+    ----------
+    given : Mechanism, str or Path
+        The structure, or its YAML file, "-" for standard input. One that was opened before is taken without warnings.
+    watch : Watcher
+        Told which file was read, and what is doubtful about the structure.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
 
     Raises
     ------
     InputError
         If the file, or the opening, is not valid.
+    MechanismError
+        If the plugin of the mechanism cannot be used.
     """
-    structure = _structure_of(given)
-    if checked(opening) is None:
-        return structure
-    return replace(structure, mechanism=structure.mechanism.model_copy(update={"opening": opening}), _models={})
+    if isinstance(given, Structure):
+        return given if given.opening == opening else replace(given, opening=opening, _models={})
+    if isinstance(given, Mechanism):
+        named = given if given.name else given.model_copy(update={"name": given.mechanism})
+        ready = Structure(named, opening=opening)
+    elif isinstance(given, str | Path):
+        ready = replace(_read(given, watch), opening=opening)
+    else:
+        hint = "make one, such as rk.Block(width=0.7, height=2.8)"
+        raise InputError(
+            Problem(f"must be a mechanism or a YAML file, got {kind_of(given)}", field="structure", hint=hint)
+        )
+    warn_of(ready.mechanism, watch)
+    return ready
 
 
-def checked(opening: float | None) -> float | None:
-    """Return a largest opening of joints over D_cr, if any. Raises `InputError` if it is out of range."""
-    if opening is not None and not 0 <= opening <= WIDEST_OPENING:
-        raise InputError(Problem(f"must be from 0 to {WIDEST_OPENING:g}, got {opening:g}", field="`opening`"))
-    return opening
+def _read(given: str | Path, watch: Watcher) -> Structure:
+    """Read a structure from its file."""
+    if given is HERE and not HERE.exists():
+        watch.note(f"structure: the default block, 0.7 m wide and 2.8 m high (no FILE given, no {HERE} here)")
+        return Structure(parse_structure(DEFAULT, "default block", "default block"))
+    if given is HERE:
+        watch.note(f"structure: {HERE} of this folder")
+    file, is_input = name_of(given), str(given) == STANDARD_INPUT
+    text = decoded(original(given), file, "structure") if is_input else read_text(Path(given), "structure")
+    count = text.count("polygon")
+    if count >= MANY:
+        watch.note(_what_blocks_take(count))
+    try:
+        with watch.working(f"analysing {count} polygons") if count >= SLOW else nullcontext():
+            mechanism = parse_structure(text, file, "structure" if is_input else default_name(given))
+    except MechanismError as error:
+        raise of_structure(error, file) from error
+    place = file if is_input else Path(given).resolve()
+    watch.detail(f"structure: {mechanism.name} ({mechanism.mechanism}), of {place}")
+    return Structure(mechanism, file)
+
+
+def _what_blocks_take(count: int) -> str:
+    """Return what the limit analysis of many blocks takes."""
+    if count <= MEASURED:
+        return f"{count} polygons: up to about a minute and 250 MB; Ctrl-C stops it"
+    minutes = round((count / 1000) ** 2)  # at a minute for 1000
+    least = "a minute" if minutes < 2 else f"{minutes} minutes" if minutes < 120 else f"{minutes / 60:.0f} hours"
+    return (
+        f"{count} polygons: {least} and {0.2 * count:.0f} MB at least, and perhaps many times as much, as no more than "
+        f"{MEASURED} have been measured; Ctrl-C stops it"
+    )
+
+
+def structures_of(
+    given: Sequence[StructureLike], watch: Watcher = SILENT, opening: float = OPENING, *, least: int = 1
+) -> list[Structure]:
+    """Open several structures; those that cannot be used are left out. Structures of the same name have their file too.
+
+    Raises
+    ------
+    InputError, MechanismError
+        If fewer than the `least` number can be used; an `InputError` has the problems of all files.
+    """
+    ready: list[Structure] = []
+    errors: list[InputError | MechanismError] = []
+    for one in given:
+        try:
+            ready.append(structure_of(one, watch, opening))
+        except (InputError, MechanismError) as error:
+            errors.append(error)
+    if errors and len(ready) < least:
+        raise next((error for error in errors if isinstance(error, MechanismError)), joined(errors))
+    for refused in errors:
+        watch.leave_out(refused)
+    names = [structure.name for structure in ready]
+    for k, structure in enumerate(ready):
+        if names.count(structure.name) > 1 and structure.file is not None:
+            name = f"{structure.name} ({one_line(Path(structure.file).name)})"
+            ready[k] = structure.of(structure.mechanism.model_copy(update={"name": name}))
+    return ready
 
 
 def site_of(given: SiteLike) -> SiteFile:
@@ -69,61 +150,9 @@ def site_of(given: SiteLike) -> SiteFile:
     return read_site(Path(given))
 
 
-def _structure_of(given: StructureLike) -> Structure:
-    if isinstance(given, Structure):
-        return given
-    if isinstance(given, Mechanism):
-        return Structure(given if given.name else given.model_copy(update={"name": given.mechanism}))
-    if not isinstance(given, str | Path):
-        hint = "make one, such as rk.Block(width=0.7, height=2.8)"
-        raise InputError(
-            Problem(f"must be a mechanism or a YAML file, got {kind_of(given)}", field="structure", hint=hint)
-        )
-    return Structure(load_structure(given), str(given))
-
-
-def structures_of(
-    given: Sequence[StructureLike],
-    watch: Watcher = SILENT,
-    read: Callable[[Any], Structure] = structure_of,
-) -> list[Structure]:
-    """Read several structures by `read`; those that cannot be used are left out.
-
-    Raises
-    ------
-    InputError, MechanismError
-        If none can be used; an `InputError` has the problems of all files.
-    """
-    ready: list[Structure] = []
-    errors: list[InputError | MechanismError] = []
-    for one in given:
-        try:
-            ready.append(read(one))
-        except (InputError, MechanismError) as error:
-            errors.append(error)
-    if errors and not ready:
-        raise next((error for error in errors if isinstance(error, MechanismError)), joined(errors))
-    for refused in errors:
-        watch.leave_out(refused)
-    return ready
-
-
 def joined(errors: Sequence[RockingError]) -> InputError:
     """Return one error with the problems of several inputs."""
     return InputError(*(problem for error in errors if isinstance(error, InputError) for problem in error.problems))
-
-
-def told_apart(structures: Sequence[Structure]) -> list[Structure]:
-    """Return structures of which those with the same name are named after their files too."""
-    names = [structure.name for structure in structures]
-
-    def named(structure: Structure) -> Structure:
-        if names.count(structure.name) == 1 or structure.file is None:
-            return structure
-        name = f"{structure.name} ({one_line(Path(structure.file).name)})"
-        return replace(structure, mechanism=structure.mechanism.model_copy(update={"name": name}), _models={})
-
-    return [named(structure) for structure in structures]
 
 
 def warn_of(mechanism: Mechanism, watch: Watcher) -> None:

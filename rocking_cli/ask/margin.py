@@ -14,6 +14,7 @@ from rocking_cli.ask.given import StructureLike, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.names import OPENING
 from rocking_cli.studies.conclusion import Concluding, worst
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.view import heading
@@ -35,7 +36,7 @@ def margin(
     amplitude_deviation: float = Neighbourhood.amplitude,
     slenderness_deviation: float | None = None,
     restitution_deviation: float | None = None,
-    opening: float | None = None,
+    opening: float = OPENING,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
 ) -> MappingAnswer[str, Margin]:
@@ -54,8 +55,8 @@ def margin(
     amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
         Standard deviations of the neighbours: of ln amplitude, of ln slenderness and of restitution; by default those
         of the structure.
-    opening : float, optional
-        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
     watch : Watcher
         Told what was read, how far the work is, and which of several motions cannot be used.
     **options
@@ -92,7 +93,7 @@ def margin(
 
     signs = signs_of(polarity)
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
-    ready = structure_of(structure, opening)
+    ready = structure_of(structure, watch, opening)
     model = ready.model("nonlinear")
     chosen = Motions.of(motions, options).gather(ready.growth, watch)
     rows = []

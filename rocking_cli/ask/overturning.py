@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, structure_of, structures_of, told_apart, warn_misleading
+from rocking_cli.ask.given import StructureLike, structures_of, warn_misleading
 from rocking_cli.ask.ground_motions import each_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.overturning_curves import overturning_curves
@@ -15,6 +14,7 @@ from rocking_cli.ask.overturning_map import overturning_map
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.errors import InputError
+from rocking_cli.names import OPENING
 
 if TYPE_CHECKING:
     from rocking_cli.structure import Structure
@@ -39,7 +39,7 @@ def overturning(
     omega: Range | None = None,
     a: Range | None = None,
     points: int | None = None,
-    opening: float | None = None,
+    opening: float = OPENING,
     watch: Watcher = SILENT,
 ) -> Answer[OverturningMap] | Answer[Comparison]:
     """Map the pulses that overturn a structure, or compare several structures.
@@ -68,8 +68,8 @@ def overturning(
         Smallest and largest dimensionless frequency and amplitude, on dimensionless axes.
     points : int, optional
         Number of points along each side of a map, 256 by default, or of periods, 60 by default.
-    opening : float, optional
-        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
     watch : Watcher
         Shown the progress, and told which structures cannot be used, and for which the linear models mislead.
 
@@ -97,7 +97,7 @@ def overturning(
     >>> rk.overturning(points=24).outcome.overturned.shape
     (24, 24)
     """
-    ready = told_apart(structures_of(each_of(structures), watch, partial(structure_of, opening=opening)))
+    ready = structures_of(each_of(structures), watch, opening)
     axes = {"period": period, "ag": ag, "omega": omega, "a": a}
     given = [name for name, ends in axes.items() if ends is not None]
     _check(ready, given, compare=compare, dimensionless=dimensionless, model=model)
@@ -107,11 +107,11 @@ def overturning(
     if compare:
         return overturning_curves(
             ready, shape=shape, model=model, eta=eta, period=period, top=ag[1] if ag is not None else None,
-            polarity=polarity, points=points or CURVE, watch=watch,
+            polarity=polarity, points=points or CURVE, opening=opening, watch=watch,
         )  # fmt: skip
     return overturning_map(
         ready[0] if ready else None, shape=shape, model=model, eta=eta, period=period, ag=ag, omega=omega, a=a,
-        dimensionless=dimensionless, polarity=polarity, points=points or PLANE, watch=watch,
+        dimensionless=dimensionless, polarity=polarity, points=points or PLANE, opening=opening, watch=watch,
     )  # fmt: skip
 
 

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, structure_of, structures_of, told_apart
+from rocking_cli.ask.given import StructureLike, structures_of
 from rocking_cli.ask.ground_motions import signs_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.model import ModelName
+from rocking_cli.names import OPENING
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -32,7 +33,7 @@ def overturning_curves(
     top: float | None = None,
     polarity: str | int = "1",
     points: int = 60,
-    opening: float | None = None,
+    opening: float = OPENING,
     watch: Watcher = SILENT,
 ) -> Answer[Comparison]:
     """Compute the smallest amplitude that overturns each structure, against the period of a pulse.
@@ -83,7 +84,7 @@ def overturning_curves(
     from rocking_cli.views import overturning as views
 
     form, signs = parse_shape(shape), signs_of(polarity)
-    ready = told_apart(structures_of(structures, watch, partial(structure_of, opening=opening)))
+    ready = structures_of(structures, watch, opening)
     subjects = [pulsed_model(each, model, form, signs, eta) for each in ready]
     periods = np.geomspace(*(period or study.usual_periods(subjects)), points)
     highest = study.usual_amplitudes(subjects)[1] if top is None else top

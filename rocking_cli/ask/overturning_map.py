@@ -14,6 +14,7 @@ from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.names import OPENING
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,7 +38,7 @@ def overturning_map(
     dimensionless: bool = False,
     polarity: str | int = "1",
     points: int = 128,
-    opening: float | None = None,
+    opening: float = OPENING,
     watch: Watcher = SILENT,
 ) -> Answer[OverturningMap]:
     """Map the effect of pulses of all periods and amplitudes on a structure, or on the dimensionless linear block.
@@ -62,8 +63,8 @@ def overturning_map(
         Polarity of the pulses; with both, the worse governs.
     points : int
         Number of points along each side.
-    opening : float, optional
-        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
     watch : Watcher
         Shown the progress.
 
@@ -100,7 +101,7 @@ def overturning_map(
     if structure is None:
         mechanism, subject = None, linear_block(ETA if eta is None else eta)
     else:
-        ready = structure_of(structure, opening)
+        ready = structure_of(structure, watch, opening)
         mechanism, subject = ready.mechanism, pulsed_model(ready, model, form, signs, eta)
     bare = dimensionless or mechanism is None
     if bare:

@@ -9,6 +9,7 @@ from rocking_cli.ask.answer import MappingAnswer
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.names import OPENING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -34,7 +35,7 @@ def pulse(
     a: float | None = None,
     omega: float | None = None,
     eta: float | None = None,
-    opening: float | None = None,
+    opening: float = OPENING,
     watch: Watcher = SILENT,
 ) -> MappingAnswer[Any, Any]:
     """Compute the response to a pulse, of a structure or of the dimensionless linear block.
@@ -53,8 +54,8 @@ def pulse(
         Dimensionless amplitude a_g/(g lambda) and frequency omega_g/p of the pulse on the linear block.
     eta : float, optional
         Coefficient of restitution of the linear block; 0.9 by default. That of a structure is in its file.
-    opening : float, optional
-        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
     watch : Watcher
         Told of histories that do not converge with the sampling of the pulse.
 
@@ -104,7 +105,7 @@ def pulse(
     from rocking_cli.studies.pulse_on_structure import closed_forms, with_conclusion
     from rocking_cli.views.pulse_on_structure import view
 
-    signs, sized, ready = signs_of(polarity), sized_pulse(shape, ag, period), structure_of(structure, opening)
+    signs, sized, ready = signs_of(polarity), sized_pulse(shape, ag, period), structure_of(structure, watch, opening)
     found = with_conclusion(sized, {sign: _answers(ready, sized, sign, watch) for sign in signs})
     shown = view(ready, sized, found, closed_forms(ready, sized))
     return MappingAnswer("pulse", found, shown, partial(_columns, found), partial(structure_figure, ready.mechanism))

@@ -120,7 +120,7 @@ def record(
     if structure is not None:
         from rocking_cli.ask.given import structure_of
 
-        ready = structure_of(structure)
+        ready = structure_of(structure, watch)
     p = ready.p if ready is not None else None
     read, signs = Motions.of(motion, options).one(0.0), signs_of(polarity)
     if any(each.startswith("from ") for each in read.motion.processing):

@@ -13,6 +13,7 @@ from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, sig
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
+from rocking_cli.names import OPENING
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.view import heading
 
@@ -43,12 +44,12 @@ def report(
     verify: SiteLike | None = None,
     state: str | None = None,
     on_floor: bool = False,
-    opening: float | None = None,
+    opening: float = OPENING,
     project: str | None = None,
     place: str | None = None,
     author: str | None = None,
     logo: str | Path | None = None,
-    origin: SheetOrigin | None = None,
+    origin: str | None = None,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
 ) -> Answer[Assessment]:
@@ -75,11 +76,11 @@ def report(
         Limit state of the verification to which the motions belong, such as `"SLC"`.
     on_floor : bool
         Whether the motions are those of the floor of the site; if not, ground motions are carried to it.
-    opening : float, optional
-        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
     project, place, author, logo : str, str, str, path, optional
         Entries for the heading of the report, and a picture in .png, .jpg or .svg.
-    origin : SheetOrigin, optional
+    origin : str, optional
         What the report says of how it was made; by default this function and the structure.
     watch : Watcher
         Told what was read and written, how far the work is, and which of several motions cannot be used.
@@ -133,16 +134,16 @@ def report(
     if site is not None:  # before any work
         sheet_of(site)
         refuse(site, motions=bool(given))
-    ready = structure_of(structure, opening)
-    origin = origin or SheetOrigin.of("rocking_cli.report(...)", ready)
-    title = Head(project, place, author, logo).block(origin)
+    ready = structure_of(structure, watch, opening)
+    source = SheetOrigin.of(origin or "rocking_cli.report(...)", ready)
+    title = Head(project, place, author, logo).block(source)
     chosen = given.gather(ready.growth, watch) if given else []
     verified = None
     if verify is not None and site is not None:
         histories = Histories([each.motion.scaled(each.factor) for each in chosen], signs, state, on_floor)
-        verified = _verified(ready, site, verify, chosen, histories, title, origin)
+        verified = _verified(ready, site, verify, chosen, histories, title, source)
     with watch.progress(steps(chosen), "parts of the report") as advance:
-        found = gather(ready, origin.structure, chosen, signs, around=around, title=title, progress=advance)
+        found = gather(ready, source.structure, chosen, signs, around=around, title=title, progress=advance)
     if file is not None:
         page = render(found, verified).encode()
         write_whole(Path(file), lambda stream: stream.write(page))

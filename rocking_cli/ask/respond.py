@@ -14,18 +14,22 @@ from numpy.typing import NDArray
 from rocking_cli.ask.answer import MappingAnswer
 from rocking_cli.ask.given import StructureLike, doubts_of, models_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
+from rocking_cli.ask.motions import all_directions
 from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.several import Answers, answers, are_several, ask_each, places_of, write_files
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.history import FINEST_RTOL, RTOL, TAIL, History
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.names import OPENING
 from rocking_cli.processing.reading_options import ALL
+from rocking_cli.processing.scaled import Scaled
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.studies.release import Release
 from rocking_cli.studies.response import Question, Response
-from rocking_cli.views.view import heading
+from rocking_cli.views.view import Table, heading
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -42,7 +46,7 @@ class ResponseAnswer(MappingAnswer[ModelName, History]):
 @takes_numbers
 def respond(
     structure: StructureLike,
-    motion: Motion | Motions | None = None,
+    motion: Motion | Motions | Sequence[Motion] | None = None,
     *,
     models: str | Sequence[str] | None = None,
     polarity: str | int = "1",
@@ -57,21 +61,23 @@ def respond(
     amplitude_deviation: float = Neighbourhood.amplitude,
     slenderness_deviation: float | None = None,
     restitution_deviation: float | None = None,
-    opening: float | None = None,
+    opening: float = OPENING,
     impacts: bool = False,
     contact: bool = False,
     title: str | None = None,
+    out: str | Path | None = None,
+    plot: str | Path | None = None,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
-) -> ResponseAnswer:
-    """Compute the response of a structure to a ground motion, a release or both; `respond_each` is for many.
+) -> ResponseAnswer | Answers[ResponseAnswer]:
+    """Compute the response of a structure to ground motions, a release or both; `respond_each` is for outcomes alone.
 
     Parameters
     ----------
     structure : Mechanism, str or Path
         The structure, or its YAML file.
-    motion : GroundMotion, Pulse, str or Path, optional
-        The motion, its file, or a pulse as text.
+    motion : GroundMotion, Pulse, str or Path, or a sequence of these, optional
+        The motion, its file, or a pulse as text; a pattern such as "records/*.AT2", or a sequence, gives several.
     models : str or sequence of str, optional
         Models "nonlinear", "linear1" or "linear2"; by default all, or the nonlinear one alone if the others mislead.
     polarity : {"1", "-1", "both"}
@@ -92,25 +98,30 @@ def respond(
     amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
         Standard deviations of the neighbours: of ln amplitude, of ln slenderness and of restitution; by default those
         of the structure.
-    opening : float, optional
-        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
     impacts : bool
         Whether the answer lists the impacts: the first in a table, without chatter, all in the data.
     contact : bool
         Whether the plot shows the friction required; it does if the structure gives `friction`.
     title : str, optional
         Title of tables and plot; by default the name of the structure.
+    out, plot : str or Path, optional
+        Files to write: the time histories (.csv or .parquet) and the plot (.png, .svg or .pdf). Of several motions each
+        has its own, with its name in that of the file.
     watch : Watcher
-        Told what was read, and what is doubtful about it.
+        Told what was read, and what is doubtful about it; of several motions, which cannot be used.
     **options
-        How the motion is read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
+        How the motion is read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`. With
+        `azimuth="all"`, the response is computed in every direction between the two components of one record.
 
     Returns
     -------
     ResponseAnswer
         Time histories, by model. `runs` has those of each polarity, `neighbours` the outcomes of the neighbours,
-        `contacts` the contact demands, `fit` and `to_pulse` the pulse and the response to it. With `azimuth` "all",
-        instead, what `respond_around` returns.
+        `contacts` the contact demands, `fit` and `to_pulse` the pulse and the response to it. Its frame has the time
+        histories, `frames["impacts"]` the impacts. For several motions, `Answers` with one for each, by its name; for
+        all azimuths, the answer of `respond_around`.
 
     Raises
     ------
@@ -135,57 +146,83 @@ def respond(
     """
     from rocking_cli.studies.response import response_of
     from rocking_cli.views.response import view
+    from rocking_cli.views.several import Several
 
     if not FINEST_RTOL <= rtol < 1:
         what = f"{rtol:g} is not a number from {FINEST_RTOL:g} to below 1: smaller errors are below rounding"
         raise InputError(Problem(what, field="`rtol`"))
-    ready = structure_of(structure, opening)
+    ready = structure_of(structure, watch, opening)
     motions, signs = Motions.of(() if motion is None else motion, options), signs_of(polarity)
     _check(motions, signs, vertical, (vertical_dt, vertical_channel), with_pulse)
+    tilt = release if release is None or isinstance(release, Release) else Release.of(release)
+    several = are_several(motion, motions)
+    if vertical is not None and several:
+        raise InputError("`vertical` applies to a single motion: give one")
+    if not motions and tilt is None:
+        raise InputError("no excitation is given: give a motion or a `release`")
+    near = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     if motions.reading.azimuth == ALL:
-        from rocking_cli.ask.motions import all_directions
-
-        idle = {
-            "polarity": str(polarity) != "1", "with_pulse": with_pulse is not None, "impacts": impacts,
-            "contact": contact, "tail": tail != TAIL, "neighbours": neighbours != 0,
-        }  # fmt: skip
+        idle = {"polarity": signs != (1,), "with_pulse": with_pulse, "impacts": impacts, "contact": contact,
+                "tail": tail != TAIL, "neighbours": neighbours}  # fmt: skip
         if said := [f"`{name}`" for name, given in idle.items() if given]:
             raise InputError(f"{', '.join(said)} cannot be combined with `azimuth` all: give one angle")
-        of_vertical = (vertical, vertical_dt, vertical_channel)
-        answer: ResponseAnswer
-        answer = all_directions(ready, motions, of_vertical, models=models, release=release, rtol=rtol, watch=watch)
-        return answer
-    given = motions.one(ready.growth, watch, with_vertical=vertical is not None) if motions else None
-    if given is None and release is None:
-        raise InputError("no excitation is given: give a motion or a `release`")
-    if vertical is not None and given is not None:
+        third = (vertical, vertical_dt, vertical_channel)
+        around = all_directions(ready, motions, third, models=models, release=tilt, rtol=rtol, watch=watch)
+        write_files(around, out, plot, watch)
+        return around  # type: ignore[no-any-return]
+    chosen = motions.gather(ready.growth, watch, with_vertical=vertical is not None) if motions else [None]
+    if vertical is not None and chosen[0] is not None:
         if not isinstance(vertical, GroundMotion):
-            vertical = motions.vertical(given, vertical, vertical_dt, vertical_channel, watch)
-        given = given._replace(motion=replace(given.motion, vertical=vertical))
-    tilt = release if release is None or isinstance(release, Release) else Release.of(release)
-    question = Question(
-        signs,
-        tilt.ratio(ready) if tilt is not None else None,
-        tail,
-        rtol,
-        with_pulse,
-        Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation),
-        tilt is not None and tilt.is_angle,
-    )
-    chosen = models_of(models) if models is not None else usual_models(ready, watch)
-    ready.models(chosen)
-    response = response_of(ready, chosen, given, question)
+            vertical = motions.vertical(chosen[0], vertical, vertical_dt, vertical_channel, watch)
+        chosen[0] = chosen[0]._replace(motion=replace(chosen[0].motion, vertical=vertical))
+    ratio = tilt.ratio(ready) if tilt is not None else None
+    question = Question(signs, ratio, tail, rtol, with_pulse, near, tilt is not None and tilt.is_angle)
+    names = models_of(models) if models is not None else usual_models(ready, watch)
+    ready.models(names)
+    title = heading(ready.mechanism) if title is None else title
+    doubts = doubts_of(ready.mechanism)
+
+    def one(given: Scaled | None, title: str, table: str | Path | None, picture: str | Path | None) -> ResponseAnswer:
+        response = response_of(ready, names, given, question)
+        _note_pulse(response, watch)
+        shown = view(response, ready, question, str(polarity), title, doubts, impacts=impacts)
+        answer = ResponseAnswer(
+            "response",
+            response,
+            shown,
+            partial(_columns, response, ready),
+            partial(_figure, response, ready, title, contact=contact or ready.mechanism.friction is not None),
+            partial(_blocks, response, ready),
+            {"impacts": partial(_impact_columns, response)},
+        )
+        write_files(answer, table, picture, watch)
+        return answer
+
+    if not several:
+        return one(chosen[0], title, out, plot)
+    table, details = Several(ready, names, motions.count), list[Table | str]()
+    scaled = [each for each in chosen if each is not None]
+    read = [ready.file, *(each.path for each in motions.records)]
+    outs, plots = places_of("out", out, scaled, read), places_of("plot", plot, scaled, read)
+
+    def row(given: Scaled, k: int) -> ResponseAnswer:
+        answer = one(given, f"{title}, under {given.motion.name}", outs[k], plots[k])
+        table.add(answer.result)
+        details.extend(["", *answer.view.parts] if impacts else [])
+        return answer
+
+    found, left_out = ask_each(scaled, row, watch)
+    unread = [each.path.name for each in motions.records if all(each is not one.record for one in scaled)]
+    return answers("responses", "motion", found, [*table.parts([*unread, *left_out]), *details])
+
+
+def _note_pulse(response: Response, watch: Watcher) -> None:
     if (fit := response.fit) is not None:
         watch.note(
             f"pulse: {fit.pulse.title}, a_p = {fit.pulse.amplitude / STANDARD_GRAVITY:.4g} g, "
             f"T_p = {fit.pulse.period:.4g} s, from {fit.start:.4g} s, sign {fit.sign:+d}: "
             f"{100 * fit.captured:.0f} % of the energy of the velocity"
         )
-    title = heading(ready.mechanism) if title is None else title
-    shown = view(response, ready, question, str(polarity), title, doubts_of(ready.mechanism), impacts=impacts)
-    figure = partial(_figure, response, ready, title, contact=contact or ready.mechanism.friction is not None)
-    blocks = partial(_blocks, response, ready)
-    return ResponseAnswer("response", response, shown, partial(_columns, response, ready), figure, blocks)
 
 
 def _check(
@@ -229,6 +266,17 @@ def _blocks(response: Response, structure: Structure) -> Iterator[dict[str, NDAr
 def _columns(response: Response, structure: Structure) -> Columns:
     blocks = list(_blocks(response, structure))
     return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+
+
+def _impact_columns(response: Response) -> Columns:
+    rows = [
+        (sign, name, *impact)
+        for sign, runs in response.runs.items()
+        for name, run in runs.items()
+        for impact in run.impacts.tolist()
+    ]
+    heads = "polarity", "model", "t [s]", "direction", "phi_dot before [rad/s]"
+    return {head: [row[k] for row in rows] for k, head in enumerate(heads)}
 
 
 def _figure(response: Response, structure: Structure, title: str, *, contact: bool) -> Figure:

@@ -12,10 +12,12 @@ from rocking_cli.ask.answer import MappingAnswer
 from rocking_cli.ask.given import StructureLike, models_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, each_of, motion_of
 from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME, Outcomes
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.names import OPENING
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
@@ -32,6 +34,8 @@ def respond_each(
     models: str | Sequence[str] | None = None,
     scales: ArrayLike = 1.0,
     threads: int | None = None,
+    opening: float = OPENING,
+    watch: Watcher = SILENT,
 ) -> MappingAnswer[ModelName, Outcomes]:
     """Compute the outcome of every structure under every motion with every scale factor.
 
@@ -45,6 +49,10 @@ def respond_each(
         Scale factors on the motions; negative ones reverse them.
     threads : int, optional
         Number of time histories at a time; by default, one for each processor.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
+    watch : Watcher
+        Told what is doubtful about the structures.
 
     Returns
     -------
@@ -75,7 +83,7 @@ def respond_each(
     >>> answer["nonlinear"].share()
     (0.5, 0.5)
     """
-    ready = [structure_of(each) for each in each_of(structures)]
+    ready = [structure_of(each, watch, opening) for each in each_of(structures)]
     shaking = [motion_of(each) for each in each_of(motions)]
     factors = np.atleast_1d(np.asarray(scales, dtype=np.float64))
     if factors.ndim > 1:

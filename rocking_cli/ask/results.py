@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -61,8 +61,14 @@ class StudyAnswer(Answer[list[Fragility]]):
 
 
 def results(
-    store: str | Path, *, quantiles: bool = False, rank_measures: bool = False, watch: Watcher = SILENT
-) -> StudyAnswer:  # fmt: skip
+    store: str | Path,
+    *,
+    quantiles: bool = False,
+    rank_measures: bool = False,
+    curves: str | Path | None = None,
+    nrml: str | Path | None = None,
+    watch: Watcher = SILENT,
+) -> StudyAnswer:
     """Summarise the fragility curves and runs of a study, from its store.
 
     Parameters
@@ -73,14 +79,17 @@ def results(
         Whether the quantiles of the peak rotation are shown in words too.
     rank_measures : bool
         Whether to rank the intensity measures, by how well they predict the outcome.
+    curves, nrml : str or Path, optional
+        Files to write: the curves, one row per intensity (.csv or .parquet), and the curves for OpenQuake (.xml).
     watch : Watcher
         Told how far the counting, the fits and the ranking are.
 
     Returns
     -------
     StudyAnswer
-        One curve per structure, limit state and measure. If the outcome of some runs is unknown, as a joint opens that
-        the model keeps closed, these exceed the limit in the fit and do not in its `lower`.
+        One curve per structure, limit state and measure; `frames["curves"]` has their points. If the outcome of some
+        runs is unknown, as a joint opens that the model keeps closed, these exceed the limit in the fit and do not in
+        its `lower`.
 
     Raises
     ------
@@ -97,22 +106,23 @@ def results(
     with Store.reading(place) as kept:
         plan, definition = kept.plan(), _definition(kept)
         finished, failed = kept.count()
-        curves, surfaces, outcomes = _fitted(kept, plan, definition, watch)
+        fits, surfaces, outcomes = _fitted(kept, plan, definition, watch)
         spread = list(all_quantiles(kept, plan, definition))
-        shown = view(kept, plan, definition, finished, failed, curves, surfaces, outcomes)
+        shown = view(kept, plan, definition, finished, failed, fits, surfaces, outcomes)
         shown = with_quantiles(shown, spread, in_words=quantiles)
         rankings: list[Ranking] = []
         if rank_measures:
             with watch.progress(plan.size, "runs ranked") as counted:
                 rankings = rank(kept, plan, definition, counted)
             shown = added(shown, rankings)
-    return StudyAnswer(
+    answer = StudyAnswer(
         "fragility",
-        curves,
+        fits,
         shown,
         partial(_columns, place),
-        partial(_figure, definition, curves),
+        partial(_figure, definition, fits),
         partial(_blocks, place),
+        {"curves": partial(_curve_columns, fits)},
         store=place,
         plan=plan,
         definition=definition,
@@ -122,6 +132,48 @@ def results(
         failed=failed,
         complete=finished == plan.total and not failed and not left_out(plan),
     )
+    if curves is not None:
+        from rocking_cli.io.tables import write_table
+
+        write_table(Path(curves), curve_blocks(answer, watch))
+    if nrml is not None:
+        write_nrml(answer, Path(nrml), watch)
+    return answer
+
+
+def curve_blocks(answer: StudyAnswer, watch: Watcher = SILENT) -> Iterator[Columns]:
+    """Return the curves of a study as columns, in blocks of rows, with a warning of each fit that has none."""
+    from rocking_cli.views.fragility import edges
+    from rocking_cli.views.fragility_table import curve_blocks as blocks
+
+    for each in answer.result:
+        for name, fit in edges([each]):
+            if fit.curve.kind == "none":
+                watch.warn(f"{each.structure}, {name} against {each.measure}: no curve: {fit.curve.why}")
+    return blocks(answer.result)
+
+
+def write_nrml(answer: StudyAnswer, file: Path, watch: Watcher = SILENT) -> None:
+    """Write the curves that OpenQuake can read, and name the others. Raises `InputError` if there are none."""
+    from rocking_cli.io.files import write_whole
+    from rocking_cli.views.nrml import chosen, nrml
+
+    model = chosen(answer.result)
+    for each in model.left_out:
+        watch.warn(f"not in {file}: {each}")
+    for each in model.doubts:
+        watch.warn(each)
+    with Store.reading(answer.store) as store:
+        version, study, name = store.fact("versions")["rocking-cli"], store.fact("hash"), store.fact("name")
+    document = nrml(model, name, f"{answer.sentences[0]}; rocking-cli {version}, study {study[:12]}")
+    write_whole(file, lambda stream: stream.write(document))
+    watch.note(f"wrote {file}")
+
+
+def _curve_columns(curves: list[Fragility]) -> Columns:
+    from rocking_cli.views.fragility_table import curve_blocks as blocks
+
+    return _whole(blocks(curves))
 
 
 def _definition(store: Store) -> Definition:
@@ -162,7 +214,12 @@ def _blocks(place: Path) -> Iterator[Columns]:
 
 
 def _columns(place: Path) -> Columns:
-    blocks = list(_blocks(place))
+    return _whole(_blocks(place))
+
+
+def _whole(parts: Iterable[Columns]) -> Columns:
+    """Join blocks of rows."""
+    blocks = list(parts)
     return {name: [value for block in blocks for value in block[name]] for name in blocks[0]}
 
 

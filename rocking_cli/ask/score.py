@@ -9,14 +9,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import checked, structure_of
+from rocking_cli.ask.given import structure_of
 from rocking_cli.ask.ground_motions import Motions, ReadingArguments, check_known, files_of, pulse_in
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import RockingError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.names import OPENING
 from rocking_cli.processing.reading import reading_of
-from rocking_cli.structure import Structure
+from rocking_cli.structure import Structure, check_opening
 from rocking_cli.studies.neighbours import Neighbourhood
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ def score(
     amplitude_deviation: float = Neighbourhood.amplitude,
     slenderness_deviation: float | None = None,
     restitution_deviation: float | None = None,
-    opening: float | None = None,
+    opening: float = OPENING,
     threads: int | None = None,
     usual: Mapping[str, Any] | None = None,
     watch: Watcher = SILENT,
@@ -56,8 +57,8 @@ def score(
     amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
         Standard deviations of the neighbours: of ln amplitude, of ln slenderness and of restitution; by default those
         of each structure.
-    opening : float, optional
-        Largest opening of a joint up to which a history is valid, over D_cr; by default that of each structure.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
     threads : int, optional
         Number of tests at a time; by default, one for each processor.
     usual : mapping of str to object, optional
@@ -93,8 +94,9 @@ def score(
     from rocking_cli.views.score import columns, view
 
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
+    check_opening(opening)
     table = tests_of(tests)
-    structures = _structures(table, checked(opening))
+    structures = _structures(table, watch, opening)
     motion_of = motions_of(table, options, usual)
     with watch.progress(len(table.tests), "tests") as advance:
         found = score_tests(
@@ -123,12 +125,12 @@ def motions_of(
     return lru_cache(KEPT)(partial(_motion, table.folder, motions))
 
 
-def _structures(table: TableOfTests, opening: float | None) -> dict[str, Structure | RockingError]:
+def _structures(table: TableOfTests, watch: Watcher, opening: float) -> dict[str, Structure | RockingError]:
     """Read each structure once; instead of one that cannot be used, its error."""
     structures: dict[str, Structure | RockingError] = {}
     for named in dict.fromkeys(test.structure for test in table.tests):
         try:
-            structure = structure_of(table.folder / named, opening)
+            structure = structure_of(table.folder / named, watch, opening)
             structure.model("nonlinear")
             structures[named] = structure
         except RockingError as error:

@@ -11,7 +11,7 @@ from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, sig
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
-from rocking_cli.names import percent
+from rocking_cli.names import OPENING, percent
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.studies.neighbours import neighbours as neighbours_of
 from rocking_cli.views.view import View
@@ -47,7 +47,7 @@ def shares(
     amplitude_deviation: float = Neighbourhood.amplitude,
     slenderness_deviation: float | None = None,
     restitution_deviation: float | None = None,
-    opening: float | None = None,
+    opening: float = OPENING,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
 ) -> Answer[OutcomeShares]:
@@ -66,8 +66,8 @@ def shares(
     amplitude_deviation, slenderness_deviation, restitution_deviation : float, optional
         Standard deviations of the neighbours: of ln amplitude, of ln slenderness and of restitution; by default those
         of the structure.
-    opening : float, optional
-        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
     watch : Watcher
         Told what was read, and what is doubtful about it.
     **options
@@ -99,7 +99,7 @@ def shares(
     >>> 0.3 < answer.overturned < 0.7
     True
     """
-    ready = structure_of(structure, opening)
+    ready = structure_of(structure, watch, opening)
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     given = Motions.of(motion, options).one(ready.growth, watch)
     model = ready.model("nonlinear")

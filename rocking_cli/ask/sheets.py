@@ -10,7 +10,7 @@ from typing import NamedTuple
 from rocking_cli.ask.given import SiteLike, yaml_of
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.records.opening import original
+from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
 from rocking_cli.io.browser import as_pdf, browser
 from rocking_cli.io.files import check_writable, write_whole
 from rocking_cli.io.json_text import json_text
@@ -32,10 +32,11 @@ class SheetOrigin(NamedTuple):
 
     @classmethod
     def of(cls, call: str, structure: Structure) -> SheetOrigin:
-        """Return the origin of a document that a call of Python writes."""
+        """Return the origin of a document that a command, or a call of Python, writes."""
         file = structure.file
-        content = original(file) if file is not None else yaml_of(structure.mechanism).encode()
-        return cls(call, File(file or structure.name, content))
+        if file is None:
+            return cls(call, File(structure.name, yaml_of(structure.mechanism).encode()))
+        return cls(call, File(file, original(STANDARD_INPUT if file == name_of(STANDARD_INPUT) else file)))
 
 
 class Head(NamedTuple):

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, structure_of, structures_of, told_apart
+from rocking_cli.ask.given import StructureLike, structures_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, each_of, signs_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.names import OPENING
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,7 +38,7 @@ def spectrum(
     polarity: str | int = "1",
     fractiles: Sequence[float] = (0.16, 0.84),
     jobs: int | None = None,
-    opening: float | None = None,
+    opening: float = OPENING,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
 ) -> Answer[list[Spectrum]]:
@@ -63,8 +64,8 @@ def spectrum(
         Fractiles in addition to the median, with several motions.
     jobs : int, optional
         Number of processor cores to use; all by default.
-    opening : float, optional
-        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structures.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
     watch : Watcher
         Shown the progress, and told what was read, what is doubtful about it, and what cannot be used.
     **options
@@ -104,8 +105,8 @@ def spectrum(
     signs, asked = signs_of(polarity), Motions.of(motions, options)
     if not asked:
         raise InputError("no ground motion is given: give `motions`")
-    ready = told_apart(structures_of(each_of(structures), watch, partial(structure_of, opening=opening)))
-    shapes = [study.shape_of(each.mechanism, model, eta, each.file) for each in ready]
+    ready = structures_of(each_of(structures), watch, opening)
+    shapes = [study.shape_of(each, model, eta) for each in ready]
     shapes += [study.blocks_of(alpha, model, eta) for alpha in dict.fromkeys(slenderness)]
     if not shapes:
         raise InputError("no structure given: give structures, or slenderness for blocks")

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import SiteLike, StructureLike, checked, site_of, structure_of
+from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.names import OPENING
 from rocking_cli.text import one_line
 from rocking_cli.views.survey import TOP
 
@@ -36,10 +38,11 @@ def survey(
     *,
     polarity: str | int = "1",
     site: SiteLike | None = None,
-    opening: float | None = None,
+    opening: float = OPENING,
     top: int = TOP,
     threads: int | None = None,
     processes: bool = False,
+    page: str | Path | None = None,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
 ) -> Answer[Survey]:
@@ -57,14 +60,16 @@ def survey(
     site : mapping, str or Path, optional
         Fields of a site file, or the file: each structure is verified by its code and ranked by the ratio of capacity
         to demand.
-    opening : float, optional
-        Largest opening of a joint up to which a history is valid, over D_cr; by default that of each structure.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
     top : int
         Number of structures in the tables of the answer.
     threads : int, optional
         Number of structures at a time; by default, one for each processor.
     processes : bool
         Whether processes share the work of thousands of structures; a script then needs `if __name__ == "__main__"`.
+    page : str or Path, optional
+        File for an HTML page with a plot and all rows in a sortable table.
     watch : Watcher
         Told what was read, how far the work is, what is doubtful, and which of several motions cannot be used.
     **options
@@ -94,15 +99,18 @@ def survey(
     from rocking_cli.studies.survey import survey as study
     from rocking_cli.views.survey import blocks, columns, view
 
-    signs, most, where = signs_of(polarity), checked(opening), site_of(site) if site is not None else None
+    signs, where = signs_of(polarity), site_of(site) if site is not None else None
     entries, given = _entries(structures, watch), Motions.of(motions, options)
     shaken = [each.motion.scaled(each.factor) for each in given.gather(0.0, watch)] if given else []
     count = _processes(len(entries), bool(shaken) or where is not None) if processes else None
     with watch.progress(len(entries), "structures") as advance:
         found = study(
-            entries, shaken, signs, site=where, opening=most, threads=threads, processes=count, progress=advance
+            entries, shaken, signs, site=where, opening=opening, threads=threads, processes=count, progress=advance
         )
     _warn_of_sizes(found, watch)
+    if page is not None and found.rows:
+        file = getattr(entries, "sheet", None)
+        _write_page(Path(page), found, Path(file.file).name if file is not None else "structures", watch)
     return Answer(
         "survey", found, view(found, top), partial(columns, found), partial(_figure, found),
         partial(blocks, found, for_spreadsheets=True),
@@ -142,6 +150,17 @@ def _warn_of_sizes(found: Survey, watch: Watcher) -> None:
         watch.warn(f"{one_line(each.name)}: {each.doubt}")
     if len(doubtful) > FEW:
         watch.warn(f"{len(doubtful) - FEW:,} more structures have doubtful sizes: JSON lists them")
+
+
+def _write_page(place: Path, found: Survey, table: str, watch: Watcher) -> None:
+    from rocking_cli import __version__
+    from rocking_cli.documents.survey import render
+    from rocking_cli.io.files import write_whole
+
+    today = datetime.now(UTC).strftime("%d %B %Y").lstrip("0")
+    page = render(found, table, [f"Written on {today} with rocking-cli {__version__}."]).encode()
+    write_whole(place, lambda stream: stream.write(page))
+    watch.note(f"wrote {place} ({len(page) / 1e6:.2g} MB)")
 
 
 def _figure(found: Survey) -> Figure:

@@ -13,12 +13,12 @@ from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, sig
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
+from rocking_cli.names import OPENING
 from rocking_cli.studies.verification.results import Verification
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.ask.sheets import SheetOrigin
     from rocking_cli.processing.scaled import Scaled
 
 
@@ -32,7 +32,7 @@ def verify(
     polarity: str | int = "1",
     state: str | None = None,
     on_floor: bool = False,
-    opening: float | None = None,
+    opening: float = OPENING,
     sheet: str | Path | None = None,
     language: str = "en",
     project: str | None = None,
@@ -40,7 +40,7 @@ def verify(
     author: str | None = None,
     logo: str | Path | None = None,
     every_step: bool = False,
-    origin: SheetOrigin | None = None,
+    origin: str | None = None,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
 ) -> Answer[Verification]:
@@ -62,8 +62,8 @@ def verify(
         Limit state to which the motions belong, such as `"SLC"`; by default SLV. They are checked against it alone.
     on_floor : bool
         Whether the motions are those of the floor of the site; if not, ground motions are carried to it.
-    opening : float, optional
-        Largest opening of a joint up to which a history is valid, over D_cr; by default that of the structure.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
     sheet : str or Path, optional
         File for the calculation sheet: .html, .docx with an extra package, or .pdf with a browser.
     language : {"en", "it"}
@@ -72,7 +72,7 @@ def verify(
         Entries for the heading of the sheet, and a picture in .png, .jpg or .svg.
     every_step : bool
         Whether the answer lists every line of the calculation.
-    origin : SheetOrigin, optional
+    origin : str, optional
         What the sheet says of how it was made; by default this function and the structure.
     watch : Watcher
         Told what was read and written, how far the work is, and which of several motions cannot be used.
@@ -115,7 +115,7 @@ def verify(
         from rocking_cli.ask import sheets
 
         sheets.check(Path(sheet), known, language)
-    ready = structure_of(structure, opening)
+    ready = structure_of(structure, watch, opening)
     found = study(ready, known, None if control is None else control_at(ready.mechanism, *control))
     chosen: list[Scaled] = []
     if given:
@@ -124,9 +124,9 @@ def verify(
             scaled = [each.motion.scaled(each.factor) for each in chosen]
             found = with_histories(found, ready, known, Histories(scaled, signs, state, on_floor, advance))
     if sheet is not None:
-        origin = origin or sheets.SheetOrigin.of("rocking_cli.verify(...)", ready)
-        title = sheets.Head(project, place, author, logo).block(origin, language)
-        content = sheets.sheet_for(found, known, site, chosen, language, title, origin)
+        source = sheets.SheetOrigin.of(origin or "rocking_cli.verify(...)", ready)
+        title = sheets.Head(project, place, author, logo).block(source, language)
+        content = sheets.sheet_for(found, known, site, chosen, language, title, source)
         sheets.write(Path(sheet), content, found, watch)
     shown = view(found, known.site.name, every_step=every_step)
     return Answer("verification", found, shown, partial(table, found), partial(_figure, found))

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager, nullcontext
-from typing import Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from rocking_cli.errors import RockingError
+
+if TYPE_CHECKING:
+    from rocking_cli.ask.answer import Answer
 
 
 class Advance(Protocol):
@@ -31,12 +34,23 @@ class Watcher:
     def warn(self, text: str) -> None:
         """Take a warning, such as of a record that drifts."""
 
+    def detail(self, text: str) -> None:
+        """Take a detail, for those who ask for it."""
+
     def leave_out(self, error: RockingError) -> None:
         """Take the error of one of several motions or structures: return to go on without it, or raise."""
         raise error
 
+    def take(self, answer: Answer[Any]) -> bool:
+        """Take one of several answers as soon as it is ready; return whether it need not be kept for the end."""
+        return False
+
     def incomplete(self, text: str) -> None:
         """Take a sentence on what the answer lacks, such as motions that could not be simulated."""
+
+    def working(self, what: str) -> AbstractContextManager[None]:
+        """Begin one piece of work that may take long, which `what` names."""
+        return nullcontext()
 
     def progress(
         self, total: int, what: str, *, done: int = 0, failed: int = 0

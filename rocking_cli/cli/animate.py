@@ -7,11 +7,10 @@ from typing import Any
 
 import click
 
-from rocking_cli.cli import inputs, motion_files, options, terminal
+from rocking_cli.cli import motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import POSITIVE
-from rocking_cli.errors import RockingError
 
 # The names of the models stand here again so that `--help` needs no numpy.
 MODELS = ("nonlinear", "linear1", "linear2")
@@ -63,29 +62,11 @@ def command(files: tuple[str, ...], asked: GroundMotions, out: Path, as_json: bo
     from rocking_cli.ask.animate import animate
     from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import keep_apart
-    from rocking_cli.views import animation as views
 
-    motions, watch = asked.motions, OnTerminal()
-    read = [*files, *(str(each.path) for each in motions.records)]
-    keep_apart([("--out", out)], read)
-    structure = inputs.structure(files, asked.records)
-    given, several = motions.gather(structure.growth, watch), motions.count > 1
-    places = motion_files.separate(out, given, several=several)
-    keep_apart([("--out", place) for place in places], read)
-    structure.model(question["model"])  # what cannot be followed is refused before any motion
-    rows = []
-    for motion, place in zip(given, places, strict=True):
-        assert place is not None
-        try:
-            answer = animate(structure, motion, place, polarity=asked.polarity, watch=watch, **question)
-        except RockingError as error:
-            if not several:
-                raise
-            watch.leave_out(error, motion.motion.name)
-            continue
-        rows.append(views.row(answer.film, answer.neighbours))
-        if as_json or not several:
-            terminal.show(answer.view, as_json=as_json)
-    if several and rows and not as_json:
-        terminal.show(views.several(structure, answer.film, rows), as_json=False)
+    motions, watch = asked.motions, OnTerminal(as_json=as_json)
+    keep_apart([("--out", out)], [*files, *(str(each.path) for each in motions.records)])
+    structure = motion_files.structure(files, asked.records)
+    answer = animate(structure, motions, out, polarity=asked.polarity, watch=watch, **question)
+    if not as_json or motions.count == 1:
+        terminal.show(answer.view, as_json=as_json)
     watch.end()

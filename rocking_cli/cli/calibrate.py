@@ -95,7 +95,6 @@ def command(file: str, reading: ReadingOptions, output: Output, **question: Any)
       rocking calibrate block.yaml --tests tests.csv --points 13
     """
     from rocking_cli.ask.calibrate import calibrate
-    from rocking_cli.cli import structures
     from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.studies.experiments.trace import parse_trace
 
@@ -105,9 +104,7 @@ def command(file: str, reading: ReadingOptions, output: Output, **question: Any)
         # Defaults of a user have no effect on a trace, and are no error.
         question |= {name: None for name in ("points", "neighbours") if from_default(name)}
         question["free"] = read_table(question["free"], parse_trace)
-    answer = calibrate(
-        structures.prepared([file]), out=output.out, watch=watch, usual=reading.usual, **question, **reading.options
-    )
+    answer = calibrate(file, out=output.out, watch=watch, usual=reading.usual, **question, **reading.options)
     if output.out is not None:
         watch.note(f"wrote {output.out}")
     replace(output, out=None).show(answer)

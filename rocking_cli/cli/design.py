@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import click
@@ -25,7 +26,7 @@ def _aim(text: str) -> Any:
 
 
 @click.command(cls=Command, short_help="Find the values of a field that meet a requirement.")
-@click.argument("file", required=False, type=click.Path())
+@options.structure
 @click.option(
     "--vary", required=True, type=Parsed("field", _span), metavar="FIELD=LOW:HIGH",
     help="Field to vary and its range: width=0.2m:0.8m, ties.bar.prestress=0:50kN, loads.0.mass=1t:9t.",
@@ -49,7 +50,7 @@ def _aim(text: str) -> Any:
 @options.plot("Plot the metric against the field")
 @options.as_json
 @options.grouped(asked=GroundMotions, output=Output)
-def command(file: str | None, asked: GroundMotions, output: Output, **question: Any) -> None:
+def command(file: str | Path, asked: GroundMotions, output: Output, **question: Any) -> None:
     """Find the least thickness, width or tie force, or the largest load, for which a requirement holds.
 
     The metrics are lambda, phi_cr and p of `rocking equiv`: of the two directions, the smaller phi_cr and lambda and
@@ -74,11 +75,9 @@ def command(file: str | None, asked: GroundMotions, output: Output, **question: 
     """
     asked.check()
     from rocking_cli.ask.design import design
-    from rocking_cli.cli import structures
     from rocking_cli.cli.watching import OnTerminal
 
     motions, watch = asked.motions, OnTerminal()
     output.keep_apart(file, *motions.records)
-    structure = structures.prepared([file] if file else [])
-    output.show(design(structure, motions=motions, polarity=asked.polarity, watch=watch, **question))
+    output.show(design(file, motions=motions, polarity=asked.polarity, watch=watch, **question))
     watch.end()

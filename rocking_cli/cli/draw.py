@@ -12,7 +12,7 @@ from rocking_cli.cli.quantities import NUMBER
 
 
 @click.command(short_help="Draw a structure at rest and displaced, with dimensions.")
-@click.argument("file", required=False, type=click.Path())
+@options.structure
 @click.option(
     "--at", type=NUMBER, metavar="RATIO",
     help="Rotation to draw, as a multiple of phi_cr, or of the kinematic limit if there is no phi_cr.  "
@@ -20,7 +20,7 @@ from rocking_cli.cli.quantities import NUMBER
 )  # fmt: skip
 @options.plot("Output file", "[default: FILE with .png, in this folder; none with --json]")
 @options.as_json
-def command(file: str | None, at: float | None, plot: Path | None, as_json: bool) -> None:
+def command(file: str | Path, at: float | None, plot: Path | None, as_json: bool) -> None:
     """Draw a structure at rest with its dimensions, and displaced in both directions, to scale.
 
     Check the drawing before you trust a number: is this the intended mechanism, and were the dimensions read correctly?
@@ -36,12 +36,12 @@ def command(file: str | None, at: float | None, plot: Path | None, as_json: bool
       rocking draw arch.yaml --at 0.5 --plot arch.svg
     """
     from rocking_cli.ask.draw import draw
-    from rocking_cli.cli import structures
+    from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import check_writable
 
     if plot is None and not as_json:
-        plot = Path(f"{structures.stem(file)}.png")
+        plot = Path(f"{options.stem(file)}.png")
         check_writable(plot)
     output = Output(None, plot, as_json)
     output.keep_apart(file)
-    output.show(draw(structures.prepared([file] if file else []), at=at))
+    output.show(draw(file, at=at, watch=OnTerminal()))

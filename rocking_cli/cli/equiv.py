@@ -10,7 +10,7 @@ from rocking_cli.cli import options, terminal
 
 
 @click.command(short_help="Compute the equivalent rocking block of each structure.")
-@click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path())
+@options.structures
 @options.as_json
 @click.option("--csv", "as_csv", is_flag=True, help="Print comma-separated values, one line per direction.")
 def command(files: tuple[str, ...], as_json: bool, as_csv: bool) -> None:
@@ -32,27 +32,15 @@ def command(files: tuple[str, ...], as_json: bool, as_csv: bool) -> None:
     if as_json and as_csv:
         raise click.UsageError("--json and --csv cannot be combined: choose one.")
     from rocking_cli.ask.equiv import equiv
-    from rocking_cli.cli import structures
     from rocking_cli.cli.watching import OnTerminal
-    from rocking_cli.errors import MechanismError
     from rocking_cli.io.tables import write_csv
 
-    watch, answers = OnTerminal(), []
-    ready = structures.several(files, watch) if files else [structures.prepared(files)]
-    for structure in ready:
-        try:
-            answers.append(equiv(structure, watch=watch))
-        except MechanismError as error:
-            if len(ready) == 1:
-                raise
-            watch.leave_out(error)
-            refused = error
-    if not answers:
-        click.get_current_context().exit(refused.exit_code)
+    watch = OnTerminal(as_json=as_json)
+    answers = equiv(files, watch=watch)
     if as_csv:
         lines = io.BytesIO()
-        write_csv(lines, [answer.columns() for answer in answers], digits=None)
+        write_csv(lines, [answer.columns() for answer in answers.values()], digits=None)
         terminal.result(lines.getvalue().decode().rstrip("\n"))
-    for answer in answers if not as_csv else []:
-        terminal.show(answer.view, as_json=as_json)
+    elif not as_json:
+        terminal.show(answers.view, as_json=False)
     watch.end()

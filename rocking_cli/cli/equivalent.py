@@ -60,11 +60,9 @@ def command(files: tuple[str, ...], output: Output, **question: Any) -> None:
     Source: DeJong and Dimitrakopoulos (2014), Section 6.2 and Fig. 15.
     """
     from rocking_cli.ask.equivalent import equivalent
-    from rocking_cli.cli import structures
     from rocking_cli.cli.watching import OnTerminal
 
     output.keep_apart(*files)
     watch = OnTerminal()
-    ready = [structures.prepared(files[:1]), *structures.several(files[1:], watch)] if len(files) > 1 else []
-    output.show(equivalent(ready, watch=watch, **question))
+    output.show(equivalent(files, watch=watch, **question))
     watch.end()

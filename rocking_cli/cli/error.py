@@ -13,7 +13,7 @@ from rocking_cli.cli.quantities import NUMBER
 
 
 @click.command(cls=Command, short_help="Compute the errors of the equivalent block.")
-@click.argument("file", required=False, type=click.Path())
+@options.structure
 @click.option(
     "--at", type=NUMBER, multiple=True, default=(0.5,), show_default="0.5", metavar="RATIO",
     help="Amplitude phi/phi_cr at which to evaluate the error. Repeatable.",
@@ -25,7 +25,7 @@ from rocking_cli.cli.quantities import NUMBER
 )  # fmt: skip
 @options.plot("Plot the errors against amplitude and acceleration")
 @options.as_json
-def command(file: str | None, at: tuple[float, ...], a: tuple[float, ...], plot: Path | None, as_json: bool) -> None:
+def command(file: str | Path, at: tuple[float, ...], a: tuple[float, ...], plot: Path | None, as_json: bool) -> None:
     """Compute the errors of the equivalent block of a structure, in each direction.
 
     The errors are those of its free rocking period, of its uplift acceleration, and of its overturning time under a
@@ -41,8 +41,8 @@ def command(file: str | None, at: tuple[float, ...], a: tuple[float, ...], plot:
     Source: DeJong and Dimitrakopoulos (2014), Eqs. 24-25.
     """
     from rocking_cli.ask.error import error
-    from rocking_cli.cli import structures
+    from rocking_cli.cli.watching import OnTerminal
 
     output = Output(None, plot, as_json)
     output.keep_apart(file)
-    output.show(error(structures.prepared([file] if file else []), at=at, a=a))
+    output.show(error(file, at=at, a=a, watch=OnTerminal()))

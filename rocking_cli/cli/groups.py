@@ -67,12 +67,12 @@ class Output:
     plot: Path | None
     as_json: bool
 
-    def keep_apart(self, *read: str | Listed | None) -> None:
+    def keep_apart(self, *read: str | Path | Listed | None) -> None:
         """Raise `InputError` if an output would overwrite a file that is read, or a table cannot be written."""
         from rocking_cli.io.files import keep_apart
         from rocking_cli.io.tables import check_table
 
-        files = [str(each.path) if isinstance(each, tuple) else each for each in read]
+        files = [str(each.path if isinstance(each, tuple) else each) for each in read if each is not None]
         keep_apart([("--out", self.out), ("--plot", self.plot)], files)
         check_table(self.out)
 

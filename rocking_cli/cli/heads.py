@@ -14,8 +14,7 @@ from rocking_cli.cli.defaults import from_default
 from rocking_cli.processing.reading_options import CORRECTIONS
 
 if TYPE_CHECKING:
-    from rocking_cli.ask.sheets import SheetOrigin
-    from rocking_cli.structure import Structure
+    pass
 
 LANGUAGES = ("en", "it")
 
@@ -55,18 +54,6 @@ sheet: options.Decorator = options.in_order(
     head,
 )  # fmt: skip
 """The options of a calculation sheet: `sheet`, `language` and those of its head."""
-
-
-def origin(ctx: click.Context, structure: Structure, given: str | None) -> SheetOrigin:
-    """Return what a document says of how it was made: the command, and the file of the structure with its content."""
-    from rocking_cli.ask.sheets import SheetOrigin
-    from rocking_cli.cli import structures
-    from rocking_cli.excitation.records.opening import original
-    from rocking_cli.studies.assessment import File
-
-    if structure.file is None:
-        return SheetOrigin(command_line(ctx), File("default block", structures.DEFAULT.encode()))
-    return SheetOrigin(command_line(ctx), File(structure.file, original(given or structure.file)))
 
 
 def command_line(ctx: click.Context) -> str:

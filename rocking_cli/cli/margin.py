@@ -13,7 +13,7 @@ from rocking_cli.cli.help import Command
 
 
 @click.command(cls=Command, short_help="Compute how close ground motions are to overturning.")
-@click.argument("file", required=False, type=click.Path())
+@options.structure
 @options.ground_motions
 @options.reading
 @options.scaling("1", "-1", "both", default="both")
@@ -22,7 +22,7 @@ from rocking_cli.cli.help import Command
 @options.plot("Plot the shares against the scale factor")
 @options.as_json
 @options.grouped(asked=GroundMotions)
-def command(file: str | None, asked: GroundMotions, plot: Path | None, as_json: bool, **around: Any) -> None:
+def command(file: str | Path, asked: GroundMotions, plot: Path | None, as_json: bool, **around: Any) -> None:
     """Compute how close ground motions are to overturning a structure.
 
     A structure may overturn at one scale factor and survive a larger one, so there is no single critical factor. At
@@ -45,11 +45,9 @@ def command(file: str | None, asked: GroundMotions, plot: Path | None, as_json: 
         raise click.UsageError("No ground motion given: add --record PLACE or --pulse PULSE, each repeatable.")
     asked.check()
     from rocking_cli.ask.margin import margin
-    from rocking_cli.cli import structures
     from rocking_cli.cli.watching import OnTerminal
 
     motions, output, watch = asked.motions, Output(None, plot, as_json), OnTerminal()
     output.keep_apart(file, *motions.records)
-    structure = structures.prepared([file] if file else [])
-    output.show(margin(structure, motions, polarity=asked.polarity, watch=watch, **around))
+    output.show(margin(file, motions, polarity=asked.polarity, watch=watch, **around))
     watch.end()

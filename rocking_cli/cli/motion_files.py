@@ -1,18 +1,11 @@
-"""Files of ground motions on a command line: records in the place of a structure, and the output files of several."""
+"""Files of ground motions on a command line, and records in the place of a structure."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
-
-from rocking_cli.cli.options import STANDARD_OUTPUT
-
-if TYPE_CHECKING:
-    from rocking_cli.processing.scaled import Scaled
 
 
 def check_strays(files: Sequence[str], records: Sequence[str]) -> None:
@@ -26,22 +19,13 @@ def check_strays(files: Sequence[str], records: Sequence[str]) -> None:
         )
 
 
-def separate(path: Path | None, chosen: Sequence[Scaled | None], *, several: bool) -> Sequence[Path | None]:
-    """Return the output file of each motion; of several, `out-accel.csv` and so on for `out.csv`."""
-    if path is None or not several:
-        return [path] * len(chosen)
-    if str(path) == STANDARD_OUTPUT:
-        raise click.UsageError(
-            "--out - works for a single motion only: for several, give a file name; each motion is written to its own "
-            "file based on it."
-        )
-    taken: dict[str, Path] = {}
-    for each in chosen:
-        assert each is not None
-        name = each.motion.name if each.file is None else each.motion.name.replace(each.file.name, each.file.stem, 1)
-        word = "-".join(re.findall(r"[\w.+]+", name)) or "motion"
-        count = 1
-        while (place := f"{path.stem}-{word}{f'-{count}' if count > 1 else ''}{path.suffix}").casefold() in taken:
-            count += 1
-        taken[place.casefold()] = path.with_name(place)
-    return list(taken.values())
+def structure(files: Sequence[str], records: Sequence[str]) -> str | Path:
+    """Return the single structure of a command, by default that of `options.structure`."""
+    check_strays(files, records)
+    if len(files) > 1:
+        raise click.UsageError(f"This command takes one structure, but {len(files)} are given: {', '.join(files)}.")
+    if files:
+        return files[0]
+    from rocking_cli.ask.given import HERE
+
+    return HERE

@@ -14,6 +14,7 @@ from rocking_cli.cli import complete
 from rocking_cli.cli.defaults import from_default
 from rocking_cli.cli.help import RecordOption
 from rocking_cli.cli.quantities import AMPLITUDE, FRACTION, PERIOD, SHARE, Parsed, quantity_of
+from rocking_cli.names import OPENING
 from rocking_cli.processing.reading_options import CORRECTIONS, READING, SCALING, Option
 
 STANDARD_OUTPUT = "-"
@@ -269,15 +270,6 @@ def sized_pulse(*polarities: str, required: bool = False) -> Decorator:
     )
 
 
-def _note_opening(ctx: click.Context, parameter: click.Parameter, value: float | None) -> None:
-    if value is not None and not 0 <= value <= 1000:
-        raise click.BadParameter("must be from 0 to 1000, as a share or in %.", ctx, parameter)
-    ctx.meta[OPENING] = value
-
-
-OPENING = "rocking_cli.opening"
-"""Where the context of a command keeps the limit of the opening of joints."""
-
 around: Decorator = in_order(
     click.option(
         "--neighbours",
@@ -313,9 +305,28 @@ around: Decorator = in_order(
 opening: Decorator = click.option(
     "--opening",
     type=SHARE,
+    default=OPENING,
+    show_default=True,
     metavar="SHARE",
-    expose_value=False,
-    callback=_note_opening,
-    help="Largest opening of a joint up to which a history holds, over D_cr; by default that of the file, or 0.5 %.",
+    help="Largest opening of a joint up to which a history holds, over D_cr.",
 )
-"""The limit of the opening of joints, which `structures.load` gives to every structure of the command."""
+"""The limit of the opening of joints."""
+
+
+def _or_here(ctx: click.Context, parameter: click.Parameter, given: Any) -> Any:
+    if given:
+        return given
+    from rocking_cli.ask.given import HERE
+
+    return (HERE,) if parameter.nargs == -1 else HERE
+
+
+structure: Decorator = click.argument("file", required=False, type=click.Path(), callback=_or_here)
+"""One structure, by default that of the current folder or the default block."""
+structures: Decorator = click.argument("files", metavar="[FILE]...", nargs=-1, type=click.Path(), callback=_or_here)
+"""Structures, by default one as for `structure`."""
+
+
+def stem(structure: str | Path) -> str:
+    """Return the default name of files made from a structure, without suffix."""
+    return "rocking" if structure == STANDARD_OUTPUT else Path(structure).stem

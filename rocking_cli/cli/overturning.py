@@ -67,12 +67,9 @@ def command(files: tuple[str, ...], output: Output, **question: Any) -> None:
     Source: DeJong and Dimitrakopoulos (2014), Section 6; Zhang and Makris (2001).
     """
     from rocking_cli.ask.overturning import overturning
-    from rocking_cli.cli import structures
     from rocking_cli.cli.watching import OnTerminal
 
     output.keep_apart(*files)
     watch = OnTerminal()
-    several = question["compare"]
-    ready = structures.several(files, watch) if several else [structures.prepared([file]) for file in files]
-    output.show(overturning(ready, watch=watch, **question))
+    output.show(overturning(files, watch=watch, **question))
     watch.end()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import click
@@ -39,9 +40,9 @@ def command(file: str | None, as_json: bool, **question: Any) -> None:
     from rocking_cli.ask.pulse import pulse
     from rocking_cli.cli.watching import OnTerminal
 
-    structure, sizes = None, (question["ag"], question["period"])
-    if file is not None or sizes != (None, None) or question["polarity"] != "1":
-        from rocking_cli.cli import structures
+    structure: str | Path | None = file
+    if file is None and (question["ag"] is not None or question["period"] is not None or question["polarity"] != "1"):
+        from rocking_cli.ask.given import HERE
 
-        structure = structures.prepared([file] if file is not None else [])
+        structure = HERE
     terminal.show(pulse(structure, watch=OnTerminal(), **question).view, as_json=as_json)

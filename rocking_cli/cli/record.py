@@ -112,10 +112,6 @@ def command(
     clean = _clean_paths(out, motions, signs, alone=alone) if out is not None else {}
     outputs = [("--plot", plot), ("--spectrum", kept), *(("--out", path) for path in clean.values())]
     keep_apart(outputs, [*(str(each.path) for each in motions.records), more["structure"]])
-    if more["structure"] is not None:
-        from rocking_cli.cli import structures
-
-        more["structure"] = structures.prepared([more["structure"]])
     examined: list[Examined] = []
     for k, one in enumerate(motions.sources):
         try:

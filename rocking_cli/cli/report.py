@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from rocking_cli.cli import complete, heads, inputs, options, terminal
+from rocking_cli.cli import complete, heads, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions
 from rocking_cli.cli.help import Command
 
@@ -54,18 +54,16 @@ def command(
     """
     asked.check()
     from rocking_cli.ask.report import report
-    from rocking_cli.cli import structures
     from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import keep_apart
 
-    file = files[0] if files else None
+    file = motion_files.structure(files, asked.records)
     if out is None and not as_json:
-        out = Path(f"{structures.stem(file)}.html")
+        out = Path(f"{options.stem(file)}.html")
     motions, watch = asked.motions, OnTerminal()
     read = [*files, *(str(each.path) for each in motions.records), question["logo"], question["verify"]]
     keep_apart([("--out", out)], read)
-    structure = inputs.structure(files, asked.records)
-    origin = heads.origin(ctx, structure, file)
-    answer = report(structure, motions, out, polarity=asked.polarity, origin=origin, watch=watch, **question)
+    origin = heads.command_line(ctx)
+    answer = report(file, motions, out, polarity=asked.polarity, origin=origin, watch=watch, **question)
     terminal.show(answer.view, as_json=as_json)
     watch.end()

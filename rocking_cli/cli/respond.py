@@ -3,24 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 from click.core import ParameterSource
 
-from rocking_cli.cli import complete, inputs, motion_files, options, terminal
+from rocking_cli.cli import complete, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, Output
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import INTERVAL, POSITIVE, TAIL, TILT, quantity_of
-from rocking_cli.errors import RockingError
 from rocking_cli.processing.reading_options import ALL
-from rocking_cli.views.view import View, heading
-
-if TYPE_CHECKING:
-    from rocking_cli.ask.ground_motions import Motions
-    from rocking_cli.cli.watching import OnTerminal
-    from rocking_cli.structure import Structure
-    from rocking_cli.views.view import Table
 
 # The models and the pulses that are fitted stand here again so that `--help` needs no numpy.
 NAMES = ("nonlinear", "linear1", "linear2")
@@ -128,61 +120,26 @@ def command(files: tuple[str, ...], asked: GroundMotions, output: Output, **ques
       rocking respond frame.yaml --record accel.csv --with-pulse --plot response.png
     """
     _check(asked, output, question)
-    question["polarity"] = asked.polarity
     from rocking_cli.ask.respond import respond
     from rocking_cli.cli.watching import OnTerminal
 
-    structure, watch = inputs.structure(files, asked.records), OnTerminal()
-    motions = asked.motions
+    watch, motions = OnTerminal(as_json=output.as_json), asked.motions
     around = motions.reading.azimuth == ALL
+    several = motions.count > 1 and not around
     if around and click.get_current_context().get_parameter_source("neighbours") is not ParameterSource.COMMANDLINE:
         question["neighbours"] = 0
     output.keep_apart(*files, *motions.records, question["vertical"])
-    if motions.count > 1 and not around:
-        _show_each(structure, motions, output, question, watch)
-    else:
-        output.show(respond(structure, motions or None, watch=watch, **question))
+    if several:
+        if str(output.out) == options.STANDARD_OUTPUT:
+            raise click.UsageError("--out - works for a single motion only: for several, give a file name.")
+        question |= {"out": output.out, "plot": output.plot}
+    structure = motion_files.structure(files, asked.records)
+    answer = respond(structure, motions or None, polarity=asked.polarity, watch=watch, **question)
+    if not several:
+        output.show(answer)
+    elif not output.as_json:
+        terminal.show(answer.view, as_json=False)
     watch.end()
-
-
-def _show_each(
-    structure: Structure, motions: Motions, output: Output, question: dict[str, Any], watch: OnTerminal
-) -> None:
-    """Ask for the response to each of several motions, and show a row for each in one table."""
-    from rocking_cli.ask.respond import respond, usual_models
-    from rocking_cli.views.several import Several
-
-    if question["vertical"] is not None:
-        raise click.UsageError("--vertical applies to a single motion: give one --record FILE or one --pulse PULSE.")
-    given = motions.gather(structure.growth, watch)
-    outs, plots = (motion_files.separate(path, given, several=True) for path in (output.out, output.plot))
-    places = [Output(out, plot, output.as_json) for out, plot in zip(outs, plots, strict=True)]
-    for place in places:
-        place.keep_apart(structure.file, *motions.records)
-    question["models"] = question["models"] or usual_models(structure, watch)
-    table = Several(structure, question["models"], motions.count)
-    details: list[Table | str] = []
-    with watch.progress(len(given), "motions") as advance:
-        for motion, place in zip(given, places, strict=True):
-            name = motion.motion.name
-            title = f"{heading(structure.mechanism)}, under {name}"
-            try:
-                answer = respond(structure, motion, title=title, watch=watch, **question)
-            except RockingError as error:
-                watch.leave_out(error, name)
-                refused = error
-                continue
-            finally:
-                advance(1)
-            place.write(answer)
-            table.add(answer.result)
-            details += ["", *answer.view.parts] if question["impacts"] else []
-            if output.as_json:
-                terminal.show(answer.view, as_json=True)
-    if watch.left_out == motions.count:
-        click.get_current_context().exit(refused.exit_code)
-    if not output.as_json:
-        terminal.show(View({}, [*table.parts(watch.left_out_names), *details]), as_json=False)
 
 
 def _check(asked: GroundMotions, output: Output, question: Mapping[str, Any]) -> None:

@@ -23,9 +23,8 @@ NAMED = 20  # tests that cannot be simulated, named one by one
 @options.out(".csv", ".parquet", what="Write what is stated of each test (.csv or .parquet).")
 @options.plot("Plot observed against stated shares (a reliability diagram)")
 @options.as_json
-@click.pass_context
 @options.grouped(reading=ReadingOptions, output=Output)
-def command(ctx: click.Context, file: str, reading: ReadingOptions, output: Output, **around: Any) -> None:
+def command(file: str, reading: ReadingOptions, output: Output, **around: Any) -> None:
     """Score the stated shares of overturning against the outcomes of shake-table tests.
 
     Each row of the table is a test: the file of a `structure`, the file of a `record` or a pulse, and whether it
@@ -56,8 +55,7 @@ def command(ctx: click.Context, file: str, reading: ReadingOptions, output: Outp
     output.keep_apart(file)
     watch = OnTerminal()
     table = read_table(file, lambda sheet: parse_tests(sheet, Path()))
-    opening = ctx.meta.get(options.OPENING)
-    answer = score(table, opening=opening, watch=watch, usual=reading.usual, **around, **reading.options)
+    answer = score(table, watch=watch, usual=reading.usual, **around, **reading.options)
     failed = answer.failed
     for each in failed[:NAMED]:
         terminal.error(f"{name_of(file)}:{each.test.line}: {reason(each)}")

@@ -98,14 +98,12 @@ def command(files: tuple[str, ...], asked: GroundMotions, output: Output, **ques
         raise click.UsageError("No ground motion given: add --record PLACE or --pulse PULSE, each repeatable.")
     asked.check()
     motion_files.check_strays(files, asked.records)
+    from rocking_cli.ask.given import HERE
     from rocking_cli.ask.spectrum import spectrum
-    from rocking_cli.cli import structures
     from rocking_cli.cli.watching import OnTerminal
 
     motions, watch = asked.motions, OnTerminal()
     output.keep_apart(*files, *motions.records)
-    ready = structures.several(files, watch)
-    if not files and not question["slenderness"]:
-        ready = [structures.prepared(files)]
-    output.show(spectrum(ready, motions, polarity=asked.polarity, watch=watch, **question))
+    given = files or (() if question["slenderness"] else (HERE,))
+    output.show(spectrum(given, motions, polarity=asked.polarity, watch=watch, **question))
     watch.end()

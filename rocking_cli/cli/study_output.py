@@ -35,43 +35,23 @@ class Tables:
 
 def show_study(answer: StudyAnswer, shown: CurveOutput, tables: Tables = Tables(), *, as_json: bool) -> bool:
     """Show what a study found, write its runs and curves and draw them; return whether it is complete."""
-    from rocking_cli.views.fragility import edges
-    from rocking_cli.views.fragility_table import curve_blocks
+    from rocking_cli.ask.results import curve_blocks, write_nrml
+    from rocking_cli.cli.watching import OnTerminal
 
+    watch = OnTerminal()
     if tables.out is not None:
         assert answer.blocks is not None
         write_table(tables.out, answer.blocks())
     if tables.curves is not None:
-        for name, each in edges(answer.result):
-            if each.curve.kind == "none":
-                terminal.warning(f"{each.structure}, {name} against {each.measure}: no curve: {each.curve.why}")
-        write_table(tables.curves, curve_blocks(answer.result))
+        write_table(tables.curves, curve_blocks(answer, watch))
     if shown.plot is not None:
         _draw_all(Path(shown.plot), answer)
     terminal.show(answer.view, as_json=as_json)
     if shown.nrml is not None:  # last: curves that OpenQuake cannot read have been shown
-        _write_nrml(shown.nrml, answer)
+        write_nrml(answer, shown.nrml, watch)
     if answer.failed:
         terminal.error(f"{answer.failed} runs could not be simulated and are left out of the curves")
     return answer.complete
-
-
-def _write_nrml(out: Path, answer: StudyAnswer) -> None:
-    """Write the curves that OpenQuake can read, and name the others."""
-    from rocking_cli.io.files import write_whole
-    from rocking_cli.studies.fragility.store import Store
-    from rocking_cli.views.nrml import chosen, nrml
-
-    model = chosen(answer.result)
-    for each in model.left_out:
-        terminal.warning(f"not in {out}: {each}")
-    for each in model.doubts:
-        terminal.warning(each)
-    with Store.reading(answer.store) as store:
-        version, study, name = store.fact("versions")["rocking-cli"], store.fact("hash"), store.fact("name")
-    document = nrml(model, name, f"{answer.sentences[0]}; rocking-cli {version}, study {study[:12]}")
-    write_whole(out, lambda stream: stream.write(document))
-    terminal.note(f"wrote {out}")
 
 
 def _draw_all(folder: Path, answer: StudyAnswer) -> None:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -31,7 +30,7 @@ class SurveyOutput:
     plot: Path | None
     as_json: bool
 
-    def show(self, answer: Answer[Survey], file: str) -> None:
+    def show(self, answer: Answer[Survey]) -> None:
         """Write the requested files, and show the answer; a Parquet file has its texts as they are."""
         if self.out is not None:
             from rocking_cli.io.tables import PARQUET
@@ -40,16 +39,6 @@ class SurveyOutput:
             write_table(self.out, blocks(answer.result, for_spreadsheets=self.out.suffix.lower() != PARQUET))
         if self.plot is not None:
             write_picture(self.plot, answer.figure())
-        if self.page is not None:
-            from rocking_cli import __version__
-            from rocking_cli.documents.survey import render
-            from rocking_cli.io.files import write_whole
-
-            today = datetime.now(UTC).strftime("%d %B %Y").lstrip("0")
-            origin = f"Written on {today} with rocking-cli {__version__}."
-            page = render(answer.result, Path(file).name, [origin]).encode()
-            write_whole(self.page, lambda stream: stream.write(page))
-            terminal.note(f"wrote {self.page} ({len(page) / 1e6:.2g} MB)")
         terminal.show(answer.view, as_json=self.as_json)
 
 
@@ -73,7 +62,7 @@ class SurveyOutput:
 @click.pass_context
 @options.grouped(asked=GroundMotions, results=SurveyOutput)
 def command(
-    ctx: click.Context, file: str, asked: GroundMotions, site: str | None, top: int, results: SurveyOutput
+    ctx: click.Context, file: str, asked: GroundMotions, results: SurveyOutput, **question: Any
 ) -> None:  # fmt: skip
     """Rank many structures, one per table row, by vulnerability.
 
@@ -105,19 +94,16 @@ def command(
     from rocking_cli.views.survey import bad_lines
 
     check_table(results.out)
-    motions, watch, opening = asked.motions, OnTerminal(), ctx.meta.get(options.OPENING)
+    motions, watch = asked.motions, OnTerminal()
     written = [("--out", results.out), ("--page", results.page), ("--plot", results.plot)]
     keep_apart(written, [file, *(str(each.path) for each in motions.records)])
     table = read_table(file, lambda sheet: StructureTable(sheet, Path()))
-    answer = survey(
-        table, motions, polarity=asked.polarity, site=site, opening=opening, top=top, processes=True,
-        watch=watch,
-    )  # fmt: skip
+    answer = survey(table, motions, polarity=asked.polarity, processes=True, page=results.page, watch=watch, **question)
     for line in bad_lines(answer.bad, name_of(file), NAMED):
         terminal.error(line)
     if not answer.rows:
         first = answer.bad[0].error
         ctx.exit(first.exit_code if isinstance(first, MechanismError) else InputError.exit_code)
-    results.show(answer, name_of(file))
+    results.show(answer)
     watch.left_out += len(answer.bad)
     watch.end()

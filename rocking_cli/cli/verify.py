@@ -32,7 +32,7 @@ def _point(ctx: click.Context, param: click.Parameter, value: str | None) -> Poi
 
 
 @click.command(cls=Command, short_help="Verify a masonry mechanism by a code, such as NTC 2018.")
-@click.argument("file", metavar="[FILE]", required=False, type=click.Path())
+@options.structure
 @click.option(
     "--site", required=True, type=click.Path(), metavar="SITE.yaml", shell_complete=complete.files,
     help=options.HELP["site"],
@@ -54,7 +54,7 @@ def _point(ctx: click.Context, param: click.Parameter, value: str | None) -> Poi
 @options.grouped(asked=GroundMotions)
 def command(
     ctx: click.Context,
-    file: str | None,
+    file: str | Path,
     site: str,
     asked: GroundMotions,
     sheet: Path | None,
@@ -92,17 +92,15 @@ def command(
         raise click.UsageError("--polarity reverses a ground motion: give --record FILE or --pulse PULSE.")
     heads.check(sheet, question)
     from rocking_cli.ask.verify import verify
-    from rocking_cli.cli import structures
     from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import keep_apart
 
     motions, output, watch = asked.motions, Output(None, plot, as_json), OnTerminal()
     read = [file, site, question["logo"], *(str(each.path) for each in motions.records)]
     keep_apart([("--plot", plot), ("--sheet", sheet)], read)
-    structure = structures.prepared([file] if file else [])
     answer = verify(
-        structure, site, motions=motions, polarity=asked.polarity, sheet=sheet, every_step=terminal.asked("verbose"),
-        origin=heads.origin(ctx, structure, file), watch=watch, **question,
+        file, site, motions=motions, polarity=asked.polarity, sheet=sheet, every_step=terminal.asked("verbose"),
+        origin=heads.command_line(ctx), watch=watch, **question,
     )  # fmt: skip
     output.show(answer)
     watch.end()

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager
-from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from rocking_cli.ask.watcher import Advance, Watcher
 from rocking_cli.cli import terminal
-from rocking_cli.errors import INCOMPLETE, InputError, RockingError
+from rocking_cli.errors import INCOMPLETE, RockingError
+
+if TYPE_CHECKING:
+    from rocking_cli.ask.answer import Answer
 
 
 class OnTerminal(Watcher):
     """Watcher that prints, and goes on without the motions and structures that cannot be used."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, as_json: bool = False) -> None:
         self.left_out = 0
-        self.left_out_names: list[str] = []
+        self._as_json = as_json
 
     def note(self, text: str) -> None:
         """Print a note."""
@@ -27,19 +30,30 @@ class OnTerminal(Watcher):
         """Print a warning."""
         terminal.warning(text)
 
-    def leave_out(self, error: RockingError, name: str = "") -> None:
-        """Print an error, after the name of what it is about, and count it."""
-        terminal.error(f"{name}: {error}" if name else str(error))
+    def leave_out(self, error: RockingError) -> None:
+        """Print an error, and count it."""
+        terminal.error(str(error))
         terminal.debug_traceback(error)
         self.left_out += 1
-        place = error.problems[0].file if isinstance(error, InputError) else None
-        if name or place is not None:
-            self.left_out_names.append(name or Path(str(place)).name)
+
+    def take(self, answer: Answer[Any]) -> bool:
+        """Print one of several answers as JSON, if that is asked for: a line each, as soon as it is ready."""
+        if self._as_json:
+            terminal.show(answer.view, as_json=True)
+        return True
 
     def incomplete(self, text: str) -> None:
         """Print an error, and count it."""
         terminal.error(text)
         self.left_out += 1
+
+    def detail(self, text: str) -> None:
+        """Print a detail, with --verbose."""
+        terminal.detail(text)
+
+    def working(self, what: str) -> AbstractContextManager[None]:
+        """Show a spinner."""
+        return terminal.working(what)
 
     def progress(
         self, total: int, what: str, *, done: int = 0, failed: int = 0

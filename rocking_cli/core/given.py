@@ -24,10 +24,12 @@ from rocking_cli.plugins.errors import blame
 KINEMATIC = "kinematic"
 """What a file says of a rebound that follows from the shape."""
 NEEDS_A_SIDE = "requires one_sided: otherwise the structure rocks through to the other side"
-LATER = {"dampers": "a damper", "inerters": "an inerter"}
-"""What structures will have one day, and is refused by name until then."""
-
-
+REFUSED = {
+    "dampers": "a damper is not in this version: leave it out",
+    "inerters": "an inerter is not in this version: leave it out",
+    "opening": "is a limit of time histories, not of the structure: leave it out, and give `opening` to the analysis",
+}
+"""Keys that are not fields, and why."""
 Eta = Annotated[float, Field(gt=0, le=5)]  # how much it may be at most depends on the structure
 
 
@@ -103,13 +105,6 @@ class Given(Described):
         examples=[{"slenderness": 0.05, "restitution": 0.02}],
         description="how well it is known; `rocking mechanisms uncertainty` lists its fields",
     )
-    opening: float = quantity(
-        "largest opening or slip of a joint up to which a time history holds, over the displacement at phi_cr",
-        example=0.005,
-        default=0.005,
-        ge=0,
-        le=1000,
-    )
     strength: Strength | None = Field(
         None,
         examples=[{"stress": 3e6, "width": 0.05}],
@@ -118,10 +113,10 @@ class Given(Described):
 
     @model_validator(mode="before")
     @classmethod
-    def _not_yet(cls, data: Any) -> Any:
-        for key in LATER:
+    def _no_such_field(cls, data: Any) -> Any:
+        for key, why in REFUSED.items():
             if isinstance(data, dict) and key in data and key not in cls.model_fields:
-                raise geometry_error(key, f"{LATER[key]} is not in this version: leave it out")
+                raise geometry_error(key, why)
         return data
 
     @model_validator(mode="before")

@@ -21,6 +21,7 @@ from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.modes import modes
 from rocking_cli.dynamics.resting import EarlyMechanism, Rest, resting
 from rocking_cli.dynamics.tables import DirectionTable
+from rocking_cli.names import OPENING
 from rocking_cli.text import in_short
 
 Reals = NDArray[np.float64]
@@ -299,7 +300,7 @@ def joints_of(
             struck[d, : len(hit)] = hit
     sliding = {k for k, mode in enumerate(still.modes, plain) if mode.slides}
     return JointTables(
-        labels, contacts, bearing, rows, struck, within, _reach(mechanism, statics), mechanism.opening,
+        labels, contacts, bearing, rows, struck, within, _reach(mechanism, statics), OPENING,
         not any(table.held.size for table in tables), QUICK / p, mechanism.gravity, rest, steady,
         mechanism.asserted(), sliding, redundant, _calm(within, tables, statics),
         len(mechanism.bodies()) == 1, checked_joints(mechanism), still.known,

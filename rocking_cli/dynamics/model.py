@@ -33,6 +33,7 @@ from rocking_cli.dynamics.kernels import (
 )  # fmt: skip
 from rocking_cli.dynamics.tables import DirectionTable, tabulate
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.names import OPENING
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -187,7 +188,11 @@ def check_elements(mechanism: Mechanism) -> None:
 
 
 def build(
-    mechanism: Mechanism, statics: tuple[Statics, Statics], equivalence: Equivalence | None, name: ModelName
+    mechanism: Mechanism,
+    statics: tuple[Statics, Statics],
+    equivalence: Equivalence | None,
+    name: ModelName,
+    opening: float = OPENING,
 ) -> Model:
     """Build one model of a structure.
 
@@ -201,6 +206,8 @@ def build(
         Equivalent blocks, which the linear models require.
     name : {"nonlinear", "linear1", "linear2"}
         Equation of motion.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
 
     Raises
     ------
@@ -224,8 +231,10 @@ def build(
             )
     if name == "nonlinear":
         check_elements(mechanism)
-        columns = [build(each, both_statics(each), None, name) for each in mechanism.columns_alone()]
+        columns = [build(each, both_statics(each), None, name, opening) for each in mechanism.columns_alone()]
         model = replace(nonlinear_model(mechanism, statics, etas), columns=tuple(columns))
+        if model.joints is not None:
+            model = replace(model, joints=replace(model.joints, limit=opening))
     else:
         mechanism.hung.ask("linear models")
         assert equivalence is not None

@@ -19,7 +19,7 @@ from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
-from rocking_cli.structure import Structure, with_restitution
+from rocking_cli.structure import Structure
 from rocking_cli.studies.under_pulses import check_eta, uplift, weakest
 
 Reals = NDArray[np.float64]
@@ -126,7 +126,7 @@ class EquivalentResponses:
 
 
 def equivalent(
-    mechanisms: Sequence[Mechanism],
+    structures: Sequence[Structure],
     pulse: Pulse,
     *,
     polarity: int = 1,
@@ -137,7 +137,7 @@ def equivalent(
 
     Parameters
     ----------
-    mechanisms : sequence of Mechanism
+    structures : sequence of Structure
         The structures.
     pulse : Pulse
         The pulse on the first structure.
@@ -153,6 +153,7 @@ def equivalent(
     InputError
         If a restitution cannot be used, or a structure rocks to one side only, which the linear block does not.
     """
+    mechanisms = [each.mechanism for each in structures]
     for each in mechanisms:
         if not each.rocks_both_ways:
             reason = (
@@ -170,7 +171,7 @@ def equivalent(
     a = pulse.amplitude / (mechanisms[0].gravity * uplift(block, scaling))  # Eq. 40
     omega = 2 * pi / (pulse.period * block.p)  # Eq. 40
     shared = _shared_eta(eta, block, mechanisms[0])
-    members = [_member(each, pulse, a, omega, direction, polarity, scaling, shared) for each in mechanisms]
+    members = [_member(each, pulse, a, omega, direction, polarity, scaling, shared) for each in structures]
     both = replace(block, eta=members[0].eta)
     linear = linear_model("linear block", scaling, (both, both), mechanisms[0].gravity)
     history = follow(linear, ground, tail=_tail(pulse, block.p))
@@ -214,7 +215,7 @@ def _shared_eta(eta: float | Literal["first", "own"], block: EquivalentBlock, fi
 
 
 def _member(
-    mechanism: Mechanism,
+    structure: Structure,
     pulse: Pulse,
     a: float,
     omega: float,
@@ -223,9 +224,10 @@ def _member(
     scaling: ModelName,
     eta: float | None,
 ) -> PulsedStructure:
+    mechanism = structure.mechanism
     block = _equivalence(mechanism)[direction]
     own = replace(pulse, amplitude=a * mechanism.gravity * uplift(block, scaling), period=2 * pi / (omega * block.p))
-    shaken = Structure(mechanism if eta is None else with_restitution(mechanism, eta))
+    shaken = structure if eta is None else structure.with_eta(eta)
     history = engines.follow(shaken, own.sampled().scaled(polarity), tail=_tail(own, block.p))
     return PulsedStructure(
         _name(mechanism), mechanism.mechanism, block, own, block.eta if eta is None else eta, block.eta, history,

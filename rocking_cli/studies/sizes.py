@@ -18,6 +18,7 @@ from rocking_cli.core.strength import Strength
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.io.field_problems import of_arguments
+from rocking_cli.names import OPENING
 from rocking_cli.structure import Structure
 
 ALIKE = 1e-7  # relative difference, of what shape alone decides where it does, that solvers and rounding may make
@@ -37,10 +38,14 @@ class Sizes:
         The equation of motion.
     direction : Direction
         The direction whose frequency parameter p expresses the size: users give sizes as 2 pi/p.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
     """
 
-    def __init__(self, mechanism: Mechanism, model: ModelName, direction: Direction) -> None:
-        self.mechanism, self.model, self.direction = mechanism, model, direction
+    def __init__(
+        self, mechanism: Mechanism, model: ModelName, direction: Direction, opening: float = OPENING
+    ) -> None:  # fmt: skip
+        self.mechanism, self.model, self.direction, self.opening = mechanism, model, direction, opening
         self._known: dict[float, Equivalence] = {}
 
     def at(self, scale: float) -> Mechanism:
@@ -68,7 +73,8 @@ class Sizes:
     def build(self, scale: float) -> Model:
         """Return the model at a scale. Raises as `equivalence`, or if the restitution is not known."""
         mechanism = self.at(scale)
-        return Structure(mechanism.model_copy(update={"name": self._named(scale)})).model(self.model)
+        named = mechanism.model_copy(update={"name": self._named(scale)})
+        return Structure(named, opening=self.opening).model(self.model)
 
     def period(self, scale: float) -> float:
         """Return 2 pi/p at a scale [s]."""

@@ -9,7 +9,7 @@ from math import cos, inf, isclose, nan, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core import Direction
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model, ModelName
@@ -83,21 +83,17 @@ class SpectrumShape:
         return self.period * np.sqrt(scales)
 
 
-def shape_of(
-    mechanism: Mechanism, model: ModelName, eta: float | None = None, file: str | None = None
-) -> SpectrumShape:
+def shape_of(structure: Structure, model: ModelName, eta: float | None = None) -> SpectrumShape:
     """Prepare a structure for scaling to other sizes.
 
     Parameters
     ----------
-    mechanism : Mechanism
+    structure : Structure
         The structure.
     model : {"nonlinear", "linear1", "linear2"}
         The equation of motion.
     eta : float, optional
         Coefficient of restitution of every impact; by default that of the structure.
-    file : str, optional
-        File of the structure, for messages.
 
     Raises
     ------
@@ -105,9 +101,10 @@ def shape_of(
         If the structure does not stand, or its restitution is not known.
     """
     # A full sine pushes both ways alike: the weakest one lifts the direction with the smaller uplift acceleration.
-    found = pulsed_model(Structure(mechanism, file), model, parse_shape("sine"), eta=eta)
+    found = pulsed_model(structure, model, parse_shape("sine"), eta=eta)
+    mechanism = structure.mechanism
     given = mechanism if eta is None else with_restitution(mechanism, eta)
-    sizes = Sizes(given, model, found.direction)
+    sizes = Sizes(given, model, found.direction, structure.opening)
     own = None if sizes.are_alike() else sizes
     return SpectrumShape(
         found, own=own, hung=bool(mechanism.attached), bodies=len(mechanism.bodies()), caution=mechanism.own_caution()
@@ -130,7 +127,7 @@ def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) ->
     if eta is None and own <= 0:
         message = f"blocks of {name}: the kinematics give {own:.3g} for an impact: too stocky to rock the other way"
         raise InputError(Problem(message, hint="give a measured eta in (0, 1], or a smaller slenderness"))
-    return SpectrumShape(shape_of(block, model, eta).structure, slenderness)
+    return SpectrumShape(shape_of(Structure(block), model, eta).structure, slenderness)
 
 
 def usual_sizes(shapes: Sequence[SpectrumShape]) -> tuple[float, float]:

@@ -19,7 +19,8 @@ from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.dynamics.processes import in_processes
 from rocking_cli.errors import InputError, Problem, RockingError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.structure import Structure
+from rocking_cli.names import OPENING
+from rocking_cli.structure import Structure, check_opening
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.studies.verification.check import of_each, verify
 from rocking_cli.studies.verification.site_file import SiteFile
@@ -225,7 +226,7 @@ def survey(
     polarities: Sequence[int] = (1,),
     *,
     site: SiteFile | None = None,
-    opening: float | None = None,
+    opening: float = OPENING,
     threads: int | None = None,
     processes: int | None = None,
     progress: Callable[[int], None] | None = None,
@@ -242,8 +243,8 @@ def survey(
         The polarities, 1, -1 or both; of both, the worse governs.
     site : SiteFile, optional
         The site: each structure is verified by its code.
-    opening : float, optional
-        Largest opening of a joint, over D_cr, up to which a history is known; by default that of each structure.
+    opening : float
+        Largest opening of a joint, over D_cr, up to which a history is known.
     threads : int, optional
         Number of threads; by default one for each processor.
     processes : int, optional
@@ -259,6 +260,7 @@ def survey(
         largest peak, then by uplift acceleration; with a site by the ratio of its code. Structures that rank equal keep
         their order.
     """
+    check_opening(opening)
     results: list[Surveyed | Bad | None] = [None] * len(entries)
     site = of_each(site) if site is not None else None
 
@@ -283,7 +285,7 @@ def _part(
     motions: Sequence[GroundMotion],
     polarities: Sequence[int],
     site: SiteFile | None,
-    opening: float | None,
+    opening: float,
     first: int,
     stop: int,
 ) -> list[Surveyed | Bad | None]:
@@ -294,8 +296,7 @@ def _part(
     for k, place in enumerate(range(first, stop)):
         entry = entries[place]
         try:
-            made = entry.make()
-            ready[k] = Structure(made if opening is None else made.model_copy(update={"opening": opening}))
+            ready[k] = Structure(entry.make(), opening=opening)
             found[k] = _alone(place, entry, ready[k], site)
             if _may_lift(ready[k], motions):
                 models[k] = ready[k].model("nonlinear")

@@ -76,7 +76,7 @@ def with_histories(
     found: ItalianVerification, structure: Structure, site: ItalianSite, asked: Histories
 ) -> ItalianVerification:
     """Return a verification with time histories under a set of records; see `check.with_histories`."""
-    taken = structure if found.mechanism is structure.mechanism else Structure(found.mechanism, structure.file)
+    taken = structure if found.mechanism is structure.mechanism else structure.of(found.mechanism)
     checked = taken.model("nonlinear").joints is not None
     curves = {direction: each.exact for direction, each in found.directions.items()}
     state = _state_of_records(found, asked.state)

@@ -210,7 +210,9 @@ def run(prepared: Prepared, store: Store, workers: Workers, progress: Progress |
     study, plan, given = prepared.study, prepared.plan, prepared.study.definition
     size = unit_size(plan.total - prepared.finished, workers.count)
     checked = SLIDING in given.limit_states
-    to_do = units(plan, study.samples, prepared.motions, given.model, store.finished, size, checked=checked)
+    to_do = units(
+        plan, study.samples, prepared.motions, given.model, store.finished, size, checked=checked, opening=given.opening
+    )
     for rows in workers.map(carry_out, to_do):
         store.add(rows)
         if progress is not None:

@@ -15,6 +15,7 @@ from rocking_cli.core.fields import Name, Restitution
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.errors import InputError
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text
+from rocking_cli.names import OPENING
 from rocking_cli.processing.entry import Entry, FloorItem, Steps
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.processing.reading import Reading, reading_of
@@ -257,8 +258,8 @@ class Definition(Sampling, Common):
         None, min_length=1, description="restitutions, instead of the structures' own"
     )
     model: ModelName = Field("nonlinear", description="equation of motion")
-    opening: float | None = Field(
-        None, ge=0, le=1, description="largest opening of a joint over D_cr, instead of the structures' own"
+    opening: float = Field(
+        OPENING, ge=0, le=1, description="largest opening of a joint over D_cr up to which a run holds"
     )
     limit_states: list[Limit] = Field([UPLIFT, OVERTURNING], min_length=1, description="what is asked of the motions")
     measures: list[Measure] | None = Field(None, min_length=1, description="intensities that curves are fitted over")

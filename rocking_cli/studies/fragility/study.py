@@ -141,6 +141,7 @@ class Study:
             "polarities": list(given.polarities),
             "eta": given.eta,
             "model": given.model,
+            "opening": given.opening,
             "samples": given.samples,
             "sampling": given.sampling,
             "seed": given.seed,
@@ -177,8 +178,7 @@ def load_study(path: str | Path) -> Study:
     path = Path(path)
     document, definition = read_definition(path)
     entries = usable_entries(document, "structures", StructureEntry)
-    opening = definition.opening if definition is not None else None
-    structures = [_structure(document, ("structures", k), path.parent, entry, opening) for k, entry in entries]
+    structures = [_structure(document, ("structures", k), path.parent, entry) for k, entry in entries]
     common = usable_part(Common, {key: document.data[key] for key in Common.model_fields if key in document.data})
     sources = [
         source
@@ -208,9 +208,7 @@ def load_study(path: str | Path) -> Study:
     return Study(definition.name or one_line(path.stem), definition, known, tuple(samples), tuple(sources), hazard)
 
 
-def _structure(
-    document: Document, place: Place, folder: Path, entry: StructureEntry, opening: float | None
-) -> Mechanism | None:  # fmt: skip
+def _structure(document: Document, place: Place, folder: Path, entry: StructureEntry) -> Mechanism | None:
     file = folder / entry.file
     try:
         structure = load_structure(file)
@@ -225,9 +223,7 @@ def _structure(
         if name not in known:
             what = f"is not a number among the fields of {structure.mechanism}"
             document.problems.append(document.at((*place, "vary", name), what, did_you_mean(name, known), key=True))
-    own = {"name": entry.name, "opening": opening}
-    changes = {key: value for key, value in own.items() if value is not None}
-    return structure.model_copy(update=changes) if changes else structure
+    return structure.model_copy(update={"name": entry.name}) if entry.name is not None else structure
 
 
 def _of_file(document: Document, place: Place, name: str, file: Path, error: InputError) -> list[Problem]:

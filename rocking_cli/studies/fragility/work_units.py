@@ -16,6 +16,7 @@ from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.names import OPENING
 from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.fragility.plan import Plan
@@ -114,6 +115,7 @@ def units(
     size: int,
     *,
     checked: bool = False,
+    opening: float = OPENING,
 ) -> Iterator[WorkUnit]:
     """Yield the runs that are still to be simulated, grouped into units, each made when it is needed.
 
@@ -133,8 +135,10 @@ def units(
         Largest number of runs of a unit.
     checked : bool
         Whether the runs are checked for sliding.
+    opening : float
+        Largest opening of a joint up to which a run holds, over D_cr.
     """
-    models = _Models(samples, plan.etas, model)
+    models = _Models(samples, plan.etas, model, opening)
     size = min(size, CHECKED) if checked else size
     waiting: list[Integers] = []
     trials: set[int] = set()
@@ -204,9 +208,9 @@ class _Models:
 
     KEPT = 64
 
-    def __init__(self, samples: Sequence[Sample], etas: Sequence[float], name: ModelName) -> None:
+    def __init__(self, samples: Sequence[Sample], etas: Sequence[float], name: ModelName, opening: float) -> None:
         self.samples = samples
-        self._name = name
+        self._name, self._opening = name, opening
         self._eta = None if isnan(etas[0]) else etas[0]
         self._kept: dict[tuple[object, ...], Model] = {}
 
@@ -218,5 +222,5 @@ class _Models:
                 del self._kept[next(iter(self._kept))]
             # With a restitution that every run replaces, so that none is asked of the kinematics, which may have none.
             given = sample.mechanism if self._eta is None else with_restitution(sample.mechanism, self._eta)
-            self._kept[key] = Structure(given).model(self._name)
+            self._kept[key] = Structure(given, opening=self._opening).model(self._name)
         return self._kept[key]

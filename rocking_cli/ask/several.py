@@ -1,0 +1,143 @@
+"""Several motions or structures in one call: an answer to each, and the files of each."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from math import nan
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from rocking_cli.ask.answer import Answer, MappingAnswer
+from rocking_cli.ask.ground_motions import Motions
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.processing.scaled import Scaled
+from rocking_cli.views.view import Table, View
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.io.tables import Columns
+
+A = TypeVar("A", bound=Answer[Any])
+
+
+class Answers(MappingAnswer[str, A]):
+    """Answers to one question about several motions or structures, by their names; a frame has a row of each in turn.
+
+    `frames` has that of each, by its name. Each has its own plot.
+    """
+
+
+def are_several(given: object, motions: Motions) -> bool:
+    """Return whether several motions are given, or a list of them."""
+    return motions.count > 1 or (isinstance(given, list | tuple) and not isinstance(given, Scaled))
+
+
+def answers(question: str, what: str, found: Mapping[str, A], parts: Sequence[Table | str]) -> Answers[A]:
+    """Return the answers about several of something, such as motions, with the parts of their common view."""
+    view = View(lambda: {name: each.to_dict() for name, each in found.items()}, parts)
+    tables = {name: each.columns for name, each in found.items()}
+    return Answers(question, found, view, partial(_columns, what, found), partial(_no_figure, what), tables=tables)
+
+
+def ask_each(
+    motions: Sequence[Scaled], one: Callable[[Scaled, int], A], watch: Watcher
+) -> tuple[dict[str, A], list[str]]:  # fmt: skip
+    """Ask about each of several motions.
+
+    Parameters
+    ----------
+    motions : sequence of Scaled
+        The motions, each with a name of its own.
+    one : callable
+        Function (motion, place) that asks about one.
+    watch : Watcher
+        Told of each answer, which it may take; and which motions cannot be used.
+
+    Returns
+    -------
+    dict of str to Answer
+        Answers that the watcher did not take.
+    list of str
+        Names of the motions that cannot be used.
+
+    Raises
+    ------
+    RockingError
+        If none can be used: the error of the last one.
+    """
+    found: dict[str, A] = {}
+    left_out: list[str] = []
+    with watch.progress(len(motions), "motions") as advance:
+        for k, motion in enumerate(motions):
+            name = motion.motion.name
+            try:
+                answer = one(motion, k)
+            except RockingError as error:
+                left_out.append(name)
+                named = type(error)(f"{name}: {error}")
+                named.__cause__ = error
+                if len(left_out) == len(motions):
+                    raise named from error
+                watch.leave_out(named)
+            else:
+                if not watch.take(answer):
+                    found[name] = answer
+            advance(1)
+    return found, left_out
+
+
+def places_of(
+    argument: str, file: str | Path | None, motions: Sequence[Scaled], read: Sequence[str | Path | None]
+) -> list[Path | None]:  # fmt: skip
+    """Return the file of each of several motions, `out-accel.csv` and so on for `out.csv` as an `argument`.
+
+    Raises
+    ------
+    InputError
+        If one of them would replace a file that is read.
+    """
+    from rocking_cli.io.files import keep_apart
+
+    if file is None:
+        return [None] * len(motions)
+    path, taken = Path(file), dict[str, Path]()
+    for each in motions:
+        name = each.motion.name if each.file is None else each.motion.name.replace(each.file.name, each.file.stem, 1)
+        word = "-".join(re.findall(r"[\w.+]+", name)) or "motion"
+        count = 1
+        while (place := f"{path.stem}-{word}{f'-{count}' if count > 1 else ''}{path.suffix}").casefold() in taken:
+            count += 1
+        taken[place.casefold()] = path.with_name(place)
+    inputs = [str(each) for each in read if each is not None]
+    keep_apart([(f"`{argument}`", place) for place in taken.values()], inputs)
+    return list(taken.values())
+
+
+def write_files(answer: Answer[Any], table: str | Path | None, plot: str | Path | None, watch: Watcher) -> None:
+    """Write the table and the plot of an answer. Raises `InputError` if that is not possible."""
+    if table is not None:
+        from rocking_cli.io.tables import write_table
+
+        write_table(Path(table), answer.blocks() if answer.blocks is not None else [answer.columns()])
+        watch.note(f"wrote {table}")
+    if plot is not None:
+        answer.plot(plot)
+        watch.note(f"wrote {plot}")
+
+
+def _columns(what: str, found: Mapping[str, Answer[Any]]) -> Columns:
+    tables = {name: dict(each.columns()) for name, each in found.items()}
+    rows = {name: len(next(iter(table.values()))) for name, table in tables.items()}
+    heads = dict.fromkeys(head for table in tables.values() for head in table if head != what)
+    joined: dict[str, list[Any]] = {what: [name for name, count in rows.items() for _ in range(count)]}
+    for head in heads:
+        joined[head] = [value for name, table in tables.items() for value in table.get(head, [nan] * rows[name])]
+    return joined
+
+
+def _no_figure(what: str) -> Figure:
+    raise InputError(Problem(f"several {what}s have no common plot", hint="plot the answer to each"))
