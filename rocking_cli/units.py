@@ -9,6 +9,7 @@ import re
 from collections.abc import Mapping
 from decimal import Context, Decimal
 from difflib import get_close_matches
+from math import isfinite
 
 from rocking_cli.patterns import regex
 from rocking_cli.text import cut, printable
@@ -140,18 +141,22 @@ def read(text: str, unit: str) -> float:
 
 
 def number_of(given: object, unit: str) -> float:
-    """Return a number that is given as such, in `unit`, or as a text with its unit or without. Raises `UnitError`."""
-    if isinstance(given, str):
-        parts = split(given)
-        if not unit and parts is None:
-            raise UnitError(f"{cut(printable(given))!r} is not a number")
-        return float(parts[0]) if parts is not None and not parts[1] else read(given, unit)
-    try:
-        if not isinstance(given, bool):
-            return float(given)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        pass
-    raise UnitError(f"{given!r} is not a number")
+    """Return a finite number that is given as such, in `unit`, or as a text with its unit or without.
+
+    Fractions are in the unit `%`: 0.05, or 5 %. Raises `UnitError`.
+    """
+    if isinstance(given, bool) or not isinstance(given, str | int | float):
+        raise UnitError(f"{given!r} is not a number")
+    shown = repr(cut(printable(given))) if isinstance(given, str) else given
+    parts = split(given) if isinstance(given, str) else (given, "")
+    if parts is None:
+        raise UnitError(f"{shown} is not a number{', with or without a unit' if unit else ''}")
+    if parts[1].lower() not in ("", unit.lower()):
+        return read(str(given), unit)
+    found = float(parts[0]) / (100 if parts[1] == "%" else 1)
+    if not isfinite(found):
+        raise UnitError(f"{shown} is not a finite number")
+    return found
 
 
 def _guess(given: str, known: tuple[str, ...]) -> str:

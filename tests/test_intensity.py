@@ -184,8 +184,8 @@ class TestNames:
             ("Saa(1)", "did you mean Sa"), ("nonsense", "known: Arias, CAV"), ("", "unknown measure"),
             ("Sa(1", "unknown"),
             ("Sa", r"given as Sa\(PERIOD\[, DAMPING\]\), such as Sa\(0.3\)"), ("Sa(1, 2, 3)", "given as"),
-            ("Sa(x)", "'x' is not a valid period"), ("Sa(1 kg)", "is a mass"), ("Sa(0)", "positive number of seconds"),
-            ("Sa(1, 5)", "5 % is 0.05"), ("Sa(1e999)", "is not a valid period"), ("Sa_avg(2:1)", "shorter to a longer"),
+            ("Sa(x)", "'x' is not a number"), ("Sa(1 kg)", "is a mass"), ("Sa(0)", "number of seconds"),
+            ("Sa(1, 5)", "5 % is 0.05"), ("Sa(1e999)", "a finite number"), ("Sa_avg(2:1)", "shorter to a longer"),
             ("PGA(1)", "takes nothing in brackets"),
         ],
     )  # fmt: skip

@@ -8,7 +8,7 @@ from functools import wraps
 from typing import ParamSpec, TypeVar
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.units import UnitError, read, split
+from rocking_cli.units import UnitError, number_of
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -60,6 +60,6 @@ def _problem(name: str, annotation: str, text: str) -> Problem:
 def _number(text: str, unit: str) -> float | None:
     """Return the number of a text, in the unit of its argument; None if it is not one."""
     try:
-        return float(text) if (parts := split(text)) and not parts[1] else read(text, unit)
+        return number_of(text, unit)
     except UnitError:
         return None

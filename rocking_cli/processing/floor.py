@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import isclose, pi
@@ -10,17 +9,15 @@ from typing import Self
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.patterns import regex
 from rocking_cli.processing.oscillator import DAMPING, check_oscillator, finer, relative_response
 from rocking_cli.text import did_you_mean, exact
-from rocking_cli.units import UnitError, read
+from rocking_cli.units import UnitError, number_of
 
 EXAMPLE = "T1=0.4,xi=0.05,z=0.67,gamma=1.29"
 KEYS = ("T1", "xi", "z", "gamma", "n")
 PERIODS = 1e-6, 1e6  # s; beyond them no building answers, and numbers overflow
 MOST = 100.0  # of gamma, which is 1.5 for a uniform building: more is a slip of the keyboard
 STOREYS = 1000
-_NUMBER = regex(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -131,17 +128,8 @@ def _pairs(text: str) -> dict[str, object]:
 
 
 def _value(key: str, given: object) -> float:
-    if isinstance(given, bool) or not isinstance(given, str | int | float):
-        raise _refused(f"{key} must be a number, got {given!r}")
-    text = str(given).strip()
     try:
-        if key == "T1" and not _NUMBER.fullmatch(text):
-            return read(text, "s")
-        percent = key == "xi" and text.endswith("%")
-        plain = text.removesuffix("%").rstrip() if percent else text
-        if not _NUMBER.fullmatch(plain):
-            raise _refused(f"{key} must be a number, got {text!r}")
-        return float(plain) / (100 if percent else 1)
+        return number_of(given, {"T1": "s", "xi": "%"}.get(key, ""))
     except UnitError as error:
         raise _refused(f"{key}: {error.message}", error.hint) from None
 

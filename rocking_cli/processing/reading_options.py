@@ -6,7 +6,6 @@ these declarations. The module imports nothing heavy, so that the help of a comm
 
 import re
 from collections.abc import Callable, Mapping
-from math import isfinite
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, TypedDict
 
 from rocking_cli.errors import InputError, Problem
@@ -60,9 +59,8 @@ def _in(unit: str, name: str, example: str, *, positive: bool = True) -> Callabl
         except UnitError as error:
             before = f"{error.hint}; " if error.hint else ""
             raise _refused(name, error.message, f"{before}give a value such as {example}") from None
-        if not isfinite(number) or (positive and number <= 0):
-            what = "positive" if positive else "a finite number"
-            raise _refused(name, f"{given!r} is not {what}", f"give a value such as {example}")
+        if positive and number <= 0:
+            raise _refused(name, f"{given!r} is not positive", f"give a value such as {example}")
         return number
 
     return parse
@@ -134,13 +132,12 @@ CORRECTIONS = ("baseline", "highpass", "lowpass", "taper", "trim", "resample")
 class ReadingArguments(TypedDict, total=False):
     """Keyword arguments of verbs that read records; the corrections are made in the order in which they are given."""
 
+    # fmt: off - a table: name, types, help, parser, metavar, and its name elsewhere if that is another
     units: Annotated[
-        str | None,
-        Option("Unit of the record, if the file does not state it.", _unit, f"[{'|'.join(UNITS)}]"),
+        str | None, Option("Unit of the record, if the file does not state it.", _unit, f"[{'|'.join(UNITS)}]")
     ]
     dt: Annotated[
-        float | str | None,
-        Option("Sampling interval in s, if the file has no times.", _in("s", "dt", "0.01s"), "TIME"),
+        float | str | None, Option("Sampling interval in s, if the file has no times.", _in("s", "dt", "0.01s"), "TIME")
     ]
     channel: Annotated[
         str | int | None, Option("Channel or column to read: its number, from 1, or its name.", _channel, "CHANNEL")
@@ -149,24 +146,29 @@ class ReadingArguments(TypedDict, total=False):
         Literal["acceleration", "velocity", "displacement"] | None,
         Option(
             "Quantity in the record; velocities and displacements are differentiated.",
-            _quantity, f"[{'|'.join(QUANTITIES)}]", "from",
+            _quantity,
+            f"[{'|'.join(QUANTITIES)}]",
+            "from",
         ),
-    ]  # fmt: skip
+    ]
     gain: Annotated[
         "Gain | str | None",
         Option(
             "Instrument sensitivity: the value of one unit of the record, such as 0.05m/V or 4.7e-6m/s2/count.",
-            _gain, "GAIN",
+            _gain,
+            "GAIN",
         ),
-    ]  # fmt: skip
+    ]
     other: Annotated[
         "str | Path | None",
         Option(
             "Second horizontal component, perpendicular to the record; the two are rotated into the plane of the "
             "structure.",
-            _file, "FILE", "with",
+            _file,
+            "FILE",
+            "with",
         ),
-    ]  # fmt: skip
+    ]
     other_channel: Annotated[
         str | int | None, Option("Channel of the second component in its file.", _channel, "CHANNEL", "with_channel")
     ]
@@ -174,16 +176,18 @@ class ReadingArguments(TypedDict, total=False):
         float | str | None,
         Option(
             "Azimuth of the structure's plane, in degrees: 0 is the record, 90 the second. `respond` also accepts all.",
-            _azimuth, "DEGREES",
+            _azimuth,
+            "DEGREES",
         ),
-    ]  # fmt: skip
+    ]
     baseline: Annotated[
         "Step | str | None",
         Option(
             "Baseline correction: the best-fitting constant, line or parabola is subtracted.",
-            _step("baseline"), "linear|quadratic",
+            _step("baseline"),
+            "linear|quadratic",
         ),
-    ]  # fmt: skip
+    ]
     highpass: Annotated[
         "Step | str | float | None",
         Option("High-pass corner frequency in Hz (Butterworth, zero phase).", _step("highpass"), "HZ"),
@@ -205,33 +209,24 @@ class ReadingArguments(TypedDict, total=False):
         "Floor | str | Mapping[str, Any] | None",
         Option(
             "Floor of a building on which the structure stands: T1=0.4,xi=0.05,z=0.67,gamma=1.29 (or n=3 storeys).",
-            _floor, "T1=...",
+            _floor,
+            "T1=...",
         ),
-    ]  # fmt: skip
+    ]
+    # fmt: on
 
 
 class MotionArguments(ReadingArguments, total=False):
     """Keyword arguments of verbs that read and scale ground motions: those of `ReadingArguments`, and one scale."""
 
-    scale: Annotated[
-        float | str | None,
-        Option(
-            "Scale factor on the motion.  [default: 1]", _in("", "scale", "1.5", positive=False), "FACTOR"
-        ),
-    ]  # fmt: skip
-    target_pga: Annotated[
-        float | str | None,
-        Option(
-            "Peak ground acceleration to scale the motion to, in g.",
-            _in("g", "target_pga", "0.35g"), "ACCELERATION",
-        ),
-    ]  # fmt: skip
-    target_pgv: Annotated[
-        float | str | None,
-        Option(
-            "Peak ground velocity to scale the motion to, in m/s.", _in("m/s", "target_pgv", "0.4m/s"), "VELOCITY"
-        ),
-    ]  # fmt: skip
+    # fmt: off
+    scale: Annotated[float | str | None, Option(
+        "Scale factor on the motion.  [default: 1]", _in("", "scale", "1.5", positive=False), "FACTOR")]
+    target_pga: Annotated[float | str | None, Option(
+        "Peak ground acceleration to scale the motion to, in g.", _in("g", "target_pga", "0.35g"), "ACCELERATION")]
+    target_pgv: Annotated[float | str | None, Option(
+        "Peak ground velocity to scale the motion to, in m/s.", _in("m/s", "target_pgv", "0.4m/s"), "VELOCITY")]
+    # fmt: on
 
 
 def _declared(arguments: type) -> dict[str, Option]:

@@ -6,10 +6,9 @@ zero phase and leave half of the amplitude at the corner frequency.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import floor, inf, isfinite
+from math import floor, inf
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -17,14 +16,12 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.patterns import regex
 from rocking_cli.text import did_you_mean, exact
-from rocking_cli.units import UnitError, read
+from rocking_cli.units import UnitError, number_of
 
 Reals = NDArray[np.float64]
 ORDER = 4
 DEGREES = {"constant": 0, "linear": 1, "quadratic": 2}
-_NUMBER = regex(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -36,8 +33,9 @@ class Step:
 
     @property
     def value(self) -> str:
-        """Parameters of the step, as text."""
-        raise NotImplementedError
+        """Parameter of the step, as text."""
+        (number,) = vars(self).values()
+        return exact(number)
 
     def __str__(self) -> str:
         return f"{self.name} {self.value}"
@@ -96,15 +94,10 @@ class Filter(Step):
     kind: ClassVar[str]
     frequency: float
 
-    @property
-    def value(self) -> str:
-        """Corner frequency in Hz, as text."""
-        return exact(self.frequency)
-
     @classmethod
     def parse(cls, text: str) -> Self:
         """Return the filter with a corner frequency in Hz."""
-        return cls(_positive(cls, re.sub(r"\s*[hH][zZ]\s*$", "", text), "a frequency in Hz"))
+        return cls(_positive(cls, text, "Hz", "a frequency in Hz"))
 
     def of(self, motion: GroundMotion) -> GroundMotion:
         """Return the motion, filtered forwards and backwards."""
@@ -154,17 +147,10 @@ class Taper(Step):
     example = "0.05"
     share: float
 
-    @property
-    def value(self) -> str:
-        """Fraction of the duration at each end, as text."""
-        return exact(self.share)
-
     @classmethod
     def parse(cls, text: str) -> Self:
         """Return the taper for a fraction, a number or a percentage."""
-        plain = text.strip()
-        percent = plain.endswith("%")
-        share = _positive(cls, plain.removesuffix("%"), "a share") / (100 if percent else 1)
+        share = _positive(cls, text, "%", "a share")
         if share > 0.5:
             raise _wrong(cls, f"{text} at each end is more than half of the record", "5 % at each end is 0.05")
         return cls(share)
@@ -196,8 +182,10 @@ class Trim(Step):
         first, colon, last = (part.strip() for part in text.partition(":"))
         if not colon or not (first or last):
             raise _wrong(cls, f"{text!r} is not a range of times")
-        start, end = (_time(cls, each) if each else default for each, default in ((first, 0.0), (last, inf)))
-        if end <= start:
+        start, end = (
+            _number(cls, each, "s", "a time") if each else default for each, default in ((first, 0.0), (last, inf))
+        )
+        if start < 0 or end <= start:
             raise _wrong(cls, f"{text!r} ends before it begins")
         return cls(start, end)
 
@@ -229,15 +217,10 @@ class Resample(Step):
     STEPS: ClassVar[int] = 20_000  # of the ratio of the intervals as a fraction
     LONGEST: ClassVar[int] = 1_000_000  # numerator of that fraction: scipy's filter is twenty times as long
 
-    @property
-    def value(self) -> str:
-        """New sampling interval, as text."""
-        return exact(self.dt)
-
     @classmethod
     def parse(cls, text: str) -> Self:
         """Return the step for an interval, in s or with its unit."""
-        return cls(_time(cls, text))
+        return cls(_positive(cls, text, "s", "a time"))
 
     def of(self, motion: GroundMotion) -> GroundMotion:
         """Return the motion at the new sampling interval."""
@@ -288,15 +271,13 @@ class Factor(Step):
     example = "1.5"
     by: float
 
-    @property
-    def value(self) -> str:
-        """The factor, as text."""
-        return exact(self.by)
-
     @classmethod
     def parse(cls, text: str) -> Self:
         """Return the step for a factor, which must not be zero."""
-        return cls(_number(cls, text, "a factor"))
+        factor = _number(cls, text, "", "a factor")
+        if factor == 0:
+            raise _wrong(cls, f"{text!r} is not a factor")
+        return cls(factor)
 
     def of(self, motion: GroundMotion) -> GroundMotion:
         """Return the multiplied motion."""
@@ -367,8 +348,13 @@ def process(motion: GroundMotion, steps: Sequence[Step], *, accelerations: bool 
     """
     if not steps:
         return motion
-    _check_band(steps)
     from rocking_cli.excitation.doubts import of_samples
+
+    slowest = max((step.frequency for step in steps if isinstance(step, Highpass)), default=0.0)
+    fastest = min((step.frequency for step in steps if isinstance(step, Lowpass)), default=inf)
+    if slowest >= fastest:
+        message = f"{slowest:g} Hz is not below the lowpass of {fastest:g} Hz: nothing is left of the motion"
+        raise InputError(Problem(message, field=Highpass.name, hint="exchange the two frequencies"))
 
     raw = motion
     vertical = process(motion.vertical, of_vertical(steps)) if motion.vertical is not None else None
@@ -384,15 +370,6 @@ def process(motion: GroundMotion, steps: Sequence[Step], *, accelerations: bool 
     return replace(motion, vertical=vertical, ground=ground, remarks=remarks, processing=done)
 
 
-def _check_band(steps: Sequence[Step]) -> None:
-    """Raise `InputError` if high-pass and low-pass filters leave no frequencies between them."""
-    slowest = max((step.frequency for step in steps if isinstance(step, Highpass)), default=None)
-    fastest = min((step.frequency for step in steps if isinstance(step, Lowpass)), default=None)
-    if slowest is not None and fastest is not None and slowest >= fastest:
-        message = f"{slowest:g} Hz is not below the lowpass of {fastest:g} Hz: nothing is left of the motion"
-        raise InputError(Problem(message, field=Highpass.name, hint="exchange the two frequencies"))
-
-
 def of_vertical(steps: Sequence[Step]) -> tuple[Step, ...]:
     """Return the steps for the vertical component, in which a negative factor becomes positive."""
     return tuple(replace(step, by=abs(step.by)) if isinstance(step, Factor) else step for step in steps)
@@ -404,28 +381,17 @@ def _of_samples(motion: GroundMotion, samples: Reals, dt: float | None = None) -
     return replace(motion, acceleration=samples, dt=dt, every=every, points=None)
 
 
-def _number(step: type[Step], text: str, what: str) -> float:
-    plain = text.strip()
-    if not _NUMBER.fullmatch(plain) or not isfinite(float(plain)) or float(plain) == 0:
-        raise _wrong(step, f"{text!r} is not {what}")
-    return float(plain)
-
-
-def _positive(step: type[Step], text: str, what: str) -> float:
-    found = _number(step, text, what)
-    if found < 0:
-        raise _wrong(step, f"{text!r} is not {what} above zero")
-    return found
-
-
-def _time(step: type[Step], text: str) -> float:
-    plain = text.strip()
+def _number(step: type[Step], text: str, unit: str, what: str) -> float:
     try:
-        found = float(plain) if _NUMBER.fullmatch(plain) else read(plain, "s")
+        return number_of(text, unit)
     except UnitError as error:
-        raise _wrong(step, error.message, error.hint) from None
-    if not (isfinite(found) and (found > 0 or (step is Trim and found == 0))):
-        raise _wrong(step, f"{text!r} is not a time above zero")
+        raise _wrong(step, f"{text!r} is not {what}: {error.message}", error.hint) from None
+
+
+def _positive(step: type[Step], text: str, unit: str, what: str) -> float:
+    found = _number(step, text, unit, what)
+    if found <= 0:
+        raise _wrong(step, f"{text!r} is not {what} above zero")
     return found
 
 

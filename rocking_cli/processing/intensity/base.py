@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import MISSING, Field, dataclass, fields
-from math import isfinite, nan
+from math import nan
 from typing import Any, ClassVar
 
 import numpy as np
@@ -15,10 +14,9 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plugins.errors import blame, failed, guard
-from rocking_cli.units import UnitError, read
+from rocking_cli.units import UnitError, number_of
 
 Reals = NDArray[np.float64]
-_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.ASCII | re.DOTALL)
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,17 +227,7 @@ def _sound(measure: Measure, found: object) -> float:
 
 def _read(word: str, field: Field[Any], form: str) -> float:
     """Return a parameter from a text, a number with or without a unit."""
-    unit, found = field.metadata.get("unit", ""), _NUMBER.fullmatch(word.strip())
-    if found is None:
-        raise InputError(f"{word.strip()!r} is not a valid {field.name}: {form}")
-    given = found[2].strip()
     try:
-        if given == "%" == unit:
-            value = float(found[1]) / 100
-        else:
-            value = float(found[1]) if given.lower() in ("", unit.lower()) else read(word.strip(), unit)
+        return number_of(word.strip(), field.metadata.get("unit", ""))
     except UnitError as error:
-        raise InputError(Problem(f"{error.message}: {form}", hint=error.hint)) from None
-    if not isfinite(value):
-        raise InputError(f"{word.strip()!r} is not a valid {field.name}: {form}")
-    return value
+        raise InputError(Problem(f"{field.name}: {error.message}: {form}", hint=error.hint)) from None
