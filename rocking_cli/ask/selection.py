@@ -160,7 +160,7 @@ def _is_of(source: Source, file: Path) -> bool:
 
 
 def _target(given: Any, watch: Watcher) -> TargetSpectrum:
-    from rocking_cli.studies.target_spectrum import TargetSpectrum, doubts, read_target
+    from rocking_cli.studies.target_spectrum import TargetSpectrum, read_target
 
     if isinstance(given, TargetSpectrum):
         return given
@@ -168,8 +168,9 @@ def _target(given: Any, watch: Watcher) -> TargetSpectrum:
         spectrum = read_target(Path(given))
         if spectrum.unit is None:
             watch.note(f"{given} does not name a unit: its ordinates are assumed to be in g")
-        for doubt in doubts(spectrum):
-            watch.warn(doubt)
+        if (highest := spectrum.highest_if_odd) is not None:
+            heading = "name its unit in a heading, such as period [s],Sa [m/s2]"
+            watch.warn(f"{spectrum.name} reaches {highest:.4g} g: {heading}")
         return spectrum
     periods, sa = (np.atleast_1d(np.asarray(each, dtype=np.float64)) for each in given)
     return TargetSpectrum("target", periods, sa)

@@ -119,8 +119,8 @@ class RecordSet:
         Indices of the chosen candidates, increasing.
     factors : ndarray, shape (count,)
         Scale factor of each chosen record.
-    left_out : mapping of int to str
-        Candidates that could not be chosen, with the reason.
+    left_out : mapping of int to (float or None)
+        Candidates that could not be chosen, with the factor that they need; None if they do not move in the band.
     silent : int
         Number of candidates without event, or station: each counts as an event, or station, of its own.
     sets : int
@@ -133,7 +133,7 @@ class RecordSet:
     candidates: Candidates
     chosen: NDArray[np.intp]
     factors: Reals
-    left_out: dict[int, str]
+    left_out: dict[int, float | None]
     silent: int
     sets: int
     exact: bool
@@ -276,23 +276,23 @@ def choose(
     return RecordSet(wanted, found, chosen, own[chosen] * best.common, left_out, silent, sets, exact)
 
 
-def own_factors(found: Candidates, wanted: SetRequirements) -> tuple[Reals, dict[int, str]]:
-    """Return the factor that scales each record to the target on logarithmic average, and why others have none.
+def own_factors(found: Candidates, wanted: SetRequirements) -> tuple[Reals, dict[int, float | None]]:
+    """Return the factor that scales each record to the target on logarithmic average, and what others would need.
 
     All factors are 1 if the records must have the same factor.
     """
-    left_out: dict[int, str] = {}
+    left_out: dict[int, float | None] = {}
     factors = np.ones(len(found.motions))
     low, high = wanted.factors
     for k, spectrum in enumerate(found.spectra):
         if not (spectrum > 0).all():
-            left_out[k] = "it does not move in the band"
+            left_out[k] = None
         elif not wanted.same_factor:
             factor = float(np.exp(log_weights(found.periods) @ np.log(found.target / spectrum)))
             if low * (1 - subsets.SAME) <= factor <= high * (1 + subsets.SAME):
                 factors[k] = min(max(factor, low), high)
             else:
-                left_out[k] = f"it needs a factor of {factor:.3g}, outside {low:g} to {high:g}"
+                left_out[k] = factor
     return factors, left_out
 
 

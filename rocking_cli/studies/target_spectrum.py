@@ -62,6 +62,12 @@ class TargetSpectrum:
         """Return the ordinates at periods [s] within the range of the spectrum [standard gravity]."""
         return np.interp(periods, self.periods, self.sa)
 
+    @property
+    def highest_if_odd(self) -> float | None:
+        """The largest ordinate, if it is more than any code asks for [standard gravity]."""
+        highest = float(self.sa.max())
+        return highest if highest > ODD else None
+
     def check(self, band: tuple[float, float]) -> None:
         """Raise `InputError` if the spectrum does not cover a band of periods [s], or is zero inside it."""
         first, last = float(self.periods[0]), float(self.periods[-1])
@@ -140,14 +146,6 @@ def read_target(path: Path) -> TargetSpectrum:
     if problems:
         raise InputError(*problems[:LISTED])
     return TargetSpectrum(shown, periods, sa * UNITS[unit or "g"] / STANDARD_GRAVITY, unit)
-
-
-def doubts(target: TargetSpectrum) -> list[str]:
-    """Return sentences on what is doubtful about a target spectrum."""
-    highest = float(target.sa.max())
-    if highest <= ODD:
-        return []
-    return [f"{target.name} reaches {highest:.4g} g: name its unit in a heading, such as period [s],Sa [m/s2]"]
 
 
 def _row(file: str, number: int, line: str) -> list[float]:

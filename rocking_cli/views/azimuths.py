@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,19 +14,45 @@ from rocking_cli.io.tables import Columns
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
 from rocking_cli.studies.azimuths import AzimuthResponses, sectors
+from rocking_cli.views.column import Column, of, table_of
 from rocking_cli.views.verdict import unchecked
-from rocking_cli.views.view import ABSENT, Table, View, heading
+from rocking_cli.views.view import Table, View, heading
 
 Flags = NDArray[np.bool_]
+
+
+class _Model(NamedTuple):
+    """The outcomes under one model."""
+
+    name: str
+    azimuths: NDArray[np.float64]
+    each: Outcomes
+
+    @property
+    def highest(self) -> tuple[float, float] | None:
+        """Largest peak of the directions that neither overturn nor are unknown, and its direction [deg]."""
+        standing = np.where(self.each.fell | self.each.unknown, -1.0, self.each.peak_ratio)
+        k = int(standing.argmax())
+        return (float(standing[k]), float(self.azimuths[k])) if standing[k] > 0 else None
+
+
+UNKNOWN = "are\nunknown"
+MODELS: tuple[Column[_Model], ...] = (
+    Column("", of("name"), head="model", text=True),
+    Column("", lambda row: percent(float(row.each.fell.mean())), head="directions\noverturn"),
+    Column("", lambda row: percent(float(row.each.unknown.mean())), head=UNKNOWN),
+    Column("", lambda row: percent(float((~row.each.lifted).mean())), head="do not\nuplift"),
+    Column("", lambda row: row.highest and row.highest[0], head="largest peak\nof the others"),
+    Column("", lambda row: row.highest and row.highest[1], "deg", "at\n[deg]"),
+)
 
 
 def view(structure: Structure, found: AzimuthResponses, doubts: Iterable[str] = ()) -> View:
     """Show the responses of a structure to a pair of components in all directions."""
     one, other = found.names
     unknown = any(each.unknown.any() for each in found.outcomes.values())
-    heads = ["model", "directions\noverturn", *(["are\nunknown"] if unknown else []), "do not\nuplift"]
-    heads += ["largest peak\nof the others", "at\n[deg]"]
-    rows = [[name, *_cells(found, each, unknown=unknown)] for name, each in found.outcomes.items()]
+    models = [column for column in MODELS if unknown or column.head != UNKNOWN]
+    rows = [_Model(name, found.azimuths, each) for name, each in found.outcomes.items()]
     said = (
         f"0 degrees is {one}, 90 degrees {other}; {found.azimuths.size} directions of the structure's plane, one every "
         f"{found.azimuths[1] - found.azimuths[0]:g} degrees. PGA {found.pga.min():.3g} to {found.pga.max():.3g} g, the "
@@ -35,7 +61,7 @@ def view(structure: Structure, found: AzimuthResponses, doubts: Iterable[str] = 
     parts: list[Table | str] = [
         heading(structure.mechanism),
         said,
-        Table("", heads, rows, numbers=range(1, len(heads))),
+        table_of("", models, rows),
     ]
     parts += [f"{name}: {in_words(found, each)}" for name, each in found.outcomes.items()]
     parts += [] if found.checked else [unchecked(why=structure.mechanism.unchecked)]
@@ -70,14 +96,6 @@ def columns(found: AzimuthResponses) -> Columns:
             table[f"overturns {name}"] = each.overturned
             table |= {f"unknown {name}": each.unknown.astype(int), f"known to {name} [s]": each.known_to}
     return table
-
-
-def _cells(found: AzimuthResponses, each: Outcomes, *, unknown: bool) -> list[str]:
-    standing = np.where(each.fell | each.unknown, -1.0, each.peak_ratio)
-    k = int(standing.argmax())
-    peak = [f"{standing[k]:.4g}", f"{found.azimuths[k]:g}"] if standing[k] > 0 else [ABSENT, ABSENT]
-    flags = [each.fell, *([each.unknown] if unknown else []), ~each.lifted]
-    return [*(percent(float(flag.mean())) for flag in flags), *peak]
 
 
 def _data(structure: Structure, found: AzimuthResponses) -> dict[str, Any]:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
-from rocking_cli.views.view import ABSENT, Table, View
+from rocking_cli.views.column import Column, data_of, of, table_of
+from rocking_cli.views.view import View
 
 
 @dataclass(frozen=True)
@@ -38,26 +39,35 @@ class InstalledMeasure:
     source: str | None = None
 
 
+def _power(each: InstalledMeasure) -> str | None:
+    if each.title is None or each.power is None:
+        return None if each.title is None else "computed per run"
+    return {0.0: "nothing", 1.0: "factor"}.get(each.power, f"factor^{each.power:g}")
+
+
+COLUMNS: tuple[Column[InstalledMeasure], ...] = (
+    Column("name", of("name")),
+    Column("form", of("form"), head="measure", text=True),
+    Column("unit", of("unit")),
+    Column("", lambda each: each.unit or None, head="unit", text=True),
+    Column("power", of("power")),
+    Column("", _power, head="scales with", text=True),
+    Column("title", of("title")),
+    Column("", lambda each: each.title or "(cannot be loaded)", head="description", text=True),
+    Column("package", of("package"), head="package", text=True),
+    Column("relative", of("relative")),
+    Column("source", of("source")),
+)
+
+
 def view(found: Sequence[InstalledMeasure]) -> View:
     """Show the installed measures in a table."""
-    rows = [
-        [each.form, each.unit or ABSENT, _power(each), each.title or "(cannot be loaded)", each.package]
-        for each in found
-    ]
     return View(
-        {"measures": [asdict(each) for each in found]},
+        {"measures": [data_of(COLUMNS, each) for each in found]},
         [
-            Table("Intensity measures", ["measure", "unit", "scales with", "description", "package"], rows),
+            table_of("Intensity measures", COLUMNS, found),
             "The column 'scales with' gives the power of the record's scale factor. A measure that does not scale, or "
             "that is computed for every run, cannot define the levels of a study. `rocking record` computes any of "
             "them with `measures`; those relative to a structure also need `structure`.",
         ],
     )
-
-
-def _power(each: InstalledMeasure) -> str:
-    if each.title is None:
-        return ABSENT
-    if each.power is None:
-        return "computed per run"
-    return {0.0: "nothing", 1.0: "factor"}.get(each.power, f"factor^{each.power:g}")

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.record_set import RecordSet
 from rocking_cli.studies.subsets import STARTS
 from rocking_cli.studies.target_spectrum import TargetSpectrum
 from rocking_cli.text import cut
-from rocking_cli.views.view import ABSENT, Table, View, number
+from rocking_cli.views.column import Column, data_of, of, rounded, table_of
+from rocking_cli.views.view import Table, View
 
 NAME = 40  # characters of an event or a station in the table
 LISTED = 5  # records that are left out, in words
@@ -42,9 +44,53 @@ class ShownSet:
     unusable: Sequence[str] = ()
 
 
+class _Chosen(NamedTuple):
+    """A record of a set: its file, the motion as read, and its factor."""
+
+    file: str | None
+    motion: GroundMotion
+    factor: float
+
+
+class _Extreme(NamedTuple):
+    """The smallest or the largest ratio of the mean to the target, its period and its limit."""
+
+    what: str
+    ratio: str
+    period: float
+    limit: float
+
+
+def _shortened(name: str) -> str:
+    return cut(name, NAME)
+
+
+RECORDS: tuple[Column[_Chosen], ...] = (
+    Column("file", of("file")),
+    Column("name", of("motion.name"), head="record", text=True),
+    Column("event", of("motion.origin.event"), head="earthquake", form=_shortened, text=True),
+    Column("station", of("motion.origin.station"), head="station", form=_shortened, text=True),
+    Column("magnitude", of("motion.origin.magnitude")),
+    Column("distance", of("motion.origin.distance"), "km"),
+    Column("factor", of("factor"), head="factor"),
+    Column("pga", lambda row: row.factor * row.motion.of_ground.pga_g, "g", "PGA as\nscaled [g]", rounded(3)),
+)
+ENDS: tuple[Column[_Extreme], ...] = (
+    Column("", of("what"), head="", text=True),
+    Column("", of("ratio"), head="ratio"),
+    Column("", of("period"), "s", "at [s]", rounded(3)),
+    Column("", of("limit"), head="limit"),
+)
+
+
 def view(results: ShownSet) -> View:
     """Show the records and their factors, the range of the mean over the target, and remarks."""
-    parts: list[Table | str] = [_records(results), _range(results), verdict(results), search(results)]
+    parts: list[Table | str] = [
+        table_of(title(results), RECORDS, _chosen(results)),
+        table_of("Mean over the target", ENDS, _ends(results)),
+        verdict(results),
+        search(results),
+    ]
     parts += [said for said in (_left_out(results), _silent(results)) if said]
     return View(lambda: data(results), parts)
 
@@ -65,16 +111,7 @@ def data(results: ShownSet) -> dict[str, Any]:
         "fits": found.fits,
         "least": float(ratio.min()),
         "most": float(ratio.max()),
-        "records": [
-            {
-                "file": results.files[k],
-                "name": found.candidates.motions[k].name,
-                **found.candidates.motions[k].origin._asdict(),
-                "factor": factor,
-                "pga": factor * found.candidates.motions[k].of_ground.pga_g,
-            }
-            for k, factor in _chosen(found)
-        ],
+        "records": [data_of(RECORDS, each) for each in _chosen(results)],
         "spectrum": {
             "period": found.candidates.periods.tolist(),
             "target": found.candidates.target.tolist(),
@@ -83,8 +120,8 @@ def data(results: ShownSet) -> dict[str, Any]:
         "left_out": [
             *({"file": file, "name": None, "why": "it cannot be used"} for file in results.unusable),
             *(
-                {"file": results.files[k], "name": found.candidates.motions[k].name, "why": why}
-                for k, why in found.left_out.items()
+                {"file": results.files[k], "name": found.candidates.motions[k].name, "why": _why(found, needed)}
+                for k, needed in found.left_out.items()
             ),
         ],
         "verdict": verdict(results),
@@ -94,7 +131,7 @@ def data(results: ShownSet) -> dict[str, Any]:
 def table(results: ShownSet) -> dict[str, Sequence[object]]:
     """Return the columns of the spectra: the target, the mean, and each scaled record."""
     found = results.found
-    names = [found.candidates.motions[k].name for k, _ in _chosen(found)]
+    names = [each.motion.name for each in _chosen(results)]
     return {
         "period [s]": found.candidates.periods.tolist(),
         "target Sa [g]": found.candidates.target.tolist(),
@@ -105,8 +142,8 @@ def table(results: ShownSet) -> dict[str, Sequence[object]]:
 
 def title(results: ShownSet) -> str:
     """Return the number of records and the target, as a heading."""
-    found = results.found
-    return f"{_records_in_words(len(found.chosen))} for {results.target.name}"
+    count = len(results.found.chosen)
+    return f"{count} record{'s' * (count > 1)} for {results.target.name}"
 
 
 def verdict(results: ShownSet) -> str:
@@ -143,9 +180,10 @@ def search(results: ShownSet) -> str:
     if found.exact:
         one = "the only possible set" if found.sets == 1 else f"the best of all {found.sets:,} sets"
         return f"This is {one}."
+    count = f"{found.sets:,}" if found.sets < 1e6 else f"{found.sets:.3g}".replace("e+0", "e").replace("e+", "e")
     return (
-        f"This is the best set found by {STARTS} searches among {_large(found.sets)} sets, which are too many to try "
-        "all; another seed may find a better one."
+        f"This is the best set found by {STARTS} searches among {count} sets, which are too many to try all; another "
+        "seed may find a better one."
     )
 
 
@@ -160,39 +198,19 @@ def ratio_in_words(value: float, within: tuple[float, float]) -> str:
     return shown
 
 
-def _chosen(found: RecordSet) -> list[tuple[int, float]]:
-    return list(zip(found.chosen.tolist(), found.factors.tolist(), strict=True))
-
-
-def _records_in_words(count: int) -> str:
-    return "1 record" if count == 1 else f"{count} records"
-
-
-def _records(results: ShownSet) -> Table:
-    """Return a table with a row for each record of the set."""
+def _chosen(results: ShownSet) -> list[_Chosen]:
     found = results.found
-    rows = []
-    for k, factor in _chosen(found):
-        motion = found.candidates.motions[k]
-        event, station = (cut(each or ABSENT, NAME) for each in (motion.origin.event, motion.origin.station))
-        rows.append([motion.name, event, station, f"{factor:.4g}", f"{factor * motion.of_ground.pga_g:.3g}"])
-    heads = ["record", "earthquake", "station", "factor", "PGA as\nscaled [g]"]
-    return Table(title(results), heads, rows, numbers=(3, 4))
+    pairs = zip(found.chosen.tolist(), found.factors.tolist(), strict=True)
+    return [_Chosen(results.files[k], found.candidates.motions[k], factor) for k, factor in pairs]
 
 
-def _range(results: ShownSet) -> Table:
-    """Return a table of the smallest and the largest ratio of the mean to the target."""
-    found = results.found
-    ratio, periods = found.ratio, found.candidates.periods
-    limits = results.found.wanted.within
-    rows = [
-        [what, ratio_in_words(float(ratio[k]), limits), number(float(periods[k]), 3), f"{limit:g}"]
-        for what, k, limit in (
-            ("least", int(ratio.argmin()), limits[0]),
-            ("most", int(ratio.argmax()), limits[1]),
-        )
+def _ends(results: ShownSet) -> list[_Extreme]:
+    """Return the smallest and the largest ratio of the mean to the target."""
+    ratio, periods, limits = results.found.ratio, results.found.candidates.periods, results.found.wanted.within
+    ends = zip(("least", "most"), (int(ratio.argmin()), int(ratio.argmax())), limits, strict=True)
+    return [
+        _Extreme(what, ratio_in_words(float(ratio[k]), limits), float(periods[k]), limit) for what, k, limit in ends
     ]
-    return Table("Mean over the target", ["", "ratio", "at [s]", "limit"], rows, numbers=(1, 2, 3))
 
 
 def _spans(periods: NDArray[np.float64], where: NDArray[np.bool_]) -> str:
@@ -207,18 +225,22 @@ def _spans(periods: NDArray[np.float64], where: NDArray[np.bool_]) -> str:
     return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"
 
 
-def _large(count: int) -> str:
-    return f"{count:,}" if count < 1_000_000 else f"{count:.3g}".replace("e+0", "e").replace("e+", "e")
-
-
 def _left_out(results: ShownSet) -> str:
     """Return a sentence on the records that could not be chosen; empty if there are none."""
     found = results.found
-    said = [f"{found.candidates.motions[k].name}: {why}" for k, why in found.left_out.items()]
+    said = [f"{found.candidates.motions[k].name}: {_why(found, each)}" for k, each in found.left_out.items()]
     if not said:
         return ""
     more = f"; and {len(said) - LISTED} more" if len(said) > LISTED else ""
     return f"Left out: {'; '.join(said[:LISTED])}{more}."
+
+
+def _why(found: RecordSet, needed: float | None) -> str:
+    """Return why a record could not be chosen, by the factor that it needs."""
+    low, high = found.wanted.factors
+    if needed is None:
+        return "it does not move in the band"
+    return f"it needs a factor of {needed:.3g}, outside {low:g} to {high:g}"
 
 
 def _silent(results: ShownSet) -> str:
