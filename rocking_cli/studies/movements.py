@@ -104,19 +104,12 @@ class Watched:
             for direction in self.mechanism.directions
         }
         if history.fell or any(not phi < self._limits[side] for side, phi in reached.items()):
-            before = {direction: self._before(history, direction) for direction in self.mechanism.directions}
-            return Movements(
-                [PointPeak(name, spot.at, nan, nan) for name, spot in self.points.items()],
-                [self._tie(tie, before) for tie in self.ties],
-                self._impact_velocity(history),
-                history.known_to,
-            )
-        return Movements(
-            [self._point(name, spot, reached) for name, spot in self.points.items()],
-            [self._tie(tie, reached) for tie in self.ties],
-            self._impact_velocity(history),
-            history.known_to,
-        )
+            reached = {direction: self._before(history, direction) for direction in self.mechanism.directions}
+            points = [PointPeak(name, spot.at, nan, nan) for name, spot in self.points.items()]
+        else:
+            points = [self._point(name, spot, reached) for name, spot in self.points.items()]
+        ties = [self._tie(tie, reached) for tie in self.ties]
+        return Movements(points, ties, self._impact_velocity(history), history.known_to)
 
     def is_torn_apart(self, history: History) -> bool:
         """Return whether courses of crossing walls slide by more than their overlap, so that they hold nothing."""

@@ -16,15 +16,6 @@ Reals = NDArray[np.float64]
 ROWS = 25_000  # of a block
 
 
-def _names(histories: Mapping[str, History], motion: GroundMotion | None) -> list[str]:
-    """Return the headings: time, ground acceleration, and for each history rotation, rate and ratio, with units."""
-    vertical = ["v_g [g]"] if motion is not None and motion.vertical is not None else []
-    each = [
-        f"{name} {what}" for name, run in histories.items() for what in ("phi [rad]", "phi_dot [rad/s]", _ratio(run))
-    ]
-    return ["t [s]", "a_g [g]", *vertical, *each]
-
-
 def _ratio(run: History) -> str:
     return (
         "phi/limit" if all(run.ends_at_limit) else "phi/(phi_cr or limit)" if any(run.ends_at_limit) else "phi/phi_cr"
@@ -59,31 +50,23 @@ def blocks(
     dict of str to ndarray
         The columns; NaN after overturning, and after the time until which the motion is known.
     """
-    names = _names(histories, motion)
     sheared = "base shear [N]" if watched is None or watched.mechanism.has_mass else "base shear [N/kg]"
-    runs = list(histories.values())
-    longest = max(runs, key=lambda run: run.time.size)
+    longest = max(histories.values(), key=lambda run: run.time.size)
     shaken = motion.kept.acceleration if motion is not None else np.zeros(0)
     for start in range(0, longest.time.size, rows):
         part = slice(start, min(start + rows, longest.time.size))
-        columns = [longest.time[part], _padded(shaken, part, 0.0) / STANDARD_GRAVITY]
-        if motion is not None and motion.vertical is not None:
-            columns.append(_at(longest.time[part], motion.vertical) / STANDARD_GRAVITY)
-        for run in runs:
-            columns += [_padded(values, part, _after(run)) for values in (run.phi, run.rate, run.ratio)]
-        found = dict(zip(names, columns, strict=True))
+        found = {"t [s]": longest.time[part], "a_g [g]": _padded(shaken, part, 0.0) / STANDARD_GRAVITY}
+        if motion is not None and (up := motion.vertical) is not None:  # zero after its last sample
+            found["v_g [g]"] = np.interp(longest.time[part], up.time, up.acceleration, right=0.0) / STANDARD_GRAVITY
+        for name, run in histories.items():
+            series = {"phi [rad]": run.phi, "phi_dot [rad/s]": run.rate, _ratio(run): run.ratio}
+            found |= {f"{name} {what}": _padded(values, part, _after(run)) for what, values in series.items()}
         if watched is not None:
             for name, run in histories.items():
                 phi = _padded(run.phi, part, _after(run))
                 found |= {f"{name} {what}": values for what, values in watched.columns(phi)}
         found |= {f"{name} {sheared}": _padded(values, part, np.nan) for name, values in base_shear.items()}
         yield found
-
-
-def _at(time: Reals, motion: GroundMotion) -> Reals:
-    """Return the acceleration of a component at given times, interpolated; zero after its last sample."""
-    own = np.arange(motion.npts) * motion.dt
-    return np.interp(time, own, motion.acceleration, right=0.0)
 
 
 def _after(run: History) -> float:

@@ -10,18 +10,8 @@ from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import Doubt, GroundMotion, Origin
+from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
-from rocking_cli.excitation.records.layout import (
-    Channel,
-    RecordBlock,
-    choose,
-    column_width,
-    fixed_width,
-    in_si,
-    lines_of,
-    stated_unit,
-    whole_number,
-)
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import magnitude, origin
 from rocking_cli.excitation.records.stated import peak_doubts
@@ -81,8 +71,8 @@ def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read a COSMOS V1 or V2c file; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = lines_of(text)
-    channels: list[Channel] = []
+    lines = layout.lines_of(text)
+    channels: list[layout.Channel] = []
     others: list[str] = []
     index = 0
     while index < len(lines):
@@ -93,14 +83,14 @@ def read(
         index = headers.data
         while index == headers.data or (index < len(lines) and _announced(lines[index])):
             found, index = _history(file, lines, headers, index, units)
-            if isinstance(found, Channel):
+            if isinstance(found, layout.Channel):
                 channels.append(found)
             else:
                 others.append(found)
     if not channels:
         message = f"the file holds no acceleration, but {', '.join(dict.fromkeys(others))}"
         raise InputError(Problem(message, file, hint="give the file with the acceleration"))
-    return choose(file, TITLE, channels, channel, dt)
+    return layout.choose(file, TITLE, channels, channel, dt)
 
 
 def _headers(file: str, lines: Lines, start: int) -> _Headers:
@@ -110,7 +100,7 @@ def _headers(file: str, lines: Lines, start: int) -> _Headers:
         message = "a channel must begin here, with a line that says (Format v01.20 with 13 text lines)"
         hint = "the file may have been cut or edited: download it again"
         raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=hint))
-    count = whole_number(file, start + 1, lines[start], first[3], "number of text lines", most=_TEXT_LINES)
+    count = layout.whole_number(file, start + 1, lines[start], first[3], "number of text lines", most=_TEXT_LINES)
     head, index = read_head(file, lines, _FIELDS, count, start), start + count
     reals, reals_line = np.array([]), start + 1
     for kind in ("integer", "real"):
@@ -121,19 +111,21 @@ def _headers(file: str, lines: Lines, start: int) -> _Headers:
             raise InputError(Problem(message, file, min(index + 1, len(lines)), hint=hint))
         reals_line = index + 1
         line = lines[index]
-        count = whole_number(file, reals_line, line, match[1], f"number of {kind} values", most=_HEADER_VALUES)
-        block = RecordBlock(reals_line, count, _width(file, reals_line, match[3]), reals_line)
-        reals, index, _ = fixed_width(file, lines, block, last=False)
+        count = layout.whole_number(file, reals_line, line, match[1], f"number of {kind} values", most=_HEADER_VALUES)
+        block = layout.RecordBlock(reals_line, count, _width(file, reals_line, match[3]), reals_line)
+        reals, index, _ = layout.fixed_width(file, lines, block, last=False)
     if index < len(lines) and (match := _COMMENTS.match(lines[index])):
         what = "number of comment lines"
-        index += 1 + whole_number(file, index + 1, lines[index], match[1], what, least=0, most=_COMMENT_LINES)
+        index += 1 + layout.whole_number(file, index + 1, lines[index], match[1], what, least=0, most=_COMMENT_LINES)
     code, name = head["station"].groups if "station" in head.items else (None, None)
     distance = reals[_DISTANCE - 1] if reals.size >= _DISTANCE else None
     where = origin(head.text("event"), name or code, magnitude(head.text("hypocentre") or ""), distance)
     return _Headers(head.text("azimuth") or "", reals, reals_line, index, where)
 
 
-def _history(file: str, lines: Lines, headers: _Headers, index: int, units: str | None) -> tuple[Channel | str, int]:
+def _history(
+    file: str, lines: Lines, headers: _Headers, index: int, units: str | None
+) -> tuple[layout.Channel | str, int]:
     """Read the values announced at line index `index`, and return the index after them.
 
     If they are not accelerations, the name of their quantity is returned in place of the channel.
@@ -148,12 +140,12 @@ def _history(file: str, lines: Lines, headers: _Headers, index: int, units: str 
             message = "the line that announces the values is not understood"
             hint = "it must be such as 7000 acceleration pts, approx 70 secs, units=cm/sec2(04),Format=(8F10.5)"
         raise InputError(Problem(message, file, min(line_number, len(lines)), excerpt=line.strip()[:100], hint=hint))
-    count = whole_number(file, line_number, line, match[1], "number of points", least=2)
-    block = RecordBlock(line_number, count, _width(file, line_number, match[5]), line_number)
-    values, end, remarks = fixed_width(file, lines, block)
+    count = layout.whole_number(file, line_number, line, match[1], "number of points", least=2)
+    block = layout.RecordBlock(line_number, count, _width(file, line_number, match[5]), line_number)
+    values, end, remarks = layout.fixed_width(file, lines, block)
     if not match[2].lower().startswith("acc"):
         return match[2], end
-    unit = stated_unit(file, line_number, match[4].strip(), units)
+    unit = layout.stated_unit(file, line_number, match[4].strip(), units)
     code = _CODE.search(line)
     coded = _UNIT_CODES.get(int(code[1])) if code else None
     if coded is not None and coded != unit:
@@ -165,8 +157,8 @@ def _history(file: str, lines: Lines, headers: _Headers, index: int, units: str 
     mark = _END.match(lines[end]) if end < len(lines) else None
     name = mark[1] if mark and not mark[1].isdecimal() else headers.name
     remarks += _peak(headers, values, own, unit)
-    return Channel(
-        name, own, in_si(values, unit), unit, headers.reals_line, remarks=remarks, origin=headers.origin
+    return layout.Channel(
+        name, own, layout.in_si(values, unit), unit, headers.reals_line, remarks=remarks, origin=headers.origin
     ), end
 
 
@@ -207,4 +199,4 @@ def _width(file: str, line_number: int, form: str) -> int:
     match = _WIDTH.match(form)
     if match is None:
         raise InputError(Problem(f"a format such as (8F10.5) is needed, this is {form}", file, line_number))
-    return column_width(file, line_number, form, match[1])
+    return layout.column_width(file, line_number, form, match[1])

@@ -7,19 +7,7 @@ import re
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.records import csmip_v1
-from rocking_cli.excitation.records.layout import (
-    Channel,
-    RecordBlock,
-    choose,
-    column_width,
-    fixed_width,
-    in_si,
-    lines_of,
-    number,
-    stated_unit,
-    whole_number,
-)
+from rocking_cli.excitation.records import csmip_v1, layout
 from rocking_cli.excitation.records.origins import of_csmip
 from rocking_cli.excitation.records.stated import peak_doubts
 from rocking_cli.patterns import regex
@@ -47,7 +35,7 @@ def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read a CSMIP V2 file; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = lines_of(text)
+    lines = layout.lines_of(text)
     channels = []
     name = ""
     peak: tuple[int, str, str] | None = None
@@ -65,20 +53,22 @@ def read(
         data = _DATA.match(line)
         if data is None:
             continue
-        count = whole_number(file, index, line, data[1], "number of points", least=2)
-        own = number(file, index, line, data[3], "sample interval")
+        count = layout.whole_number(file, index, line, data[1], "number of points", least=2)
+        own = layout.number(file, index, line, data[3], "sample interval")
         form = _FORMAT.search(data[4])
-        width = column_width(file, index, line, form[1]) if form else _WIDTH
-        block = RecordBlock(index, count, width, index)
-        values, index, remarks = fixed_width(file, lines, block)
+        width = layout.column_width(file, index, line, form[1]) if form else _WIDTH
+        block = layout.RecordBlock(index, count, width, index)
+        values, index, remarks = layout.fixed_width(file, lines, block)
         if data[2].upper() == "ACCEL":
             spelling = _UNIT.search(data[4])
-            unit = stated_unit(file, block.header_line, spelling[1] if spelling else "", units)
+            unit = layout.stated_unit(file, block.header_line, spelling[1] if spelling else "", units)
             if peak is not None:
-                remarks += peak_doubts(100 * in_si(values, unit), own, "cm/s2", *peak)
+                remarks += peak_doubts(100 * layout.in_si(values, unit), own, "cm/s2", *peak)
             origin = of_csmip(lines[start : min(start + _TEXT_LINES, block.header_line)])
             line_number = block.header_line
-            channels.append(Channel(name, own, in_si(values, unit), unit, line_number, remarks=remarks, origin=origin))
+            channels.append(
+                layout.Channel(name, own, layout.in_si(values, unit), unit, line_number, remarks=remarks, origin=origin)
+            )
             peak = None
         elif channels and not math.isclose(own, channels[-1].dt):
             message = f"the interval is {own:g} s, but that of its accelerations {channels[-1].dt:g} s"
@@ -87,4 +77,4 @@ def read(
     if not channels:
         message = "the file holds no acceleration, only velocity or displacement"
         raise InputError(Problem(message, file, hint="give the file with the corrected acceleration"))
-    return choose(file, TITLE, channels, channel, dt)
+    return layout.choose(file, TITLE, channels, channel, dt)

@@ -7,20 +7,8 @@ from dataclasses import replace
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
-from rocking_cli.excitation.records.layout import (
-    Channel,
-    RecordBlock,
-    choose,
-    column_width,
-    fixed_width,
-    in_si,
-    lines_of,
-    number,
-    old_unit,
-    straight_lines,
-    whole_number,
-)
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import of_csmip
 from rocking_cli.excitation.records.stated import length_doubts
@@ -67,8 +55,8 @@ def read(
 
     The points of a digitised film are interpolated to a constant interval by `layout.straight_lines`.
     """
-    lines = lines_of(text)
-    channels: list[Channel] = []
+    lines = layout.lines_of(text)
+    channels: list[layout.Channel] = []
     start = 0
     while start < len(lines):
         if lines[start].strip() and not lines[start].startswith("/&"):
@@ -77,10 +65,10 @@ def read(
             channels.append(replace(found, origin=of_csmip(head)))
         else:
             start += 1
-    return choose(file, TITLE, channels, channel, dt)
+    return layout.choose(file, TITLE, channels, channel, dt)
 
 
-def _channel(file: str, lines: Lines, start: int, units: str | None) -> tuple[Channel, int]:
+def _channel(file: str, lines: Lines, start: int, units: str | None) -> tuple[layout.Channel, int]:
     """Read the channel that begins at line index `start`; return it and the index after it."""
     if not FIRST.match(lines[start]):
         message = "a channel must begin with the line UNCORRECTED ACCELEROGRAM DATA here"
@@ -90,7 +78,7 @@ def _channel(file: str, lines: Lines, start: int, units: str | None) -> tuple[Ch
     name = head.text("channel") or ""
     index = start + _TEXT_LINES
     for size, width in (_INTEGERS, _REALS):
-        _, index, _ = fixed_width(file, lines, RecordBlock(index, size, width, start + 1), last=False)
+        _, index, _ = layout.fixed_width(file, lines, layout.RecordBlock(index, size, width, start + 1), last=False)
     line = lines[index] if index < len(lines) else ""
     for pattern in _EVENLY:
         if match := pattern.match(line):
@@ -106,29 +94,29 @@ def _channel(file: str, lines: Lines, start: int, units: str | None) -> tuple[Ch
 
 def _evenly(
     file: str, lines: Lines, index: int, match: re.Match[str], name: str, units: str | None
-) -> tuple[Channel, int]:
+) -> tuple[layout.Channel, int]:
     """Read samples at a constant interval, announced at line index `index`; return them and the index after them."""
     line_number, line = index + 1, lines[index]
     if not match[2].lower().startswith("accel"):
         message = f"the values are {match[2]} data, not accelerations"
         raise InputError(Problem(message, file, line_number, excerpt=line.strip()[:100]))
-    count = whole_number(file, line_number, line, match[1], "number of points", least=2)
+    count = layout.whole_number(file, line_number, line, match[1], "number of points", least=2)
     if "dt" in match.re.groupindex:
-        own = number(file, line_number, line, match["dt"], "sample interval")
+        own = layout.number(file, line_number, line, match["dt"], "sample interval")
     else:
-        own = 1 / number(file, line_number, line, match["rate"], "number of points per second")
+        own = 1 / layout.number(file, line_number, line, match["rate"], "number of points per second")
     stated, form = _STATED.search(match[4]), _FORMAT.search(match[4])
-    unit = old_unit(file, line_number, stated[1] if stated else "", units)
-    width = column_width(file, line_number, line, form[1]) if form else _VALUES
-    values, end, remarks = fixed_width(file, lines, RecordBlock(line_number, count, width, line_number))
-    return Channel(name, own, in_si(values, unit), unit, line_number, remarks=remarks), end
+    unit = layout.old_unit(file, line_number, stated[1] if stated else "", units)
+    width = layout.column_width(file, line_number, line, form[1]) if form else _VALUES
+    values, end, remarks = layout.fixed_width(file, lines, layout.RecordBlock(line_number, count, width, line_number))
+    return layout.Channel(name, own, layout.in_si(values, unit), unit, line_number, remarks=remarks), end
 
 
-def _film(file: str, lines: Lines, start: int, index: int, name: str, units: str | None) -> tuple[Channel, int]:
+def _film(file: str, lines: Lines, start: int, index: int, name: str, units: str | None) -> tuple[layout.Channel, int]:
     """Read pairs of time and acceleration from line index `index` on; return them and the index after them."""
     head = read_head(file, lines, _OF_FILM, _TEXT_LINES, start)
-    unit = old_unit(file, head["unit"].line_number, head["unit"].groups[0], units)
-    block = RecordBlock(index, 2 * head.count, _PAIRS, head["count"].line_number)
-    pairs, end, remarks = fixed_width(file, lines, block)
-    own, values, points = straight_lines(file, pairs, f"lines {index + 1} to {end}")
-    return Channel(name, own, in_si(values, unit), unit, points=points, remarks=remarks), end
+    unit = layout.old_unit(file, head["unit"].line_number, head["unit"].groups[0], units)
+    block = layout.RecordBlock(index, 2 * head.count, _PAIRS, head["count"].line_number)
+    pairs, end, remarks = layout.fixed_width(file, lines, block)
+    own, values, points = layout.straight_lines(file, pairs, f"lines {index + 1} to {end}")
+    return layout.Channel(name, own, layout.in_si(values, unit), unit, points=points, remarks=remarks), end

@@ -7,17 +7,7 @@ from collections.abc import Mapping
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion, Origin
-from rocking_cli.excitation.records.layout import (
-    Channel,
-    RecordBlock,
-    choose,
-    fixed_width,
-    in_si,
-    lines_of,
-    number,
-    stated_unit,
-    whole_number,
-)
+from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.origins import origin
 from rocking_cli.excitation.records.stated import length_doubts, peak_doubts
 from rocking_cli.patterns import regex
@@ -39,7 +29,7 @@ def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read an ESM ASCII file; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = lines_of(text)
+    lines = layout.lines_of(text)
     header: dict[str, tuple[int, str]] = {}
     start = 0
     while start < len(lines) and (match := _KEY.match(lines[start])):
@@ -57,21 +47,23 @@ def read(
             excerpt = lines[start].strip()[:100] if start < len(lines) else None
             raise InputError(Problem(message, file, min(start + 1, len(lines)), field=key, excerpt=excerpt))
     unit_line, spelling = header.get("UNITS", (start, ""))
-    unit = stated_unit(file, unit_line, spelling, units)
+    unit = layout.stated_unit(file, unit_line, spelling, units)
     dt_line, dt_text = header["SAMPLING_INTERVAL_S"]
-    own = number(file, dt_line, lines[dt_line - 1], dt_text, "sampling interval")
+    own = layout.number(file, dt_line, lines[dt_line - 1], dt_text, "sampling interval")
     count_line, count_text = header["NDATA"]
-    count = whole_number(file, count_line, lines[count_line - 1], count_text, "number of points", least=2)
-    values, _, remarks = fixed_width(file, lines, RecordBlock(start, count, None, count_line))
+    count = layout.whole_number(file, count_line, lines[count_line - 1], count_text, "number of points", least=2)
+    values, _, remarks = layout.fixed_width(file, lines, layout.RecordBlock(start, count, None, count_line))
     peak_line, peak = header.get("PGA_CM/S^2", (0, ""))
     remarks += peak_doubts(
-        100 * in_si(values, unit), own, "cm/s2", peak_line, peak, header.get("TIME_PGA_S", (0, ""))[1]
+        100 * layout.in_si(values, unit), own, "cm/s2", peak_line, peak, header.get("TIME_PGA_S", (0, ""))[1]
     )
     length_line, length = header.get("DURATION_S", (0, ""))
     remarks += length_doubts(count * own, length_line, length, own)
     _, stream = header.get("STREAM", (0, ""))
-    found = Channel(stream, own, in_si(values, unit), unit, dt_line, remarks=remarks, origin=_origin(header))
-    return choose(file, TITLE, [found], channel, dt)
+    found = layout.Channel(
+        stream, own, layout.in_si(values, unit), unit, dt_line, remarks=remarks, origin=_origin(header)
+    )
+    return layout.choose(file, TITLE, [found], channel, dt)
 
 
 def _origin(header: Mapping[str, tuple[int, str]]) -> Origin:

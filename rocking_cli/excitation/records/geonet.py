@@ -4,16 +4,8 @@ from __future__ import annotations
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
-from rocking_cli.excitation.records.layout import (
-    Channel,
-    RecordBlock,
-    choose,
-    fixed_width,
-    in_si,
-    lines_of,
-    stated_unit,
-)
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.stated import length_doubts, peak_doubts
 from rocking_cli.patterns import regex
@@ -51,16 +43,16 @@ def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read a GeoNet V2A file; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = lines_of(text)
+    lines = layout.lines_of(text)
     channels = []
     start = 0
     while start < len(lines) and lines[start].strip():
         found, start = _component(file, lines, start, units)
         channels.append(found)
-    return choose(file, TITLE, channels, channel, dt)
+    return layout.choose(file, TITLE, channels, channel, dt)
 
 
-def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[Channel, int]:
+def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[layout.Channel, int]:
     """Read one component from line index `start` on; return it and the index after it."""
     if not _FIRST.match(lines[start]):
         message = "a component must begin with the line Corrected accelerogram here"
@@ -68,7 +60,7 @@ def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[
         raise InputError(Problem(message, file, start + 1, excerpt=lines[start].strip()[:100], hint=hint))
     head = read_head(file, lines, _FIELDS, _TEXT_LINES, start)
     unit_line, _, (peak, spelling) = head["peak"]
-    unit = stated_unit(file, unit_line, spelling, units)
+    unit = layout.stated_unit(file, unit_line, spelling, units)
     own, npts, count_line = head.number("dt"), head.count, head["count"].line_number
 
     # The fourth line of numbers says how long each of the three histories is; the last two may be left out.
@@ -84,12 +76,16 @@ def _component(file: str, lines: Lines, start: int, units: str | None) -> tuple[
             Problem(message, file, sizes_line + 1, hint="the file may have been edited: download it again")
         )
     end = start + _TEXT_LINES + _NUMBER_LINES
-    values, end, remarks = fixed_width(file, lines, RecordBlock(end, npts, _WIDTH, count_line), last=False)
+    values, end, remarks = layout.fixed_width(
+        file, lines, layout.RecordBlock(end, npts, _WIDTH, count_line), last=False
+    )
     for size in sizes[1:]:  # velocity and displacement
-        _, end, _ = fixed_width(file, lines, RecordBlock(end, size, _WIDTH, sizes_line + 1), last=False)
+        _, end, _ = layout.fixed_width(file, lines, layout.RecordBlock(end, size, _WIDTH, sizes_line + 1), last=False)
     # Not the time of the peak: that does not count the taper which was put in front of the values.
     remarks += peak_doubts(values, own, unit, unit_line, peak)
     if (duration := head.items.get("duration")) and duration.line_number == count_line:
         remarks += length_doubts((npts - 1) * own, count_line, duration.groups[0], own)
-    acceleration, name = in_si(values, unit), head["component"].groups[0]
-    return Channel(name, own, acceleration, unit, head["dt"].line_number, remarks=remarks, origin=head.origin), end
+    acceleration, name = layout.in_si(values, unit), head["component"].groups[0]
+    return layout.Channel(
+        name, own, acceleration, unit, head["dt"].line_number, remarks=remarks, origin=head.origin
+    ), end

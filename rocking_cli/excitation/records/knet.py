@@ -6,17 +6,8 @@ import numpy as np
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
-from rocking_cli.excitation.records.layout import (
-    Channel,
-    RecordBlock,
-    choose,
-    fixed_width,
-    in_si,
-    lines_of,
-    stated_unit,
-    whole_number,
-)
 from rocking_cli.excitation.records.stated import peak_doubts
 from rocking_cli.excitation.records.text import sensible
 from rocking_cli.patterns import regex
@@ -55,23 +46,25 @@ def read(
 
     Arguments, result and errors are those of `registry.Reader.read`.
     """
-    lines = lines_of(text)
+    lines = layout.lines_of(text)
     head = read_head(file, lines, _FIELDS, _HEADER_LINES)
     scale_line, scale_text, (_, spelling, _) = head["scale"]
     length_line, length_text, _ = head["duration"]
-    unit = stated_unit(file, scale_line, spelling, units)
+    unit = layout.stated_unit(file, scale_line, spelling, units)
     rate, length = head.number("rate"), head.number("duration")
     full, counts = head.number("scale"), head.number("scale", 2)
     # The format has no number of points: it is the rate times the duration.
-    count = whole_number(file, length_line, length_text, f"{round(rate * length)}", "number of points", least=2)
-    values, _, remarks = fixed_width(file, lines, RecordBlock(_HEADER_LINES, count, _WIDTH, length_line, after=_AFTER))
+    count = layout.whole_number(file, length_line, length_text, f"{round(rate * length)}", "number of points", least=2)
+    values, _, remarks = layout.fixed_width(
+        file, lines, layout.RecordBlock(_HEADER_LINES, count, _WIDTH, length_line, after=_AFTER)
+    )
     if not sensible(float(np.abs(values).max()) * (full / counts)):
         message = "the scale factor makes accelerations beyond all measure"
         raise InputError(Problem(message, file, scale_line, excerpt=scale_text.strip()[:100]))
     scaled = (values - values.mean()) * (full / counts)
-    acceleration = in_si(scaled, unit)
+    acceleration = layout.in_si(scaled, unit)
     if peak := head.items.get("peak"):
         remarks += peak_doubts(scaled, 1 / rate, spelling, peak.line_number, *peak.groups)
     name, rate_line = head.text("direction") or "", head["rate"].line_number
-    found = Channel(name, 1 / rate, acceleration, unit, rate_line, remarks=remarks, origin=head.origin)
-    return choose(file, TITLE, [found], channel, dt)
+    found = layout.Channel(name, 1 / rate, acceleration, unit, rate_line, remarks=remarks, origin=head.origin)
+    return layout.choose(file, TITLE, [found], channel, dt)

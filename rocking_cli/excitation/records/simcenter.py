@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -35,13 +36,18 @@ def read(
     only_channel(file, channel)
     if text.count(",") > MOST_SAMPLES:
         raise InputError(Problem(f"a record has at most {MOST_SAMPLES} samples, this file has more values", file))
+
+    def each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        """Return an object as a mapping; Python's `json` would silently keep the last value of a key."""
+        for key, count in Counter(key for key, _ in pairs).items():
+            if count > 1:
+                last = [None, *(text.count("\n", 0, match.start()) + 1 for match in _places(text, key))][-1]
+                hint = "keep one of each: the intended one is not guessed"
+                raise InputError(Problem(f"the key {_shown(key)} is there more than once", file, last, hint=hint))
+        return dict(pairs)
+
     try:
-        data: dict[str, Any] = json.loads(text, parse_int=_whole, object_pairs_hook=_each_once)
-    except _TwiceError as error:
-        message = f"the key {_shown(error.key)} is there more than once"
-        last = [None, *(text.count("\n", 0, match.start()) + 1 for match in _places(text, error.key))][-1]
-        hint = "keep one of each: the intended one is not guessed"
-        raise InputError(Problem(message, file, last, hint=hint)) from None
+        data: dict[str, Any] = json.loads(text, parse_int=_whole, object_pairs_hook=each_once)
     except (json.JSONDecodeError, RecursionError) as error:
         line, column = getattr(error, "lineno", None), getattr(error, "colno", None)
         reason = getattr(error, "msg", "it is nested too deeply")
@@ -83,27 +89,6 @@ def read(
     acceleration = in_si(np.array(values, dtype=np.float64), unit)
     origin = of_info(info)
     return GroundMotion(Path(file).name, float(own), acceleration, unit, TITLE, remarks=remarks, origin=origin)
-
-
-class _TwiceError(Exception):
-    """Error: an object has a key more than once."""
-
-    def __init__(self, key: str) -> None:
-        super().__init__(key)
-        self.key = key
-
-
-def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Return a JSON object as a mapping. Raises `_TwiceError` if it has a key twice.
-
-    Python's `json` would silently keep the last value of the key.
-    """
-    found: dict[str, Any] = {}
-    for key, value in pairs:
-        if key in found:
-            raise _TwiceError(key)
-        found[key] = value
-    return found
 
 
 def _whole(digits: str) -> int | float:

@@ -6,18 +6,8 @@ import numpy as np
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion, Origin
+from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.header_fields import Field, RecordHead, read_head
-from rocking_cli.excitation.records.layout import (
-    Channel,
-    RecordBlock,
-    choose,
-    fixed_width,
-    in_si,
-    lines_of,
-    number,
-    stated_unit,
-    whole_number,
-)
 from rocking_cli.excitation.records.origins import origin
 from rocking_cli.excitation.records.stated import peak_doubts
 from rocking_cli.patterns import regex
@@ -30,8 +20,8 @@ _UNCORRECTED = "1"
 _ACCELERATIONS = (_UNCORRECTED, "2")  # the corrected; then velocity, displacement and spectra
 _FASTEST = 1e6  # samples per second; what has no number of them has 1.7e38, or zero
 _TEXT_LINES = 11
-_INTEGERS = RecordBlock(_TEXT_LINES, 48, 10, 1)
-_REALS = RecordBlock(_TEXT_LINES + 6, 50, 15, 1, unset=1.7e38)
+_INTEGERS = layout.RecordBlock(_TEXT_LINES, 48, 10, 1)
+_REALS = layout.RecordBlock(_TEXT_LINES + 6, 50, 15, 1, unset=1.7e38)
 _DATA_WIDTH = 10
 _FIELDS = {
     "component": Field(regex(r"component *= *(-?\w+)")),
@@ -58,14 +48,14 @@ def read(
     text: str, file: str, *, dt: float | None = None, units: str | None = None, channel: str | None = None
 ) -> GroundMotion:
     """Read a USGS SMC file; arguments, result and errors are those of `registry.Reader.read`."""
-    lines = lines_of(text)
+    lines = layout.lines_of(text)
     kind = _FIRST.match(lines[0])
     if kind is None or kind[1] not in _ACCELERATIONS:
         message = f"the header says this is not an acceleration: {lines[0].strip()}"
         raise InputError(Problem(message, file, 1, hint="give the file with the acceleration"))
-    unit = stated_unit(file, 1, "cm/s2", units)  # the definition of the format says so, not the file
-    integers = fixed_width(file, lines, _INTEGERS, last=False).values
-    reals, start, _ = fixed_width(file, lines, _REALS, last=False)
+    unit = layout.stated_unit(file, 1, "cm/s2", units)  # the definition of the format says so, not the file
+    integers = layout.fixed_width(file, lines, _INTEGERS, last=False).values
+    reals, start, _ = layout.fixed_width(file, lines, _REALS, last=False)
     comments, count, rate = int(integers[_COMMENTS - 1]), int(integers[_COUNT - 1]), float(reals[_RATE - 1])
     comment_line, count_line, rate_line = _TEXT_LINES + 2, _TEXT_LINES + 3, _REALS.start + 1
     if comments < 0:
@@ -73,26 +63,26 @@ def read(
         raise InputError(Problem(message, file, comment_line, hint="0 is the least there can be"))
     if start + comments >= len(lines):
         raise InputError(Problem("the file ends before its values", file, len(lines)))
-    whole_number(file, count_line, lines[count_line - 1], str(count), "number of points", least=2)
+    layout.whole_number(file, count_line, lines[count_line - 1], str(count), "number of points", least=2)
     if kind[1] == _UNCORRECTED and not 0 < rate < _FASTEST:  # NaN too: what stands for no number
         message = "an uncorrected film record, points at uneven times: the header has no number of samples per second"
         raise InputError(Problem(message, file, rate_line, hint="give the corrected record of it (kind 2)"))
-    number(file, rate_line, lines[rate_line - 1], f"{rate!r}", "number of samples per second")
+    layout.number(file, rate_line, lines[rate_line - 1], f"{rate!r}", "number of samples per second")
     if not all(line.startswith("|") for line in lines[start : start + comments]) or lines[start + comments].startswith(
         "|"
     ):
         message = f"the header says {comments} comment lines, but another number begins with |"
         raise InputError(Problem(message, file, comment_line, hint="the file may have been edited: download it again"))
-    block = RecordBlock(start + comments, count, _DATA_WIDTH, count_line)
-    values, _, remarks = fixed_width(file, lines, block)
+    block = layout.RecordBlock(start + comments, count, _DATA_WIDTH, count_line)
+    values, _, remarks = layout.fixed_width(file, lines, block)
     extremes = [(reals[peak - 1], reals[time - 1]) for time, peak in _EXTREMES if not np.isnan(reals[peak - 1])]
     if extremes:
         peak, time = max(extremes, key=lambda extreme: abs(extreme[0]))
         remarks += peak_doubts(values, 1 / rate, unit, _REALS.start + 6, f"{peak:.7E}", f"{time:.7E}")
     head = read_head(file, lines, _FIELDS, _TEXT_LINES)
     name, origin = head.text("component") or "", _origin(head)
-    found = Channel(name, 1 / rate, in_si(values, unit), unit, rate_line, remarks=remarks, origin=origin)
-    return choose(file, TITLE, [found], channel, dt)
+    found = layout.Channel(name, 1 / rate, layout.in_si(values, unit), unit, rate_line, remarks=remarks, origin=origin)
+    return layout.choose(file, TITLE, [found], channel, dt)
 
 
 def _origin(head: RecordHead) -> Origin:

@@ -5,17 +5,8 @@ from __future__ import annotations
 import re
 
 from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
-from rocking_cli.excitation.records.layout import (
-    Channel,
-    RecordBlock,
-    choose,
-    fixed_width,
-    in_si,
-    lines_of,
-    old_unit,
-    straight_lines,
-)
 from rocking_cli.excitation.records.stated import length_doubts
 from rocking_cli.patterns import regex
 
@@ -49,19 +40,19 @@ def read(
     interval that includes all of these times: it has more samples than the file has points, but is not an
     approximation.
     """
-    lines = lines_of(text)
+    lines = layout.lines_of(text)
     head = read_head(file, lines, _FIELDS, _TEXT_LINES)
     count, count_line = head.count, head["count"].line_number
-    unit = old_unit(file, head["unit"].line_number, head["unit"].groups[0], units)
+    unit = layout.old_unit(file, head["unit"].line_number, head["unit"].groups[0], units)
 
     start = next((index for index, line in enumerate(lines) if not re.search(r"[A-Za-z]", line)), len(lines))
     for size, width in ((_INTEGERS, 5), (_REALS, 10)):
-        _, start, _ = fixed_width(file, lines, RecordBlock(start, size, width, 1), last=False)
-    pairs, end, remarks = fixed_width(file, lines, RecordBlock(start, 2 * count, 7, count_line, margin=1))
-    step, values, points = straight_lines(file, pairs, f"lines {start + 1} to {end}")
-    acceleration = in_si(values, unit)
+        _, start, _ = layout.fixed_width(file, lines, layout.RecordBlock(start, size, width, 1), last=False)
+    pairs, end, remarks = layout.fixed_width(file, lines, layout.RecordBlock(start, 2 * count, 7, count_line, margin=1))
+    step, values, points = layout.straight_lines(file, pairs, f"lines {start + 1} to {end}")
+    acceleration = layout.in_si(values, unit)
     if (duration := head.items.get("duration")) and duration.line_number == count_line:
         remarks += length_doubts(float(pairs[-2]), count_line, duration.groups[0], 0.0)
     name = head.text("component") or ""
-    found = Channel(name, step, acceleration, unit, points=points, remarks=remarks, origin=head.origin)
-    return choose(file, TITLE, [found], channel, dt)
+    found = layout.Channel(name, step, acceleration, unit, points=points, remarks=remarks, origin=head.origin)
+    return layout.choose(file, TITLE, [found], channel, dt)
