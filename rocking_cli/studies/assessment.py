@@ -363,10 +363,6 @@ def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:
     return tuple(sorted(fits, key=lambda fit: -fit.captured))
 
 
-def _shape(pulse: Pulse) -> Pulse:
-    return replace(pulse, amplitude=1.0, period=1.0)
-
-
 def _maps(structure: Structure, results: Sequence[MotionResult]) -> list[PulseMap]:
     """Compute a map for each shape among the best pulses of the motions; for the sine if no motion has a pulse."""
     if structure.why_no_block or structure.refuses("sizes") or min(structure.etas) <= 0:
@@ -375,7 +371,9 @@ def _maps(structure: Structure, results: Sequence[MotionResult]) -> list[PulseMa
     for result in results:
         if result.fits:
             best = result.fits[0]
-            marks.setdefault(_shape(best.pulse), []).append((result.given.motion.name, best))
+            marks.setdefault(replace(best.pulse, amplitude=1.0, period=1.0), []).append(
+                (result.given.motion.name, best)
+            )
     marks = marks or {parse_shape("sine"): []}
     return [PulseMap(_map(structure, shape, each), tuple(each)) for shape, each in marks.items()]
 

@@ -297,46 +297,44 @@ class Picture:
     @cached_property
     def links(self) -> Mapping[Direction, Mapping[str, int | None]]:
         """For each direction, the link of each body, counted along the hinges; None for a body at rest."""
-        return {direction: self._links(direction) for direction in self.directions}
-
-    def _links(self, direction: Direction) -> Mapping[str, int | None]:
-        motions = self.motion(np.array([0.5 * self.reference[direction]]), direction)
         size = abs(self.extent[1] - self.extent[0])
-        # A link is what turns as fast, and would move one and the same point as fast.
-        speeds = [np.array([size * motion.dpsi[0], motion.carry(0j)[1][0]]) for motion in motions]
-        along = [name for hinge in self.sketch.hinges.get(direction, ()) for name in hinge.bodies]
-        of_body = dict(zip((body.name for body in self.mechanism.bodies()), speeds, strict=True))
-        speeds_of_links: list[Points] = []
-        links: dict[str, int | None] = {}
-        for name in [*(name for name in along if name in of_body), *of_body]:
-            here = of_body[name]
-            if np.abs(here).max() <= SAME * size:
-                links[name] = None
-                continue
-            alike = [k for k, speed in enumerate(speeds_of_links) if np.abs(here - speed).max() <= SAME * size]
-            if not alike:
-                speeds_of_links.append(here)
-            links[name] = alike[0] if alike else len(speeds_of_links) - 1
-        return {name: links[name] for name in of_body}
+        bodies = [body.name for body in self.mechanism.bodies()]
+        found: dict[Direction, Mapping[str, int | None]] = {}
+        for direction in self.directions:
+            motions = self.motion(np.array([0.5 * self.reference[direction]]), direction)
+            # A link is what turns as fast, and would move one and the same point as fast.
+            speeds = [np.array([size * motion.dpsi[0], motion.carry(0j)[1][0]]) for motion in motions]
+            of_body = dict(zip(bodies, speeds, strict=True))
+            along = [name for hinge in self.sketch.hinges.get(direction, ()) for name in hinge.bodies]
+            of_link: list[Points] = []
+            links: dict[str, int | None] = dict.fromkeys(bodies)
+            for name in dict.fromkeys([*(name for name in along if name in of_body), *bodies]):
+                if np.abs(of_body[name]).max() <= SAME * size:
+                    continue
+                alike = (k for k, speed in enumerate(of_link) if np.abs(of_body[name] - speed).max() <= SAME * size)
+                links[name] = next(alike, len(of_link))
+                if links[name] == len(of_link):
+                    of_link.append(of_body[name])
+            found[direction] = links
+        return found
 
     @cached_property
     def shades(self) -> Mapping[Direction, tuple[int | None, ...]]:
         """For each direction, a shade of each part, different from its neighbours'; None for a part at rest."""
-        return {direction: self._shades(direction) for direction in self.directions}
-
-    def _shades(self, direction: Direction) -> tuple[int | None, ...]:
-        links = self.links[direction]
-        beside: dict[int, set[int]] = {}
-        for hinge in self.sketch.hinges.get(direction, ()):
-            here = {link for name in hinge.bodies if (link := links.get(name)) is not None}
-            for link in here:
-                beside.setdefault(link, set()).update(here - {link})
-        shades: dict[int | None, int | None] = {None: None}
-        for link in sorted({link for link in links.values() if link is not None}):
-            taken = {shades.get(other) for other in beside.get(link, ())}
-            able = [shade % SHADES for shade in range(link, link + SHADES)]
-            shades[link] = next((shade for shade in able if shade not in taken), able[0])
-        return tuple(shades[links[part.name]] for part in self.parts)
+        found: dict[Direction, tuple[int | None, ...]] = {}
+        for direction, links in self.links.items():
+            beside: dict[int, set[int]] = {link: set() for link in links.values() if link is not None}
+            for hinge in self.sketch.hinges.get(direction, ()):
+                here = {link for name in hinge.bodies if (link := links.get(name)) is not None}
+                for link in here:
+                    beside[link] |= here - {link}
+            shades: dict[int | None, int | None] = {None: None}
+            for link in sorted(beside):
+                taken = {shades.get(other) for other in beside[link]}
+                able = [shade % SHADES for shade in range(link, link + SHADES)]
+                shades[link] = next((shade for shade in able if shade not in taken), able[0])
+            found[direction] = tuple(shades[links[part.name]] for part in self.parts)
+        return found
 
     @cached_property
     def grouped(self) -> Picture:
@@ -376,7 +374,11 @@ class Picture:
 
     def chains(self, pins: Sequence[DrawnHinge]) -> list[list[int]]:
         """Return chains of pins that are joined by links, as indices: pins in their order first, then the others."""
-        held = [self._links_at(pin) for pin in pins]
+        held = []  # the moving links that meet in each pin
+        for pin in pins:
+            hinges, links = self.sketch.hinges.get(pin.direction, ()), self.links[pin.direction]
+            here = [hinge.bodies for hinge in hinges if (hinge.letter, hinge.point) == (pin.letter, pin.point)]
+            held.append({link for bodies in here for name in bodies if (link := links.get(name)) is not None})
         found: list[list[int]] = []
         for k in range(1, len(pins)):
             if held[k - 1] & held[k]:
@@ -388,14 +390,6 @@ class Picture:
             on = [k for k, links in enumerate(held) if link in links]
             found += [[one, other] for one, other in pairwise(on) if other - one > 1]
         return found
-
-    def _links_at(self, pin: DrawnHinge) -> set[int]:
-        """Return the moving links that meet in a pin."""
-        hinges = self.sketch.hinges.get(pin.direction, ())
-        here = [hinge.bodies for hinge in hinges if (hinge.letter, hinge.point) == (pin.letter, pin.point)]
-        names = {name for bodies in here for name in bodies}
-        links = self.links[pin.direction]
-        return {link for name in names if (link := links.get(name)) is not None}
 
     @property
     def furthest(self) -> float:
@@ -562,13 +556,17 @@ def _picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism])
         for k, body in enumerate(bodies)
         for shift in sketch.copies.get(body.name, (0j,))
     )
-    pins = []
+    pins: list[DrawnHinge] = []
     for direction in mechanism.directions:
         phi = np.linspace(0.0, seen[direction], 5)
         hinges = sketch.hinges.get(direction, ())
         if not (hinges or starts):
             hinges = _found(bodies, mechanism.motion(phi, direction))
-        pins += [pin for hinge in hinges for pin in _pins(hinge, direction, parts)]
+        for hinge in hinges:  # on its first body, or on each copy of this body; only the first has the letter
+            carriers = [k for k, part in enumerate(parts) if part.name == hinge.bodies[0]]
+            for k in carriers:
+                letter, point = hinge.letter if k == carriers[0] else "", hinge.point + parts[k].shift
+                pins.append(DrawnHinge(letter, point, k, direction, hinge.slide))
     ground = tuple(np.asarray(each, np.complex128) for each in sketch.ground) or _level_ground(parts, pins)
     if any(part.assumed for part in parts):
         sketch = replace(sketch, notes=[*sketch.notes, ASSUMED])
@@ -600,15 +598,6 @@ def _outlines(body: Body, sketch: Sketch) -> Sequence[Outline]:
         return [body.outline]
     radius = np.sqrt(2 * body.inertia / body.mass) if body.mass > 0 else 0.0  # of a disc: I = m r^2 / 2
     return [disc(body.centroid, float(radius))] if radius > 0 else []
-
-
-def _pins(hinge: Hinge, direction: Direction, parts: Sequence[DrawnPart]) -> list[DrawnHinge]:
-    """Return the pins of a hinge: on its first body, or on each copy of this body; only the first has the letter."""
-    carriers = [k for k, part in enumerate(parts) if part.name == hinge.bodies[0]]
-    return [
-        DrawnHinge(hinge.letter if k == carriers[0] else "", hinge.point + parts[k].shift, k, direction, hinge.slide)
-        for k in carriers
-    ]
 
 
 def _found(bodies: Sequence[Body], motions: Sequence[RigidMotion]) -> list[Hinge]:

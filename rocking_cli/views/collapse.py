@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import isclose, isfinite
+from math import inf, isclose
 from operator import itemgetter
 from typing import Any
 
@@ -178,10 +178,6 @@ def _pair(point: complex) -> list[float]:
     return [point.real, point.imag]
 
 
-def _finite(value: float | None) -> float | None:
-    return value if value is not None and isfinite(value) else None
-
-
 MECHANISM: tuple[Column[CollapseMechanism], ...] = (
     Column("lambda", of("lambda_")),
     Column("hinges", lambda found: [data_of(_of_hinge(), each) for each in found.hinges]),
@@ -193,7 +189,7 @@ MECHANISM: tuple[Column[CollapseMechanism], ...] = (
     Column("glued", lambda found: list(found.glued)),
     Column("lambda_with_usual", of("with_usual")),
     Column("confined", of("confined")),
-    Column("lambda_associated", lambda found: _finite(found.associated)),
+    Column("lambda_associated", lambda found: None if found.associated == inf else found.associated),
     Column("search_complete", of("complete")),
     Column("no_model", lambda found: found.no_model or None),
     Column("lead", lambda found: found.lead or None),

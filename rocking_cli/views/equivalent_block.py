@@ -35,7 +35,10 @@ def view(structure: Structure) -> View:
         "restitution": restitution_source(mechanism),
         "caution": " ".join(cautions_of(mechanism)) or None,
         "misleading": structure.misleading,
-        "directions": {side.direction.label: _data(side) | _extras(mechanism, side) for side in sides},
+        "directions": {
+            side.direction.label: _data(side) | {each.key: each.value for each in mechanism.found(side.direction)}
+            for side in sides
+        },
     }
     shown = sides[:1] if is_symmetric(structure) else sides
     per_mass = "" if mechanism.has_mass else ", per unit mass"
@@ -133,11 +136,6 @@ def _data(side: EquivalentSide) -> dict[str, Any]:
         "limit": side.statics.limit,
         "no_block": side.statics.why_no_block,
     }
-
-
-def _extras(mechanism: Mechanism, side: EquivalentSide) -> dict[str, float]:
-    """Return the values that the mechanism found itself, by key."""
-    return {each.key: each.value for each in mechanism.found(side.direction)}
 
 
 def kappa_in_words(block: EquivalentBlock) -> str:

@@ -165,10 +165,6 @@ def ending(outcome: OneOutcome) -> str:
     return "overturned" if outcome.fell else "still_rocking" if outcome.still_rocking else "at_rest"
 
 
-def _why(outcome: OneOutcome) -> str | None:
-    return why_unknown(outcome) if isinstance(outcome, History) else None
-
-
 def _is_unknown(outcome: OneOutcome) -> bool | None:
     """Return whether an outcome is unknown; None if the joints of the structure were not checked."""
     checked = not isinstance(outcome, History) or outcome.model != "nonlinear" or outcome.check is not None
@@ -178,7 +174,7 @@ def _is_unknown(outcome: OneOutcome) -> bool | None:
 KNOWN: tuple[Column[OneOutcome], ...] = (
     Column("unknown", _is_unknown),
     Column("known_to", lambda outcome: outcome.known_to if outcome.unknown else None),
-    Column("known_to_reason", _why),
+    Column("known_to_reason", lambda outcome: why_unknown(outcome) if isinstance(outcome, History) else None),
     Column("peak_lower_bound", lambda outcome: outcome.lower_bound if outcome.unknown else None),
     Column("opening", of("opening")),
 )
