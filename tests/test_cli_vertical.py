@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rocking_cli.dynamics.vertical import contact_lost
+from rocking_cli.dynamics.history import contact_lost
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_record
 from rocking_cli.structure_file import load_structure

@@ -42,7 +42,7 @@ from rocking_cli.errors import MechanismError, PluginError
 from rocking_cli.plugins.errors import own_traceback
 from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.testing import CHECKS, MechanismContract, contract
-from rocking_cli.views.hung import hung_data, hung_in_words
+from rocking_cli.views.equivalent_block import hung_data, hung_in_words
 from rocking_cli.views.template import template
 from tests.conftest import EXAMPLES
 

@@ -16,7 +16,6 @@ from rocking_cli.dynamics.joints import JointCheck, check_of
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.dynamics.outcome import OUTCOME, Outcome
 from rocking_cli.dynamics.parallel import in_parts
-from rocking_cli.dynamics.vertical import contact_lost
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import GroundMotion
 
@@ -231,3 +230,30 @@ def out_of_step(
             )
             differs[mine] |= alone.unknown | (alone.fell != whole.fell)
     return differs
+
+
+def contact_lost(motion: GroundMotion | None, gravity: float) -> float | None:
+    """Return the first time at which the vertical ground acceleration reaches -g [s], when the weight vanishes.
+
+    Parameters
+    ----------
+    motion : GroundMotion or None
+        The ground motion.
+    gravity : float
+        Acceleration of gravity [m/s2].
+
+    Returns
+    -------
+    float or None
+        The time; None if -g is never reached, or there is no vertical component.
+    """
+    if motion is None or motion.vertical is None:
+        return None
+    weight = gravity + motion.vertical.acceleration
+    lost = np.flatnonzero(weight <= 0)
+    if not lost.size:
+        return None
+    k = int(lost[0])
+    if k == 0:
+        return 0.0
+    return motion.vertical.dt * float(k - 1 + weight[k - 1] / (weight[k - 1] - weight[k]))

@@ -6,14 +6,14 @@ from collections.abc import Iterator, Sequence
 from math import degrees, isclose, nan
 from typing import Any, NamedTuple
 
-from rocking_cli.core import Direction, EquivalentBlock, Mechanism, Statics, one_block
+from rocking_cli.core import Direction, EquivalentBlock, Mechanism, PointMass, Statics, one_block
 from rocking_cli.core.advice import Grade, preferred_kappa
 from rocking_cli.core.equivalence import AGREEMENT, alike
+from rocking_cli.core.hung.element import Element
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.structure import Structure
 from rocking_cli.views.cautions import before_rocking, cautions_of, of_restitution
 from rocking_cli.views.column import data_of
-from rocking_cli.views.hung import hung_data, hung_in_words
 from rocking_cli.views.parameters import PARAMETERS
 from rocking_cli.views.restitution import restitution_source, restitution_used
 from rocking_cli.views.verdict import uplift_in_words
@@ -188,3 +188,25 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
             f"{mechanism.name}: lambda is relative to the structure's own gravity of {mechanism.gravity:g} m/s2; "
             f"records and PGA use standard gravity, {STANDARD_GRAVITY} m/s2"
         )
+
+
+def hung_data(mechanism: Mechanism) -> list[dict[str, Any]]:
+    """Return each load, force and tie as plain data, with its position at rest and its numbers, in SI units."""
+    return [
+        {
+            "name": thing.name,
+            **(thing.as_dict() if isinstance(thing, PointMass | Element) else {"kind": type(thing).__name__}),
+        }
+        for thing in mechanism.attached
+    ]
+
+
+def hung_in_words(mechanism: Mechanism) -> Iterator[str]:
+    """Yield a sentence that lists the loads and ties of a structure, if it has any."""
+    other = "its contribution to the equation of motion"
+    listed = [
+        f"{thing.name}: {thing.words if isinstance(thing, PointMass | Element) else other}"
+        for thing in mechanism.attached
+    ]
+    if listed:
+        yield f"With {'; '.join(listed)}."

@@ -32,7 +32,7 @@ from rocking_cli.views.pulse import (
 )
 from rocking_cli.views.response import known_data, model_heads, not_checked, pulse_data
 from rocking_cli.views.restitution import restitution_data, restitution_used
-from rocking_cli.views.verdict import NO_JOINTS, SENSE, joints_in_words, uplift_in_words
+from rocking_cli.views.verdict import NO_JOINTS, ends, joints_in_words, uplift_in_words
 from rocking_cli.views.view import Table, View, heading, in_degrees, number
 
 EXACT = {True: "exact", False: "sampled"}
@@ -112,7 +112,7 @@ def _columns(answers: Mapping[str, Answer], *, unknown: bool = False) -> list[Co
     def exactly(name: str) -> Callable[[Answer], Any]:
         return lambda answer: getattr(answer, name) if isinstance(answer, ExactResponse) else None
 
-    def ends(answer: Answer) -> str | None:
+    def end(answer: Answer) -> str | None:
         found = outcome(answer)
         if unknown and not found.unknown:
             return None
@@ -129,7 +129,7 @@ def _columns(answers: Mapping[str, Answer], *, unknown: bool = False) -> list[Co
     over = partial(_over_nonlinear, answers=answers)
     return [
         Column("exact", lambda answer: isinstance(answer, ExactResponse), "", "pulse", EXACT.__getitem__),
-        Column("", ends, head="outcome"),
+        Column("", end, head="outcome"),
         Column("", value("known_to"), "s", until, rounded(5)),
         Column("peak_ratio", value("peak_ratio"), "", "peak rotation / phi_cr", rounded(5)),
         Column("over_nonlinear", over, "", "  over that of nonlinear", rounded(5)),
@@ -172,13 +172,9 @@ def _verdict(answers: Mapping[str, Answer], mechanism: Mechanism) -> str:
         joints = joints_in_words(nonlinear, Contacts(mechanism).check(nonlinear, sampled.motion).assumed_friction)
     if nonlinear.unknown:
         return f"{joints} {NO_JOINTS}"
+    said = f"The structure {ends(nonlinear)}{f', {after_impacts(nonlinear)}' if nonlinear.fell else ''}."
     if not nonlinear.lifted:
-        return f"The structure {names.NO_UPLIFT}."
-    if nonlinear.fell:
-        sense = SENSE[Direction(nonlinear.fell_to)]
-        said = f"The structure {names.OVERTURNS} {sense}, {after_impacts(nonlinear)}."
-    else:
-        said = f"The structure {names.ROCKS} to {nonlinear.peak_ratio:.4g} of its critical rotation."
+        return said
     said += f" {joints}".rstrip()
     for name in KAPPAS:
         linear, over = outcome(answers[name]), _over_nonlinear(answers[name], answers)

@@ -12,11 +12,10 @@ from numpy.typing import NDArray
 
 from rocking_cli import names
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.dynamics.history import FELT, History
+from rocking_cli.dynamics.history import FELT, History, contact_lost
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.verdict import Agreement
-from rocking_cli.dynamics.vertical import contact_lost
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.excitation.pulses import Pulse
