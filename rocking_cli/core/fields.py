@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Annotated, Any, Self
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
 from pydantic_core import InitErrorDetails, PydanticCustomError, PydanticKnownError
 
@@ -131,6 +140,16 @@ class Described(BaseModel):
     """Base class of what users describe by fields: refuses unknown fields, and reads texts with units."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+    refused: ClassVar[Mapping[str, str]] = {}
+    """Keys that are no fields, such as those that will be one day, and what is said of them."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _no_such_field(cls, data: Any) -> Any:
+        for key, said in cls.refused.items():
+            if isinstance(data, dict) and key in data and key not in cls.model_fields:
+                raise geometry_error(key, said)
+        return data
 
     def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
         """Yield the fields that were given, without those at their defaults."""

@@ -24,12 +24,8 @@ from rocking_cli.plugins.errors import blame
 KINEMATIC = "kinematic"
 """What a file says of a rebound that follows from the shape."""
 NEEDS_A_SIDE = "requires one_sided: otherwise the structure rocks through to the other side"
-REFUSED = {
-    "dampers": "a damper is not in this version: leave it out",
-    "inerters": "an inerter is not in this version: leave it out",
-    "opening": "is a limit of time histories, not of the structure: leave it out, and give `opening` to the analysis",
-}
-"""Keys that are not fields, and why."""
+
+
 Eta = Annotated[float, Field(gt=0, le=5)]  # how much it may be at most depends on the structure
 
 
@@ -43,6 +39,11 @@ class DirectionalRestitution(Described):
 class Given(Described):
     """Fields that every structure may have beside those of its mechanism, and properties that follow from them."""
 
+    refused: ClassVar[Mapping[str, str]] = {
+        "dampers": "a damper is not in this version: leave it out",
+        "inerters": "an inerter is not in this version: leave it out",
+        "opening": "is a limit of time histories, not of the structure: leave it out, give `opening` to the analysis",
+    }
     mechanism: ClassVar[str]
     """The name of the mechanism, that of its entry point."""
 
@@ -110,14 +111,6 @@ class Given(Described):
         examples=[{"stress": 3e6, "width": 0.05}],
         description="strength of its contacts; `rocking mechanisms strength` lists its fields",
     )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _no_such_field(cls, data: Any) -> Any:
-        for key, why in REFUSED.items():
-            if isinstance(data, dict) and key in data and key not in cls.model_fields:
-                raise geometry_error(key, why)
-        return data
 
     @model_validator(mode="before")
     @classmethod

@@ -70,11 +70,11 @@ class Places(NamedTuple):
 
 
 class _Sum(NamedTuple):
-    """A point as the sum of a constant, arms that rotate with the links, and the free positions of trees."""
+    """A point as the sum of a constant, arms that rotate with the links, and the free position of a tree, if any."""
 
     constant: complex
     arms: Points
-    free: Reals
+    tree: int | None
 
 
 class Loops:
@@ -95,12 +95,10 @@ class Loops:
     ) -> None:
         self.count = len(centres)
         self._centres, self._link_of = list(centres), link_of
-        pins = [joint for joint in joints if isinstance(joint, Pin)]
-        tree, places = self._grown(pins)
-        self.trees = max((len(place.free) for place in places), default=0)
+        tree, places = self._grown([joint for joint in joints if isinstance(joint, Pin)])
         self._a = np.array([place.constant for place in places])
         self._A = np.array([place.arms for place in places]).reshape(self.count, self.count)
-        self._u = np.array([place.free for place in places]).reshape(self.count, self.trees)
+        self._u = np.array([self._free(place) for place in places]).reshape(self.count, self.trees)
         self._gather([joint for joint in joints if not any(joint is used for used in tree)], places)
 
     # The tree of hinges
@@ -117,8 +115,8 @@ class Loops:
             near.setdefault(a, []).append((b, pin))
             near.setdefault(b, []).append((a, pin))
         used: list[Pin] = []
-        placed: dict[int, tuple[complex, Points, int | None]] = {}
-        roots: list[int] = []
+        placed: dict[int, _Sum] = {}
+        self.trees = 0
 
         def grow(start: int | None) -> None:
             waiting = [start]
@@ -127,37 +125,31 @@ class Loops:
                 for there, pin in near.get(here, []):
                     if there is None or there in placed:
                         continue
-                    constant, arms, tree = self._from(here, pin.at, placed)
-                    arms[there] -= pin.at - self._centres[there]
-                    placed[there] = constant, arms, tree
+                    found = self._point(here, pin.at, placed)
+                    found.arms[there] -= pin.at - self._centres[there]
+                    placed[there] = found
                     used.append(pin)
                     waiting.append(there)
 
         grow(None)
         for link in range(self.count):
             if link not in placed:
-                placed[link] = self._centres[link], np.zeros(self.count, np.complex128), len(roots)
-                roots.append(link)
+                placed[link] = _Sum(self._centres[link], np.zeros(self.count, np.complex128), self.trees)
+                self.trees += 1
                 grow(link)
-        sums = []
-        for link in range(self.count):
-            constant, arms, tree = placed[link]
-            free = np.zeros(len(roots))
-            if tree is not None:
-                free[tree] = 1.0
-            sums.append(_Sum(constant, arms, free))
-        return used, sums
+        return used, [placed[link] for link in range(self.count)]
 
-    def _from(
-        self, link: int | None, at: complex, placed: Mapping[int, tuple[complex, Points, int | None]]
-    ) -> tuple[complex, Points, int | None]:
-        """Return a point of a link already placed, or of the ground: constant, arms, and tree."""
+    def _point(self, link: int | None, at: complex, placed: Mapping[int, _Sum] | Sequence[_Sum]) -> _Sum:
+        """Return a point of a link already placed, or of the ground."""
         if link is None:
-            return at, np.zeros(self.count, np.complex128), None
-        constant, arms, tree = placed[link]
-        arms = arms.copy()
+            return _Sum(at, np.zeros(self.count, np.complex128), None)
+        arms = placed[link].arms.copy()
         arms[link] += at - self._centres[link]
-        return constant, arms, tree
+        return placed[link]._replace(arms=arms)
+
+    def _free(self, point: _Sum) -> Reals:
+        """Return the factors of the free positions of all trees in a point."""
+        return np.eye(self.trees)[point.tree] if point.tree is not None else np.zeros(self.trees)
 
     # What is left
 
@@ -173,8 +165,8 @@ class Loops:
         weights, turns, names = [], [], []
         for joint in joints:
             a, b = self._ends(joint)
-            ends = [self._point(link, joint.at, places) for link in (a, b)]
-            gap = [one - other for one, other in zip(*ends, strict=True)]
+            one, other = (self._point(link, joint.at, places) for link in (a, b))
+            gap = one.constant - other.constant, one.arms - other.arms, self._free(one) - self._free(other)
             kinds = [(1j, -1), (1.0, -1)] if isinstance(joint, Pin) else [
                 (np.conj(joint.along) / abs(joint.along), -1 if b is None else b)
             ]  # fmt: skip
@@ -192,14 +184,6 @@ class Loops:
         self._turn = np.array(turns, dtype=np.intp)
         self.names: list[str] = names
         """The joint of each equation."""
-
-    def _point(self, link: int | None, at: complex, places: Sequence[_Sum]) -> tuple[complex, Points, Reals]:
-        if link is None:
-            return at, np.zeros(self.count, np.complex128), np.zeros(self.trees)
-        place = places[link]
-        arms = place.arms.copy()
-        arms[link] += at - self._centres[link]
-        return place.constant, arms, place.free
 
     @property
     def unknowns(self) -> int:

@@ -10,8 +10,9 @@ from typing import Any, final
 import numpy as np
 from pydantic import ValidationError
 
-from rocking_cli.core import checks, equilibrium
+from rocking_cli.core import equilibrium
 from rocking_cli.core.answers import Drawn, Jointed
+from rocking_cli.core.checks import check
 from rocking_cli.core.coefficients import Coefficients, coefficients
 from rocking_cli.core.extras import Extra
 from rocking_cli.core.given import DirectionalRestitution
@@ -49,26 +50,9 @@ class Mechanism(Jointed):
     def _hold_together(self) -> None:
         """Check the masses, loads and ties against the bodies; raise `ValidationError` of the fields."""
         try:
-            checks.check_masses(self)
-            if self.crushing is not None:
-                checks.check_crushed(self._inwards, self._at_rest(), self.gravity)
-            checks.check_one_sided(self, self.rebound_from_impacts)
-            self._mass_factor  # noqa: B018 - a density without a volume is refused here
-            checks.check_strength(self)
-            if self.is_laden:
-                checks.check_weighs(self)
-            checks.check_restitution(self, self.eta, self.greatest_restitution)
-            if self.is_laden:
-                self.hung.check_stretched(self.followed, self.limit, self.directions)
-                bare = {
-                    s: coefficients(np.zeros(1), s, self.bodies(), self.motion(np.zeros(1), s)) for s in self.directions
-                }
-                checks.check_stands(self, self.hung, sum(body.mass for body in self.weighed()), self._at_rest(), bare)
+            check(self)
         except RefusedFields as error:
             raise as_validation_error([error], self.mechanism) from error
-
-    def _at_rest(self) -> Mapping[Direction, Coefficients]:
-        return {direction: self.coefficients(np.zeros(1), direction) for direction in self.directions}
 
     @classmethod
     def __pydantic_init_subclass__(cls, **named: Any) -> None:
@@ -100,10 +84,11 @@ class Mechanism(Jointed):
     @final
     def inwards(self, direction: Direction, joint: str) -> float:
         """Return the distance by which crushing moves a joint inwards [m], constant during the motion."""
-        return self._inwards[direction][joint] if self.crushing is not None else 0.0
+        return self.moved_inwards[direction][joint] if self.crushing is not None else 0.0
 
     @cached_property
-    def _inwards(self) -> Mapping[Direction, Mapping[str, float]]:
+    @final
+    def moved_inwards(self) -> Mapping[Direction, Mapping[str, float]]:
         """Distances u = N/(2 strength depth) by which joints of each direction move [m]; empty if none can move."""
         if self.crushing is None:
             return {}
@@ -120,7 +105,7 @@ class Mechanism(Jointed):
     def found(self, direction: Direction) -> Sequence[Extra]:
         """Return all further results: `extras`, and the distances by which crushing moves the pivots."""
         what = "how far crushing moves the {} inwards"
-        moved = self._inwards.get(direction, {}).items()
+        moved = self.moved_inwards.get(direction, {}).items()
         return [*self.extras(direction), *(Extra(f"inwards_{key}", u, "m", what.format(key)) for key, u in moved)]
 
     @cached_property

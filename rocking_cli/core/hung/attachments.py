@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from pydantic import ValidationError
@@ -13,20 +12,17 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.fields import geometry_error
 from rocking_cli.core.hung.attached import Attached, Follow, Path, Spot
-from rocking_cli.core.hung.element import Element
 from rocking_cli.core.hung.interlock import Interlock
 from rocking_cli.core.hung.loads import Load
 from rocking_cli.core.hung.ties import Tie
-from rocking_cli.core.kinematics import Direction, Points, Reals, RigidMotion
+from rocking_cli.core.kinematics import Points, RigidMotion
 from rocking_cli.core.polygons import distance, inside
 from rocking_cli.core.sketch import Outline
 from rocking_cli.text import did_you_mean
 
-OUTSIDE = 1e-6  # of the size of a body: how far outside it a point may be by rounding
-OWN_NAMES = ("top", "centroid")  # what answers call points of the structure itself
-FAR = 1.0  # of the size of a body: how far off it a load may be without a word
-LOOKED_AT = 129  # rotations at which it is seen whether a tie stretches
-STRETCHED = 1e-9  # of the length of its path, or of a metre: what counts as stretching
+OUTSIDE = 1e-6  # distance from a body of a point that counts as on it, over the size of the body
+OWN_NAMES = ("top", "centroid")  # names of points of the structure itself in results
+FAR = 1.0  # distance of a load from its body from which there is a warning, over the size of the body
 
 Loc = tuple[str | int, ...]
 
@@ -200,24 +196,6 @@ def _spots(carrier: Carrier, tie: Tie, loc: Loc) -> Iterator[Spot]:
             yield Spot(None, place.point)
         else:
             yield carrier.spot(place.body, place.point, where, "at")
-
-
-def check_stretched(
-    loc: Loc, tie: Element, followed: Callable[[Reals, Direction], Follow], limits: Mapping[Direction, float]
-) -> None:
-    """Refuse a tie that no motion stretches, or none in the one sense in which it can act."""
-    for part in tie.stretched:
-        long = max(1.0, *(abs(b.at - a.at) for a, b in pairwise(part.spots)))
-        for direction, limit in limits.items():
-            e, _, _ = part.elongation(followed(np.linspace(0.0, limit, LOOKED_AT)[:-1], direction))
-            counts = part.force(e) != 0 if part.only is not None else np.abs(e) > STRETCHED * long
-            if (counts & (np.abs(e) > STRETCHED * long)).any():
-                return
-    if tie.stretched:
-        sense = f" in {tie.stretched[0].only}" if tie.stretched[0].only else ""
-        raise RefusedFields(
-            loc, "name", f"nothing stretches {tie.name!r}{sense}: no motion of the structure changes its length"
-        )
 
 
 def followed(bodies: Sequence[Body], motions: Sequence[RigidMotion], shape: tuple[int, ...]) -> Follow:

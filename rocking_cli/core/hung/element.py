@@ -55,11 +55,7 @@ class Element(ABC):
         """Wrap the methods of elements of other packages, so that their failures name that package."""
         super().__init_subclass__(**named)
         if cls.__module__.partition(".")[0] != __name__.partition(".")[0]:
-            guard(
-                cls,
-                ("force", "slope", "energy", "slack_at", "elongation", "act", "forces"),
-                failed("element", "__name__"),
-            )
+            guard(cls, (*vars(Element), "slack_at"), failed("element", "__name__"))
 
     @property
     @abstractmethod

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.attached import Attached, Follow, PointMass
-from rocking_cli.core.hung.attachments import Loc, check_stretched
+from rocking_cli.core.hung.attachments import Loc
 from rocking_cli.core.hung.element import NO_ANSWER, Element, Question, Stretched
 from rocking_cli.core.hung.elements import ConstantForce
 from rocking_cli.core.kinematics import Direction, Reals
@@ -107,16 +107,3 @@ class Hung:
     def lifting(self) -> float:
         """Sum of the upward components of constant forces [N]."""
         return sum(each.thrust.imag for each in self.elements if isinstance(each, ConstantForce))
-
-    def check_stretched(
-        self,
-        followed: Callable[[Reals, Direction], Follow],
-        limit: Callable[[Direction], float],
-        directions: Sequence[Direction],
-    ) -> None:
-        """Refuse ties that no motion of the structure, up to its limit in each direction, stretches."""
-        if self.ties:
-            limits = {direction: limit(direction) for direction in directions}
-            for loc, thing in self.placed:
-                if isinstance(thing, Element):
-                    check_stretched(loc, thing, followed, limits)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.metadata import EntryPoint
 from itertools import pairwise
-from typing import Annotated, Any, Literal, Self, cast
+from typing import Annotated, Any, ClassVar, Literal, Self, cast
 
 from pydantic import ConfigDict, Field, ModelWrapValidatorHandler, model_validator
 
@@ -19,15 +19,9 @@ from rocking_cli.plugins.registry import Plugins, origin
 from rocking_cli.text import did_you_mean
 
 LATER = {
-    "yield": "a yield force",
-    "break": "an elongation at which it breaks",
-    "damper": "a damper",
-    "inerter": "an inerter",
-    "damping": "a damper",
-    "inertance": "an inerter",
-    "exponent": "the exponent of a damper",
-}
-"""What a tie will have one day, and is refused by name until then."""
+    "yield": "a yield force", "break": "an elongation at which it breaks", "damper": "a damper", "damping": "a damper",
+    "inerter": "an inerter", "inertance": "an inerter", "exponent": "the exponent of a damper",
+}  # fmt: skip
 
 
 class Place(Described):
@@ -68,6 +62,9 @@ class Tie(Described):
     """
 
     model_config = ConfigDict(validate_by_name=True)
+    refused: ClassVar[Mapping[str, str]] = {
+        key: f"{what} of a tie is not supported in this version: leave it out" for key, what in LATER.items()
+    }
 
     name: Name = Field(description="what to call it")
     start: Place | None = Field(None, alias="from", description="where it begins")
@@ -104,14 +101,6 @@ class Tie(Described):
     def kinds(cls) -> Sequence[type[Tie]]:
         """Return the tie classes of other laws, whose fields may be given instead of those of this class."""
         return list(laws().values()) if cls is Tie else ()
-
-    @model_validator(mode="before")
-    @classmethod
-    def _not_yet(cls, data: Any) -> Any:
-        for key in LATER:
-            if isinstance(data, dict) and key in data and key not in cls.model_fields:
-                raise geometry_error(key, f"{LATER[key]} of a tie is not supported in this version: leave it out")
-        return data
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
