@@ -19,10 +19,10 @@ from rocking_cli.errors import MechanismError
 
 Reals = NDArray[np.float64]
 Hinges = tuple[float, float, float, float]
-SCAN_JOINTS = 721  # where hinges are first looked for if they may be anywhere
+SCAN_JOINTS = 721  # joints of the first search if hinges may be anywhere
 STRONGEST = 100.0  # lambda beyond which an arch counts as too thick to hinge
-FAR = 1e4  # bound on the reactions, over the weight: only to begin with
-TOLERANCE = 1e-12  # moment by which the line of thrust may leave the ring, over that of the ring's weight
+FAR = 1e4  # bound on the reactions at the start of the search, over the weight
+TOLERANCE = 1e-12  # moment by which the line of thrust may leave the ring, over the moment of its weight
 ROUNDS = 200
 FACES = np.array([-1.0, 1.0, -1.0, 1.0])  # of A, B, C, D: intrados -1, extrados +1
 

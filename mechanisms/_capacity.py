@@ -12,7 +12,7 @@ import numpy as np
 from rocking_cli.core import Reals
 from rocking_cli.io.files import read_bytes
 
-LARGEST = 10_000_000  # bytes of a file
+LARGEST = 10_000_000  # size of a file, at most [bytes]
 Point = list[float]
 
 
@@ -41,8 +41,8 @@ def read_curve(path: Path) -> tuple[list[Point], list[int]]:
     return points, lines
 
 
-MOST = 1e6  # of displacements [m] and ratios
-LEAST = 1e-12  # of displacements and ratios that are not zero: slopes of smaller ones overflow
+MOST = 1e6  # displacements [m] and ratios, at most
+LEAST = 1e-12  # least displacement or ratio other than zero: slopes of smaller ones overflow
 
 
 def fault_of(points: Sequence[Point]) -> tuple[int, str] | None:

@@ -15,11 +15,11 @@ from rocking_cli.core.fields import Described, Name
 from rocking_cli.core.kinematics import Points
 from rocking_cli.core.polygons import area_of, distance, inside
 
-SCAN = 24  # places of a crack at which it is looked for first; of two, of either
-EDGE = 1e-6  # of its line: as near to its ends as a crack may come
-SAME_PLACE = 1e-5  # of its line: the cracks of both directions that are nearer are one
+SCAN = 24  # places of a crack that are tried first; half as many of each of two cracks
+EDGE = 1e-6  # least distance of a crack from the ends of its line, over its length
+SAME_PLACE = 1e-5  # distance of cracks of both directions that are one, over the length of the line
 NONE = 1e100  # stands for an infinite lambda, as searches subtract values
-FINE = 1e-9  # of its line: how near to the least it is sought
+FINE = 1e-9  # accuracy of the place of a crack, over the length of its line
 
 
 class Crack(Described):

@@ -12,8 +12,8 @@ from rocking_cli.core import Outline
 from rocking_cli.core.kinematics import Points
 from rocking_cli.core.polygons import area_of
 
-NEAR = 1e-6  # of the size of both: how far beside a side a point may be and be on it
-PARALLEL = 1e-3  # sine of the angle between two sides that lie on one another
+NEAR = 1e-6  # distance from a side that counts as on the side, over the size of both bodies
+PARALLEL = 1e-3  # sine of the largest angle between two sides in contact
 
 
 class BearingFace(NamedTuple):

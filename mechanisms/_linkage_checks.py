@@ -13,8 +13,8 @@ from mechanisms._shapes import Member
 from rocking_cli.core import Direction, Outline, Pin, RigidMotion
 from rocking_cli.core.polygons import distance, inside
 
-BESIDE = 1e-2  # of the width and height of a body: how far beside it a joint may be drawn
-CLOSES = 1e-9  # of the fastest point: how fast a face may close by rounding
+BESIDE = 1e-2  # largest distance of a joint from its body, over width plus height of the body
+CLOSES = 1e-9  # closing rates of faces that count as zero, over the fastest velocity
 
 
 def face_at(members: Mapping[str, Member], bodies: Sequence[str], at: complex) -> faces.BearingFace | None:

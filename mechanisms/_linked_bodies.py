@@ -22,7 +22,7 @@ from rocking_cli.core import (
     rotation,
 )
 
-SAME = 1e-6  # of their numbers: columns that are the same
+SAME = 1e-6  # relative difference of equal columns
 
 
 class LinkedBodies(Mechanism):

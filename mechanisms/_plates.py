@@ -15,9 +15,9 @@ from rocking_cli.core.fields import Described
 from rocking_cli.core.kinematics import Points
 from rocking_cli.core.polygons import area_of, distance, inside
 
-TOUCH = 1e-3  # of the size of the body: parts that are nearer touch
-EXACT = 1e-6  # of it: how far one may reach into another by rounding
-ARC = 24  # sides of a rounded corner as it is drawn
+TOUCH = 1e-3  # largest distance of parts that touch, over the size of the body
+EXACT = 1e-6  # overlap of parts by rounding, over the size of the body
+ARC = 24  # sides with which a rounded corner is drawn
 
 
 class BodyPart(Described):

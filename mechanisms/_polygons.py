@@ -14,8 +14,8 @@ from rocking_cli.core import Reals
 from rocking_cli.core.kinematics import Points
 from rocking_cli.core.polygons import area_of, distance, inside, squared
 
-SAME = 1e-9  # of the polygon's size: points that are nearer are one
-MANY = 256  # boxes that are compared with all that begin before they end, at a time
+SAME = 1e-9  # distance of points that are one, over the size of the polygon
+MANY = 256  # boxes of one batch
 Indices = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
@@ -151,7 +151,7 @@ def nearby(low: Points, high: Points) -> Iterator[tuple[Indices, Indices]]:
     ways = []
     for a, b in ((low.real, high.real), (low.imag, high.imag)):
         order = np.argsort(a, kind="stable")
-        # Of each box those that begin after it and before it ends.
+        # For each box, the boxes that begin after its start and before its end.
         ways.append((order, np.searchsorted(a[order], b[order], side="right")))
     order, until = min(ways, key=lambda way: int(way[1].sum()))
     low, high = low[order], high[order]

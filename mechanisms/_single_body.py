@@ -58,7 +58,7 @@ class SingleBody(Mechanism):
         return (replace(turning, q=turning.q + way * phi, dq=turning.dq + way),)  # it rolls without slip
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
-        # Where it rolls, it bears on ever other points: its sums are those over the whole.
+        # A rolling body changes its contact point: only the sum of its forces is known.
         return () if self.rolls(direction) else (self._foot_joint(direction),)
 
     def contacts(self, direction: Direction) -> Sequence[Contact]:

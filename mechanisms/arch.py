@@ -37,10 +37,10 @@ from rocking_cli.core import (
 from rocking_cli.core.coefficients import coefficients
 from rocking_cli.errors import MechanismError
 
-FINE = radians(1.0)  # of an arc that is drawn straight
-CUTS = 40  # at which a ring without voussoirs may open, beside its hinges
-NEAR = 0.25  # of the angle between two cuts: one as near to a hinge is left out
-DRAWN = 200  # voussoirs of a picture, at most
+FINE = radians(1.0)  # longest arc that is drawn straight
+CUTS = 40  # possible cuts of a ring without voussoirs, beside its hinges
+NEAR = 0.25  # cuts nearer to a hinge are left out; over the angle between two cuts
+DRAWN = 200  # voussoirs that are drawn, at most
 
 
 class Arch(Mechanism):
@@ -268,7 +268,7 @@ class Arch(Mechanism):
 
     def _thrust_line(self, direction: Direction) -> Line:
         ring = Ring(self.thickness / self.radius, self._beta)
-        # Of voussoirs the line counts at their joints; without, everywhere.
+        # With voussoirs the line matters at their joints only, else everywhere.
         angles = np.linspace(0.0, self._beta, (self.voussoirs or DRAWN) + 1)
         angles = np.unique([*angles, *self.hinge_angles])
         points = ring.thrust_radius(angles, thrust(ring, self.hinge_angles)) * self.radius

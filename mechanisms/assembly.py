@@ -43,14 +43,14 @@ from rocking_cli.core.loading import Going, loading
 from rocking_cli.errors import MechanismError, StructureError
 from rocking_cli.text import in_short
 
-ABOVE = 1e-6  # of how far they are apart: hinges that are above one another
-SLIDING = 1e-6  # of it: a multiplier so near to the friction is that of sliding
-SLIPS = 0.01  # of the limit: where it is seen which way a face that slips goes
-GLUE = 0.01  # of lambda: more than that, by the shear of joints without friction, has a caution
-OFF = 1e-7  # of its length: a joint that opens there by less stays shut
-LIGHT = 1e-9  # of the weight of the whole: blocks that weigh less may move and nobody sees it
-NAMED = 3  # of these
-LEADS = 1e-8  # of the fastest turn: less is none
+ABOVE = 1e-6  # difference in x of hinges above one another, over the width of all hinges
+SLIDING = 1e-6  # relative difference of the multiplier and the friction at which blocks slide
+SLIPS = 0.01  # rotation at which it is checked how a slipping face moves, over the limit
+GLUE = 0.01  # relative increase of lambda by shear without friction from which there is a caution
+OFF = 1e-7  # opening of a joint that counts as zero, over its length
+LIGHT = 1e-9  # weight of blocks that the analysis does not see, over that of the whole
+NAMED = 3  # such blocks that are named, at most
+LEADS = 1e-8  # rotation rates that count as zero, over the fastest one
 
 Coefficient = Annotated[float, Field(ge=0, le=10)]
 EXAMPLE_BLOCKS = {
@@ -449,7 +449,7 @@ class Assembly(LinkedBodies):
             )
             if not ends:
                 continue
-            # Of a hinge the face that the corner bears on; both bodies of a closed joint have turned alike.
+            # A hinge turns with the face that the corner bears on; both bodies of a closed joint turn alike.
             a, b, face = (
                 name if name in self.blocks else None
                 for name in (contact.a, contact.b, contact.face_at(ends[0]) if len(ends) == 1 else contact.a)

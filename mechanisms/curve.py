@@ -28,7 +28,7 @@ from rocking_cli.errors import InputError
 
 Points = NDArray[np.complex128]
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(5)
-PIECES = 100  # of the way to the limit, beside those between the points, on each of which these nodes are exact
+PIECES = 100  # pieces of the integration to the limit, beside those between the points of the curve
 WHERE = {"points": "file", "negative_points": "negative_file"}
 """Where points are read from."""
 

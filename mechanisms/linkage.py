@@ -38,8 +38,8 @@ from rocking_cli.core.fields import Name
 from rocking_cli.core.hung.ties import Place, Tie
 from rocking_cli.errors import MechanismError, StructureError
 
-MOST_CRACKS = 2  # in a direction
-ALIKE = 1e-6  # of the size of the structure: how far an image may be from the body it is of
+MOST_CRACKS = 2  # cracks in a direction, at most
+ALIKE = 1e-6  # largest distance of a mirror image from its body, over the size of the structure
 
 EXAMPLE_BODIES = {
     "lower": {"polygon": [[0.0, 0.0], [0.3, 0.0], [0.3, 1.5], [0.0, 1.5]]},

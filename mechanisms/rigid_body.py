@@ -28,8 +28,8 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.kinematics import Points
 
-LEVEL = 1e-6  # of its width or height, the smaller: nobody measures finer how level two corners are
-MOST = 10_000  # corners
+LEVEL = 1e-6  # height difference of corners that count as level, over the smaller of width and height
+MOST = 10_000  # corners at most
 WAYS = (
     ("R", "alpha_deg", "inertia_ratio"),
     ("polygon",),
@@ -336,7 +336,7 @@ class RigidBody(SingleBody):
     def lengths(self) -> Sequence[Length]:
         if self._way not in ("polygon", "parts"):
             return ()
-        # Its size, and its foot: the corners themselves are too many to be written on it.
+        # Only its size and its foot, as it may have many corners.
         z = self._corners
         (left, right), low, high = self._feet, z.imag.min(), z.imag.max()
         return (

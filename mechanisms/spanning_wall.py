@@ -33,8 +33,8 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.contacts import MASONRY
 
-LOWER = 0.01  # of lambda: by more than that the weakest hinge lowers it, and there is a caution
-TOP = 1e-9  # of the height: a hinge so near the top is at it, and a load of so small a share of the weight is none
+LOWER = 0.01  # relative decrease of lambda by the weakest hinge from which there is a caution
+TOP = 1e-9  # hinges nearer to the top are at the top, over the height; smaller loads are none, over the weight
 
 
 class SpanningWall(Mechanism):
@@ -238,7 +238,7 @@ class SpanningWall(Mechanism):
 
     def sketch(self) -> Sketch:
         t, top = self.thickness, 1j * self.height
-        # Of a load off the wall the support is off its top too, and not drawn.
+        # A support beside the top of the wall, as that of a load beside it, is not drawn.
         hinges = {
             direction: [joint for joint in self.joints(direction) if abs(joint.point.real) <= t / 2]
             for direction in Direction

@@ -33,9 +33,9 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.reactions import at_uplift
 
-DRAWN = 6  # columns of a picture that is not to scale, at most
-MOST = 20  # columns whose joints are checked, which takes seconds
-LIGHT = 1e-8  # of the mass of the columns: with less, a beam loads no column
+DRAWN = 6  # columns of a drawing that is not to scale, at most
+MOST = 20  # columns up to which joints are checked, as this takes seconds
+LIGHT = 1e-8  # mass of a beam that loads no column, over the mass of the columns
 
 
 class SymmetricFrame(Mechanism):

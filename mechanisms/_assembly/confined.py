@@ -24,13 +24,13 @@ from mechanisms._assembly.sparse import Sparse, beside, from_blocks, from_entrie
 from rocking_cli.core import Reals
 from rocking_cli.core.contacts import MASONRY
 
-LOWER = 0.01  # of the multiplier by associated flow: a mechanism less far below it is not looked for
-BUDGET, MOST = 10_000, 100  # joints times linear programmes of a search; joints of an assembly that is searched
-BOTH = 1e-9  # of the weight, and of the unit velocity: a force and a rate that exclude each other are both there
-SIMPLEST = 1e-9  # of the multiplier: by that much it may be greater, for the simplest mechanism
-TIE = 0.01  # by so much the last joint counts more than the first, to choose among equal mechanisms
-MOVES = 1e-6  # of the fastest velocity
-FREE = 1e3  # times all normal forces: forces of guides that compress blocks
+LOWER = 0.01  # least relative decrease of the multiplier, below that by associated flow, that is searched
+BUDGET, MOST = 10_000, 100  # joints times linear programmes of a search; joints that are searched; both at most
+BOTH = 1e-9  # forces over the weight, and rates over the unit velocity, that count as zero
+SIMPLEST = 1e-9  # relative increase of the multiplier that is allowed for the simplest mechanism
+TIE = 0.01  # additional cost of the last joint relative to the first, to choose among equal mechanisms
+MOVES = 1e-6  # speed from which a block moves, over the fastest one
+FREE = 1e3  # largest force of a guide, over the sum of all normal forces
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,9 +19,9 @@ from rocking_cli.core import Reals
 from rocking_cli.core.kinematics import Points
 from rocking_cli.core.polygons import distance, inside
 
-GAP = 2e-3  # of the smaller block: 2 mm of a voussoir of width and height .5 m each
-PARALLEL = 0.05  # sine of the angle of two edges that may still lie on each other
-LEVEL = 1e-6  # upward part of a normal that is none
+GAP = 2e-3  # largest gap of a joint over width plus height of the smaller block: 2 mm for 0.5 m x 0.5 m
+PARALLEL = 0.05  # sine of the largest angle between two edges in contact
+LEVEL = 1e-6  # upward components of normals below this count as zero
 
 Gap = Callable[[str, str], float]
 Piece = tuple[complex, complex]  # from its start to its end the second body is on the left
@@ -163,7 +163,7 @@ def _merged(pieces: list[Piece], tolerance: float) -> list[Piece]:
     The merged part reaches from the first end to the last, because rigid bodies bear at both ends.
     """
     joined: dict[int, Piece] = {}
-    # The longest first, because it says best where the line lies; the order they come out in is that of the edges.
+    # The longest first, as it gives the line best; the result is in the order of the edges.
     for n, piece in sorted(enumerate(pieces), key=lambda p: -abs(p[1][1] - p[1][0])):
         for k, other in joined.items():
             along = (other[1] - other[0]) / abs(other[1] - other[0])

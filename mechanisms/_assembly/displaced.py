@@ -22,12 +22,12 @@ from mechanisms._assembly.sparse import beside, solved, solver, weighted_squares
 from mechanisms._assembly.unique import velocity_space
 from rocking_cli.core import Guide, Reals
 
-BALANCED = 1e-6  # of the weight: forces that joints need not carry may be no more, or they are not in balance
-HELD = 1e-9  # of the weight: a tension that counts as none
-FINE = 1e-8  # of the rotation up to which it is looked for
-TRIES = 6  # to balance forces without tension beside a state that is known
-LESS = 0.3  # of a force that would be tension: what is tried in its place
-STEPS = 32  # in which a first violation is looked for
+BALANCED = 1e-6  # largest imbalance of given forces, over the weight
+HELD = 1e-9  # tension that counts as zero, over the weight
+FINE = 1e-8  # accuracy of the first violation, over the range searched
+TRIES = 6  # corrections of a similar state without tension, at most
+LESS = 0.3  # share of a multiplier that replaces it if it would be tension
+STEPS = 32  # steps in which the first violation is searched
 
 ENDS = {Opening.CLOSED: (0, 1), Opening.START: (0,), Opening.END: (1,), Opening.LIFTED: ()}
 
@@ -129,7 +129,7 @@ class DisplacedAssembly:
             at = values.argmin(axis=1)
             owner = rays.contact[rays.one_sided]
             return [Admissible(min(float(v[k]), 1.0), int(owner[k])) for v, k in zip(values, at, strict=True)]
-        # Each one-sided ray is the margin and what it has above it.
+        # The multiplier of each one-sided ray is the margin plus a variable of at least zero.
         equal = beside([rays.rates.T, rays.rates.T @ rays.one_sided.astype(np.float64)])
         cost, low = np.append(np.zeros(rays.count), -1.0), np.append(rays.low, -np.inf)
         high = np.append(np.full(rays.count, np.inf), 1.0)
@@ -171,7 +171,7 @@ class DisplacedAssembly:
             off = rays.rates.T @ balanced + case
             if (balanced[rays.one_sided] >= 0).all() and np.abs(off).max() <= TOLERANCE:
                 return balanced
-            # What would be tension is less than before, and the others make up for it.
+            # Reduce the multipliers that would be tension; the next correction balances that.
             state = np.where(rays.one_sided, np.maximum(balanced, LESS * state), balanced)
         return None
 
@@ -195,7 +195,7 @@ def first_violation(
     close, root = FINE * float(steps[-1]), None
     width = np.inf
     while high - low > close:
-        # Every other time in halves, unless the secant has just done better.
+        # Bisect unless the secant step has just more than halved the interval.
         guess = (low + high) / 2
         if root is not None and high - low <= width / 2:
             guess = min(max(root, low + 0.9 * close), high - 0.9 * close)

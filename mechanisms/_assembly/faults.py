@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-NAMED = 5  # blocks that a sentence names at most
+NAMED = 5  # blocks named in a message, at most
 
 
 class AssemblyFault(Exception):

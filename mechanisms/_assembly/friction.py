@@ -22,9 +22,9 @@ from mechanisms._assembly.sparse import beside
 from rocking_cli.core import Reals
 from rocking_cli.core.contacts import MASONRY
 
-MOST = 10.0  # a coefficient of friction that no joint has
-SAME = 1e-9  # of the multiplier: what is left as it is
-FINE = 1e-6  # of the coefficient of friction
+MOST = 10.0  # larger coefficients of friction do not occur
+SAME = 1e-9  # relative difference of equal multipliers
+FINE = 1e-6  # relative accuracy of the coefficient of friction
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +89,7 @@ def _roots(known: Sequence[tuple[float, float, float]]) -> Iterator[float]:
     """
     mu, lacks, growth = known[-1]
     if len(known) > 1 and growth > 0 and known[-2][2] > 0 and known[-2][1] > lacks:
-        # The friction as a cubic of what is lacking, extrapolated to nothing.
+        # Friction as a cubic of the shortfall, extrapolated to a shortfall of zero.
         before, more, slower = known[-2]
         width, start, end = more - lacks, -1 / growth, -1 / slower
         chord = (before - mu) / width
@@ -239,7 +239,7 @@ def _beyond(
     rows = problem.bearings.shears[joints]
     extra = problem.bearings.rates[rows].T
     count, n = len(rows), rays.count
-    # The multiplier may be less by a hair, lest rounding leave no state at all.
+    # A slightly smaller multiplier is allowed, or rounding may leave no state at all.
     least_, greatest = (SAME / 10, SAME / 10) if most is None else (SAME, -SAME)
     found = least(
         np.concatenate([np.zeros(n + 1), np.ones(2 * count)]),

@@ -23,7 +23,7 @@ from mechanisms._assembly.smallest import smallest
 from mechanisms._assembly.unique import kept_rays, mechanisms_of, velocity_space
 from rocking_cli.core import Direction, Guide, Reals
 
-NOISE = 1e-11  # of the fastest velocity: a rate that is rounding
+NOISE = 1e-11  # rates that count as zero, over the fastest velocity
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,7 +175,7 @@ def collapse(
     space = velocity_space(rays.rates[kept], problem.frame)
     least = smallest(problem, rays, kept, space)
     fields, idle = ([least[0]], least[1]) if least else (mechanisms_of(rays, kept, space, raw), ())
-    # Those that the multiplier starts first; and by the blocks that move, because the search finds them in any order.
+    # First those on which live forces do work, then by the blocks that move: the search finds them in any order.
     fields.sort(
         key=lambda field: (
             not _worked_on(problem, field),

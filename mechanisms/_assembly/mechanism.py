@@ -14,9 +14,9 @@ from mechanisms._assembly.limit import Collapse
 from mechanisms._assembly.rays import Frame
 from rocking_cli.core import Guide, Reals
 
-STILL = 1e-8  # of the fastest velocity: a rate that is none
-PRESSES = 1e-9  # of the largest normal force: less is none
-SAME_PLACE = 1e-6  # of the size of the whole: hinges that are one
+STILL = 1e-8  # velocities that count as zero, over the fastest one
+PRESSES = 1e-9  # normal forces that count as zero, over the largest one
+SAME_PLACE = 1e-6  # distance of hinges that coincide, over the size of the assembly
 
 
 class Opening(Enum):

@@ -14,8 +14,8 @@ from mechanisms._assembly.rays import Bearings, Frame, Rays, moving, scaled
 from mechanisms._assembly.sparse import beside, unit_columns
 from rocking_cli.core import Direction, Guide, Reals
 
-STRONGEST = 1e4  # multiplier beyond which nothing counts as moving
-NOTHING = 1e-9  # of the weight: a force that is none; of the multiplier: what is no more than none
+STRONGEST = 1e4  # largest multiplier: beyond, nothing moves
+NOTHING = 1e-9  # forces, over the weight, and multipliers that count as zero
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,12 +22,12 @@ from rocking_cli.core import Reals
 
 TOLERANCE = 1e-10  # the solver's own 1e-7 is too coarse for a multiplier that two theorems must agree on
 EXACTING = {"primal_feasibility_tolerance": TOLERANCE, "dual_feasibility_tolerance": TOLERANCE}
-WAIT = 0.1  # s between looks whether someone interrupts
-LARGE = 600  # equations: from as many on interior points are the faster
-SOON = 1  # times the equations: more steps of a crossover are those of one that goes astray
-EXACT = 1e-12  # of the largest: what is left of equations, bounds and prices
-INSIDE = 1e-9  # of the largest: what is nearer to a bound lies on it
-ROUNDS, FINEST = 4, 1e7  # corrections, and by how much what is left is magnified at most
+WAIT = 0.1  # interval at which interrupts are noticed [s]
+LARGE = 600  # equations from which interior points are faster
+SOON = 1  # iterations of a crossover over the number of equations; more of them do not converge
+EXACT = 1e-12  # residuals of a refined result, over its size
+INSIDE = 1e-9  # distance from a bound that counts as on the bound, over the largest variable
+ROUNDS, FINEST = 4, 1e7  # corrections at most, and largest magnification of a residual
 
 
 @dataclass(frozen=True)

@@ -124,7 +124,7 @@ class Bearings:
         for k, at in bear:
             each = contacts[k]
             a, b = number.get(each.a, -1), number.get(each.b, -1)
-            # Of a hinge the face that the corner bears on; both bodies of a closed joint turn alike.
+            # A hinge turns with the face that the corner bears on; both bodies of a closed joint turn alike.
             face = number.get(each.face_at(at[0]) if len(at) == 1 else each.a, -1)
             rows += [(a, b, each.ends[end], each.normal, a, face) for end in at]
             rows.append((a, b, each.ends[at[0]], -1j * each.normal, a, face))
@@ -146,7 +146,7 @@ class Bearings:
 
     def moved(self, centroids: Points, turns: Points) -> Bearings:
         """Return the forces of joints in a displaced position: centroids [m], and rotations as unit complex factors."""
-        # What does not move is the last of each, which -1 finds.
+        # Index -1 is the ground, appended as the last entry.
         before, after = (np.append(np.asarray(z, np.complex128), 0) for z in (self.frame.centroids, centroids))
         turn, by = np.append(turns, 1), self.carried
         points = after[by] + turn[by] * (self.rows.points - before[by])

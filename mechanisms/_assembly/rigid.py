@@ -16,8 +16,8 @@ from mechanisms._assembly.sparse import Sparse, components, from_entries
 from rocking_cli.core import Reals
 from rocking_cli.core.kinematics import Points
 
-ACROSS = 1e-3  # sine of the angle between directions that count as two
-APART = 1e-9  # of the size of the whole: lines of action that do not pass one point
+ACROSS = 1e-3  # least sine of the angle between two different directions
+APART = 1e-9  # least distance of two different lines of action, over the size of the assembly
 
 
 @dataclass(frozen=True, eq=False)

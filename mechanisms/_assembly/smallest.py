@@ -21,8 +21,8 @@ from mechanisms._assembly.rays import Bools, Indices, Rays
 from mechanisms._assembly.sparse import from_blocks
 from rocking_cli.core import Reals
 
-SAME = 1e-6  # of a velocity: two that are one
-MOST = 30  # dimensions of the velocities: more are several mechanisms
+SAME = 1e-6  # relative difference of equal velocities
+MOST = 30  # dimensions of the space of velocities up to which one motion is searched
 
 
 def smallest(problem: AssemblyProblem, rays: Rays, kept: Bools, space: Reals) -> tuple[Reals, tuple[str, ...]] | None:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking_cli.core import Reals
 
-LITTLE = 1e-12  # of the largest entry
+LITTLE = 1e-12  # multiple of the unit matrix that is added, over the largest entry
 Indices = NDArray[np.intp]
 Sparse = Any  # scipy.sparse.csr_array, which has no types
 

@@ -10,7 +10,7 @@ import numpy as np
 from mechanisms._assembly.blocks import AssemblyContact
 from rocking_cli.core import Reals
 
-NONE = 1e-9  # of the largest force: no force
+NONE = 1e-9  # forces that count as zero, over the largest one
 
 
 @dataclass(frozen=True)

@@ -17,13 +17,13 @@ from mechanisms._assembly.rigid import rigid_parts
 from mechanisms._assembly.sparse import Sparse, beside, components
 from rocking_cli.core import Reals
 
-OPENS = 1e-7  # of the fastest rate: a ray that opens
-CARRIES = 1e-9  # of the weight: a ray that carries force
-ENOUGH = 1e-3  # of the weight: more of one force is no use where others are looked for
-LARGER = 1e3  # states may be this much larger, so that small forces count as much as large ones
-RANK = 1e-10  # of the largest singular value
-CLEAN = 1e-12  # of the fastest velocity
-MOST = 8  # mechanisms that are named
+OPENS = 1e-7  # rate from which a ray opens, over the fastest rate
+CARRIES = 1e-9  # force from which a ray carries, over the weight
+ENOUGH = 1e-3  # most of the force of one ray that counts in the cost, over the weight
+LARGER = 1e3  # largest factor on a state, so that small forces are found
+RANK = 1e-10  # singular values below this share of the largest one count as zero
+CLEAN = 1e-12  # velocities below this share of the fastest one are set to zero
+MOST = 8  # mechanisms that are returned, at most
 
 
 def kept_rays(rays: Rays, dead: Reals, live: Reals, raw: Reals) -> Bools:
@@ -123,7 +123,7 @@ def null_space(rows: Reals) -> Reals:
 def mechanisms_of(rays: Rays, kept: Bools, space: Reals, raw: Reals) -> list[Reals]:
     """Return the mechanism of a space of one dimension, or extreme mechanisms of a larger one.
 
-    No ray closes in any of them.
+    All rays that are not kept open, or stay shut, in each of them.
     """
     if space.shape[1] == 0:
         return [_clean(raw)]

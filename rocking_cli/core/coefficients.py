@@ -16,7 +16,7 @@ from rocking_cli.core.bodies import Body
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.errors import MechanismError, StructureError
 
-JUMP = 1e-5  # of the size of a coefficient: what its derivative may miss of its change from one rotation to the next
+JUMP = 1e-5  # largest unexplained change of a coefficient between two rotations, over its size
 
 
 @dataclass(frozen=True)

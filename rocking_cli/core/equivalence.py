@@ -203,5 +203,5 @@ def impulse_velocity(mechanism: Mechanism, direction: Direction, phi_cr: float) 
     """
     at = mechanism.coefficients(np.array([0.0, phi_cr]), direction)
     stored = mechanism.gravity * at.V[1] + at.U[1]
-    # Of what overturns by itself, all but, rounding may take it below zero.
+    # Rounding may take it below zero if the structure is about to overturn by itself.
     return sqrt(2 * float(at.I[0]) * max(float(stored), 0.0)) / float(at.B[0])

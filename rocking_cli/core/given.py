@@ -26,7 +26,7 @@ KINEMATIC = "kinematic"
 NEEDS_A_SIDE = "requires one_sided: otherwise the structure rocks through to the other side"
 
 
-Eta = Annotated[float, Field(gt=0, le=5)]  # how much it may be at most depends on the structure
+Eta = Annotated[float, Field(gt=0, le=5)]  # the bound of a structure is checked in `checks`
 
 
 class DirectionalRestitution(Described):
@@ -139,7 +139,7 @@ class Given(Described):
 
             raise FieldError(*of_arguments(type(self), error.errors(include_url=False), type(self).mechanism)) from None
 
-    # As pydantic marks its own: files and copies are validated without it, and place their errors themselves.
+    # Pydantic then validates files and copies without calling it.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
     @final

@@ -18,17 +18,17 @@ from numpy.typing import NDArray
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion, rotation
 from rocking_cli.core.loops import LinkageJoint, Loops, Pin
 
-NULL = 1e-9  # of the largest singular value: directions in which the joints hold nothing
-CLOSED = 1e-10  # of the size: how far a joint may gape
-SURE = 1e-3  # rad: where it is first seen whether the loops close
-FAR = 3e-3  # rad, and of the size: how far a prediction may be off before a step is halved
-ROUGH = 0.1  # of x': how far its prediction may be off, which across a singular position it is
-STEP = 0.05  # rad: the longest step
-LEAST = 1e-11  # rad: a step this short ends the motion
-ROUNDS = 12  # of Newton
-SETTLED = 1e-10  # of a step of Newton: the one after it would be rounding
-FLAT = np.pi / 2  # rad: the leading body lies down
-KEPT = 8  # motions that are remembered
+NULL = 1e-9  # singular values below this share of the largest one count as zero
+CLOSED = 1e-10  # largest gap of a joint, over the size of the linkage
+SURE = 1e-3  # rotation at which it is first checked whether the loops close [rad]
+FAR = 3e-3  # largest error of a prediction before the step is halved [rad, or of the size]
+ROUGH = 0.1  # largest relative error of the prediction of x'; it is larger across a singular position
+STEP = 0.05  # longest step [rad]
+LEAST = 1e-11  # shortest step: the motion ends there [rad]
+ROUNDS = 12  # iterations of Newton's method, at most
+SETTLED = 1e-10  # relative step of Newton's method at which it has converged
+FLAT = np.pi / 2  # rotation at which the leading body lies flat [rad]
+KEPT = 8  # motions that are kept
 AT_ONCE = 4_000_000  # entries of the matrices that are solved at once: 64 MB of complex numbers
 
 

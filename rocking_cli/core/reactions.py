@@ -21,10 +21,10 @@ from rocking_cli.core.loading import Going, loading
 from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.core.released import Pieces
 
-LOOKED_AT = (0.21, 0.47)  # of the kinematic limit: where it is seen which bodies move as one
-AS_ONE = 1e-9  # of the largest displacement there
-BALANCED = 1e-6  # of the largest force needed: what no forces at the joints balance
-COUPLE = 0j  # among the forces of a joint: no force at all
+LOOKED_AT = (0.21, 0.47)  # rotations over the kinematic limit at which motions of bodies are compared
+AS_ONE = 1e-9  # largest difference of two motions that count as one, over the largest displacement
+BALANCED = 1e-6  # largest imbalance at a joint, over the largest force
+COUPLE = 0j  # stands for a couple among the unit forces of a joint
 WHOLE = Joint("", 0j, ())
 """Stands for all joints together where the forces at each are not known."""
 

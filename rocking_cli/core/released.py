@@ -162,7 +162,7 @@ def _solved(rates: Rates, pieces: Pieces, demand: Reals) -> tuple[Reals, Reals]:
     velocities xi of all pieces if row i alone is released. The force of this row is xi.b, with b the demand, and
     (A^-1)_ii = xi.M xi.
     """
-    # Each coordinate in a length of the whole, or the rotations of small pieces would count for nothing.
+    # Rotations times the size of the structure, or those of small pieces would be lost.
     scale = pieces.scale
     rocking = pieces.momentum(pieces.dq) / scale
     rocking /= np.linalg.norm(rocking, axis=1, keepdims=True)

@@ -11,8 +11,8 @@ from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.kinematics import Direction
 from rocking_cli.core.mechanism import Mechanism
 
-STEPS = 128  # to the critical rotation, between which a mechanism is held to move without jumps
-STRAIGHT = 0.25  # of V'(0): further from the straight line 1 - phi/phi_cr the linear models mislead
+STEPS = 128  # steps to the critical rotation, between which jumps of the motion are searched
+STRAIGHT = 0.25  # departure from the straight line 1 - phi/phi_cr, over V'(0), beyond which linear models mislead
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ import numpy as np
 
 from rocking_cli.core.hung import Element
 
-POINTS = 20_001  # between which force and energy are compared
-ROUNDING = 1e-6  # of the largest value: more than differences of so many points leave
+POINTS = 20_001  # elongations at which force and energy are compared
+ROUNDING = 1e-6  # error of the differences, over the largest value
 
 
 def check_law(element: Element, shortest: float, longest: float) -> None:

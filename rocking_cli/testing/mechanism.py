@@ -55,24 +55,24 @@ from rocking_cli.studies.picture import picture
 Reals = NDArray[np.float64]
 Points = NDArray[np.complex128]
 
-STEP = 1e-4  # of phi in difference quotients, whose error is of its fourth power; at most
-FINER = 0.02  # of a step
-SHARE = 1e-3  # of the rotations looked at
-BEYOND = 1.2  # of the critical rotation: up to where the motion must be smooth,
-REACH = 0.8  # of the kinematic limit, near which derivatives grow without bound
-FURTHEST = 0.999  # of the kinematic limit: up to where there must be no jump
-SHIFTS = (-2, -1, 1, 2)  # steps from a rotation at which they take values
-CELLS = 4096  # between rest and there, in each of which a jump would be seen
-ALIKE = 1e-9  # of its size: how near a value must come to what the bodies say
-DRAWN = 2e-3  # how near, over the size of a body, its outlines with their straight sides must come to its inertia
-A_LITTLE = 0.25  # of the critical rotation, in which nothing may go through the ground
-FLUSH = 1e-8  # of the size of the structure: how near to the ground counts as on it
-BORNE = 1e-6  # of the weight: how near the forces at contacts must come to it
-A_BIT = 0.01  # of the weight: what is hung on a structure to see whether it takes it
-A_MASS = 1000.0  # kg
+STEP = 1e-4  # largest step of difference quotients [rad]
+FINER = 0.02  # finer step, over the step
+SHARE = 1e-3  # step, over the range of rotations
+BEYOND = 1.2  # rotation up to which the motion must be smooth, over the critical rotation
+REACH = 0.8  # the same over the kinematic limit, near which derivatives grow without bound
+FURTHEST = 0.999  # rotation up to which there must be no jump, over the kinematic limit
+SHIFTS = (-2, -1, 1, 2)  # steps at which difference quotients take values
+CELLS = 4096  # intervals in which a jump is searched
+ALIKE = 1e-9  # largest difference of equal values, over their size
+DRAWN = 2e-3  # largest difference of inertia or centroid from those of the outlines, over the size of the body
+A_LITTLE = 0.25  # rotation up to which nothing may pass through the ground, over the critical rotation
+FLUSH = 1e-8  # height that counts as on the ground, over the size of the structure
+BORNE = 1e-6  # largest imbalance of contact forces, over the weight
+A_BIT = 0.01  # weight of the loads that are tried, over the weight of the structure
+A_MASS = 1000.0  # mass of a structure without masses [kg]
 SIDED = ("one_sided", "rebound")
 HUNG = ("loads", "ties", "interlock", *SIDED)  # fields of every mechanism
-GIVEN = 0.625  # a coefficient of restitution that no structure has by itself
+GIVEN = 0.625  # a rebound that no structure has by itself
 
 
 def contract(structure: Mechanism) -> list[Verdict]:

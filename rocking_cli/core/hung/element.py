@@ -33,9 +33,9 @@ NO_ANSWER: dict[Question, str] = {
 }
 """What a structure may be asked beside its nonlinear history, and what is said where its elements do not allow it."""
 
-TOGETHER = 1e-9  # m, and of the distance from the origin: points that are nearer at rest are one
-ROUNDING = 1e-14  # m, and of that distance: elongations that are none
-NEAR = 1e-6  # rad or so: two points that met at rest are still so near that their distance is its derivative times phi
+TOGETHER = 1e-9  # distance of points that coincide at rest [m], plus this share of their distance from the origin
+ROUNDING = 1e-14  # elongations that count as zero [m], plus this share of that distance
+NEAR = 1e-6  # rotation [rad] below which the distance of points that coincide at rest is its derivative times phi
 
 
 class Element(ABC):

@@ -9,8 +9,8 @@ from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.elements import ConstantForce
 
 NAME = "interlock"
-SHARE = 0.4  # of the sliding force of all courses: the code's, for blocks that are laid with care
-ARM = 1 / 3  # of the height: where the friction of courses under their own weight acts
+SHARE = 0.4  # share of the sliding force of all courses that the code counts, for blocks laid with care
+ARM = 1 / 3  # height of the resultant friction of courses under their own weight, over the height
 
 
 class Interlock(Described):
