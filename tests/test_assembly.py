@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from itertools import pairwise, product
+from itertools import product
 from math import atan
 
 import numpy as np
@@ -114,12 +114,6 @@ def test_exact_voussoirs_are_the_built_in_arch():
     assert "v1 and v2" in {each.key: each for each in found.extras(POSITIVE)}["valid_to"].meaning
 
 
-def test_polygons_converge_to_the_arch():
-    arch = arch_of().uplift(POSITIVE)
-    off = [assembly(*ring(edges=edges)).uplift(POSITIVE) - arch for edges in (1, 2, 4)]
-    assert [each * edges**2 for each, edges in zip(off, (1, 2, 4), strict=True)] == approx([0.0036] * 3, rel=0.1)
-
-
 def test_an_arch_that_slides_says_when_and_has_no_model(tmp_path):
     blocks, ground = ring(exact=True)
     file = tmp_path / "arch.yaml"
@@ -227,8 +221,8 @@ def piers(seed):
     return bodies, joints
 
 
-def placed(bodies, factor=1.0):
-    return {name: rectangle(*(factor * each for each in box)) for name, box in bodies.items()}
+def placed(bodies):
+    return {name: rectangle(*box) for name, box in bodies.items()}
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -240,39 +234,6 @@ def test_random_piers_by_both_theorems(seed):
         least = statics.static(int(direction))
         assert statics.kinematic(int(direction)) == approx(least, rel=1e-9)
         assert found.uplift(direction) == approx(least, rel=1e-9)
-
-
-@pytest.mark.parametrize("seed", [0, 1, 2])
-def test_neither_size_nor_mass_nor_side_matters(seed):
-    bodies, _ = piers(seed)
-    found = assembly(placed(bodies))
-    ground = {"floor": rectangle(-1e3, -50.0, 1e3, 0.0)}
-    large, heavy = assembly(placed(bodies, 50.0), ground), assembly(placed(bodies), density=37.0)
-    mirrored = assembly({name: rectangle(-x1, y0, -x0, y1) for name, (x0, y0, x1, y1) in bodies.items()})
-    for direction in Direction:
-        known = found.uplift(direction)
-        assert large.uplift(direction) == approx(known, rel=1e-10)
-        assert heavy.uplift(direction) == approx(known, rel=1e-10)
-        assert mirrored.uplift(direction.opposite) == approx(known, rel=1e-10)
-        assert mirrored.critical_rotation(direction.opposite) == approx(found.critical_rotation(direction), rel=1e-9)
-
-
-def test_a_gate_of_two_lintels_by_both_theorems():
-    bodies = {
-        "l": (0.0, 0.0, 1.4, 4.0),
-        "r": (4.0, 0.0, 5.2, 4.0),
-        "a": (0.6, 4.0, 4.6, 4.5),
-        "b": (1.0, 4.5, 4.0, 5.0),
-    }
-    joints = [
-        (None, "l", 0j, 1.4 + 0j), (None, "r", 4 + 0j, 5.2 + 0j), ("l", "a", 0.6 + 4j, 1.4 + 4j),
-        ("r", "a", 4 + 4j, 4.6 + 4j), ("a", "b", 1 + 4.5j, 4 + 4.5j),
-    ]  # fmt: skip
-    statics, found = Statics(bodies, joints), assembly(placed(bodies))
-    for s in Direction:
-        assert (
-            found.uplift(s) == approx(statics.static(int(s)), rel=1e-9) == approx(statics.kinematic(int(s)), rel=1e-9)
-        )
 
 
 def test_an_arch_on_buttresses_by_its_line_of_thrust():
@@ -685,99 +646,25 @@ def test_what_would_open_by_a_line_of_thrust(phi, rate, ground):
         assert ours == approx(theirs[pair], rel=1e-6, abs=1e-9)
 
 
-def test_reactions_are_weight_and_base_shear():
-    from rocking_cli.core.reactions import reactions
-
-    for structure in (assembly(PORTAL), assembly(*ring(edges=2))):
-        phi, rate, push = np.array([0.01, 0.03]), np.array([0.2, -0.1]), np.array([-0.3 * g, 0.1 * g])
-        at = structure.coefficients(phi, POSITIVE)
-        turning = (-at.J * rate**2 - g * at.G - at.B * push) / at.I
-        found = reactions(structure, POSITIVE, phi, rate, push + 0j)
-        force = sum(f for joint, f in zip(found.joints, found.force, strict=True) if len(joint.bodies) == 1)
-        needed = 0j
-        for body, motion in zip(structure.weighed(), structure.motion(phi, POSITIVE), strict=True):
-            _, dz, ddz = motion.carry(body.centroid)
-            needed = needed + body.mass * (dz * turning + ddz * rate**2 + push + 1j * g)
-        assert np.abs(force - needed).max() < 1e-9 * np.abs(needed).max()
-
-
-@pytest.mark.parametrize("structure", [assembly(PORTAL), rk.Linkage(**WALL, **WEIGHT)], ids=["portal", "wall"])
-def test_energy_is_kept_between_impacts(structure):
-    history = rk.respond(structure, release="0.08rad", models="nonlinear", tail=3.0)["nonlinear"]
-    edges = [0.0, *history.impacts[:6, 0]]
-    for start, end in pairwise(edges):
-        inside = (history.time > start + 1e-9) & (history.time < end - 1e-9)
-        phi, rate = history.phi[inside], history.rate[inside]
-        s = POSITIVE if phi.mean() > 0 else NEGATIVE
-        energy = structure.kinetic_inertia(np.abs(phi), s) * rate**2 / 2 + structure.potential_energy(np.abs(phi), s)
-        assert np.ptp(energy) < 1e-6 * energy.mean()
-
-
-def test_a_slide_on_a_turning_line_by_lagrange():
-    """A crank whose line guides a pin of a rod: energies from the geometry alone, differentiated by numbers."""
-    numbers = {
-        "crank": {"mass": 700.0, "centroid": [-0.4, 0.8], "inertia": 90.0},
-        "rod": {"mass": 30.0, "centroid": [1.8, 1.1], "inertia": 4.0},
-    }
-    joints = {
-        "A": {"pivot": "crank", "at": [0.0, 0.0]},
-        "B": {"pivot": "rod", "at": [3.0, 0.0]},
-        "C": {"slide": ["rod", "crank"], "at": [1.0, 1.0], "along": [1.0, 1.0]},
-    }
-    side = {"lead": "crank", "joints": joints}
-    found = rk.Linkage(bodies=numbers, positive=side, negative="none", one_sided="positive", rebound=0.1)
-
-    def places(phi):
-        theta = np.pi / 4 - phi
-        pin = (3 * np.cos(theta) - np.sqrt(9 * np.cos(theta) ** 2 - 4)) * np.exp(1j * theta)
-        turn = np.angle((pin - 3) / (-2 + 1j))
-        return (-0.4 + 0.8j) * np.exp(-1j * phi), -phi, 3 + (-1.2 + 1.1j) * np.exp(1j * turn), turn
-
-    def rates(phi, h=1e-4):
-        low, high, low2, high2 = (places(phi + k * h) for k in (-1, 1, -2, 2))
-        return [(8 * (b - a) - (d - c)) / (12 * h) for a, b, c, d in zip(low, high, low2, high2, strict=True)]
-
-    def inertia(phi):
-        v, w, u, q = rates(phi)
-        return 700 * abs(v) ** 2 + 90 * w**2 + 30 * abs(u) ** 2 + 4 * q**2
-
-    phi = np.array([0.0, 0.02, 0.05])
-    mine = found.coefficients(phi, POSITIVE)
-    v, _, u, _ = rates(phi)
-    assert np.abs(mine.I / inertia(phi) - 1).max() < 1e-9
-    assert np.abs(mine.G - 700 * v.imag - 30 * u.imag).max() < 1e-6
-    assert np.abs(mine.B - 700 * v.real - 30 * u.real).max() < 1e-6
-    h = 1e-3
-    slope = (8 * (inertia(phi + h) - inertia(phi - h)) - inertia(phi + 2 * h) + inertia(phi - 2 * h)) / (12 * h)
-    assert np.abs(mine.J - slope / 2).max() < 1e-5 * np.abs(slope).max()
-
-
 # --- linkages that are no good ---------------------------------------------------------------------------------------
 
 
 def changed(**joints):
-    kept = {key: each for key, each in {**WALL["positive"]["joints"], **joints}.items() if each is not None}
-    return {**WALL, "positive": {"lead": "lower", "joints": kept}, **WEIGHT}
+    return {**WALL, "positive": {"lead": "lower", "joints": {**WALL["positive"]["joints"], **joints}}, **WEIGHT}
 
 
 @pytest.mark.parametrize(
     ("fields", "match"),
     [
-        (changed(B={"hinge": ["lower", "upper"], "at": [0.3, 1.5]}), r"positive\.joints\.B: B closes"),
-        (changed(C=None), "with lower held still, upper can still move"),
-        (changed(D={"pivot": "upper", "at": [0.0, 3.0]}), r"positive\.joints\.D: nothing can move"),
         (
             changed(D={"slide": "upper", "at": [0.0, 3.0], "along": [0.0, 1.0]}),
             "the joints allow only an infinitesimal rotation",
         ),
         (changed(A={"pivot": "lower", "at": [float("nan"), 0.0]}), r"positive\.joints\.A\.at\[1\] must be a finite"),
-        (changed(C={"slide": "upper", "at": [0.3, 3.0], "along": [0.0, 0.0]}), "is not a valid direction"),
         (
             changed(B={"hinge": ["lower", "upper"], "at": "K left"}),
             r"positive\.joints\.B\.at is a point \[x, y\]; got",
         ),
-        ({**WALL, **WEIGHT, "positive": {**WALL["positive"], "lead": "upper"}}, "upper turns the wrong way"),
-        ({**WALL, **WEIGHT, "negative": "none"}, "give one_sided: positive"),
         ({**WALL, **WEIGHT, "positive": "mirror"}, "is the mirror of the other direction"),
     ],
 )
@@ -785,11 +672,6 @@ def test_linkages_that_are_no_good(fields, match):
     with pytest.raises(InputError, match=match) as caught:
         rk.Linkage(**fields)
     assert "must be mirror or none" not in str(caught.value)  # only what was meant is spoken of
-
-
-def test_a_joint_too_many_that_stays_satisfied_is_harmless():
-    twice = changed(D={"slide": "upper", "at": [0.3, 3.0], "along": [0.0, 2.0]})
-    assert rk.Linkage(**twice).uplift(POSITIVE) == approx(0.4, rel=1e-12)
 
 
 def test_what_cannot_rock_that_way_says_so():

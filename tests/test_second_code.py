@@ -200,21 +200,9 @@ class OwnStarter(Demo):
 
 
 EVERY = (
-    Worked,
-    Demo,
-    Divides,
-    Nothing,
-    NoMethod,
-    NoRatio,
-    Unmade,
-    Shown,
-    NoShowing,
-    BadSheet,
-    Unknown,
-    Strict,
-    NoExample,
+    Worked, Demo, Divides, Nothing, NoMethod, NoRatio, Unmade, Shown, NoShowing, BadSheet, Unknown, Strict, NoExample,
     OwnStarter,
-)
+)  # fmt: skip
 MODULE = "tests.test_second_code"
 HERE = r"\(.*test_second_code\.py:\d+\)"
 
