@@ -291,7 +291,11 @@ def joints_of(
             contacts[-len(back) :, d, 0] = contacts[-len(back) :, d, 2] = np.arange(len(back)) + force.shape[1]
             constant = np.array([[*mode.force, mode.compliance] for mode in back])
             whole = np.concatenate([whole, np.tile(constant, (len(whole), 1, 1))], axis=1)
-            struck[d, force.shape[1] : whole.shape[1]] = [_pushed_back(mechanism, mode) for mode in back]
+            there = Pieces(mechanism, mechanism.directions[0], np.zeros(1))
+            # Its velocities are -t before and eta t after.
+            struck[d, force.shape[1] : whole.shape[1]] = [
+                [float(there.momentum(there.dq)[0] @ mode.velocity)] * 2 for mode in back
+            ]
         cubics = _lines(whole) if redundant else _cubics(whole)
         count = whole.shape[1]
         rows[:, d, :count] = cubics.reshape(cells, count, 20)
@@ -305,13 +309,6 @@ def joints_of(
         mechanism.asserted(), sliding, redundant, _calm(within, tables, statics),
         len(mechanism.bodies()) == 1, checked_joints(mechanism), still.known,
     )  # fmt: skip
-
-
-def _pushed_back(mechanism: Mechanism, mode: EarlyMechanism) -> list[float]:
-    """Return the row of `JointTables.struck` of a mechanism that a structure pushes back as it comes to rest."""
-    there = Pieces(mechanism, mechanism.directions[0], np.zeros(1))
-    along = float(there.momentum(there.dq)[0] @ mode.velocity)
-    return [along, along]  # its velocities are -t before and eta t after
 
 
 def _at_rest(still: Rest, labels: Sequence[str], bearing: Reals, weight: float) -> tuple[Reals, tuple[float, float]]:

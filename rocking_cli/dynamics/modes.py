@@ -263,7 +263,8 @@ class _Placed:
         if not exists.any():
             return None
         force = np.einsum("nc,ncf->nf", velocity, self.demand)
-        force[~exists] = self._bears
+        force[~exists] = 0.0
+        force[~exists, ONE] = np.abs(self.demand[0, :, ONE]).sum()  # so large that it never opens there
         plain = velocity
         if any(pattern.slips):  # what slides does not dilate as it goes
             without = self._alone(pattern, dilates=False)
@@ -271,13 +272,6 @@ class _Placed:
                 plain = without[0] / np.abs(self.rates.at(without[0])).max(axis=1)[:, None]
         moving = self.pieces.momentum(plain)
         return _Followed(velocity, force, 1 / np.einsum("nc,nc->n", plain, moving), exists)
-
-    @property
-    def _bears(self) -> Reals:
-        """Force of a mode at rotations where it does not exist: so large that the mode never opens."""
-        whole = np.zeros(4)
-        whole[ONE] = np.abs(self.demand[0, :, ONE]).sum()
-        return whole
 
     def _closes_nothing(self, speed: Reals) -> Bools:
         """Return whether no joint closes, or slides without dilating, at each rotation, shape (n,)."""
