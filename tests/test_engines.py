@@ -21,11 +21,13 @@ PULSE = rk.parse_pulse("sine:0.4g:1s").sampled()
     [
         (BLOCK, {"motion": "sine:0.3g:0.8s"}, "motion must be a GroundMotion, got str"),
         (BLOCK, {}, "nothing to respond to: give a ground motion, a release, or both"),
-        (BLOCK, {"release": 1.0}, "release must be a fraction of phi_cr between 0 and 1 (or 0 and -1), got 1"),
+        *((BLOCK, {"release": each}, "release must be a fraction of phi_cr between 0 and 1 (or 0 and -1), got")
+          for each in (0.0, 1.0, -1.0, 1.5, float("nan"))),
         (LEANING, {"release": -0.5}, "release is against the supports"),
-        (BLOCK, {"motion": PULSE, "tail": -1.0}, "tail must be a time in seconds, 0 or more, got -1"),
-        (BLOCK, {"motion": PULSE, "tail": float("nan")}, "tail must be a time in seconds, 0 or more, got nan"),
-        (BLOCK, {"motion": PULSE, "rtol": 1.0}, "rtol must be at least 1e-14 and below 1, got 1"),
+        *((BLOCK, {"motion": PULSE, "tail": each}, f"tail must be a time in seconds, 0 or more, got {each:g}")
+          for each in (-1.0, float("nan"), float("inf"))),
+        *((BLOCK, {"motion": PULSE, "rtol": each}, f"rtol must be at least 1e-14 and below 1, got {each:g}")
+          for each in (0.0, 1.0, -1e-9, float("nan"))),
     ],
 )  # fmt: skip
 def test_a_wrong_request_is_refused(structure, asked, said):

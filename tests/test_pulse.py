@@ -1,16 +1,11 @@
-"""Pulses: Eqs. 41-42 against the linear equation solved with symbols, the exact answer against one of 30 digits.
-
-The reference below knows only x'' = x - 1 +- a sin(omega tau + asin(1/a)), x = phi/phi_cr, and the impact. It steps
-over nothing: x = 1 - k sin + P e^s + Q e^-s, and (x'' - x') e^s, x' e^-s and x are each monotone between two zeros of
-the one before, the first of them between two zeros of cos.
-"""
+"""Pulses: Eqs. 41-42 against the linear equation solved with symbols, and the command; see test_exact_pulse.py."""
 
 import json
 import re
 import subprocess
 import sys
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from itertools import chain, product
 from math import asin, exp, inf, isfinite, nan, pi, sqrt
@@ -32,10 +27,7 @@ from rocking_cli.views.pulse import why_not_valid
 from tests.following import respond
 from tests.pulses import exact_pulse
 
-MP = mpmath.mp.clone()  # a precision of its own, whatever other tests set
-MP.dps = 30
 NEAR = 1e-6  # of a boundary, where rounding may decide
-STILL = 1e-5  # rate after an impact at which the reference rests, if the bouncing dies out well before the next lift
 EXACT_KEYS = {
     "max_ratio",
     "first_excursion",
@@ -47,197 +39,11 @@ EXACT_KEYS = {
 }
 
 
-# The reference
-
-
-@dataclass
-class Reference:
-    """What happens, and how far it is from happening otherwise."""
-
-    peaks: list = field(default_factory=list)  # of the excursions that end with an impact, and the free last one
-    impacts: list = field(default_factory=list)  # tau from uplift
-    overturns: bool = False
-    fell_to: int = 0  # side
-    end: float = 0.0  # of the pulse, tau from uplift
-    rested: bool = False  # inside the pulse
-    lifted_again: bool = False  # from rest
-    margin: float = inf
-
-    def near(self, distance):
-        self.margin = min(self.margin, abs(float(distance)))
-
-    def during_pulse(self):
-        return [t for t in self.impacts if t < self.end]
-
-
-def zero(f, sign, low, high, scale=None):
-    """Where f, of this sign after low, changes it before high (Illinois); after 0 an octave comes first."""
-    while low == 0 or (scale and 2 * low < high):
-        middle = min(scale, high / 2) if low == 0 else 2 * low
-        if sign * f(middle) > 0:
-            low = middle
-        else:
-            high = middle
-    f_low, f_high = f(low), f(high)
-    tolerance, last = high * MP.mpf("1e-22"), 0
-    while high - low > tolerance:
-        middle = high - f_high * (high - low) / (f_high - f_low)
-        value = f(middle)
-        if abs(value) < MP.eps:
-            return middle
-        if sign * value < 0:
-            high, f_high = middle, value
-            f_low, last = (f_low / 2, 1) if last == 1 else (f_low, 1)
-        else:
-            low, f_low = middle, value
-            f_high, last = (f_high / 2, -1) if last == -1 else (f_high, -1)
-    return high
-
-
-def zeros(f, sign, scale, cuts):
-    """The zeros of f in order, and the last cut: at most one between two cuts; `sign` is f's just after 0."""
-    low = MP.zero
-    for high in cuts:
-        if sign * f(high) < 0:
-            yield zero(f, sign, low, high, None if low else scale)
-            sign = -sign
-        low = high
-    yield low
-
-
-@cache
-def reference(a, omega, eta):
-    a, w, eta = MP.mpf(a), MP.mpf(omega), MP.mpf(eta)
-    phase = MP.asin(1 / a)
-    end = (2 * MP.pi - phase) / w
-    motion = Reference(end=float(end))
-    side, tau, v0, at_threshold = 1, MP.zero, MP.zero, True
-    while True:
-        angle0, k = w * tau + phase, side * a / (1 + w * w)
-        P = (k * MP.sin(angle0) - 1 + v0 + k * w * MP.cos(angle0)) / 2
-        Q = (k * MP.sin(angle0) - 1 - v0 - k * w * MP.cos(angle0)) / 2
-
-        def x(s, angle0=angle0, k=k, P=P, Q=Q):
-            e = MP.exp(s)
-            return 1 - k * MP.sin(angle0 + w * s) + P * e + Q / e
-
-        def v(s, angle0=angle0, k=k, P=P, Q=Q):
-            e = MP.exp(s)
-            return -k * w * MP.cos(angle0 + w * s) + P * e - Q / e
-
-        def g(s, angle0=angle0, k=k, Q=Q):
-            return k * w * (w * MP.sin(angle0 + w * s) + MP.cos(angle0 + w * s)) + 2 * Q * MP.exp(-s)
-
-        whole = end - tau
-        quarters = [((n + MP.mpf("0.5")) * MP.pi - angle0) / w for n in range(3)]
-        cuts = [s for s in quarters if 0 < s < whole] + [whole]
-        upward = 1 if at_threshold else MP.sign(g(MP.zero))
-        low, peak, hit, rising = MP.zero, MP.zero, None, True
-        for turn in zeros(v, 1, v0 or 1 / w, zeros(g, upward, 1 / w, cuts)):
-            height = x(turn)
-            if turn < whole and not rising:
-                motion.near(height)  # the lowest point: how far from a graze
-            if height < 0:
-                hit = zero(x, 1, low, turn)
-                break
-            peak, low, rising = max(peak, height), turn, not rising
-        if hit is None:  # free motion x = 1 + P e^s + Q e^-s
-            height, rate = x(whole), v(whole)
-            P, Q = (height - 1 + rate) / 2, (height - 1 - rate) / 2
-            motion.near(P)
-            if P >= 0:
-                motion.overturns, motion.fell_to = True, side
-                return motion
-            if rate > 0:
-                peak = max(peak, 1 - 2 * MP.sqrt(P * Q))
-            u = (1 + MP.sqrt(1 - 4 * P * Q)) / (-2 * P)
-            tau, v0 = end + MP.log(u), eta * (Q / u - P * u)
-            if not motion.impacts:
-                motion.near(tau - end)
-            motion.impacts.append(float(tau))
-            motion.peaks.append(float(peak))
-            motion.near(v0 - 1)
-            motion.overturns, motion.fell_to = v0 >= 1, -side
-            if not motion.overturns:
-                motion.peaks.append(float(1 - MP.sqrt(1 - v0 * v0)))
-            return motion
-        tau, v0, side, at_threshold = tau + hit, -eta * v(hit), -side, False
-        motion.near(end - tau)
-        motion.impacts.append(float(tau))
-        motion.peaks.append(float(peak))
-        angle = w * tau + phase
-        lift = MP.pi + phase  # where the ground next lifts it, to the other side
-        quiet = (lift - angle if angle < lift else 2 * MP.pi - angle) / w
-        bouncing = 4 * v0 / (1 - a * abs(MP.sin(angle))) / (1 - eta) if eta < 1 else inf  # twice as long as it will
-        if v0 < STILL and len(motion.impacts) > 1 and 0 < 20 * bouncing < quiet:
-            motion.rested = True
-            if angle > lift:
-                return motion
-            motion.lifted_again = True
-            tau, v0, side, at_threshold = MP.pi / w, MP.zero, -1, True
-
-
-def kinds(motion):
-    """What a motion is an example of."""
-    during = motion.during_pulse()
-    names = {
-        "no impact during the pulse": not during,
-        "one impact during the pulse": len(during) == 1,
-        "several impacts during the pulse": len(during) > 1 and not motion.rested,
-        "rest inside the pulse and lift again": motion.lifted_again,
-        "rocks": not motion.overturns,
-        "overturns without impact": motion.overturns and not motion.impacts,
-        "overturns after one impact after the pulse": motion.overturns and len(motion.impacts) == 1 and not during,
-        "overturns after one impact in the pulse": motion.overturns and len(motion.impacts) == 1 and bool(during),
-        "overturns after more impacts": motion.overturns and len(motion.impacts) > 1 and not motion.rested,
-        "overturns after rest": motion.overturns and motion.rested,
-        "the second half throws it over": motion.overturns and motion.fell_to < 0 and bool(during),
-        "the first excursion is the largest": not motion.overturns and motion.peaks[0] == max(motion.peaks),
-        "a rebound is the largest": not motion.overturns and motion.peaks[0] < max(motion.peaks),
-    }
-    return {name for name, holds in names.items() if holds}
-
-
 def draw(rng, count, over, omega, eta, power=0):
     """Random (a, omega, eta), a = 1 + over omega^power, log-uniform over the ranges."""
     for _ in range(count):
         c, w, e = (float(exp(rng.uniform(np.log(low), np.log(high)))) for low, high in (over, omega, eta))
         yield 1 + c * w**power, w, e
-
-
-def grid():
-    """Everything; strong pulses; slow ones with many impacts, with rest; and without loss at impacts."""
-    rng = np.random.default_rng(20140)
-    yield from draw(rng, 35, (0.01, 7), (0.2, 12), (0.3, 1))
-    yield from draw(rng, 25, (1, 30), (1, 30), (0.5, 1))
-    yield from draw(rng, 20, (0.45, 0.9), (1.7, 7), (0.85, 1), power=1)
-    yield from draw(rng, 30, (0.15, 0.45), (0.3, 1), (0.72, 0.95), power=2)
-    yield from draw(rng, 25, (0.05, 0.4), (0.1, 1), (0.1, 0.45), power=2)
-    yield from draw(rng, 7, (0.1, 7), (0.5, 12), (1, 1))
-
-
-REST_THEN_OVER = [(1.011186, 0.15, 0.05), (1.0111868, 0.15, 0.1), (1.0111865, 0.15, 0.08)]
-IMPACTS_THEN_OVER = [(1.679, 2.048, 0.642), (1.529, 1.241, 0.828), (1.088, 0.589, 0.859), (1.069, 0.594, 0.926)]
-LIFTED_WITH_A_FAINT_RATE = [(1.33, 1.9, 1e-4), (1.4, 1.9, 3e-5)]
-POINTS = [*grid(), *REST_THEN_OVER, *IMPACTS_THEN_OVER, *LIFTED_WITH_A_FAINT_RATE]
-
-
-def assert_matches(point):
-    motion, got = reference(*point), exact_pulse(*point)
-    assert got.overturns == motion.overturns
-    assert got.max_ratio == (None if motion.overturns else approx(max(motion.peaks), abs=1e-9))
-    assert got.first_excursion == (approx(motion.peaks[0], abs=1e-9) if motion.peaks else None)
-    assert got.first_rebound == (approx(motion.peaks[1], abs=1e-9) if len(motion.peaks) > 1 else None)
-    assert got.first_impact == (approx(motion.impacts[0], abs=1e-9) if motion.impacts else None)
-    assert got.impact_during_pulse == bool(motion.during_pulse())
-    assert got.pulse_end == approx(motion.end, rel=1e-13)
-    assert got.uplift == approx(asin(1 / point[0]) / point[1], rel=1e-12)
-    if not motion.overturns:
-        assert got.impacts_before_overturning is None
-    elif motion.rested:  # after impacts without number
-        assert got.impacts_before_overturning > 1
-    else:
-        assert got.impacts_before_overturning == len(motion.impacts)
 
 
 # Eqs. 41-42 and their conditions
@@ -392,48 +198,7 @@ def test_closed_form_of_a_very_slow_pulse_keeps_to_its_formulas(point):
     assert got.overturns is None
 
 
-# The exact answer
-
-
-@pytest.mark.every(3)
-@pytest.mark.parametrize("point", POINTS)
-def test_exact_answer_agrees_with_30_digits(point):
-    if reference(*point).margin > NEAR:
-        assert_matches(point)
-
-
-@pytest.mark.rest
-def test_the_grid_holds_every_kind_of_motion_and_hardly_a_point_on_a_boundary():
-    compared = [reference(*point) for point in POINTS if reference(*point).margin > NEAR]
-    count = Counter(name for motion in compared for name in kinds(motion))
-    assert len(compared) >= len(POINTS) - 3
-    assert len(count) == 13
-    assert min(count.values()) >= 3, count
-
-
-@pytest.mark.parametrize(
-    "point",
-    [
-        (1.0931, 0.4526, 0.001),  # decides about overturning
-        (1.2999, 1.9, 0.003),
-        (1.319, 3.27, 0.0036),
-        (1.1588, 0.655, 0.0011),
-        (1.229, 1.0, 0.002),
-        (1.0541258547174834, 1.6044540341208628, 0.8781819258892375),
-        (1.1145369772101248, 1.1617213402089153, 0.6065501695307708),
-        (1.1537171372718127, 2.37711819342948, 0.4455922506664635),
-    ],
-)
-def test_an_impact_soon_after_another_and_just_before_the_next_lift_is_not_missed(point):
-    assert reference(*point).margin > NEAR
-    assert_matches(point)
-
-
-@pytest.mark.parametrize("point", [(1.003, 1.0, 0.5), (1.0005, 2.0, 0.9), (1.002, 5.0, 0.9), (1.003, 1.5, 0.7)])
-def test_the_smallest_first_excursion_is_seen(point):
-    motion, got = reference(*point), exact_pulse(*point)
-    assert got.first_excursion == approx(motion.peaks[0], rel=1e-6)
-    assert got.first_impact == approx(motion.impacts[0], rel=1e-6)
+# The exact answer, which test_exact_pulse.py compares with one of 50 digits
 
 
 @pytest.mark.parametrize(("a", "omega"), [(1.0, 3.0), (0.999999, 0.01), (0.3, 1e-3), (1e-3, 1e3)])
