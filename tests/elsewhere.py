@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import os
 import platform
-import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from time import monotonic
@@ -19,7 +18,7 @@ from time import monotonic
 from tests.conftest import PROJECT
 
 KERNELS = ("Haswell", "SkylakeX", "Prescott")  # of OpenBLAS, which numpy and scipy use on these processors
-VERSIONS = ((3, 11), (3, 12), (3, 13), (3, 14))
+VERSIONS = ("3.11", "3.12", "3.13", "3.14")
 ROUNDED = [
     f"tests/test_{name}.py"
     for name in (
@@ -30,27 +29,15 @@ ROUNDED = [
 # They take long, and rest on random numbers or on processes rather than on rounding: once is enough.
 ONCE = "TestCoverage or killed or interrupted or cluster or while_it_runs or hold_at_their_rate"
 NEEDED = ["hypothesis", "pytest", "statsmodels"]  # besides the package
-HELD = ["--constraint", str(PROJECT / "constraints.txt")]  # not --build-constraint: the pip may be as old as the Python
 
 
-def tests(python: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+def tests(*python: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """The tests of fits, studies and linkages by a Python."""
-    command = [str(python), "-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", f"not ({ONCE})", *ROUNDED]
+    command = [*python, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", f"not ({ONCE})", *ROUNDED]
     return subprocess.run(
         command, cwd=PROJECT, env={**os.environ, **environment}, check=False, encoding="utf-8", errors="replace",
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
     )  # fmt: skip
-
-
-def answer(command: list[str], **environment: str) -> str | None:
-    """What a command prints; None if it fails or is not there."""
-    try:
-        done = subprocess.run(
-            command, env={**os.environ, **environment}, check=True, capture_output=True, encoding="utf-8"
-        )
-    except (OSError, subprocess.CalledProcessError):
-        return None
-    return done.stdout.strip()
 
 
 def under_kernel(name: str) -> tuple[str, int, str]:
@@ -59,42 +46,27 @@ def under_kernel(name: str) -> tuple[str, int, str]:
     if platform.machine().lower() not in ("x86_64", "amd64"):
         return what, 0, f"left out: it is none of {platform.machine()}"
     trial = "import numpy; numpy.linalg.inv(numpy.eye(64) + 1)"
-    if answer([sys.executable, "-c", trial], OPENBLAS_CORETYPE=name) is None:
+    environment = {**os.environ, "OPENBLAS_CORETYPE": name}
+    if subprocess.run([sys.executable, "-c", trial], env=environment, capture_output=True).returncode:
         return what, 0, "left out: this processor does not have its instructions"
-    done = tests(Path(sys.executable), OPENBLAS_CORETYPE=name)
+    done = tests(sys.executable, OPENBLAS_CORETYPE=name)
     return what, done.returncode, done.stdout
 
 
-def interpreters(version: tuple[int, int]) -> Iterator[list[str]]:
-    """Where a version of Python may be."""
-    name = "python" + ".".join(map(str, version))
-    found = shutil.which(name)
-    if found is not None:
-        yield [found]
-    if shutil.which("py") is not None:
-        yield ["py", f"-{name.removeprefix('python')}"]
-    root = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
-    yield from ([str(path)] for path in sorted(root.glob(f"versions/{name.removeprefix('python')}.*/bin/python")))
-
-
-def under_version(version: tuple[int, int]) -> tuple[str, int, str]:
-    """Run the tests with a version of Python, in an environment that is made if it is not there; as `under_kernel`."""
-    what = f"Python {version[0]}.{version[1]}"
-    if version == sys.version_info[:2]:
+def under_version(version: str) -> tuple[str, int, str]:
+    """Run the tests with a version of Python, in an environment of its own that uv keeps; as `under_kernel`."""
+    what = f"Python {version}"
+    if version == platform.python_version().rpartition(".")[0]:
         return what, 0, "left out: it is the one that runs all tests"
-    shown = "import sys; print(*sys.version_info[:2])"
-    known = [each for each in interpreters(version) if answer([*each, "-c", shown]) == f"{version[0]} {version[1]}"]
-    if not known:
+    uv = [sys.executable, "-m", "uv"]
+    pyenv = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))  # whose shims hide its versions from uv
+    python = str(next(pyenv.glob(f"versions/{version}.*/bin/python"), version))
+    find = [*uv, "python", "find", "--system", "--no-python-downloads", python]
+    if subprocess.run(find, capture_output=True).returncode:
         return what, 0, "left out: it is not installed here"
-    folder = PROJECT / "out" / f"python{version[0]}.{version[1]}"
-    python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
-    wanted = ["--editable", f"{PROJECT}[cluster,parquet]", *NEEDED]
-    install = [str(python), "-m", "pip", "install", "--quiet", *HELD, *wanted]
-    for command in ([*known[0], "-m", "venv", str(folder)], install):
-        done = subprocess.run(command, check=False, capture_output=True, encoding="utf-8", errors="replace")
-        if done.returncode:
-            return what, done.returncode, done.stdout + done.stderr
-    done = tests(python)
+    packages = [f"--with-editable={PROJECT}[cluster,parquet]", *(f"--with={each}" for each in NEEDED)]
+    held = str(PROJECT / "constraints.txt")
+    done = tests(*uv, "run", "--no-project", "--isolated", "--python", python, *packages, "python", UV_CONSTRAINT=held)
     return what, done.returncode, done.stdout
 
 

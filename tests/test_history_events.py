@@ -439,19 +439,6 @@ def test_elastic_impacts_never_end_and_that_is_what_is_said(model):
 
 
 @every_model
-def test_samples_are_numbers_while_a_structure_stands(model):
-    # Elastic, so that it bounces faintly in the tail and makes its 20 000 impacts there.
-    elastic = Block(width=0.7, height=2.8, restitution=1.0)
-    history = shake(model, 0.01, uplift(model) * np.array([0.0, 1.06, 0.0, 0.0]), mechanism=elastic)
-    assert history.still_rocking
-    assert 6 < history.time[-1] <= history.end_time < 10  # it is not followed to the end of the tail
-    assert history.impact_count > MOST_IMPACTS
-    assert history.phi.shape == history.rate.shape == history.ratio.shape == history.time.shape
-    assert np.isfinite(history.phi).all()
-    assert np.isfinite(history.rate).all()
-
-
-@every_model
 def test_a_faint_elastic_bounce_between_coarse_samples_is_no_failure(model):
     # Less than 1e-5 s a bounce and 0.1 s a sample: more than ten thousand impacts before the next sample.
     elastic = Block(width=0.7, height=2.8, restitution=1.0)

@@ -366,28 +366,6 @@ def test_the_calm_is_no_faster_than_any_cell_may_be(most, fast):
     assert _calm(cells, [table, table], [side, side]) == pytest.approx((2.0, fast))
 
 
-def test_a_batch_says_what_single_histories_say():
-    made = structure("masonry/portal.yaml")
-    (model,) = build_models(made, ("nonlinear",))
-    factors = [1.0, 1.5, 1.75, 2.0]
-    many = respond_many([model], [read_record(ACCEL)], Runs.of(0, 0, scale=factors))
-    for k, factor in enumerate(factors):
-        one = history(made, factor)
-        assert many.unknown[k] == one.unknown
-        for field in ("known_to", "warned", "lower_bound", "peak_ratio"):
-            assert getattr(many, field)[k] == pytest.approx(getattr(one, field), rel=1e-9, nan_ok=True)
-
-
-def test_what_is_beyond_is_no_result():
-    found = history(structure("masonry/portal.yaml"), 2.0)
-    assert found.unknown and not found.overturned and not found.at_rest and not found.still_rocking
-    assert np.isnan(found.phi[found.time > found.known_to]).all()
-    assert np.isfinite(found.phi[found.time <= found.known_to]).all()
-    assert (found.impacts[:, 0] <= found.known_to).all() and len(found.impacts) == found.impact_count
-    assert found.lower_bound <= found.peak_ratio
-    assert found.peak_ratio == pytest.approx(np.nanmax(np.abs(found.ratio)), rel=1e-3)
-
-
 def test_samples_end_with_the_record_where_nothing_later_is_a_result():
     motion = read_record(ACCEL)
     short = replace(motion, acceleration=2 * motion.acceleration[:361])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import pickle
 import re
@@ -50,16 +49,6 @@ def deviation(value, quick):
     if isinstance(value, Exception):
         raise value
     return value
-
-
-def listed(content):
-    """Replace the library for this system, and its hash in the manifest; None takes it out of the manifest."""
-    found = shipped.manifest()
-    del found["files"][shipped.place().name]
-    if content is not None:
-        shipped.place().write_bytes(content)
-        found["files"][shipped.place().name] = hashlib.sha256(content).hexdigest()
-    (shipped.FOLDER / shipped.MANIFEST).write_text(json.dumps(found), encoding="utf-8")
 
 
 def rougher(made):
@@ -273,11 +262,6 @@ class TestEachCheck:
         ("spoil", "passed", "why"),
         [
             (lambda: shipped.place().write_bytes(b"damaged"), False, "is damaged, reinstall rocking-cli"),
-            (lambda: shipped.place().unlink(), False, "is missing, reinstall rocking-cli"),
-            (lambda: (shipped.FOLDER / shipped.MANIFEST).unlink(), False, "cannot be read, reinstall rocking-cli"),
-            (lambda: listed(b"no library"), False, "cannot be loaded, reinstall rocking-cli"),
-            (lambda: (listed(None), shipped.place().unlink()), False, "is missing, reinstall rocking-cli"),
-            (lambda: listed(None), False, "is damaged, reinstall rocking-cli"),
             (lambda: None, None, "no kernels are shipped for"),
         ],
     )
@@ -314,12 +298,6 @@ class TestEachCheck:
 
 
 class TestCommand:
-    def test_all_pass(self, monkeypatch):
-        few(monkeypatch, one=1e-12, two=1e-9)
-        done = asked()
-        assert done.exit_code == 0
-        assert "All 2 checks passed in " in done.stdout and done.stdout.count("passed") == 3
-
     def test_one_that_fails_gives_exit_code_4_and_says_what_to_do(self, monkeypatch):
         few(monkeypatch, one=1e-12, two=2e-9, three=ValueError("no such thing"), four=float("nan"))
         done = asked()
