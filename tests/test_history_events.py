@@ -182,6 +182,15 @@ def test_a_fall_that_is_halted_by_an_impact_and_goes_on_between_two_samples_is_s
     assert coarse.impacts[0, 0] == pytest.approx(float(expected.impacts[0][0]), abs=1e-4 * dt)
 
 
+def graze(caught):
+    """The strongest push under which a motion just hits the ground, and the next."""
+    low, high = 1.0, 3.0
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if caught(middle).impacts[0, 0] < 0.3 else (low, middle)
+    return low, high
+
+
 @every_model
 @every_side
 @pytest.mark.parametrize("dt", [0.02, 0.2])
@@ -193,10 +202,7 @@ def test_a_motion_that_all_but_touches_the_ground_is_that_of_one_that_just_does(
     def caught(push):
         return follow(built, GroundMotion("test", dt, push * shape), release=0.03 * side)
 
-    low, high = 1.0, 3.0
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = (middle, high) if caught(middle).impacts[0, 0] < 0.3 else (low, middle)
+    low, high = graze(caught)
     touches, passes = caught(low), caught(high)
     assert high - low < 1e-14
     assert passes.impacts[0, 0] > 0.4
@@ -218,11 +224,7 @@ def test_a_faint_impact_is_no_rest_while_the_ground_pushes_outwards(model):
     def caught(push):
         return follow(built, GroundMotion("test", 0.2, push * shape), release=0.03)
 
-    low, high = 1.0, 3.0
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = (middle, high) if caught(middle).impacts[0, 0] < 0.3 else (low, middle)
-    push = low * (1 - 2e-12)
+    push = graze(caught)[0] * (1 - 2e-12)
     history, rest_rate = caught(push), 1e-6 * ONE.p * ONE.phi_cr
     assert 0.1 * rest_rate < history.impacts[0, 2] < 0.9 * rest_rate
     expected = reference(model, 0.2, push * shape, 0.03)

@@ -95,6 +95,7 @@ CASES = {
     "wall, noise": ("wall", *noise("wall", 3, 1.5), 0.0),
     "wall, pulse": ("wall", *pulse("wall", 2.5, 4.0), 0.0),
     "frame, pulse": ("frame", *pulse("frame"), 0.0),
+    "frame, pulse the other way": ("frame", *pulse("frame", -3.0), 0.0),
     "frame, noise from a release": ("frame", *noise("frame", 2, 1.5, 24), 0.4),
     "frame, noise from a negative release": ("frame", *noise("frame", 2, 1.5, 24), -0.4),
     "arch, pulse": ("arch", *pulse("arch", 2.5, 4.0), 0.0),
@@ -108,11 +109,6 @@ def test_impacts_and_peaks_are_those_of_an_independent_integration(case):
     history = nonlinear(structure(name), dt, samples, release=release or None)
     reference = Nonlinear(structure(name)).follow(dt, samples, release)
     agree(history, reference, structure(name).critical_rotation(Direction.POSITIVE))
-
-
-def test_the_asymmetric_frame_pushed_the_other_way_agrees_too():
-    dt, samples = pulse("frame")
-    agree(nonlinear(structure("frame"), dt, -samples), Nonlinear(structure("frame")).follow(dt, -samples), 0.1)
 
 
 def test_a_smaller_tolerance_brings_the_block_to_rounding_error():

@@ -114,9 +114,6 @@ class TestInvariance:
         assert other.start == pytest.approx(8 * one.start, abs=1e-4)
         assert other.pulse.period == pytest.approx(8 * one.pulse.period, rel=1e-4)
 
-    def test_it_is_the_same_again(self, shape, criterion):
-        assert fit_pulse(self.MOTION, shape, criterion) == fit_pulse(self.MOTION, shape, criterion)
-
     def test_no_neighbour_captures_more(self, shape, criterion):
         """By Scipy's simplex over all parameters of the definition, amplitude and phase included."""
         fit = fit_pulse(self.MOTION, shape, criterion)
