@@ -141,7 +141,7 @@ def _clean_paths(out: Path, motions: Motions, signs: Sequence[int], *, alone: bo
     """
     from rocking_cli.excitation.record_csv import is_record_csv
     from rocking_cli.excitation.records.opening import name_of
-    from rocking_cli.io.files import check_writable, folder
+    from rocking_cli.io.files import check_writable, folder, keep_apart
     from rocking_cli.processing.listed import Listed
 
     if out.suffix.lower() == ".csv" and not out.is_dir():
@@ -162,6 +162,7 @@ def _clean_paths(out: Path, motions: Motions, signs: Sequence[int], *, alone: bo
             if path in paths.values():
                 what = "two records would be written to the same file"
                 raise InputError(Problem(what, str(path), hint="write them one by one"))
+            keep_apart([("--out", path)], [str(each.path) for each in motions.records])
             if path.exists() and not is_record_csv(path):
                 what = "--out would overwrite a file that rocking did not write"
                 raise InputError(Problem(what, str(path), hint="move it, or name another folder"))
