@@ -26,7 +26,7 @@ LARGEST = 1_000_000  # bytes of a file
 EVERYWHERE = (
     "units", "dt", "channel", "neighbours", "amplitude-deviation", "slenderness-deviation",
     "restitution-deviation", "tail", "rtol", "points",
-    "fractiles", "fps", "speed", "jobs", "format", "project", "place", "author", "logo",
+    "fractiles", "fps", "speed", "jobs", "project", "place", "author", "logo",
 )  # fmt: skip
 """Options with one meaning in all commands; none that choose the question, the input or the output."""
 IN_TABLES = ("polarity", "model", "eta", "kappa", "shape")
@@ -124,9 +124,10 @@ def unknown_variables() -> list[str]:
     return sorted(each for each in os.environ if each.startswith(PREFIX) and each not in known)
 
 
-def for_command(command: click.Command, name: str, commands: tuple[str, ...]) -> dict[str, Default]:
-    """Return the defaults for the options of one command, by name of parameter. Raises as `in_force`."""
-    options = {max(each.opts, key=len)[2:]: each for each in command.params if isinstance(each, click.Option)}
+def set_for(context: click.Context, commands: tuple[str, ...]) -> None:
+    """Set the defaults of a command for the options that are not typed. Raises as `in_force`."""
+    name, params = context.info_name, context.command.params
+    options = {max(each.opts, key=len)[2:]: each for each in params if isinstance(each, click.Option)}
     found: dict[str, Default] = {}
     for each in in_force(commands):
         if each.command == name and each.option not in options:
@@ -134,19 +135,14 @@ def for_command(command: click.Command, name: str, commands: tuple[str, ...]) ->
             raise InputError(Problem(f"`rocking {name}` has no option --{each.option}", each.key, hint=hint))
         if each.command in (None, name) and each.option in options:
             found.setdefault(options[each.option].name or "", each)
-    return found
+    context.meta[__name__] = found
+    context.default_map = {name: each.value for name, each in found.items()}
 
 
 def of_run(context: click.Context) -> dict[str, Default]:
     """Return the defaults that the command line does not replace, by name of parameter."""
     defaults: Mapping[str, Default] = context.meta.get(__name__, {})
     return {name: each for name, each in defaults.items() if from_default(name, context)}
-
-
-def set_for(context: click.Context, defaults: dict[str, Default]) -> None:
-    """Set the defaults of a command for the options that are not typed."""
-    context.meta[__name__] = defaults
-    context.default_map = {name: each.value for name, each in defaults.items()}
 
 
 def from_default(name: str, context: click.Context | None = None) -> bool:

@@ -36,7 +36,7 @@ class _Context(click.Context):
         self.refused: InputError | None = None
         if not self.resilient_parsing:
             try:
-                defaults.set_for(self, defaults.for_command(self.command, self.info_name or "", COMMANDS))
+                defaults.set_for(self, COMMANDS)
             except InputError as error:  # --help does not need them
                 self.refused = error
 

@@ -52,9 +52,10 @@ class PluginKind:
 
     def package(self, name: str) -> dict[str, bytes]:
         """Return the files of the package for a plugin of this name, by their paths in the folder."""
-        from rocking_cli.io.files import shipped
-
-        source = shipped(self.folder)
+        package = Path(__file__).parents[1]
+        source = package / "data" / self.folder
+        if not source.is_dir():  # in a checkout
+            source = package.parent / "examples" / self.folder
         return {
             self.named(file, name): self.named((source / file).read_text(encoding="utf-8"), name).encode()
             for file in self.files

@@ -11,7 +11,7 @@ from click.core import ParameterSource
 from rocking_cli.cli import complete, motion_files, options, terminal
 from rocking_cli.cli.groups import GroundMotions, Output
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.quantities import INTERVAL, POSITIVE, TAIL, TILT, quantity_of
+from rocking_cli.cli.quantities import INTERVAL, POSITIVE, TAIL, TILT, Parsed, quantity_of
 from rocking_cli.processing.reading_options import ALL
 
 # The models and the pulses that are fitted stand here again so that `--help` needs no numpy.
@@ -20,15 +20,11 @@ FITTED = ("sine", "ricker", "mavroeidis")
 BEST = "best"
 
 
-def _models(ctx: click.Context, param: click.Parameter, value: str | None) -> tuple[str, ...] | None:
-    if value is None:
-        return None
-    chosen = tuple(dict.fromkeys(word.strip() for word in value.split(",")))
-    unknown = [word for word in chosen if word not in NAMES]
-    if unknown:
-        raise click.BadParameter(
-            f"{', '.join(unknown) or 'nothing'} is not a model: choose from {', '.join(NAMES)}.", ctx, param
-        )
+def _models(text: str) -> tuple[str, ...]:
+    """Return the models of a text, separated by commas."""
+    chosen = tuple(dict.fromkeys(word.strip() for word in text.split(",")))
+    if unknown := [word for word in chosen if word not in NAMES]:
+        raise ValueError(f"{', '.join(unknown) or 'nothing'} is not a model: choose from {', '.join(NAMES)}")
     return chosen
 
 
@@ -64,8 +60,8 @@ def _models(ctx: click.Context, param: click.Parameter, value: str | None) -> tu
 @click.option(
     "--model",
     "models",
+    type=Parsed("models", _models),
     metavar="MODEL,...",
-    callback=_models,
     shell_complete=complete.listed(NAMES),
     help=options.HELP["model"],
 )

@@ -10,25 +10,17 @@ import click
 from rocking_cli.cli import complete, heads, options, terminal
 from rocking_cli.cli.groups import GroundMotions, Output
 from rocking_cli.cli.help import Command
+from rocking_cli.cli.quantities import Parsed, number
 
-Point = tuple[float, float, str | None]
 
-
-def _point(ctx: click.Context, param: click.Parameter, value: str | None) -> Point | None:
+def _point(text: str) -> tuple[float, float, str | None]:
     """Return a point x,y of a body, or x,y,body."""
-    if value is None:
-        return None
-    x, _, rest = value.partition(",")
+    x, _, rest = text.partition(",")
     y, _, body = rest.partition(",")
     try:
-        found = float(x), float(y), body.strip() or None
+        return number(x), number(y), body.strip() or None
     except ValueError:
-        found = float("nan"), 0.0, None
-    if not (abs(found[0]) < float("inf") and abs(found[1]) < float("inf")):
-        raise click.BadParameter(
-            f"{value!r} is not a valid point: give x,y in m, or x,y,BODY, such as 0.3,8.0.", ctx, param
-        )
-    return found
+        raise ValueError(f"{text!r} is not a valid point: give x,y in m, or x,y,BODY, such as 0.3,8.0") from None
 
 
 @click.command(cls=Command, short_help="Verify a masonry mechanism by a code, such as NTC 2018.")
@@ -38,7 +30,7 @@ def _point(ctx: click.Context, param: click.Parameter, value: str | None) -> Poi
     help=options.HELP["site"],
 )  # fmt: skip
 @click.option(
-    "--control", callback=_point, metavar="X,Y[,BODY]",
+    "--control", type=Parsed("point", _point), metavar="X,Y[,BODY]",
     help="Control point, in m.  [default: centroid of the moving weights]",
 )  # fmt: skip
 @options.ground_motions

@@ -77,13 +77,6 @@ def read_at_most(stream: IO[bytes] | io.BufferedIOBase, most: int) -> bytes | No
     return b"".join(pieces)
 
 
-def shipped(name: str) -> Path:
-    """Return the path of an example that the package ships; in a checkout it is that of the example itself."""
-    package = Path(__file__).parents[1]
-    inside = package / "data" / name
-    return inside if inside.exists() else package.parent / "examples" / name
-
-
 def folder(name: str) -> Path:
     """Return a folder to write into, made if it does not exist. Raises `InputError` if this is not possible."""
     path = Path(name)
