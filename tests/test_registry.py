@@ -96,21 +96,6 @@ def test_an_installed_plugin_carries_loads_ties_and_side_walls(installed_plugin,
     assert found["tie"]["phi_cr"] > atan(0.4) and found["side"]["eta"] == 0.4
 
 
-@pytest.mark.rest
-def test_the_installed_plugin_keeps_the_contract(installed_plugin):
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", "capped_block"]
-    run = subprocess.run(
-        [*command, str(EXAMPLES.parent / "tests" / "test_contract.py")],
-        env=installed_plugin,
-        cwd=EXAMPLES.parent,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert run.returncode == 0, run.stdout
-    assert "passed" in run.stdout
-
-
 ODD = """
 import sys
 from math import atan, pi
@@ -439,13 +424,6 @@ def test_check_takes_a_file(tmp_path):
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_check_passes_every_built_in_mechanism(name):
     assert run_json("mechanisms", "--check", name)["passed"]
-
-
-def test_check_passes_the_installed_plugin(installed_plugin):
-    run = rocking(installed_plugin, "mechanisms", "--check", "capped_block")
-    assert run.returncode == 0 and "FAILS" not in run.stdout
-    assert run.stdout.count("passes  ") == len(CHECKS) + 2
-    assert "passes all" in run.stderr
 
 
 def test_printing_from_other_threads_is_kept_out_of_the_results():

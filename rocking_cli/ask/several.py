@@ -14,6 +14,7 @@ from rocking_cli.ask.ground_motions import Motions
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.processing.scaled import Scaled
+from rocking_cli.text import numbered
 from rocking_cli.views.view import Table, View
 
 if TYPE_CHECKING:
@@ -104,17 +105,14 @@ def places_of(
 
     if file is None:
         return [None] * len(motions)
-    path, taken = Path(file), dict[str, Path]()
+    path, names = Path(file), list[str]()
     for each in motions:
         name = each.motion.name if each.file is None else each.motion.name.replace(each.file.name, each.file.stem, 1)
         word = "-".join(re.findall(r"[\w.+]+", name)) or "motion"
-        count = 1
-        while (place := f"{path.stem}-{word}{f'-{count}' if count > 1 else ''}{path.suffix}").casefold() in taken:
-            count += 1
-        taken[place.casefold()] = path.with_name(place)
-    inputs = [str(each) for each in read if each is not None]
-    keep_apart([(f"`{argument}`", place) for place in taken.values()], inputs)
-    return list(taken.values())
+        names.append(numbered(f"{path.stem}-{word}", path.suffix, names))
+    places, inputs = [path.with_name(name) for name in names], [str(each) for each in read if each is not None]
+    keep_apart([(f"`{argument}`", place) for place in places], inputs)
+    return list(places)
 
 
 def write_files(answer: Answer[Any], table: str | Path | None, plot: str | Path | None, watch: Watcher) -> None:
