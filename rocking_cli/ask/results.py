@@ -109,7 +109,7 @@ def results(
         fits, surfaces, outcomes = _fitted(kept, plan, definition, watch)
         spread = list(all_quantiles(kept, plan, definition))
         shown = view(kept, plan, definition, finished, failed, fits, surfaces, outcomes)
-        shown = with_quantiles(shown, spread, in_words=quantiles)
+        shown = with_quantiles(shown, spread, outcomes, in_words=quantiles)
         rankings: list[Ranking] = []
         if rank_measures:
             with watch.progress(plan.size, "runs ranked") as counted:

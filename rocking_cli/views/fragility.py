@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from math import isinf
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -13,7 +13,8 @@ from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.studies.fragility.definition import LAMBDA
 from rocking_cli.studies.fragility.displacements import kept, metres
 from rocking_cli.studies.fragility.intensity import label
-from rocking_cli.views.view import ABSENT, Table, View, number
+from rocking_cli.views.column import Column, data_of, of, table_of
+from rocking_cli.views.view import Table, View, number
 
 if TYPE_CHECKING:  # fits need scipy, and what would be run needs no fit
     from rocking_cli.studies.fragility.assess import Bivariate, Fragility, UnknownRuns
@@ -26,6 +27,8 @@ if TYPE_CHECKING:  # fits need scipy, and what would be run needs no fit
     from rocking_cli.studies.fragility.study import Study
 
 Fitted = TypeVar("Fitted", "Fragility", "Bivariate")
+Named = tuple[str, Any]
+"""A fit, and the name of its row."""
 FINE = 200  # intensities at which it is looked whether a curve is cut
 
 
@@ -150,8 +153,8 @@ def view(
         "out_of_reach": out_of_reach(store, plan, definition),
         "without_curve": nowhere,
         "records": _records(plan),
-        "curves": [_curve_data(each) for each in curves],
-        "surfaces": [_surface_data(each) for each in surfaces],
+        "curves": [_data(each, fit_columns(), {"measure": each.measure}) for each in curves],
+        "surfaces": [_data(each, plane_columns(), {"measures": list(each.measures)}) for each in surfaces],
     }
     return View(data, parts)
 
@@ -198,24 +201,11 @@ def _nowhere(plan: Plan, definition: Definition, curves: Sequence[Fragility]) ->
 def _curves(structure: str, measure: str, curves: Sequence[Fragility], definition: Definition) -> Iterator[Table | str]:
     """Yield the table and remarks of the curves of a structure over one measure."""
     shown = list(edges(curves))
-    interval = f"{100 * definition.confidence:g} %"
     width = "dispersion" if all(each.curve.scale is None for _, each in shown) else "dispersion\nor scale"
-    columns = ["limit state", "curve", f"median\n{interval}", f"{width}\n{interval}", "fit p"]
     rated = any(each.rate is not None for _, each in shown)
-    rows = [
-        [
-            name,
-            each.curve.kind,
-            _estimate(each.curve.median),
-            _estimate(each.curve.dispersion or each.curve.scale),
-            number(None if each.curve.goodness is None else each.curve.goodness.p_value, 2),
-            *([number(None if each.rate is None else each.rate.rate, 3)] if rated else []),
-        ]
-        for name, each in shown
-    ]
-    columns += ["rate\n[1/year]"] if rated else []
+    columns = fit_columns(f"{100 * definition.confidence:g} %", width, rated=rated)
     yield ""
-    yield Table(f"{structure}, over {label(measure)}", columns, rows, numbers=range(2, len(columns)))
+    yield table_of(f"{structure}, over {label(measure)}", columns, shown)
     for name, each in shown:
         yield f"{name}: {each.curve.why}.{_senseless(each.curve)}{_cut_in_words(each)}{_in_years(each.rate)}"
     yield from _undecided(curves, capacities=definition.method == "ida")
@@ -228,16 +218,10 @@ def _surfaces(
 ) -> Iterator[Table | str]:
     """Yield the table and remarks of the surfaces of a structure over two measures."""
     one, other = measures
-    interval = f"{100 * confidence:g} %"
     shown = list(edges(surfaces))
-    rows = [[name, *(_estimate(c) for c in each.surface.coefficients or (None, None, None))] for name, each in shown]
+    columns = plane_columns(f"{100 * confidence:g} %")
     yield ""
-    yield Table(
-        f"{structure}: P = Phi(c0 + c1 ln({one}) + c2 ln({other}))",
-        ["limit state", *(f"{name}\n{interval}" for name in ("c0", "c1", "c2"))],
-        rows,
-        numbers=(1, 2, 3),
-    )
+    yield table_of(f"{structure}: P = Phi(c0 + c1 ln({one}) + c2 ln({other}))", columns, shown)
     for name, each in shown:
         yield f"{name}: {each.surface.why}."
     yield from _undecided(surfaces, capacities=False)
@@ -284,17 +268,13 @@ def _undecided(found: Sequence[Fragility | Bivariate], *, capacities: bool) -> I
 def _unknown_in_words(outcomes: Sequence[UnknownRuns]) -> list[str]:
     """Return a sentence on each structure with runs of unknown outcome."""
     return [
-        f"{each.structure}: {each.unknown:,} of {each.runs:,} runs ({percent(each.share or 0.0)}) {_are(each.unknown)} "
-        f"of {UNKNOWN} outcome, because a joint opens or slides that the model keeps closed. They are known to exceed "
-        "a limit only if they exceed it before the first joint opens or slides; until more is known, use the upper "
-        "curves."
+        f"{each.structure}: {each.unknown:,} of {each.runs:,} runs ({percent(each.share or 0.0)}) "
+        f"{'are' if each.unknown != 1 else 'is'} of {UNKNOWN} outcome, because a joint opens or slides that the model "
+        "keeps closed. They are known to exceed a limit only if they exceed it before the first joint opens or slides; "
+        "until more is known, use the upper curves."
         for each in outcomes
         if each.unknown
     ]
-
-
-def _are(number: int) -> str:
-    return "are" if number != 1 else "is"
 
 
 def _unchecked_in_words(outcomes: Sequence[UnknownRuns]) -> list[str]:
@@ -365,75 +345,85 @@ def limit_name(limit: Limit) -> str:
     return limit if metres(limit) is None else f"top > {limit}"
 
 
-def _estimate(estimate: Estimate | None) -> str:
+def _estimate(estimate: Estimate | None) -> dict[str, float] | None:
+    return None if estimate is None else asdict(estimate)
+
+
+def _with_interval(estimate: Mapping[str, float]) -> str:
     """Format a number above its confidence interval."""
-    if estimate is None:
-        return ABSENT
-    exact = estimate.low == estimate.high
-    return f"{estimate.value:.4g}\n{'exact' if exact else f'{estimate.low:.3g} - {estimate.high:.3g}'}"
+    value, low, high = estimate.values()
+    return f"{value:.4g}\n{'exact' if low == high else f'{low:.3g} - {high:.3g}'}"
 
 
-def _curve_data(found: Fragility) -> dict[str, Any]:
+def fit_columns(interval: str = "", width: str = "", *, rated: bool = False) -> list[Column[Named]]:
+    """Return the columns of a curve by its name, with the headings of its intervals; a rate is shown if there is one.
+
+    The columns without a key are those of a table, and stand for several of the data.
+    """
+    return [
+        Column("", lambda row: row[0], head="limit state", text=True),
+        Column("kind", of_fit("curve.kind"), head="curve", text=True),
+        Column("why", of_fit("curve.why")),
+        Column("median", lambda row: _estimate(row[1].curve.median), head=f"median\n{interval}", form=_with_interval),
+        Column("dispersion", lambda row: _estimate(row[1].curve.dispersion)),
+        Column("scale", lambda row: _estimate(row[1].curve.scale)),
+        Column(
+            "",
+            lambda row: _estimate(row[1].curve.dispersion or row[1].curve.scale),
+            head=f"{width}\n{interval}",
+            form=_with_interval,
+        ),
+        Column("confidence", of_fit("curve.confidence")),
+        Column("goodness", lambda row: None if (found := row[1].curve.goodness) is None else asdict(found),
+               head="fit p", form=lambda found: number(found["p_value"], 2)),
+        Column("aic", of_fit("curve.aic")),
+        Column("runs", of_fit("curve.runs")),
+        Column("exceedances", of_fit("curve.exceedances")),
+        Column("distinct_records", of_fit("curve.records")),
+        Column("warning", lambda row: row[1].curve.warning or None),
+        Column("cut", lambda row: None if (cut := cut_of(row[1])) is None else asdict(cut)),
+        Column("annual_rate", lambda row: None if row[1].rate is None else asdict(row[1].rate),
+               head="rate\n[1/year]" if rated else None, form=lambda rate: number(rate["rate"], 3)),
+    ]  # fmt: skip
+
+
+def _coefficient(k: int) -> Callable[[Named], Any]:
+    return lambda row: _estimate((row[1].surface.coefficients or [None] * 3)[k])
+
+
+def plane_columns(interval: str = "") -> list[Column[Named]]:
+    """Return the columns of a surface by its name, with the headings of its intervals."""
+    return [
+        Column("", lambda row: row[0], head="limit state", text=True),
+        *(Column("", _coefficient(k), head=f"c{k}\n{interval}", form=_with_interval) for k in range(3)),
+        Column("kind", of_fit("surface.kind")),
+        Column("why", of_fit("surface.why")),
+        Column("coefficients", lambda row: [asdict(each) for each in row[1].surface.coefficients or []]),
+        Column("aic", of_fit("surface.aic")),
+        Column("p_values", of_fit("surface.p_values")),
+        Column("runs", of_fit("surface.runs")),
+        Column("exceedances", of_fit("surface.exceedances")),
+        Column("distinct_records", of_fit("surface.records")),
+        Column("warning", lambda row: row[1].surface.warning or None),
+    ]  # fmt: skip
+
+
+def of_fit(name: str) -> Callable[[Named], Any]:
+    """Return a function that reads an attribute of a named fit."""
+    read = of(name)
+    return lambda row: read(row[1])
+
+
+def _data(found: Fragility | Bivariate, columns: Sequence[Column[Named]], over: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a fit as plain data, with what it is over, its undecided runs and its lower edge."""
     return {
         "structure": found.structure,
         "limit_state": found.limit,
-        "measure": found.measure,
-        **_fit_data(found),
+        **over,
+        **data_of(columns, ("", found)),
         "left_out": found.left_out,
         "unknown": found.unknown,
         "unknown_share": found.share,
         "band": found.is_band,
-        "lower": None if found.lower is None else _fit_data(found.lower),
-    }
-
-
-def _fit_data(found: Fragility) -> dict[str, Any]:
-    """Return a fitted curve as plain data, without its structure, measure and limit state."""
-    curve = found.curve
-    return {
-        "kind": curve.kind,
-        "why": curve.why,
-        **{
-            name: None if each is None else asdict(each)
-            for name, each in (("median", curve.median), ("dispersion", curve.dispersion), ("scale", curve.scale))
-        },
-        "confidence": curve.confidence,
-        "goodness": None if curve.goodness is None else asdict(curve.goodness),
-        "aic": curve.aic,
-        "runs": curve.runs,
-        "exceedances": curve.exceedances,
-        "distinct_records": curve.records,
-        "warning": curve.warning or None,
-        "cut": None if (cut := cut_of(found)) is None else asdict(cut),
-        "annual_rate": None if found.rate is None else asdict(found.rate),
-    }
-
-
-def _surface_data(found: Bivariate) -> dict[str, Any]:
-    return {
-        "structure": found.structure,
-        "limit_state": found.limit,
-        "measures": list(found.measures),
-        **_plane_data(found),
-        "left_out": found.left_out,
-        "unknown": found.unknown,
-        "unknown_share": found.share,
-        "band": found.is_band,
-        "lower": None if found.lower is None else _plane_data(found.lower),
-    }
-
-
-def _plane_data(found: Bivariate) -> dict[str, Any]:
-    """Return a fitted surface as plain data, without its structure, measures and limit state."""
-    surface = found.surface
-    return {
-        "kind": surface.kind,
-        "why": surface.why,
-        "coefficients": [asdict(each) for each in surface.coefficients or []],
-        "aic": surface.aic,
-        "p_values": surface.p_values,
-        "runs": surface.runs,
-        "exceedances": surface.exceedances,
-        "distinct_records": surface.records,
-        "warning": surface.warning or None,
+        "lower": None if found.lower is None else data_of(columns, ("", found.lower)),
     }

@@ -2,53 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from math import isinf, isnan
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from math import isinf
 from typing import Any
 
 from rocking_cli.names import OVERTURNS, UNKNOWN, percent
 from rocking_cli.processing.intensity import parse_measure
+from rocking_cli.studies.fragility.assess import UnknownRuns
 from rocking_cli.studies.fragility.intensity import label
 from rocking_cli.studies.fragility.quantiles import FEWEST, SHARES, Group, Quantiles
-from rocking_cli.views.column import Column, data_of, of, rounded, table_of
+from rocking_cli.views.column import Column, data_of, of, table_of
 from rocking_cli.views.view import ABSENT, Table, View, number
 
 
-def with_quantiles(shown: View, found: Sequence[Quantiles], *, in_words: bool) -> View:
+def with_quantiles(shown: View, found: Sequence[Quantiles], outcomes: Sequence[UnknownRuns], *, in_words: bool) -> View:
     """Add quantiles to the view of a study: always as data, as tables only if `in_words`."""
     assert isinstance(shown.data, Mapping)
-    unchecked = {each["structure"] for each in shown.data.get("outcomes", ()) if each["unknown"] is None}
-    tables = [part for each in found for part in _tables(each)] if in_words else []
-    note = (
-        "Quantiles of the peak phi/phi_cr. For all runs, a run without uplift counts as 0 and an overturning run "
-        f"ranks above every finite peak; '{OVERTURNS}' marks quantiles that are such runs. The median needs "
-        f"{min(FEWEST)} distinct records, the others {max(FEWEST)}; of fewer, they are '{ABSENT}'."
-    )
-    if any(each.unknown for each in found):
-        note += (
-            f" Runs of {UNKNOWN} outcome have no peak: they are left out of the runs that rock, and rank above every "
-            f"finite peak among all runs; '{UNKNOWN}' marks quantiles that are such runs."
-        )
-    parts = [*shown.parts, *tables, *([note] if tables else [])]
+    unchecked = {each.structure for each in outcomes if each.unknown is None}
     data = [_data(each, checked=each.structure not in unchecked) for each in found]
-    return View({**shown.data, "quantiles": data}, parts)
+    parts = [part for each in found for part in _tables(each)] if in_words else []
+    if parts:
+        note = (
+            "Quantiles of the peak phi/phi_cr. For all runs, a run without uplift counts as 0 and an overturning run "
+            f"ranks above every finite peak; '{OVERTURNS}' marks quantiles that are such runs. The median needs "
+            f"{min(FEWEST)} distinct records, the others {max(FEWEST)}; of fewer, they are '{ABSENT}'."
+        )
+        if any(each.unknown for each in found):
+            note += (
+                f" Runs of {UNKNOWN} outcome have no peak: they are left out of the runs that rock, and rank above "
+                f"every finite peak among all runs; '{UNKNOWN}' marks quantiles that are such runs."
+            )
+        parts.append(note)
+    return View({**shown.data, "quantiles": data}, [*shown.parts, *parts])
 
 
 def _tables(found: Quantiles) -> Iterator[Table | str]:
     """Yield two tables: runs that rock without overturning, with the shares of the others; and all runs."""
     over = f"against {label(found.measure)}{'' if found.stripes else ', in tenths'}"
     shares = [f"{100 * share:g} %" for share in SHARES]
-    peaks = [_peak(k, f"rocking\n{share}") for k, share in enumerate(shares)]
+    columns = _columns(found, checked=True)
+    peaks = [_quantile(k, f"rocking\n{share}", of("rocking")) for k, share in enumerate(shares)]
+    every = [_quantile(k, share, lambda group: list(_ranks(group))) for k, share in enumerate(shares)]
     yield ""
-    yield table_of(
-        f"{found.structure}: peaks of the runs that rock, {over}",
-        [*_columns(found, checked=True), *peaks],
-        found.groups,
-    )
-    every = [[number(each.x, 4), *map(_ratio, _ranks(each))] for each in found.groups]
-    names = [label(found.measure), *shares]
+    yield table_of(f"{found.structure}: peaks of the runs that rock, {over}", [*columns, *peaks], found.groups)
     yield ""
-    yield Table(f"{found.structure}: all runs, {over}", names, every, numbers=range(len(names)))
+    yield table_of(f"{found.structure}: all runs, {over}", [columns[0], *every], found.groups)
+
+
+def _quantile(k: int, head: str, values: Callable[[Group], Sequence[float | str]]) -> Column[Group]:
+    return Column("", lambda group: values(group)[k], head=head, form=_ratio)
 
 
 def _ranks(group: Group) -> Iterator[float | str]:
@@ -58,7 +60,7 @@ def _ranks(group: Group) -> Iterator[float | str]:
 
 
 def _ratio(value: float | str) -> str:
-    return value if isinstance(value, str) else ABSENT if isnan(value) else f"{value:.3g}"
+    return value if isinstance(value, str) else number(value, 3)
 
 
 def _data(found: Quantiles, *, checked: bool) -> dict[str, Any]:
@@ -91,7 +93,3 @@ def _columns(found: Quantiles, *, checked: bool) -> list[Column[Group]]:
         Column("rocking", lambda group: list(group.rocking)),
         Column("all", lambda group: list(_ranks(group))),
     ]
-
-
-def _peak(k: int, head: str) -> Column[Group]:
-    return Column("", lambda group: group.rocking[k], head=head, form=rounded(3))

@@ -34,8 +34,8 @@ COLUMNS: tuple[Column[Ranked], ...] = (
 
 def added(shown: View, rankings: Sequence[Ranking]) -> View:
     """Add the rankings of the measures to the view of a study."""
-    given = shown.data() if callable(shown.data) else shown.data
-    data: Mapping[str, Any] = {**given, "ranking": [_data(each) for each in rankings]}
+    assert isinstance(shown.data, Mapping)
+    data = {**shown.data, "ranking": [_data(each) for each in rankings]}
     return View(data, [*shown.parts, *(part for each in rankings for part in parts(each))])
 
 
