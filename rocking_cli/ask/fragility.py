@@ -8,12 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import warn_of, yaml_of
+from rocking_cli.ask.given import warn_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError
-from rocking_cli.io.json_text import json_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -46,7 +44,7 @@ def fragility(
     ----------
     study : str, Path or mapping
         YAML file of the study, or its fields in Python, in which structures may be mechanisms; docs/fragility.md lists
-        the fields. A study given in Python is written to files next to the store, so that it can be run again.
+        the fields.
     store : str or Path, optional
         File in which the runs are stored; by default next to the study file, or study.db in this folder.
     check : bool
@@ -89,11 +87,9 @@ def fragility(
     from rocking_cli.studies.fragility.study import load_study
     from rocking_cli.studies.fragility.thresholds import held
 
-    if isinstance(study, Mapping):
-        store = Path(store or "study.db")
-        study = _written(study, store)
     asked = load_study(study)
-    place = Path(store) if store is not None else Path(study).with_suffix(".db")
+    file = Path("study") if isinstance(study, Mapping) else Path(study)
+    place = Path(store) if store is not None else file.with_suffix(".db")
     # What varies may be far from the file: the first sample stands for all.
     for mechanism in {sample.structure: sample.mechanism for sample in asked.samples if sample.number == 0}.values():
         warn_of(mechanism, watch)
@@ -180,23 +176,3 @@ def _leave_out(plan: Plan, watch: Watcher) -> None:
         watch.leave_out(InputError(sentence))
     if len(bad) > NAMED:
         watch.leave_out(InputError(f"and {len(bad) - NAMED} more: the JSON of `rocking results` names all"))
-
-
-def _written(study: Mapping[str, Any], store: Path) -> Path:
-    """Write a study given in Python and its mechanisms to files next to the store, named after it."""
-    from rocking_cli.io.files import write_whole
-
-    def write(path: Path, text: str) -> Path:
-        write_whole(path, lambda stream: stream.write(text.encode()))
-        return path
-
-    structures: list[object] = []
-    for k, each in enumerate(study.get("structures", []), start=1):
-        if isinstance(each, Mechanism):
-            file = write(store.with_name(f"{store.stem}-{k}.yaml"), yaml_of(each))
-            structures.append({"file": file.name, "name": each.name or each.mechanism})
-        else:
-            structures.append(str(each) if isinstance(each, Path) else each)
-    records = [str(each) if isinstance(each, Path) else each for each in study.get("records", [])]
-    text = json_text({**study, "structures": structures, "records": records})
-    return write(store.with_suffix(".yaml"), text + "\n")

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import pairwise
-from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
 from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
+from rocking_cli.core import Mechanism
 from rocking_cli.core.fields import Name, Restitution
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.errors import InputError
-from rocking_cli.io.yaml_file import Document, Place, parse, read_text
+from rocking_cli.io.yaml_file import Document, Place
 from rocking_cli.names import OPENING
 from rocking_cli.processing.entry import Entry, FloorItem, Steps
 from rocking_cli.processing.intensity import parse_measure
@@ -356,34 +356,23 @@ PARTS = (("file", "name"), ("file", "vertical"), ("file",), ("pulse",))  # of an
 Piece = TypeVar("Piece", bound=BaseModel)
 
 
-def read_definition(path: Path) -> tuple[Document, Definition | None]:
-    """Read the content of a study file; errors in it are added to the problems of the document.
+def definition_of(document: Document, load: Callable[[str], Mechanism]) -> Definition | None:
+    """Return the definition of a study; errors in it are added to the problems of the document, and make it None.
 
     Parameters
     ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
     document : Document
-        The content of the file, with the line of every item, and the problems found.
-    definition : Definition or None
-        The definition of the study; None if there are problems.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read at all.
+        The content of the study.
+    load : callable
+        Returns the structure of a file that the study names.
     """
-    document = parse(read_text(path, "study"), str(path), "study", HINT)
-    of_units = in_units_of_fields(document, path.parent)
+    of_units = in_units_of_fields(document, load)
     document.problems += of_units
     try:
-        return document, Definition.model_validate(document.data)
+        return Definition.model_validate(document.data)
     except ValidationError as error:
         document.problems += problems_of(document, Definition, error, owner="the study", lister=HINT, known=of_units)
-    return document, None
+    return None
 
 
 def usable_entries(document: Document, field: str, model: type[Piece]) -> list[tuple[int, Piece]]:

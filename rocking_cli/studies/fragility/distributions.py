@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -13,7 +12,6 @@ from pydantic import Field
 from rocking_cli.core import Mechanism
 from rocking_cli.errors import Problem, RockingError
 from rocking_cli.io.yaml_file import Document, Place
-from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.file_part import Part, Sound
 from rocking_cli.units import UnitError, read, split
 
@@ -182,15 +180,15 @@ def draw(
 PURE = ("dispersion",)  # what a distribution is given by and has no unit
 
 
-def in_units_of_fields(document: Document, folder: Path) -> list[Problem]:
+def in_units_of_fields(document: Document, load: Callable[[str], Mechanism]) -> list[Problem]:
     """Convert texts with units in the distributions of a study to numbers; return the problems with them.
 
     Parameters
     ----------
     document : Document
         The study; its data are changed. Values that are not texts with a unit stay as they are.
-    folder : Path
-        The folder of the study.
+    load : callable
+        Returns the structure of a file that the study names.
     """
     entries = document.data.get("structures")
     found: list[Problem] = []
@@ -203,7 +201,7 @@ def in_units_of_fields(document: Document, folder: Path) -> list[Problem]:
             if not _has_units(distribution):
                 continue
             try:
-                structure = structure or load_structure(folder / entry["file"])
+                structure = structure or load(entry["file"])
             except RockingError:  # the study says so for itself
                 break
             info = type(structure).model_fields.get(name)

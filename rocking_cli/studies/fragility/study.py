@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+import json
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import nan
 from pathlib import Path
@@ -18,13 +19,14 @@ from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.selection import select
 from rocking_cli.io.field_problems import say
 from rocking_cli.io.json_text import json_text
-from rocking_cli.io.yaml_file import Document, Place
+from rocking_cli.io.yaml_file import Document, Place, parse, read_text
 from rocking_cli.processing.entry import Entry, as_written
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.listed import is_list
 from rocking_cli.processing.record_list import read_list
 from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.fragility.definition import (
+    HINT,
     SLIDING,
     Common,
     Definition,
@@ -33,7 +35,7 @@ from rocking_cli.studies.fragility.definition import (
     Sampling,
     StructureEntry,
     checks_sliding,
-    read_definition,
+    definition_of,
     usable_entries,
     usable_part,
 )
@@ -160,13 +162,14 @@ def digest(description: dict[str, Any]) -> str:
     return hashlib.sha256(json_text(description, sort_keys=True).encode()).hexdigest()
 
 
-def load_study(path: str | Path) -> Study:
+def load_study(given: str | Path | Mapping[str, Any]) -> Study:
     """Read a study and the structures it names; of the records, only the names are read.
 
     Parameters
     ----------
-    path : str or Path
-        The study file; the files that it names are relative to its folder.
+    given : str, Path or mapping
+        The study file, or its fields, in which structures may be mechanisms; the files that it names are relative to
+        its folder, or to the present one.
 
     Raises
     ------
@@ -175,10 +178,20 @@ def load_study(path: str | Path) -> Study:
     MechanismError
         If a mechanism's plugin cannot be used.
     """
-    path = Path(path)
-    document, definition = read_definition(path)
+    made: dict[str, Mechanism] = {}
+    if isinstance(given, Mapping):
+        path = Path("study")
+        document = Document("study", "study", [], _plain(given, made))
+    else:
+        path = Path(given)
+        document = parse(read_text(path, "study"), str(path), "study", HINT)
+
+    def load(file: str) -> Mechanism:
+        return made[file] if file in made else load_structure(path.parent / file)
+
+    definition = definition_of(document, load)
     entries = usable_entries(document, "structures", StructureEntry)
-    structures = [_structure(document, ("structures", k), path.parent, entry) for k, entry in entries]
+    structures = [_structure(document, ("structures", k), path.parent, entry, load) for k, entry in entries]
     common = usable_part(Common, {key: document.data[key] for key in Common.model_fields if key in document.data})
     sources = [
         source
@@ -208,10 +221,26 @@ def load_study(path: str | Path) -> Study:
     return Study(definition.name or one_line(path.stem), definition, known, tuple(samples), tuple(sources), hazard)
 
 
-def _structure(document: Document, place: Place, folder: Path, entry: StructureEntry) -> Mechanism | None:
+def _plain(given: Mapping[str, Any], made: dict[str, Mechanism]) -> dict[str, Any]:
+    """Return a study made in Python as plain data, and put its mechanisms aside by the names that stand for them."""
+    structures: list[Any] = []
+    for k, each in enumerate(given.get("structures", []), start=1):
+        if isinstance(each, Mechanism):
+            made[f"structure {k}"] = each
+            structures.append({"file": f"structure {k}", "name": each.name or each.mechanism})
+        else:
+            structures.append(str(each) if isinstance(each, Path) else each)
+    records = [str(each) if isinstance(each, Path) else each for each in given.get("records", [])]
+    data: dict[str, Any] = json.loads(json_text({**given, "structures": structures, "records": records}))
+    return data
+
+
+def _structure(
+    document: Document, place: Place, folder: Path, entry: StructureEntry, load: Callable[[str], Mechanism]
+) -> Mechanism | None:  # fmt: skip
     file = folder / entry.file
     try:
-        structure = load_structure(file)
+        structure = load(entry.file)
     except InputError as error:
         document.problems += _of_file(document, _within(document, place, "file"), entry.file, file, error)
         return None
