@@ -22,11 +22,6 @@ from rocking_cli.codes.italian import formulas
 from rocking_cli.codes.italian.rules import RULES
 from rocking_cli.codes.italian.sheet.build import SHEET, parts
 from rocking_cli.core import Direction
-from rocking_cli.core.registry import Registry
-from rocking_cli.io.yaml_file import parse
-from rocking_cli.structure_file import parse_structure
-from rocking_cli.studies.verification.check import site_in
-from rocking_cli.studies.verification.control import control_at
 from rocking_cli.studies.verification.working import Formula, as_written, in_plain, put
 from rocking_cli.views.sheet.document import Sentence, Steps
 from rocking_cli.views.verification import shown, view
@@ -34,6 +29,7 @@ from rocking_cli.views.view import Table
 from tests.conftest import EXAMPLES
 from tests.test_cli import run
 from tests.test_sheet import CASES, FACADE, FLOOR, HAZARD, PARAPET, SITE, SLC
+from tests.test_sheet import verified as verified_of
 
 EVERY = {name: each for name, each in vars(formulas).items() if isinstance(each, Formula)} | {
     f"PERIOD {state}": each for state, each in formulas.PERIOD.items()
@@ -75,15 +71,6 @@ MORE = {
 """Structure, site and control point, beside the cases of the sheet, so that each formula is used."""
 
 
-def found(structure, site, point):
-    """The verification of a case, and its site."""
-    text = isinstance(structure, str)
-    mechanism = parse_structure(structure, "s.yaml", "test", Registry()) if text else structure
-    given = site_in(parse(site, "site.yaml", "site", "")).site
-    control = control_at(mechanism, *point) if point is not None else None
-    return italian.Italian().verify(mechanism, given, control), given
-
-
 @cache
 def case(name):
     structure, site, *point = MORE[name] if name in MORE else CASES[name]
@@ -104,7 +91,7 @@ def steps(language, verified, site):
 
 def outputs(name):
     """What the terminal prints, the workings, and the sheet in either language, each computed anew."""
-    verified, site = found(*case(name))
+    verified, site = verified_of(*case(name))
     tables = [each for each in view(verified, every_step=True).parts if isinstance(each, Table)]
     lines = [*verified.workings, *(line for each in shown(verified).values() for line in each.workings)]
     return tables, lines, steps("en", verified, site), steps("it", verified, site)
