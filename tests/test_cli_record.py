@@ -149,14 +149,8 @@ class TestScaling:
 
     @pytest.mark.parametrize("command", [("record", ACCEL), ("respond", "--record", ACCEL)])
     def test_wrong_scaling_is_refused(self, command):
-        assert (
-            "--scale, --target-pga and --target-pgv cannot be combined"
-            in run(*command, "--scale", "1", "--target-pga", "1", code=2).stderr
-        )
-        assert (
-            "--scale, --target-pga and --target-pgv cannot be combined"
-            in run(*command, "--target-pgv", "1", "--target-pga", "1", code=2).stderr
-        )
+        for two in (("--scale", "1", "--target-pga", "1"), ("--target-pgv", "1", "--target-pga", "1")):
+            assert "--scale, --target-pga and --target-pgv cannot be combined" in run(*command, *two, code=2).stderr
         assert "positive" in run(*command, "--target-pgv", "0", code=2).stderr
 
     def test_nothing_cannot_be_scaled_to_a_peak(self, tmp_path):

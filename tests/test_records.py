@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.excitation.records import peer, read_record, text
+from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records.record_units import canonical
 from rocking_cli.excitation.records.times import on_grid
 from tests.conftest import NEEDS_RECORDS, record
@@ -654,16 +654,6 @@ def test_text_with_a_peer_header_in_comments_is_text(write):
     content = "".join(f"# {line}\n" for line in at2([], npts=2).splitlines()) + "0,1\n0.01,2\n"
     motion = read_record(write(content))
     assert (motion.format, motion.npts, motion.unit) == ("text", 2, "g")
-
-
-def test_readers_tell_the_formats_apart():
-    assert peer.sniff(at2(VALUES))
-    assert not peer.sniff("t,accel_g\n0,1\n0.01,2\n")
-    assert text.sniff("t,accel_g\n0,1\n0.01,2\n")
-    assert not text.sniff('{"accel": [\n1,\n2]}')
-    assert not text.sniff("nothing here")
-    with pytest.raises(InputError, match="no numbers found"):
-        text.read("nothing here", "file.txt")
 
 
 # --- real records, and the example ----------------------------------------------------------------------------------

@@ -18,7 +18,8 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.oscillator import DAMPING, response_spectrum
 from rocking_cli.studies import subsets
-from rocking_cli.studies.target_spectrum import Reals, TargetSpectrum
+from rocking_cli.studies.points_file import Reals
+from rocking_cli.studies.target_spectrum import TargetSpectrum
 
 WITHIN = (0.9, 1.3)  # NTC 2018, 3.2.3.6; EN 1998-1:2004, 3.2.3.1.2(4)c, has the lower one alone
 FACTORS = (0.2, 5.0)

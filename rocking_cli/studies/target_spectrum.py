@@ -9,17 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records.record_units import CHOICES, UNITS, canonical, header_units
-from rocking_cli.excitation.records.text import numbers_in
-from rocking_cli.io.files import read_bytes
+from rocking_cli.studies.points_file import Reals, read_points, separator_in
 
-Reals = NDArray[np.float64]
-LARGEST = 10_000_000  # bytes of a file
-LISTED = 5  # problems of a file
 COLUMNS = "a line has two columns with a comma between: period [s], Sa [g]"
 ODD = 10.0  # g; no code asks for more
 
@@ -121,51 +116,19 @@ def read_target(path: Path) -> TargetSpectrum:
     InputError
         With file and line.
     """
-    shown = str(path)
-    try:
-        lines = read_bytes(path, "target spectrum", LARGEST).decode("utf-8-sig").splitlines()
-    except UnicodeDecodeError:
-        raise InputError(Problem("this is not UTF-8 text", shown, hint="save it as CSV in UTF-8")) from None
-    used = [k for k, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
-    start = next((place for place, k in enumerate(used) if lines[k].lstrip()[0] in "+-.0123456789"), len(used))
-    heading, used = used[:start], used[start:]
-    unit = _unit(shown, heading[-1] + 1, lines[heading[-1]]) if heading else None
-    rows = [_row(shown, k + 1, lines[k]) for k in used]
-    periods, sa = np.array(rows, dtype=np.float64).reshape(-1, 2).T
-    problems = []
-    for point, message in wrong_points(periods, sa):
-        if point == len(used):
-            message = f"{len(used)} point{'s' * (len(used) != 1)}: {message}"
-            problems.append(Problem(message, shown, hint=COLUMNS))
-        else:
-            excerpt = lines[used[point]].strip()[:100]
-            hint = "put the lines in the order of their periods, each once; a step needs two periods a little apart"
-            if "negative" in message:
-                hint = "correct or leave out this line"
-            problems.append(Problem(message, shown, used[point] + 1, excerpt=excerpt, hint=hint))
-    if problems:
-        raise InputError(*problems[:LISTED])
-    return TargetSpectrum(shown, periods, sa * UNITS[unit or "g"] / STANDARD_GRAVITY, unit)
+    periods, sa, unit = read_points(path, "target spectrum", COLUMNS, wrong_points, _remedy, _unit)
+    return TargetSpectrum(str(path), periods, sa * UNITS[unit or "g"] / STANDARD_GRAVITY, unit)
 
 
-def _row(file: str, number: int, line: str) -> list[float]:
-    """Read period and ordinate from a line."""
-    separator = next((sign for sign in (";", "\t", ",") if sign in line), None)
-    cells = [cell.strip() for cell in line.strip().split(separator)]
-    if len(cells) > 2 and not any(cells[2:]):  # a spreadsheet leaves separators of empty columns
-        cells = cells[:2]
-    if len(cells) != 2:
-        message = f"{len(cells)} column{'s' * (len(cells) > 1)}"
-        raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=COLUMNS))
-    if separator != "," and any(re.fullmatch(r"[+-]?\d+,\d+", cell) for cell in cells):
-        hint = "write numbers with a point: 0.25"
-        raise InputError(Problem("a comma within a number", file, number, excerpt=line.strip()[:100], hint=hint))
-    return numbers_in(file, number, line, cells)
+def _remedy(message: str) -> str:
+    if "negative" in message:
+        return "correct or leave out this line"
+    return "put the lines in the order of their periods, each once; a step needs two periods a little apart"
 
 
 def _unit(file: str, number: int, line: str) -> str | None:
     """Return the unit of the ordinates that a heading names; None if it names none."""
-    separator = next((sign for sign in (";", "\t", ",") if sign in line), None)
+    separator = separator_in(line)
     cells: Sequence[str] = line.split(separator) if separator else [line, line]
     if _OTHER_PERIOD.search(cells[0].replace("_", " ")):
         message = "the first column must hold periods in s"

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
@@ -13,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
+from rocking_cli.excitation.base import MOST_SAMPLES, GroundMotion
 from rocking_cli.excitation.record_csv import DONE
 from rocking_cli.excitation.records.columns import MOST, Choice, Label, choose, labels
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.sensor import Wanted, plural
-from rocking_cli.excitation.records.times import UnevenTimeError, even_interval, on_grid
+from rocking_cli.excitation.records.times import UnevenTimeError, even_interval, increasing, is_even, on_grid
 from rocking_cli.excitation.records.widths import PrintedRows, unlike_the_others
 from rocking_cli.patterns import regex
 
@@ -79,8 +80,7 @@ def read(
     table = None
     if columns > 2 or (columns == 2 and channel is not None and label_lines):
         table = _table(file, lines, start, delimiter, names, commas=commas)
-        _refuse_a_single_sample(file, start, table)
-        choice = choose(file, table, names, channel, _increases if wanted.uneven else _increases_evenly, wanted)
+        choice = choose(file, table, names, channel, increasing if wanted.uneven else is_even, wanted)
         header = [entry for entry in header if entry[0] not in label_lines]
         header += [(number, str(names[choice.column])) for number in label_lines[:1]]
     elif channel is not None and channel.strip().lower() != names[-1].name.lower():
@@ -102,16 +102,16 @@ def read(
 
     if table is None:
         table = _table(file, lines, start, delimiter, names, commas=commas)
-        _refuse_a_single_sample(file, start, table)
     values, uneven = table[choice.column], None
     if choice.time is not None:
         column = _called(names, choice.time) if columns > 2 else ""
-        try:
-            own = _interval(file, lines, start, table[choice.time], column)
-        except InputError:
-            if not wanted.uneven or (gridded := _on_grid(file, lines, start, table[choice.time], values)) is None:
-                raise
-            own, values, uneven = gridded
+        with _uneven_rows(file, lines, start, column):
+            try:
+                own = even_interval(table[choice.time])
+            except UnevenTimeError:
+                if not wanted.uneven or (gridded := on_grid(table[choice.time], values)) is None:
+                    raise
+                own, values, uneven = gridded
         check_interval(file, None, own, dt)
         dt = own
     assert dt is not None  # none at all was refused above
@@ -279,6 +279,8 @@ def _table(
             part = _careful_table(file, first, page, delimiter, names)
         table[:, filled : filled + len(part)] = part.T
         filled += len(part)
+    if filled < 2:
+        raise InputError(Problem("a record needs at least two samples, this has one", file=file, line=start + 1))
     return table[:, :filled]
 
 
@@ -317,57 +319,26 @@ def _careful_table(
     return np.array(values).reshape(-1, columns)
 
 
-def _refuse_a_single_sample(file: str, start: int, table: NDArray[np.float64]) -> None:
-    if table.shape[1] < 2:
-        raise InputError(Problem("a record needs at least two samples, this has one", file=file, line=start + 1))
-
-
 def _called(names: Sequence[Label], place: int) -> str:
     """Return the name of a column in messages."""
     return f"column {place + 1}" + (f" ({names[place]})" if names[place].name else "")
 
 
-def _increases_evenly(column: NDArray[np.float64]) -> bool:
-    """Return whether a column may be one of even times."""
+@contextmanager
+def _uneven_rows(file: str, lines: Lines, start: int, column: str) -> Iterator[None]:
+    """Turn errors of uneven times into problems at their rows, counted without blank lines and comments.
+
+    `column` is the name of the column of times, if there are several columns.
+    """
     try:
-        even_interval(column)
-    except UnevenTimeError:
-        return False
-    return True
-
-
-def _increases(column: NDArray[np.float64]) -> bool:
-    """Return whether a column may be one of uneven times."""
-    return bool((np.diff(column) > 0).all())
-
-
-def _interval(file: str, lines: Lines, start: int, time: NDArray[np.float64], column: str) -> float:
-    """Return the interval of the times in a column [s]; `column` is its name, if there are several."""
-    try:
-        return even_interval(time)
+        yield
     except UnevenTimeError as error:
-        if error.row is None:
-            raise InputError(Problem(error.message, file=file, field=column or None, hint=error.hint)) from None
-        found = _at_row(file, lines, start, error.row, error.message, error.hint)
-        raise InputError(replace(found, field=column or None)) from None
-
-
-def _on_grid(
-    file: str, lines: Lines, start: int, time: NDArray[np.float64], values: NDArray[np.float64]
-) -> tuple[float, NDArray[np.float64], Doubt] | None:
-    """Return interval and values at even times, and a doubt; see `times.on_grid`."""
-    try:
-        return on_grid(time, values)
-    except UnevenTimeError as error:
-        assert error.row is not None
-        raise InputError(_at_row(file, lines, start, error.row, error.message, error.hint)) from None
-
-
-def _at_row(file: str, lines: Lines, start: int, row: int, message: str, hint: str) -> Problem:
-    """Return a problem at a row of the table, counted from 0 without blank lines and comments."""
-    numbers = (number for number, line in enumerate(lines, start=1) if number > start and _clean(line))
-    number = next(islice(numbers, row, None))
-    return Problem(message, file=file, line=number, excerpt=lines[number - 1].strip()[:100], hint=hint)
+        found = Problem(error.message, file=file, field=column or None, hint=error.hint)
+        if error.row is not None:
+            numbers = (number for number, line in enumerate(lines, start=1) if number > start and _clean(line))
+            number = next(islice(numbers, error.row, None))
+            found = replace(found, line=number, excerpt=lines[number - 1].strip()[:100])
+        raise InputError(found) from None
 
 
 def _not_a_number(file: str, line_number: int, line: str, token: str, *, known: bool) -> Problem:

@@ -91,6 +91,20 @@ def even_interval(time: NDArray[np.float64]) -> float:
     raise UnevenTimeError(message, hint, row)
 
 
+def is_even(time: NDArray[np.float64]) -> bool:
+    """Return whether a column may be one of even times."""
+    try:
+        even_interval(time)
+    except UnevenTimeError:
+        return False
+    return True
+
+
+def increasing(time: NDArray[np.float64]) -> bool:
+    """Return whether a column may be one of uneven times."""
+    return bool((np.diff(time) > 0).all())
+
+
 def _as_written(value: float) -> float:
     """Return the number of at most twelve digits that differs from a quotient by rounding only, or the quotient."""
     written = float(f"{value:.12g}")
@@ -117,7 +131,7 @@ def on_grid(time: NDArray[np.float64], values: NDArray[np.float64]) -> tuple[flo
         If most of the grid would lie in gaps between the samples.
     """
     steps = np.diff(time)
-    if not (steps > 0).all():
+    if not increasing(time):
         return None
     dt = float(f"{np.median(steps):.6g}")  # a clock ticks in a number that people write
     longest = int(steps.argmax())

@@ -10,11 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.records.text import numbers_in
 from rocking_cli.studies.fragility.curves import FragilityCurve
 from rocking_cli.studies.fragility.fit import Reals
 from rocking_cli.studies.fragility.observed import SAME
+from rocking_cli.studies.points_file import read_points
 
 NODES = 16  # of Gauss's rule in a piece
 PIECE = 0.05  # of ln x: a curve of dispersion 0.02 is still smooth in it
@@ -75,34 +74,8 @@ def read_hazard(path: Path) -> HazardCurve:
     InputError
         With file and line.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise InputError(Problem(f"cannot be read: {error.strerror or error}", str(path))) from error
-    except UnicodeDecodeError as error:
-        raise InputError(Problem("this is not UTF-8 text", str(path), hint="save it as CSV in UTF-8")) from error
-    lines = text.splitlines()
-    used = [k for k, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
-    if used and lines[used[0]].lstrip()[0] not in "+-.0123456789":
-        del used[0]  # a heading
-    rows = []
-    for k in used:
-        cells = lines[k].split(",")
-        if len(cells) != 2:
-            hint = "two are needed with a comma between: intensity, annual rate"
-            message = f"{len(cells)} column{'s' * (len(cells) > 1)}"
-            raise InputError(Problem(message, str(path), k + 1, excerpt=lines[k].strip()[:100], hint=hint))
-        rows.append(numbers_in(str(path), k + 1, lines[k], cells))
-    intensity, rate = np.array(rows).reshape(-1, 2).T
-    problems = []
-    for point, message in wrong_points(intensity, rate):
-        if point == len(used):
-            problems.append(Problem(f"{len(used)} point{'s' * (len(used) != 1)}: {message}", str(path)))
-        else:
-            excerpt = lines[used[point]].strip()[:100]
-            problems.append(Problem(message, str(path), used[point] + 1, excerpt=excerpt))
-    if problems:
-        raise InputError(*problems)
+    columns = "two are needed with a comma between: intensity, annual rate"
+    intensity, rate, _ = read_points(path, "hazard curve", columns, wrong_points)
     return HazardCurve(intensity, rate)
 
 
