@@ -23,7 +23,7 @@ from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.margin import in_words
 from tests.conftest import EXAMPLES
 from tests.following import build_model
-from tests.test_cli import run, run_json
+from tests.test_cli import run, run_json, some
 
 BLOCK = parse_structure("mechanism: block\nwidth: 0.7\nheight: 2.8\n", "block", "block")
 CORNERS = "mechanism: rigid_body\npolygon: [[0, 0], [0.7, 0], [0.69, 2.8], [0, 2.8]]\n"
@@ -276,27 +276,12 @@ class TestCommand:
         wider, less = np.array(known["unknown"]), np.array(ours["unknown"])
         assert (wider <= less).all() and wider.sum() < less.sum() - 1
 
-    def test_of_joints_that_are_not_checked_it_says_so(self):
-        words = ("margin", EXAMPLES / "curve.yaml", "--pulse", "sine:0.5g:0.8s", "--neighbours", 2)
-        assert run_json(*words)["motions"][0]["unknown"] is None
-        assert "Caution: the joints of this mechanism are not checked" in run(*words).stdout
-
     def test_a_scaled_motion_is_the_motion(self):
         one, two = (
             run_json("margin", self.BLOCK, "--pulse", f"sine:{ag}g:0.8s", *scale, "--neighbours", 5, "--polarity", 1)
             for ag, scale in ((0.6, ()), (0.3, ("--scale", 2)))
         )
         np.testing.assert_allclose(one["motions"][0]["shares"], two["motions"][0]["shares"])
-
-    @pytest.mark.parametrize("width", ["40", "80", "200"])
-    def test_the_table_has_a_row_each(self, width, monkeypatch):
-        monkeypatch.setenv("COLUMNS", width)
-        text = " ".join(run("margin", self.BLOCK, "--record", self.ACCEL, "--neighbours", 5).stdout.split())
-        assert "accel.csv" in text and "; at each, 5 neighbouring motions, " in text
-
-    def test_a_picture(self, tmp_path):
-        run("margin", self.BLOCK, "--record", self.ACCEL, "--neighbours", 5, "--plot", tmp_path / "m.png")
-        assert (tmp_path / "m.png").read_bytes()[:4] == b"\x89PNG"
 
     @pytest.mark.parametrize(
         ("words", "fragment"),
@@ -315,24 +300,9 @@ class TestCommand:
 
 
 def test_a_missing_record_of_several_leaves_the_others():
-    from click.testing import CliRunner
-
-    from rocking_cli.cli.main import main
-
-    words = [
-        "margin",
-        EXAMPLES / "block.yaml",
-        "--record",
-        EXAMPLES / "accel.csv",
-        "--record",
-        "no.AT2",
-        "--neighbours",
-        "5",
-        "--json",
-    ]
-    result = CliRunner().invoke(main, [str(word) for word in words])
-    assert result.exit_code == 5 and "no.AT2" in result.stderr
-    assert len(json.loads(result.stdout)["motions"]) == 1
+    records = ("--record", EXAMPLES / "accel.csv", "--record", "no.AT2")
+    result = some("margin", EXAMPLES / "block.yaml", *records, "--neighbours", 5, "--json")
+    assert "no.AT2" in result.stderr and len(json.loads(result.stdout)["motions"]) == 1
 
 
 @pytest.mark.parametrize(("uplift", "mark"), [(0.05, "<"), (0.5, "|"), (9.0, ">")])

@@ -8,7 +8,6 @@ that kappa is to be disregarded: any other agreement is chance.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import IntEnum
 from math import tan
 from typing import Literal
@@ -62,26 +61,10 @@ def uplift_error(equivalence: Equivalence) -> float:
     return max(errors, key=abs)
 
 
-@dataclass(frozen=True)
-class Advice:
-    """Preferred scaling of an equivalent block, judged by its uplift acceleration alone.
+def preferred_kappa(block: EquivalentBlock) -> Literal["kappa2", "either"]:
+    """Return which kappa to use for an equivalent block, judged by the uplift of the linearised mechanism alone.
 
-    Parameters
-    ----------
-    prefer : {"kappa2", "either"}
-        The scaling to use.
-    ratio : float
-        lambda_lin/lambda, the paper's measure of effective slenderness: 1 for a slender structure.
-    kappa1 : Grade
-        Grade of kappa1 by its uplift acceleration.
+    lambda_lin/lambda is the paper's measure of effective slenderness: 1 for a slender structure, for which either will
+    do.
     """
-
-    prefer: Literal["kappa2", "either"]
-    ratio: float
-    kappa1: Grade
-
-
-def preferred_kappa(block: EquivalentBlock) -> Advice:
-    """Return which kappa to use for an equivalent block, judged by the uplift of the linearised mechanism."""
-    ratio = block.lambda_lin / block.lambda_
-    return Advice("either" if SLENDER <= ratio <= 1 / SLENDER else "kappa2", ratio, grade(ratio - 1))
+    return "either" if SLENDER <= block.lambda_lin / block.lambda_ <= 1 / SLENDER else "kappa2"

@@ -207,7 +207,7 @@ def preferred(asked: Sequence[Linearisation]) -> int | None:
         return None
     if one is not two:
         return 1 if one < two else 2
-    return 2 if any(preferred_kappa(each.block).prefer == "kappa2" for each in asked) else 0
+    return 2 if any(preferred_kappa(each.block) == "kappa2" for each in asked) else 0
 
 
 def velocity_ratios(block: EquivalentBlock, gravity: float) -> tuple[float, float]:

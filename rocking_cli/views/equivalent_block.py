@@ -7,7 +7,7 @@ from math import degrees, isclose, nan
 from typing import Any, NamedTuple
 
 from rocking_cli.core import Direction, EquivalentBlock, Mechanism, PointMass, Statics, one_block
-from rocking_cli.core.advice import Grade, preferred_kappa
+from rocking_cli.core.advice import Grade, grade, preferred_kappa
 from rocking_cli.core.equivalence import AGREEMENT, alike
 from rocking_cli.core.hung.element import Element
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -127,11 +127,11 @@ def is_symmetric(structure: Structure) -> bool:
 
 def _data(side: EquivalentSide) -> dict[str, Any]:
     """Return the parameters of a direction as plain data; null if there is no equivalent block."""
-    advice = preferred_kappa(side.block) if side.block is not None else None
+    block = side.block
     return {
         **side.parameters,
-        "prefer": advice.prefer if advice is not None else None,
-        "lambda_ratio": advice.ratio if advice is not None else None,
+        "prefer": preferred_kappa(block) if block is not None else None,
+        "lambda_ratio": block.lambda_lin / block.lambda_ if block is not None else None,
         "stiffening": side.statics.stiffening,
         "limit": side.statics.limit,
         "no_block": side.statics.why_no_block,
@@ -140,14 +140,14 @@ def _data(side: EquivalentSide) -> dict[str, Any]:
 
 def kappa_in_words(block: EquivalentBlock) -> str:
     """Return a sentence on which kappa to prefer for a block, by its uplift acceleration alone."""
-    advice = preferred_kappa(block)
-    if advice.prefer == "either":
+    ratio = block.lambda_lin / block.lambda_
+    if preferred_kappa(block) == "either":
         said = "effectively slender, either kappa is adequate"
     else:
-        said = "disregard kappa1" if advice.kappa1 is Grade.DISREGARD else "by the uplift prefer kappa2"
+        said = "disregard kappa1" if grade(ratio - 1) is Grade.DISREGARD else "by the uplift prefer kappa2"
     return (
-        f"lambda_lin/lambda = {advice.ratio:.4g}: {said}; with kappa1 the uplift acceleration is "
-        f"{uplift_in_words(advice.ratio - 1)}, with kappa2 it is kept."
+        f"lambda_lin/lambda = {ratio:.4g}: {said}; with kappa1 the uplift acceleration is "
+        f"{uplift_in_words(ratio - 1)}, with kappa2 it is kept."
     )
 
 
