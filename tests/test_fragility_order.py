@@ -20,7 +20,8 @@ from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
 from rocking_cli.studies.fragility.thresholds import accelerations
 from rocking_cli.views import nrml as openquake
-from rocking_cli.views.fragility import _curve_data, _curves
+from rocking_cli.views.column import data_of
+from rocking_cli.views.fragility import _curves, fit_columns
 from rocking_cli.views.nrml import chosen
 from tests.conftest import EXAMPLES
 
@@ -123,7 +124,7 @@ def test_openquake_knows_up_to_where_there_is_no_damage(answer):
     assert function.ends[0] < 0.25
 
 
-def test_what_is_not_exact_or_contradicted_is_from_the_runs(answer, tmp_path):
+def test_what_is_not_exact_or_contradicted_is_from_the_runs(answer):
     block = next(each.structure for each in answer.result)
     with Store.reading(answer.store) as kept:
         found = tally.count(kept, answer.plan, block, LIMITS, ["PGA"])
@@ -135,13 +136,8 @@ def test_what_is_not_exact_or_contradicted_is_from_the_runs(answer, tmp_path):
     asked = answer.definition.model_copy(update={"measures": ["PGA"]})
     fitted = list(curves(replace(found, uplift=None), block, asked, None))
     assert (fitted[0].curve.step.low, fitted[0].curve.step.high) == pytest.approx((0.25, 0.325))
-    study = answer.store.with_suffix(".yaml")
-    on_floor = tmp_path / "study.yaml"
-    text = study.read_text(encoding="utf-8").replace("order-", f"{study.parent}/order-")
-    on_floor.write_text(text, encoding="utf-8")
-    assert set(accelerations(load_study(on_floor), answer.plan)) == {each.structure for each in answer.result}
-    on_floor.write_text(text.replace('"method"', '"floor": "T1=0.3,z=1,n=3", "method"'), encoding="utf-8")
-    assert accelerations(load_study(on_floor), answer.plan) == {}
+    assert set(accelerations(load_study(STUDY), answer.plan)) == {each.structure for each in answer.result}
+    assert accelerations(load_study({**STUDY, "floor": "T1=0.3,z=1,n=3"}), answer.plan) == {}
 
 
 def test_a_dispersion_without_sense_is_not_shown():
@@ -152,7 +148,7 @@ def test_a_dispersion_without_sense_is_not_shown():
         found = Fragility("a", "uplift", "PGV", Observations.of(X, X > 1, np.arange(X.size)), curve, None)
         assert (curve.dispersion is not None) == told == (not np.isnan(ranking._dispersion(found)))
         assert ("Its dispersion is above 5" in view_of(found)) == (not told)
-        assert (_curve_data(found)["dispersion"] is None) == (not told)
+        assert (data_of(fit_columns(), ("", found))["dispersion"] is None) == (not told)
     flat = replace(found, curve=replace(curve, fit=replace(fit, coefficients=np.array([0.0, 0.1]))))
     assert "its dispersion is above 5" in openquake._why_not(flat)
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
@@ -143,6 +145,9 @@ class Bivariate(_FittedTwice):
         return self.surface.runs
 
 
+Fitted = TypeVar("Fitted", Fragility, Bivariate)
+
+
 def counted(store: Store, plan: Plan, definition: Definition, progress: Counted) -> dict[str, Tally]:
     """Count the finished runs of each structure of a store, for the limit states and measures of its study.
 
@@ -207,6 +212,7 @@ def curves(
     tally: Tally, structure: str, definition: Definition, hazard: HazardCurve | None
 ) -> Iterator[Fragility]:  # fmt: skip
     """Yield the fragility curves of a structure: each limit state over each measure that is positive in some run."""
+    over = definition.hazard.measure if definition.hazard is not None else None
     for measure in definition.fitted_measures:
         cells = tally.over(measure)
         x = cells.intensities(measure)
@@ -214,16 +220,20 @@ def curves(
             continue
         runs, found = tally.ladders is None, []
         for limit in definition.limit_states:
-            upper = _curve(cells, x, structure, measure, limit, definition)
             unknown = _undecided_runs(cells, limit, x > 0) if runs else _undecided_ladders(tally, limit)
-            if unknown:
-                assert tally.lower is not None
-                known = replace(cells, tally=tally.lower)
-                lower = _curve(known, x, structure, measure, limit, definition)
-                upper = replace(upper, unknown=unknown, lower=lower)
-            found.append(upper if tally.unknown_if_checked is not None else replace(upper, unknown=None))
+            fit = partial(_curve, x=x, structure=structure, measure=measure, limit=limit, definition=definition)
+            found.append(_twice(fit, cells, unknown))
         for each in _consistent(found, cells.onset(measure)):
-            yield _with_rate(each, hazard) if hazard is not None and definition.hazard_measure == measure else each
+            yield _with_rate(each, hazard) if hazard is not None and measure == over else each
+
+
+def _twice(fit: Callable[[Cells], Fitted], cells: Cells, unknown: int) -> Fitted:
+    """Return a fit in which undecided runs exceed; if there are any, with the one in which they do not."""
+    upper, tally = fit(cells), cells.tally
+    if unknown:
+        assert tally.lower is not None
+        upper = replace(upper, unknown=unknown, lower=fit(replace(cells, tally=tally.lower)))
+    return upper if tally.unknown_if_checked is not None else replace(upper, unknown=None)
 
 
 def _consistent(found: Sequence[Fragility], onset: Onset | None) -> Iterator[Fragility]:
@@ -335,14 +345,9 @@ def surfaces(tally: Tally, structure: str, definition: Definition) -> Iterator[B
         one, other = (cells.intensities(measure) for measure in measures)
         there = (one > 0) & (other > 0)
         for limit in definition.limit_states if there.any() else []:
-            upper = _surface(cells, one, other, structure, (measures[0], measures[1]), limit, definition)
-            unknown = _undecided_runs(cells, limit, there)
-            if unknown:
-                assert tally.lower is not None
-                known = replace(cells, tally=tally.lower)
-                lower = _surface(known, one, other, structure, upper.measures, limit, definition)
-                upper = replace(upper, unknown=unknown, lower=lower)
-            yield upper if tally.unknown_if_checked is not None else replace(upper, unknown=None)
+            fit = partial(_surface, x1=one, x2=other, structure=structure, measures=(measures[0], measures[1]),
+                          limit=limit, definition=definition)  # fmt: skip
+            yield _twice(fit, cells, _undecided_runs(cells, limit, there))
 
 
 def _surface(

@@ -267,7 +267,8 @@ def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, t
     try:
         found = equivalent_block(mechanism)
     except NoEquivalentBlock as error:
-        needs = [f"the model {asked.model}"] if asked.model != "nonlinear" else asked.measures_of_a_block
+        needs = [f"the model {asked.model}"] if asked.model != "nonlinear" else []
+        needs = needs or [name for name in asked.asked_measures if parse_measure(name).needs]
         if needs:
             raise NoEquivalentBlock(f"{' and '.join(needs)} cannot be had of it: {error}") from error
         sides = both_statics(mechanism)

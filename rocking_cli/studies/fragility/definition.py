@@ -17,7 +17,6 @@ from rocking_cli.errors import InputError
 from rocking_cli.io.yaml_file import Document, Place
 from rocking_cli.names import OPENING
 from rocking_cli.processing.entry import Entry, FloorItem, Steps
-from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.processing.reading import Reading, reading_of
 from rocking_cli.processing.steps import parse_steps
 from rocking_cli.studies.file_part import Part, Sound, problems_of
@@ -309,16 +308,6 @@ class Definition(Sampling, Common):
         """All measures that the study names, each once: those of levels, curves, surfaces and hazard."""
         asked = [self.levels.measure, *self.fitted_measures, *(one for pair in self.bivariate for one in pair)]
         return [name for name in dict.fromkeys(asked) if name != SCALE]
-
-    @property
-    def measures_of_a_block(self) -> list[str]:
-        """The requested measures that need an equivalent block."""
-        return [name for name in self.asked_measures if parse_measure(name).needs]
-
-    @property
-    def hazard_measure(self) -> str | None:
-        """Measure of the hazard curve; None without a hazard curve."""
-        return self.hazard.measure if self.hazard is not None else None
 
 
 def _wrong_sets(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:

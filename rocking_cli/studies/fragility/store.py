@@ -156,10 +156,6 @@ class RunRows:
         """Number of runs that could not be simulated."""
         return int((self.outcome == FAILED).sum())
 
-    def select(self, which: NDArray[np.bool_]) -> RunRows:
-        """Return the runs that a mask selects."""
-        return RunRows(**{name: getattr(self, name)[which] for name in self.columns})
-
     @property
     def columns(self) -> tuple[str, ...]:
         """Names of the fields that are not None."""

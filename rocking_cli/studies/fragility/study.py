@@ -248,7 +248,9 @@ def _structure(
         raise of_structure(error, entry.file) from error
     fields = [name for name, info in type(structure).model_fields.items() if info.annotation in (float, float | None)]
     known = [*fields, RESTITUTION]
-    for name in _varied(document, place):
+    written = document.data["structures"][place[1]]  # also what no valid distribution is given for
+    varied = written.get("vary") if isinstance(written, dict) else None
+    for name in varied if isinstance(varied, dict) else []:
         if name not in known:
             what = f"is not a number among the fields of {structure.mechanism}"
             document.problems.append(document.at((*place, "vary", name), what, did_you_mean(name, known), key=True))
@@ -263,14 +265,6 @@ def _of_file(document: Document, place: Place, name: str, file: Path, error: Inp
         else document.at(place, f"{name}: {each.field + ' ' if each.field else ''}{each.message}", each.hint)
         for each in error.problems
     ]
-
-
-def _varied(document: Document, place: Place) -> list[str]:
-    """Return the names of the fields of a structure that vary, whether or not their distributions are valid."""
-    field, k = place
-    entry = document.data[str(field)][k]
-    given = entry.get("vary") if isinstance(entry, dict) else None
-    return list(given) if isinstance(given, dict) else []
 
 
 def _sources(document: Document, place: Place, folder: Path, entry: RecordEntry, common: Common) -> list[Source]:
