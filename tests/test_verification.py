@@ -192,7 +192,7 @@ class TestCurves:
         assert [loose.a0, loose.d0] == pytest.approx([free.a0, free.d0], rel=1e-12)
         code = codes()["NTC2018"]
         found = code.verify(rk.Block(**TIED, ties=[bar]), code.site.model_validate(SITE), None)
-        assert remarks(found)["at_rest"] == {"names": "bar"}
+        assert remarks(found)["at_rest"] == {"names": ["bar"]}
 
     def test_histories_follow_what_the_verdict_is_of(self):
         rod = {"name": "rod", "path": [{"ground": [0, 0]}, {"at": [0, 5]}], "stiffness": 1e9, "prestress": 1e4}

@@ -99,6 +99,8 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         A verification to include in the report.
     """
     bins = int(np.clip(BINS // max(1, len(content.results)), FEWEST, MOST))
+    sides = _shown(content)
+    lengths: list[Length | Angle] = [*content.picture.sketch.lengths, *content.picture.sketch.angles]
     demands = [column for column in contact_columns(content.mechanism) if column.head is not None]
     margins = {each.given.motion.name: each.margin for each in content.results}
     page = template("report.html", symbols=symbols, greek=_greek).render(
@@ -113,8 +115,8 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         cautioned=cautioned(verified.found) if verified is not None else [],
         restitution=_greek(restitution_used(content.structure)),
         drawing=inline_svg(draw_structure(content.picture, content.name), "drawing"),
-        measured=_dimensions(content),
-        directions=_directions(content),
+        measured=[f"{each.text} ({each.direction.label})" if each.direction else each.text for each in lengths],
+        directions=[f"{each.direction.label} ({SENSE[each.direction]})" for each in sides] if sides[1:] else ["value"],
         hung=hung_on(content),
         alone=words.why_alone(content) if len(content.structure.default_models) == 1 else "",
         over=_over(content),
@@ -169,23 +171,11 @@ def _over(content: Assessment) -> str:
     return style.over((free[0], free[1])).replace("φcr", "φ_cr")
 
 
-def _dimensions(content: Assessment) -> list[str]:
-    measured: list[Length | Angle] = [*content.picture.sketch.lengths, *content.picture.sketch.angles]
-    return [f"{each.text} ({each.direction.label})" if each.direction else each.text for each in measured]
-
-
 def _number(value: float | None, digits: int = 4) -> str:
     if value is None or isnan(value):
         return ABSENT
     mantissa, _, power = f"{value:.{digits}g}".partition("e")
     return f"{mantissa} \N{MULTIPLICATION SIGN} 10{str(int(power)).translate(RAISED)}" if power else mantissa
-
-
-def _directions(content: Assessment) -> list[str]:
-    sides = sides_of(content.structure)
-    if is_symmetric(content.structure) or len(sides) == 1:
-        return ["value"]
-    return [f"{side.direction.label} ({SENSE[side.direction]})" for side in sides]
 
 
 def _shown(content: Assessment) -> list[EquivalentSide]:

@@ -10,9 +10,9 @@ import numpy as np
 
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain, ChainBlock
+from rocking_cli.core import Mechanism
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.attached import Follow, Spot
-from rocking_cli.core.hung.element import Stretched
 from rocking_cli.core.hung.elements import ConstantForce
 
 TURNS = 1e-9  # rad per rad: what turns less goes straight on
@@ -111,45 +111,40 @@ class DisplacedChain:
         return sum(each.block.PQ * each.dx for each in self.blocks)
 
     @cached_property
-    def held(self) -> Sequence[ForceWork]:
-        """The forces and ties in this position."""
+    def _standing(self) -> Mechanism:
+        """The structure with what still restrains it: without crossing walls whose courses have slid apart."""
         torn = self.curve.torn is not None and self.phi > self.curve.torn
-        mechanism = self.chain.mechanism
-        standing = mechanism.model_copy(update={"interlock": None}) if torn else mechanism
-        found: list[ForceWork] = []
-        for each in standing.hung.elements:
-            if isinstance(each, ConstantForce):
-                found += self._of_force(each)
-            else:
-                found += [self._of_tie(tie) for tie in each.stretched]
-        return found
-
-    def _of_force(self, thing: ConstantForce) -> list[ForceWork]:
-        s, force = self.chain.direction, thing.in_direction(self.chain.direction)
-        rate = complex(self._follow(thing.spot).dz[0])
-        parts = [("x", s * force.real, s * rate.real), ("y", force.imag, rate.imag)]
-        return [ForceWork(f"{thing.name}, {axis}", F, r, -F * r) for axis, F, r in parts if F]
-
-    def _of_tie(self, tie: Stretched) -> ForceWork:
-        e, first, _ = tie.elongation(self._follow)
-        rest = np.zeros(1)
-        total = Coefficients(rest, *(np.zeros(1) for _ in range(7)))
-        tie.act(total, self.chain.direction, self._follow)
-        return ForceWork(tie.name, tie.count * float(tie.force(e)[0]), float(first[0]), float(total.Q[0]))
+        return self.chain.mechanism.model_copy(update={"interlock": None}) if torn else self.chain.mechanism
 
     @cached_property
-    def _own(self) -> _Sums:
-        mechanism = self.chain.mechanism
-        torn = self.curve.torn is not None and self.phi > self.curve.torn
-        here = (mechanism.model_copy(update={"interlock": None}) if torn else mechanism).coefficients(
-            np.array([self.phi]), self.chain.direction
-        )
-        return _Sums(float(here.restoring(mechanism.gravity)[0]) * mechanism.gravity, float(here.B[0]))
+    def held(self) -> Sequence[ForceWork]:
+        """The forces and ties in this position."""
+        s, found = self.chain.direction, list[ForceWork]()
+        for thing in self._standing.hung.elements:
+            if isinstance(thing, ConstantForce):
+                force, rate = thing.in_direction(s), complex(self._follow(thing.spot).dz[0])
+                parts = [("x", s * force.real, s * rate.real), ("y", force.imag, rate.imag)]
+                found += [ForceWork(f"{thing.name}, {axis}", F, r, -F * r) for axis, F, r in parts if F]
+                continue
+            for tie in thing.stretched:
+                e, first, _ = tie.elongation(self._follow)
+                total = Coefficients(np.zeros(1), *(np.zeros(1) for _ in range(7)))
+                tie.act(total, s, self._follow)
+                N = tie.count * float(tie.force(e)[0])
+                found.append(ForceWork(tie.name, N, float(first[0]), float(total.Q[0])))
+        return found
+
+    @cached_property
+    def _own(self) -> tuple[float, float]:
+        """The derivative V' [N m] of the potential, and the coefficient B [kg m]."""
+        here, g = self._standing.coefficients(np.array([self.phi]), self.chain.direction), self.chain.mechanism.gravity
+        return float(here.restoring(g)[0]) * g, float(here.B[0])
 
     @property
     def alpha(self) -> float:
         """The multiplier in this position, V'/(g B)."""
-        return self._own.V / (self.chain.mechanism.gravity * self._own.B)
+        V, B = self._own
+        return V / (self.chain.mechanism.gravity * B)
 
     @property
     def rest(self) -> float:
@@ -158,9 +153,9 @@ class DisplacedChain:
         It comes from the mechanism itself, and is set to 0 if it is only rounding.
         """
         known = self.lifted + sum(each.work for each in self.held)
-        rest = self._own.V - known
+        rest = self._own[0] - known
         scale = sum(abs(each.block.P * each.dy) for each in self.blocks) + sum(abs(each.work) for each in self.held)
-        return rest if abs(rest) > ROUNDING * max(scale, abs(self._own.V), self.driven * 1e-6) else 0.0
+        return rest if abs(rest) > ROUNDING * max(scale, abs(self._own[0]), self.driven * 1e-6) else 0.0
 
     @property
     def more(self) -> float:
@@ -168,13 +163,5 @@ class DisplacedChain:
 
         It is set to 0 if it is only rounding.
         """
-        more = self._own.B * self.chain.mechanism.gravity - self.driven
+        more = self._own[1] * self.chain.mechanism.gravity - self.driven
         return more if abs(more) > ROUNDING * abs(self.driven) else 0.0
-
-
-@dataclass(frozen=True)
-class _Sums:
-    """The derivative V' [N m] of the potential, and the coefficient B [kg m]."""
-
-    V: float
-    B: float

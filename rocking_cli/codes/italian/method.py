@@ -23,6 +23,7 @@ from rocking_cli.codes.italian.ties import elastic, lasting
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.studies.conclusion import LeftOut
 from rocking_cli.studies.verification.control import Control
+from rocking_cli.studies.verification.results import Remark
 from rocking_cli.studies.verification.working import Later
 
 KEY, NAME = "NTC2018", "Italian code"
@@ -121,7 +122,7 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
     ground, taken = SiteGround(of_structure(site, mechanism)), lasting(mechanism)
     found = {direction: _verified(taken, direction, ground, control) for direction in taken.directions}
     otherwise = elastic(mechanism) if taken is not mechanism else []
-    said = [remarks.of_ties_at_rest(otherwise)] if otherwise else []
+    said = [Remark.of("at_rest", names=[tie.name for tie in otherwise])] if otherwise else []
     return ItalianVerification(
         taken, KEY, NAME, EDITION, found,
         workings=Later(partial(workings_of_site, ground)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from math import isclose
 
 from rocking_cli.codes.italian.capacity import ExactCurve
@@ -13,7 +13,6 @@ from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, Li
 from rocking_cli.codes.italian.rules import DAMAGE, FURTHER, LINEAR, NONLINEAR, RULES, STATES
 from rocking_cli.codes.italian.site_hazard import LONGEST, SHORTEST, return_period
 from rocking_cli.codes.italian.ties import STRETCHED, WIDE, carried, elastic, furthest, pulls
-from rocking_cli.core.hung.ties import Tie
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import digits_apart
 from rocking_cli.studies.verification.results import Remark
@@ -142,11 +141,6 @@ def _of_stretch(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Rem
         if held and moved > WIDE * thickness / 2:
             said.setdefault("", Remark.of("wide", state=state, moved=moved, thickness=thickness))
     return list(said.values())
-
-
-def of_ties_at_rest(ties: Sequence[Tie]) -> Remark:
-    """Return the remark that ties count with their force at rest."""
-    return Remark.of("at_rest", names=", ".join(tie.name for tie in ties))
 
 
 def _of_break(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.resting import early_failures
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.io.yaml_file import Document, parse, read_text
@@ -109,7 +108,10 @@ def verify(
     taken = {"control": control} if code.takes_control else {}
     try:
         found = _held(code.verify(structure.mechanism, site.site, **taken), code, "verify")
-        return replace(found, left_out=[*found.left_out, *_preceding(structure.mechanism)])
+        mechanism = structure.mechanism
+        before = {each.failure.joint: 0 for each in early_failures(mechanism) if each.direction in mechanism.directions}
+        starts_first = [LeftOut("mechanism", joint, "starts_first") for joint in before]
+        return replace(found, left_out=[*found.left_out, *starts_first])
     except InputError as error:
         own = type(structure.mechanism).model_fields
         placed = site.placed(error).problems
@@ -119,12 +121,6 @@ def verify(
                 for each in placed
             )
         ) from None
-
-
-def _preceding(mechanism: Mechanism) -> list[LeftOut]:
-    """Return the mechanisms that start before the one that is verified, by the joint that opens or slides."""
-    found = {each.failure.joint: None for each in early_failures(mechanism) if each.direction in mechanism.directions}
-    return [LeftOut("mechanism", joint, "starts_first") for joint in found]
 
 
 def _held(found: object, code: Code, method: str) -> Verification:
