@@ -52,7 +52,6 @@ CASES = [
     (load("mass: 5, force: [1, 1], at: [0, 1]"), 7, "loads[1].mass", "give either `mass` or `force`"),
     # what cannot stand
     (load("force: [1e6, 0], at: [0, 1]"), 7, "loads", "in the positive direction with 9.51e.05 N m more"),
-    (load("force: [-1e6, 0], at: [0, 1]"), 7, "loads", "cannot stand under them: .* in the negative direction"),
     (tie(f"{BAR}, stiffness: 1, prestress: 1e6"), 7, "ties", "cannot stand under them: .* in the negative direction"),
     # shares, rebound, restitution
     (load("mass: 5, at: [0, 1], weight: 1.5"), 7, "loads[1].weight", "must be at most 1, got 1.5"),
@@ -60,7 +59,6 @@ CASES = [
     (load("force: [1, 1], at: [0, 1], weight: 0.5"), 7, "loads[1].weight", "a force has no mass to share"),
     (load("mass: 5, at: [0, 1], weight: 1, floor: borne"), 7, "loads[1].weight", "is already set by floor: borne"),
     (BARE + "one_sided: positive\nrebound: 1\n", 5, "rebound", "must be less than 1, got 1"),
-    (BARE + "one_sided: positive\nrebound: -0.1\n", 5, "rebound", "must be at least 0, got -0.1"),
     (BARE + "rebound: 0.1\n", 4, "rebound", "requires one_sided"),
     (BARE + "one_sided: positive\nrestitution: 0.9\n", 5, "restitution", "give `rebound` instead"),
     (BARE + "one_sided: left\n", 4, "one_sided", "must be positive or negative, got the text left"),
@@ -74,7 +72,6 @@ CASES = [
     (tie(f"{BAR}, stiffness: 1, damper: 5"), 7, "ties[1].damper", "a damper .* is not supported in this version"),
     (tie(f"{BAR}, stiffness: 1, inerter: 5"), 7, "ties[1].inerter", "an inerter .* is not supported in this version"),
     (HEAVY + "dampers:\n  - {name: t}\n", 7, "dampers", "a damper is not in this version"),
-    (HEAVY + "inerters:\n  - {name: t}\n", 7, "inerters", "an inerter is not in this version"),
     # names
     (load("mass: 5, at: [0, 1]") + "  - {name: a, mass: 5, at: [0, 1]}\n", 8, "loads[2].name", "'a' is already used"),
     (load("mass: 5, at: [0, 1]") + f"ties:\n  - {{name: a, {BAR}, stiffness: 1}}\n", 9, "ties[1].name",
@@ -84,7 +81,6 @@ CASES = [
     (load('body: "a\\x1b[31mred", mass: 5, at: [0, 1]'), 7, "loads[1].body", "printable characters"),
     # stiffness and path
     (tie(f"{BAR}, stiffness: 1, area: 1, modulus: 1"), 7, "ties[1].stiffness", "give stiffness, or area and modulus"),
-    (tie(BAR), 7, "ties[1].stiffness", "give stiffness, or area and modulus: one of them"),
     (tie(f"{BAR}, area: 1"), 7, "ties[1].stiffness", "give stiffness, or area and modulus: one of them"),
     (tie(f"{BAR}, stiffness: 1, length: 1"), 7, "ties[1].length", "cannot be combined with `stiffness`"),
     (tie("from: {ground: [0, 0]}, to: {at: [0, 0]}, area: 1, modulus: 1"), 7, "ties[1].length", "together at rest"),
@@ -98,8 +94,6 @@ CASES = [
     (tie("bed: {from: [0.5, 0], to: [0.5, 0]}, modulus: 1"), 7, "ties[1].bed", "its face has no length"),
     # numbers that are none, or far too large
     (load("mass: .nan, at: [0, 1]"), 7, "loads[1].mass", "must be a finite number, got nan"),
-    (load("mass: 5, at: [.nan, 1]"), 7, "loads[1].at[1]", "must be a finite number, got nan"),
-    (load("mass: 1e308, at: [0, 1]"), 7, "loads[1].mass", "at most 1e.12 kg, got 1e.308"),
     (load("force: [1e308, 0], at: [0, 1]"), 7, "loads[1].force[1]", "at most 1e.12, got 1e.308"),
     (tie("from: {ground: [.inf, 1]}, to: {at: [0, 4]}, stiffness: 1"), 7, "ties[1].from.ground[1]", "finite"),
     (tie("from: {ground: [1e308, 1]}, to: {at: [0, 4]}, stiffness: 1"), 7, "ties[1].from.ground[1]", "at most 1e.06"),
