@@ -271,6 +271,7 @@ class TestReproduction:
         assert {
             "rocking_cli/documents/templates/report.html", "rocking_cli/documents/templates/report.css",
             "rocking_cli/data/motion.js", "rocking_cli/data/motion.css", "rocking_cli/data/animation.html",
+            "rocking_cli/codes/italian/texts/it.toml", "rocking_cli/views/sheet/texts/en.toml",
         } <= names  # fmt: skip
 
 
