@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from time import perf_counter
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from rocking_cli.ask.given import StructureLike
     from rocking_cli.io.tables import Columns
     from rocking_cli.processing.oscillator import ResponseSpectrum
+    from rocking_cli.processing.scaled import Scaled
     from rocking_cli.structure import Structure
 
 PATIENCE = 1.0  # s without a word
@@ -152,7 +153,7 @@ def record(
         own,
         View(lambda: data(first), [*parts(examined, 100), said]),
         partial(_columns, scaled[0]),
-        partial(_figure, scaled[0], first, partial(unprocessed, read)),
+        partial(_figure, scaled[0], first, read),
         examined=tuple(examined),
         motions=tuple(scaled),
     )
@@ -196,27 +197,19 @@ def _columns(motion: GroundMotion) -> Columns:
     return {"t [s]": np.arange(motion.npts) * motion.dt, "a_g [g]": motion.acceleration / STANDARD_GRAVITY}
 
 
-def _figure(
-    motion: GroundMotion, examined: Examined, unprocessed: Callable[[], GroundMotion | None]
-) -> Figure:  # fmt: skip
+def _figure(motion: GroundMotion, examined: Examined, read: Scaled) -> Figure:
     """Draw the fitted pulses, or the record before and after its corrections, or the record alone."""
     from rocking_cli.plotting.processing import draw_before_and_after
     from rocking_cli.plotting.pulse_fit import draw_pulses
     from rocking_cli.plotting.record import draw_record
+    from rocking_cli.processing.steps import Trim
 
     if examined.pulses:
         return draw_pulses(motion, _best(examined.pulses), examined.measures.t_95 or motion.duration)
-    if (before := unprocessed()) is not None:
-        return draw_before_and_after(before.scaled(examined.factor), motion, _shift(motion))
+    if read.reading is not None and (before := unprocessed(read)) is not None:
+        start = sum(step.start for step in read.reading.steps if isinstance(step, Trim))
+        return draw_before_and_after(before.scaled(examined.factor), motion, start)
     return draw_record(motion, examined.measures)
-
-
-def _shift(motion: GroundMotion) -> float:
-    """Return the start of a motion, on the time axis of the record as read [s]."""
-    from rocking_cli.processing.steps import Trim
-
-    words = (each.split() for each in motion.processing)
-    return sum(Trim.parse(given).start for name, *rest in words if name == Trim.name for given in rest)
 
 
 def _best(fits: Sequence[PulseFit]) -> list[PulseFit]:

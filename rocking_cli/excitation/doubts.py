@@ -97,31 +97,24 @@ def _size(motion: GroundMotion, measured: Measures) -> list[Doubt]:
 
 
 def _baseline(motion: GroundMotion, measured: Measures) -> list[Doubt]:
-    found = []
-    if abs(measured.mean) > OFFSET * measured.rms:
-        share = 100 * abs(measured.mean) / measured.rms
-        text = f"the mean acceleration is {measured.mean:.2g} g, {share:.0f} % of its rms: an offset of the baseline?"
-        found.append(Doubt("offset", measured.mean, text))
     start = float(motion.acceleration[0]) / STANDARD_GRAVITY
-    if abs(start) > START * measured.pga:
-        share = 100 * abs(start) / measured.pga
-        text = f"it starts at {start:.2g} g, {share:.0f} % of its peak, and not at rest: an offset, or cut off?"
-        found.append(Doubt("start", start, text))
-    if abs(measured.final_velocity) > FINAL_VELOCITY * measured.pgv:
-        share = 100 * abs(measured.final_velocity) / measured.pgv
-        text = (
-            f"its velocity drifts: it ends at {measured.final_velocity:.2g} m/s, {share:.0f} % of its peak: "
-            "an uncorrected baseline, or cut off?"
-        )
-        found.append(Doubt("final_velocity", measured.final_velocity, text))
-    if abs(measured.final_displacement) > FINAL_DISPLACEMENT * measured.pgd:
-        share = 100 * abs(measured.final_displacement) / measured.pgd
-        text = (
-            f"its displacement ends at {measured.final_displacement:.2g} m, {share:.0f} % of its peak: "
-            "an uncorrected baseline, or a ground that stays displaced?"
-        )
-        found.append(Doubt("final_displacement", measured.final_displacement, text))
-    return found
+    end, left = measured.final_velocity, measured.final_displacement
+    checks = (  # keyword, value, what it is compared with, share of that from which it is doubtful, text
+        ("offset", measured.mean, measured.rms, OFFSET,
+         "the mean acceleration is {:.2g} g, {:.0f} % of its rms: an offset of the baseline?"),
+        ("start", start, measured.pga, START,
+         "it starts at {:.2g} g, {:.0f} % of its peak, and not at rest: an offset, or cut off?"),
+        ("final_velocity", end, measured.pgv, FINAL_VELOCITY,
+         "its velocity drifts: it ends at {:.2g} m/s, {:.0f} % of its peak: an uncorrected baseline, or cut off?"),
+        ("final_displacement", left, measured.pgd, FINAL_DISPLACEMENT,
+         "its displacement ends at {:.2g} m, {:.0f} % of its peak: an uncorrected baseline, or a ground that stays "
+         "displaced?"),
+    )  # fmt: skip
+    return [
+        Doubt(kind, value, text.format(value, 100 * abs(value) / whole))
+        for kind, value, whole, limit, text in checks
+        if abs(value) > limit * whole
+    ]
 
 
 def _clipping(motion: GroundMotion) -> list[Doubt]:

@@ -41,7 +41,8 @@ def turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMoti
     ground = None
     if one.ground is not None and other.ground is not None:
         ground = turned(one.ground, other.ground, azimuth)
-    c, s = (_exact(of(radians(azimuth))) for of in (cos, sin))
+    c, s = (of(radians(azimuth)) for of in (cos, sin))
+    c, s = (round(each) if abs(each - round(each)) < 1e-15 else each for each in (c, s))  # at right angles
     return replace(
         one,
         acceleration=c * one.acceleration + s * other.acceleration,
@@ -50,11 +51,6 @@ def turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMoti
         remarks=(*one.remarks, *other.remarks),
         processing=(*one.processing, f"with {other.name}", f"azimuth {exact(azimuth)}"),
     )
-
-
-def _exact(value: float) -> float:
-    """Return a cosine or sine, with rounding errors at right angles set to zero."""
-    return round(value) if abs(value - round(value)) < 1e-15 else value
 
 
 def _unlike(other: GroundMotion, message: str, hint: str) -> InputError:
