@@ -1,4 +1,4 @@
-"""Text in place of a number: verbs take numbers, in the units of their docstrings; quantities as text are for files."""
+"""Text in place of a number: verbs take numbers, in the units of their docstrings; options of records take text too."""
 
 from __future__ import annotations
 
