@@ -15,7 +15,7 @@ from rocking_cli.processing.reading_options import CORRECTIONS, READING
 from rocking_cli.processing.steps import Factor, parse_steps
 
 Positive = Annotated[float, Field(gt=0)]
-SPELLED = ("units", "channel", "other_channel")
+SPELLED = ("units", "dt", "channel", "other_channel", "azimuth")
 """Options whose values are kept as their parser spells them; others as the file has them."""
 
 
