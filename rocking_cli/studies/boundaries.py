@@ -49,13 +49,7 @@ class Boundary:
     level: Callable[[Reals, Reals], Reals]
 
 
-def uplift_level(omega: Reals, a: Reals) -> Reals:
-    """Return a - 1, which is positive if the pulse uplifts the block."""
-    level: Reals = a - 1 + 0 * omega
-    return level
-
-
-UPLIFT = Boundary("uplift", "uplift, a = 1", uplift_level)
+UPLIFT = Boundary("uplift", "uplift, a = 1", lambda omega, a: a - 1 + 0 * omega)
 
 
 def boundaries(shape: Pulse, eta: float) -> list[Boundary]:
@@ -73,7 +67,7 @@ def boundaries(shape: Pulse, eta: float) -> list[Boundary]:
     pieces = shape.segments()
     if len(pieces) != 1:
         return [UPLIFT]
-    end = _End(shape)
+    end = _end_of(shape)
 
     def without_impact(omega: Reals, a: Reals) -> Reals:
         y, _, _ = end(omega, a)
@@ -96,29 +90,27 @@ def boundaries(shape: Pulse, eta: float) -> list[Boundary]:
     ]
 
 
-class _End:
-    """Motion of the linear block at the end of a pulse, ignoring impacts before it.
+def _end_of(shape: Pulse) -> Callable[[Reals, Reals], tuple[Reals, Reals, Reals]]:
+    """Return the motion of the linear block at the end of a pulse, ignoring impacts before it.
 
-    An instance is a function of omega and a. It returns y exp(-tau_e), y z and x at the end of the pulse, tau_e, with y
-    and z as in the module; NaN if the block does not uplift.
+    It is a function of omega and a, which returns y exp(-tau_e), y z and x at the end of the pulse, tau_e, with y and z
+    as in the module; NaN if the block does not uplift.
     """
+    (piece,) = shape.segments()
+    turns, periods = piece.omega * shape.duration, shape.duration / shape.period  # [rad], -
 
-    def __init__(self, shape: Pulse) -> None:
-        (piece,) = shape.segments()
-        self.phase = piece.phase
-        self.turns = piece.omega * shape.duration  # [rad]
-        self.periods = shape.duration / shape.period
-
-    def __call__(self, omega: Reals, a: Reals) -> tuple[Reals, Reals, Reals]:
+    def end(omega: Reals, a: Reals) -> tuple[Reals, Reals, Reals]:
         with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
             a = np.where(a > 1, a, np.nan)
-            theta_0 = np.maximum(np.arcsin(1 / a), self.phase)
-            theta_e = self.phase + self.turns
-            rate = omega if self.turns > 0 else np.zeros_like(omega)
-            tau_e = (theta_e - theta_0) / omega if self.turns > 0 else 2 * pi * self.periods / omega
+            theta_0 = np.maximum(np.arcsin(1 / a), piece.phase)
+            theta_e = piece.phase + turns
+            rate = omega if turns > 0 else np.zeros_like(omega)
+            tau_e = (theta_e - theta_0) / omega if turns > 0 else 2 * pi * periods / omega
             c = a / (1 + rate**2)
             sin_0, cos_0, sin_e, cos_e = np.sin(theta_0), np.cos(theta_0), np.sin(theta_e), np.cos(theta_e)
             y = c * (sin_0 + rate * cos_0 - np.exp(-tau_e) * (sin_e + rate * cos_e)) - 1
             z = np.exp(-tau_e) * (1 - c * (sin_0 - rate * cos_0)) + c * (sin_e - rate * cos_e)
             grown = np.exp(tau_e) * y
             return y, grown * z, 1 + (grown - z) / 2
+
+    return end
