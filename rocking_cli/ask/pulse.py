@@ -140,13 +140,14 @@ def _on_block(a: float | None, omega: float | None, eta: float, shape: str) -> M
 
 def _answers(structure: Structure, given: Any, polarity: int, watch: Watcher) -> dict[str, Answer]:
     """Return the responses of the models; warn of those that do not converge with the sampling."""
-    from rocking_cli.studies.pulse_on_structure import answers, sampled_histories
+    from rocking_cli.studies.pulse_on_structure import answers
+    from rocking_cli.studies.sampled_pulse import SampledHistory
 
-    sampled = sampled_histories(structure, given, polarity)
-    for name, run in sampled.items():
-        if not run.converged:
+    found = answers(structure, given, polarity)
+    for name, run in found.items():
+        if isinstance(run, SampledHistory) and not run.converged:
             watch.warn(f"{name}: not converged with {run.per_period} samples per period: another motion is close")
-    return answers(structure, given, polarity, sampled)
+    return found
 
 
 def _columns(found: Mapping[int, Mapping[str, Answer]]) -> Columns:

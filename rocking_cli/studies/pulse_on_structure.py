@@ -23,41 +23,22 @@ Answer = ExactResponse | SampledHistory
 """Of a linear model, exactly; or by the history under the sampled pulse."""
 
 
-def sampled_histories(structure: Structure, pulse: Pulse, polarity: int) -> dict[ModelName, SampledHistory]:
-    """Simulate the models without an exact solution: the nonlinear one, and all if the pulse has no segments.
+def answers(structure: Structure, pulse: Pulse, polarity: int) -> dict[str, Answer]:
+    """Return the responses of all models: exact ones of linear models, if there are any, else under the sampled pulse.
 
-    If a structure rocks to one side only, no model has an exact solution.
+    A linear model has none if the pulse has no segments, or the structure rocks to one side only. A `polarity` of -1
+    reverses the pulse.
     """
     structure.ask("linear models")
     exact = pulse.segments() and structure.mechanism.rocks_both_ways
-    names: list[ModelName] = ["nonlinear"] if exact else [*KAPPAS, "nonlinear"]
-    return {name: sampled_history(structure, name, pulse, polarity) for name in names}
-
-
-def answers(
-    structure: Structure, pulse: Pulse, polarity: int, sampled: Mapping[ModelName, SampledHistory]
-) -> dict[str, Answer]:
-    """Return the responses of all models: exact ones of linear models unless these were sampled.
-
-    Parameters
-    ----------
-    structure : Structure
-        The structure.
-    pulse : Pulse
-        Any pulse.
-    polarity : {1, -1}
-        -1 reverses the pulse.
-    sampled : mapping of str to SampledHistory
-        The result of `sampled_histories` for the same arguments.
-    """
-    gravity = structure.mechanism.gravity
-    outcomes: dict[str, Answer] = {str(name): history for name, history in sampled.items()}
+    gravity, found = structure.mechanism.gravity, dict[str, Answer]()
+    nonlinear = sampled_history(structure, "nonlinear", pulse, polarity)
     for name, kappa in KAPPAS.items():
-        if name not in sampled:
-            outcomes[name] = exact_response(
-                structure.equivalence, pulse, kappa=kappa, gravity=gravity, polarity=polarity
-            )
-    return {name: outcomes[name] for name in (*KAPPAS, "nonlinear")}
+        if exact:
+            found[name] = exact_response(structure.equivalence, pulse, kappa=kappa, gravity=gravity, polarity=polarity)
+        else:
+            found[name] = sampled_history(structure, name, pulse, polarity)
+    return {**found, "nonlinear": nonlinear}
 
 
 def outcome(answer: Answer) -> ExactResponse | History:
