@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Annotated, Literal, NamedTuple, Self
 
 import numpy as np
@@ -198,17 +199,9 @@ class _Names(NamedTuple):
         """Return the side with the names of pieces and points, and with the closed cracks as fixed joints."""
         joints: dict[str, Connection] = {}
         for name, each in side.joints.items():
-            changed: dict[str, object] = {}
             at = self._point(each.at, name) if isinstance(each.at, str) else each.at
-            if at is not None:
-                changed["at"] = at
-            for key in ("pivot", "hinge", "slide", "fixed"):
-                value = getattr(each, key)
-                if isinstance(value, str):
-                    changed[key] = self._piece(value, at)
-                elif value is not None:
-                    changed[key] = [self._piece(body, at) for body in value]
-            joints[name] = each.model_copy(update=changed)
+            moved = {} if at is None else {"at": at}
+            joints[name] = each.renamed(partial(self._piece, at=at), **moved)
         for body, names in self.made.pieces.items():
             open_here = {level for crack, level in self.levels.items() if self.cracks[crack].body == body}
             cuts = sorted(level for own, level in self.ends if own == body)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 from typing import NamedTuple
 
@@ -14,6 +14,8 @@ from rocking_cli.core.polygons import area_of
 
 NEAR = 1e-6  # distance from a side that counts as on the side, over the size of both bodies
 PARALLEL = 1e-3  # sine of the largest angle between two sides in contact
+
+Side = tuple[complex, complex]
 
 
 class BearingFace(NamedTuple):
@@ -38,18 +40,12 @@ def between(one: Sequence[Outline], other: Sequence[Outline], at: complex) -> Be
     """Return the face between two bodies at a point; None if they do not touch there, or a shape is not known."""
     size = _size([*one, *other])
     best: BearingFace | None = None
-    for p, q in _sides_at(one, at, size):
+    for (p, q), (r, s), low, high in _facing(_sides_at(one, at, size), list(_sides_at(other, at, size))):
         along = (q - p) / abs(q - p)
-        for r, s in _sides_at(other, at, size):
-            way = (s - r) / abs(s - r)
-            if abs((along.conjugate() * way).imag) > PARALLEL or (along.conjugate() * way).real > 0:
-                continue
-            places = [((z - p) / along).real for z in (r, s)]
-            ends = [p + along * max(0.0, min(places)), p + along * min(abs(q - p), max(places))]
-            far = max(ends, key=lambda end: abs(end - at))
-            if best is None or abs(far - at) > abs(best.far - at):
-                inside = next((k for k, (a, b) in enumerate(((p, q), (r, s))) if _is_inside(a, b, at, size)), None)
-                best = BearingFace(-1j * along, far, inside)
+        far = max((p + along * low, p + along * high), key=lambda end: abs(end - at))
+        if best is None or abs(far - at) > abs(best.far - at):
+            inside = next((k for k, side in enumerate(((p, q), (r, s))) if _is_inside(*side, at, size)), None)
+            best = BearingFace(-1j * along, far, inside)
     return best or _on_a_side(one, other, at, size)
 
 
@@ -68,17 +64,10 @@ def shared(one: Sequence[Outline], other: Sequence[Outline]) -> list[tuple[compl
     """Return the faces on which two bodies lie on one another: unit normals out of the first, and both ends."""
     size = _size([*one, *other])
     found = []
-    for (p, q), (r, s) in product(_sides(one), _sides(other)):
+    for (p, q), other_side, low, high in _facing(_sides(one), list(_sides(other))):
         along = (q - p) / abs(q - p)
-        way = (s - r) / abs(s - r)
-        if abs((along.conjugate() * way).imag) > PARALLEL or (along.conjugate() * way).real > 0:
-            continue
-        if max(abs(((z - p) / along).imag) for z in (r, s)) > NEAR * size:
-            continue
-        # Seen along the side of the first body, that of the second runs backwards.
-        start, end = max(0.0, ((s - p) / along).real), min(abs(q - p), ((r - p) / along).real)
-        if end - start > NEAR * size:
-            found.append((-1j * along, (p + start * along, p + end * along)))
+        if high - low > NEAR * size and max(abs(((z - p) / along).imag) for z in other_side) <= NEAR * size:
+            found.append((-1j * along, (p + low * along, p + high * along)))
     return found
 
 
@@ -88,6 +77,15 @@ def lowest(body: Sequence[Outline]) -> tuple[complex, complex] | None:
     bottom = min((z.imag for side in sides for z in side), default=0.0)
     level = [z for side in sides if all(z.imag - bottom <= NEAR * size for z in side) for z in side]
     return (min(level, key=lambda z: z.real), max(level, key=lambda z: z.real)) if level else None
+
+
+def _facing(one: Iterable[Side], other: Sequence[Side]) -> Iterator[tuple[Side, Side, float, float]]:
+    """Yield sides of two bodies that run against each other, and from where to where on the first both extend [m]."""
+    for (p, q), (r, s) in product(one, other):
+        along, back = (q - p) / abs(q - p), (s - r) / abs(s - r)
+        turn = along.conjugate() * back
+        if abs(turn.imag) <= PARALLEL and turn.real <= 0:
+            yield (p, q), (r, s), max(0.0, ((s - p) / along).real), min(abs(q - p), ((r - p) / along).real)
 
 
 def _on_a_side(one: Sequence[Outline], other: Sequence[Outline], at: complex, size: float) -> BearingFace | None:
@@ -105,7 +103,7 @@ def _size(shapes: Sequence[Outline]) -> float:
     return float(np.abs(z - z.mean()).max())
 
 
-def _sides_at(shapes: Sequence[Outline], at: complex, size: float) -> Iterator[tuple[complex, complex]]:
+def _sides_at(shapes: Sequence[Outline], at: complex, size: float) -> Iterator[Side]:
     """Yield the sides on which a point lies."""
     for p, q in _sides(shapes):
         along = min(max(((at - p) / (q - p)).real, 0.0), 1.0)
@@ -113,7 +111,7 @@ def _sides_at(shapes: Sequence[Outline], at: complex, size: float) -> Iterator[t
             yield p, q
 
 
-def _sides(shapes: Sequence[Outline]) -> Iterator[tuple[complex, complex]]:
+def _sides(shapes: Sequence[Outline]) -> Iterator[Side]:
     """Yield all sides in anticlockwise order, so that the body is on their left."""
     for shape in shapes:
         z: Points = np.asarray(shape, dtype=np.complex128)

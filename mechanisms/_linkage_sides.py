@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import radians
 from typing import Annotated, Self
@@ -13,6 +13,7 @@ from rocking_cli.core import Guide, Pin, Vertex, geometry_error, point, quantity
 from rocking_cli.core.fields import Described, Name
 
 GROUND = "ground"
+KINDS = ("pivot", "hinge", "slide", "fixed")
 Pair = Annotated[list[Name], Field(min_length=2, max_length=2)]
 
 
@@ -31,7 +32,7 @@ class Connection(Described):
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
-        kinds = [key for key in ("pivot", "hinge", "slide", "fixed") if getattr(self, key) is not None]
+        kinds = [key for key in KINDS if getattr(self, key) is not None]
         if len(kinds) != 1:
             raise geometry_error(kinds[1] if kinds else "hinge", "give one of pivot, hinge, slide and fixed")
         kind = kinds[0]
@@ -56,6 +57,14 @@ class Connection(Described):
             if isinstance(each, str):
                 return (each,)
         return tuple(self.hinge or self.fixed or self.slide or ())
+
+    def renamed(self, name: Callable[[str], str], **changed: object) -> Connection:
+        """Return the joint with other names of its bodies, and other fields changed too."""
+        for key in KINDS:
+            value = getattr(self, key)
+            if value is not None:
+                changed[key] = name(value) if isinstance(value, str) else [name(body) for body in value]
+        return self.model_copy(update=changed)
 
 
 class LinkageSide(Described):
@@ -133,10 +142,6 @@ def mirrored(side: LinkageSide, middle: float, images: Mapping[str, str]) -> Lin
     joints: dict[str, Connection] = {}
     for name, each in side.joints.items():
         changed: dict[str, object] = {}
-        for key in ("pivot", "hinge", "slide", "fixed"):
-            value = getattr(each, key)
-            if value is not None:
-                changed[key] = other(value) if isinstance(value, str) else [other(body) for body in value]
         if isinstance(each.at, list):
             changed["at"] = image(each.at)
         elif each.at is not None:
@@ -145,5 +150,5 @@ def mirrored(side: LinkageSide, middle: float, images: Mapping[str, str]) -> Lin
             changed["at"] = " ".join([*words, swapped.get(end, end)])
         if each.along is not None:
             changed["along"] = [-each.along[0], each.along[1]]
-        joints[name] = each.model_copy(update=changed)
+        joints[name] = each.renamed(other, **changed)
     return side.model_copy(update={"lead": other(side.lead), "joints": joints})

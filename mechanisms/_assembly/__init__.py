@@ -23,13 +23,13 @@ from mechanisms._assembly.friction import Friction as Friction
 from mechanisms._assembly.friction import friction as friction
 from mechanisms._assembly.friction import sheared as sheared
 from mechanisms._assembly.friction import with_usual as with_usual
-from mechanisms._assembly.leading import leading as leading
 from mechanisms._assembly.limit import Collapse as Collapse
 from mechanisms._assembly.limit import Shared as Shared
 from mechanisms._assembly.limit import collapse as collapse
 from mechanisms._assembly.mechanism import AssemblyHinge as AssemblyHinge
 from mechanisms._assembly.mechanism import AssemblyLinkage as AssemblyLinkage
 from mechanisms._assembly.mechanism import Opening as Opening
+from mechanisms._assembly.mechanism import leading as leading
 from mechanisms._assembly.mechanism import linkage as linkage
 from mechanisms._assembly.rays import Bearings as Bearings
 from mechanisms._assembly.thrust import Passage as Passage

@@ -9,10 +9,9 @@ from enum import Enum
 import numpy as np
 
 from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
-from mechanisms._assembly.joined import JoinedNames
 from mechanisms._assembly.limit import Collapse
 from mechanisms._assembly.rays import Frame
-from rocking_cli.core import Guide, Reals
+from rocking_cli.core import Direction, Guide, Reals
 
 STILL = 1e-8  # velocities that count as zero, over the fastest one
 PRESSES = 1e-9  # normal forces that count as zero, over the largest one
@@ -177,3 +176,48 @@ def _hinges(
         if here.join(one, other):
             found.append(AssemblyHinge(one, other, point, k))
     return tuple(found)
+
+
+class JoinedNames:
+    """Names joined to groups."""
+
+    def __init__(self, names: Sequence[str | int | None]) -> None:
+        self.of = {name: name for name in names}
+
+    def root(self, name: str | int | None) -> str | int | None:
+        """Return the name that represents the group of a name."""
+        while self.of[name] != name:
+            name = self.of[name]
+        return name
+
+    def join(self, one: str | int | None, other: str | int | None) -> bool:
+        """Join the groups of two names; return whether they were separate."""
+        one, other = self.root(one), self.root(other)
+        self.of[other] = one
+        return one != other
+
+    def all(self) -> list[tuple[str, ...]]:
+        """Return the groups, each in the order of their first names."""
+        found: dict[str | int | None, list[str]] = {}
+        for name in self.of:
+            found.setdefault(self.root(name), []).append(str(name))
+        return [tuple(group) for group in found.values()]
+
+
+def leading(found: AssemblyLinkage, direction: Direction) -> int | None:
+    """Return the group whose rotation measures a mechanism; None if no group rotates.
+
+    Groups that hinge on blocks at rest are preferred, then those that turn clockwise in the positive direction, then
+    the fastest one; of groups that turn equally fast, the first.
+    """
+    turns = -int(direction) * found.velocity[:, 2]
+    most = float(np.abs(turns).max(initial=0.0))
+    grounded = {g for h in found.hinges if None in (h.one, h.other) for g in (h.one, h.other) if g is not None}
+    able = [k for k in range(len(turns)) if abs(turns[k]) > STILL * most]
+    if not able:
+        return None
+
+    best = max((k in grounded, bool(turns[k] > 0)) for k in able)
+    able = [k for k in able if (k in grounded, bool(turns[k] > 0)) == best]
+    fastest = max(abs(turns[k]) for k in able)
+    return next(k for k in able if abs(turns[k]) >= fastest * (1 - STILL))

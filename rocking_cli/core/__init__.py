@@ -5,9 +5,8 @@ from rocking_cli.core.bodies import annular_sector as annular_sector
 from rocking_cli.core.bodies import box as box
 from rocking_cli.core.bodies import polygon as polygon
 from rocking_cli.core.coefficients import Coefficients as Coefficients
-from rocking_cli.core.collapse import CollapseHinge as CollapseHinge
-from rocking_cli.core.collapse import CollapseMechanism as CollapseMechanism
 from rocking_cli.core.contacts import Contact as Contact
+from rocking_cli.core.contacts import Joint as Joint
 from rocking_cli.core.contacts import Piece as Piece
 from rocking_cli.core.contacts import of_joints as of_joints
 from rocking_cli.core.equivalence import Equivalence as Equivalence
@@ -16,7 +15,6 @@ from rocking_cli.core.equivalence import NoEquivalentBlock as NoEquivalentBlock
 from rocking_cli.core.equivalence import both_statics as both_statics
 from rocking_cli.core.equivalence import equivalent_block as equivalent_block
 from rocking_cli.core.equivalence import one_block as one_block
-from rocking_cli.core.extras import Extra as Extra
 from rocking_cli.core.fields import Vertex as Vertex
 from rocking_cli.core.fields import geometry_error as geometry_error
 from rocking_cli.core.fields import length as length
@@ -25,7 +23,6 @@ from rocking_cli.core.fields import quantity as quantity
 from rocking_cli.core.hung.attached import Attached as Attached
 from rocking_cli.core.hung.attached import PointMass as PointMass
 from rocking_cli.core.hung.attached import Spot as Spot
-from rocking_cli.core.joints import Joint as Joint
 from rocking_cli.core.kinematics import Direction as Direction
 from rocking_cli.core.kinematics import Reals as Reals
 from rocking_cli.core.kinematics import RigidMotion as RigidMotion
@@ -37,6 +34,9 @@ from rocking_cli.core.linkage import NoMotion as NoMotion
 from rocking_cli.core.loops import Guide as Guide
 from rocking_cli.core.loops import Pin as Pin
 from rocking_cli.core.mechanism import Mechanism as Mechanism
+from rocking_cli.core.results import CollapseHinge as CollapseHinge
+from rocking_cli.core.results import CollapseMechanism as CollapseMechanism
+from rocking_cli.core.results import Extra as Extra
 from rocking_cli.core.sketch import Angle as Angle
 from rocking_cli.core.sketch import Forces as Forces
 from rocking_cli.core.sketch import Hinge as Hinge

@@ -11,15 +11,13 @@ from functools import cached_property
 from typing import ClassVar, final
 
 from rocking_cli.core.bodies import Body, weighed
-from rocking_cli.core.collapse import CollapseMechanism
-from rocking_cli.core.contacts import Contact, Piece, of_joints
-from rocking_cli.core.extras import Extra
+from rocking_cli.core.contacts import Contact, Joint, Piece, of_joints
 from rocking_cli.core.given import Given
 from rocking_cli.core.hung.attached import Attached
 from rocking_cli.core.hung.attachments import RefusedFields
-from rocking_cli.core.joints import Joint
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.polygons import area_of
+from rocking_cli.core.results import CollapseMechanism, Extra
 from rocking_cli.core.sketch import Sketch
 
 

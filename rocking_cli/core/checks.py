@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking_cli.core.coefficients import coefficients
-from rocking_cli.core.given import KINEMATIC, NEEDS_A_SIDE, DirectionalRestitution
+from rocking_cli.core.given import KINEMATIC, NEEDS_A_SIDE, DirectionalRestitution, Strength
 from rocking_cli.core.hung.attachments import RefusedFields
 from rocking_cli.core.hung.element import Element, Stretched
 from rocking_cli.core.kinematics import Direction
-from rocking_cli.core.strength import Strength
 
 if TYPE_CHECKING:
     from rocking_cli.core.mechanism import Mechanism

@@ -9,15 +9,12 @@ from typing import Annotated, Any, ClassVar, Literal, Self, final
 
 from pydantic import Field, SerializeAsAny, ValidationError, model_validator
 
-from rocking_cli.core.fields import Described, Name, geometry_error, quantity
+from rocking_cli.core.fields import Described, Name, geometry_error, length, quantity
 from rocking_cli.core.hung.attachments import RefusedFields
-from rocking_cli.core.hung.crushing import Crushing
 from rocking_cli.core.hung.interlock import Interlock
 from rocking_cli.core.hung.loads import Load
 from rocking_cli.core.hung.ties import Tie
 from rocking_cli.core.kinematics import Direction
-from rocking_cli.core.strength import Strength
-from rocking_cli.core.uncertainty import Uncertainty
 from rocking_cli.errors import FieldError
 from rocking_cli.plugins.errors import blame
 
@@ -34,6 +31,51 @@ class DirectionalRestitution(Described):
 
     positive_to_negative: Eta = Field(description="eta of an impact that ends positive rotation")
     negative_to_positive: Eta = Field(description="eta of an impact that ends negative rotation")
+
+
+class Crushing(Described):
+    """Every pivot moves inwards by u = N/(2 strength depth), with the normal force N that it carries at rest."""
+
+    strength: float = quantity("compressive strength", unit="Pa", example=1e6, gt=0, le=1e12)
+    depth: float | None = length("length of the pivot out of plane; if omitted, that of the structure", default=None)
+
+    @property
+    def words(self) -> str:
+        """Sentence, without a full stop, that crushing moves the pivots."""
+        return (
+            f"pivots moved inwards by crushing at {self.strength / 1e6:g} MPa under the forces at rest, and kept there "
+            "over the whole motion"
+        )
+
+
+class Strength(Described):
+    """Strength of the contacts of a structure: stress times width times depth of the structure."""
+
+    stress: float = quantity("compressive strength of the material", unit="Pa", example=3e6, gt=0, le=1e12)
+    width: float = length("width of the contact, in the plane", example=0.05)
+
+    def force(self, depth: float) -> float:
+        """Return the largest normal force of a contact [N], of a structure with depth `depth` [m]."""
+        return self.stress * self.width * depth
+
+
+class Uncertainty(Described):
+    """Standard deviations of the measured data of a structure."""
+
+    slenderness: float | None = quantity(
+        "standard deviation of ln slenderness: usually 0.05 if measured on site, 0.03 if machined; 0.10 if omitted",
+        example=0.05,
+        default=None,
+        ge=0,
+        lt=1,
+    )
+    restitution: float | None = quantity(
+        "standard deviation of the coefficient of restitution; by default 0.03 if restitution is given, else 0.05",
+        example=0.02,
+        default=None,
+        ge=0,
+        lt=1,
+    )
 
 
 class Given(Described):

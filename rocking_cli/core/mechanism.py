@@ -14,7 +14,6 @@ from rocking_cli.core import equilibrium
 from rocking_cli.core.answers import Drawn, Jointed
 from rocking_cli.core.checks import check
 from rocking_cli.core.coefficients import Coefficients, coefficients
-from rocking_cli.core.extras import Extra
 from rocking_cli.core.given import DirectionalRestitution
 from rocking_cli.core.hung.attached import Attached, Follow
 from rocking_cli.core.hung.attachments import (
@@ -31,6 +30,7 @@ from rocking_cli.core.hung.everything import Hung
 from rocking_cli.core.hung.interlock import NAME as INTERLOCK
 from rocking_cli.core.kinematics import Direction, Reals
 from rocking_cli.core.restitution import kinematic_restitution
+from rocking_cli.core.results import Extra
 from rocking_cli.core.sketch import Outline
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plugins.errors import failed, guard

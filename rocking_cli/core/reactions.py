@@ -12,10 +12,9 @@ from math import isclose
 
 import numpy as np
 
-from rocking_cli.core.contacts import Contact
+from rocking_cli.core.contacts import Contact, Joint
 from rocking_cli.core.hung.attached import PointMass, Spot
 from rocking_cli.core.hung.attachments import followed
-from rocking_cli.core.joints import Joint
 from rocking_cli.core.kinematics import Direction, Points, Reals
 from rocking_cli.core.loading import Going, loading
 from rocking_cli.core.mechanism import Mechanism

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.contacts import MASONRY, Contact
+from rocking_cli.core.given import Strength
 from rocking_cli.core.reactions import Reactions, at_uplift, impulses, parts, reactions
 from rocking_cli.core.released import Undetermined, released
-from rocking_cli.core.strength import Strength
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
 

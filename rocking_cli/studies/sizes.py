@@ -14,7 +14,7 @@ from rocking_cli.core import (
     Mechanism,
     equivalent_block,
 )
-from rocking_cli.core.strength import Strength
+from rocking_cli.core.given import Strength
 from rocking_cli.dynamics.model import Model, ModelName
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.io.field_problems import of_arguments

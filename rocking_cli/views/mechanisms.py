@@ -11,12 +11,10 @@ from pydantic_core import PydanticUndefined
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.contract import Verdict
-from rocking_cli.core.hung.crushing import Crushing
+from rocking_cli.core.given import Crushing, Strength, Uncertainty
 from rocking_cli.core.hung.interlock import Interlock
 from rocking_cli.core.hung.loads import Load
 from rocking_cli.core.hung.ties import Face, Place, Tie
-from rocking_cli.core.strength import Strength
-from rocking_cli.core.uncertainty import Uncertainty
 from rocking_cli.units import units_of
 from rocking_cli.views.column import Column, table_of
 from rocking_cli.views.view import Table, View

@@ -1,4 +1,4 @@
-"""Result of a search for the weakest mechanism of a structure of blocks."""
+"""Results of a mechanism: a search for its weakest mechanism, and further ones beside the equivalent block."""
 
 from __future__ import annotations
 
@@ -86,3 +86,25 @@ class CollapseMechanism:
     confined: bool = False
     associated: float | None = None
     complete: bool = True
+
+
+@dataclass(frozen=True)
+class Extra:
+    """A result of one direction of rocking, such as the height of the hinge of a wall.
+
+    Parameters
+    ----------
+    key : str
+        Name of the result in JSON, other than those of the parameters of the equivalent block.
+    value : float
+        Value, in `unit`.
+    unit : str
+        Unit; empty if dimensionless.
+    meaning : str
+        Description, in a few words.
+    """
+
+    key: str
+    value: float
+    unit: str
+    meaning: str
