@@ -4,10 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from operator import itemgetter
 from typing import Any
 
 from rocking_cli.studies.installation import OURS, Installation, Plugin
+from rocking_cli.views.column import Column, table_of
 from rocking_cli.views.view import Table, View
+
+DEFAULTS: tuple[Column[Mapping[str, Any]], ...] = (
+    Column("", itemgetter("option"), head="option", text=True),
+    Column("", itemgetter("value"), head="value", text=True),
+    Column("", lambda each: each["command"] or "every command", head="of", text=True),
+    Column("", itemgetter("place"), head="from", text=True),
+)
+"""Columns of the user's defaults, whose rows are the data."""
 
 
 def view(found: Installation, defaults: Mapping[str, Any]) -> View:
@@ -38,13 +48,8 @@ def view(found: Installation, defaults: Mapping[str, Any]) -> View:
         rows.append(["environment", " ".join(f"{name}={value}" for name, value in defaults["environment"].items())])
     parts: list[Table | str] = [Table("", ["what", "here"], rows)]
     if defaults["set"]:
-        places = [
-            [each["option"], each["value"], each["command"] or "every command", each["place"]]
-            for each in defaults["set"]
-        ]
-        parts.append(
-            Table("Defaults (the first entry of an option takes precedence)", ["option", "value", "of", "from"], places)
-        )
+        title = "Defaults (the first entry of an option takes precedence)"
+        parts.append(table_of(title, DEFAULTS, defaults["set"]))
     parts += [f"The environment variable {name} is not used by rocking." for name in defaults["unknown"]]
     if defaults["problem"]:
         parts.append(f"The defaults cannot be used: {defaults['problem']}")

@@ -16,7 +16,7 @@ from rocking_cli.core.hung.interlock import Interlock
 from rocking_cli.core.hung.loads import Load
 from rocking_cli.core.hung.ties import Face, Place, Tie
 from rocking_cli.units import units_of
-from rocking_cli.views.column import Column, table_of
+from rocking_cli.views.column import Column, data_of, of, table_of
 from rocking_cli.views.view import Table, View
 
 BOUNDS = (
@@ -52,13 +52,27 @@ class InstalledMechanism(NamedTuple):
     package: str
 
 
+INSTALLED: tuple[Column[InstalledMechanism], ...] = (
+    Column("name", of("name"), head="mechanism", text=True),
+    Column("title", of("title")),
+    Column("", lambda each: each.title or "(cannot be loaded)", head="description", text=True),
+    Column("package", of("package"), head="package", text=True),
+)
+CHECKS: tuple[Column[Verdict], ...] = (
+    Column("check", of("check")),
+    Column("meaning", of("meaning")),
+    Column("passed", of("passed")),
+    Column("why", of("why")),
+    Column("traceback", of("trace")),
+)
+
+
 def installed(found: Sequence[InstalledMechanism]) -> View:
     """Show the installed mechanisms."""
-    cells = [[each.name, each.title or "(cannot be loaded)", each.package] for each in found]
     return View(
-        {"mechanisms": [each._asdict() for each in found]},
+        {"mechanisms": [data_of(INSTALLED, each) for each in found]},
         [
-            Table("Mechanisms", ["mechanism", "description", "package"], cells),
+            table_of("Mechanisms", INSTALLED, found),
             "`rocking mechanisms NAME` lists the fields of a mechanism and `rocking new NAME` prints a file to start "
             "from. Loads, ties, supports, strengths and uncertainties can be added to any mechanism: see `rocking "
             "mechanisms loads`, `ties`, `interlock`, `crushing`, `strength`, `uncertainty`.",
@@ -158,16 +172,7 @@ def checked(name: str, package: str, file: str | None, verdicts: Sequence[Verdic
         "package": package,
         "file": file,
         "passed": all(each.passed for each in verdicts),
-        "checks": [
-            {
-                "check": each.check,
-                "meaning": each.meaning,
-                "passed": each.passed,
-                "why": each.why,
-                "traceback": each.trace,
-            }
-            for each in verdicts
-        ],
+        "checks": [data_of(CHECKS, each) for each in verdicts],
     }
     return View(data, list(_told(verdicts)))
 
