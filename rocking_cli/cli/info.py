@@ -9,11 +9,8 @@ import click
 
 from rocking_cli.cli import defaults, options, terminal
 
-OURS = ("ROCKING_", "NUMBA_")
-"""Prefixes of variables of the environment that change what a command does."""
 
-
-@click.command(short_help="Show the installation: versions, plugins, cache, defaults.")
+@click.command(short_help="Show the installation: versions, plugins, kernels, defaults.")
 @options.as_json
 def command(as_json: bool) -> None:
     """Show the installation: versions, extras, plugins and their faults, kernels, and your defaults.
@@ -48,7 +45,7 @@ def _defaults() -> dict[str, Any]:
         "set": [
             {"option": each.option, "command": each.command, "value": each.value, "place": each.place} for each in found
         ],
-        "environment": {name: value for name, value in sorted(os.environ.items()) if name.startswith(OURS)},
+        "environment": {name: value for name, value in sorted(os.environ.items()) if name.startswith("ROCKING_")},
         "unknown": defaults.unknown_variables(),
         "problem": problem,
     }
