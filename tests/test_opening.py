@@ -453,14 +453,6 @@ def test_the_limit_is_one_of_the_analysis_and_a_file_that_has_it_says_so(tmp_pat
         history(structure("masonry/portal.yaml"), opening=1001)
 
 
-def test_a_structure_of_another_size_opens_as_far():
-    made, motion = structure("masonry/portal.yaml"), read_record(ACCEL)
-    models = build_models(made, ("nonlinear",)) + build_models(made.enlarged(2.0), ("nonlinear",))
-    found = respond_many(models, [motion], Runs.of([0, 1], 0, scale=3.0, size=[2.0, 1.0]))
-    assert found.opening[0] == pytest.approx(found.opening[1], rel=1e-6)
-    assert found.opening[0] > 0
-
-
 def test_joints_of_more_slender_neighbours_bear_the_whole_acceleration():
     (model,) = build_models(structure("masonry/portal.yaml"), ("nonlinear",), opening=1.0)
     runs = Runs.of(0, 0, scale=[1.5, 1.8], slender=[1.0, 1.2])

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 from rocking_cli import GroundMotion, Runs, respond_many
-from rocking_cli.dynamics import calling, kernels, pulse_motion, shipped, ways
+from rocking_cli.dynamics import calling, pulse_motion, shipped, ways
 from rocking_cli.dynamics.calling import FUNCTIONS, HISTORIES, PULSES, SETS, TIED
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.dynamics.history import follow
@@ -303,16 +303,6 @@ class TestLibrary:
             each.join()
         assert len(entries) == 4 and len({id(each) for each in entries}) == 1
 
-    def test_nothing_is_written(self, tmp_path):
-        """A home that is not there, and cannot be made, is no hindrance."""
-        (tmp_path / "file").touch()
-        nowhere = str(tmp_path / "file" / "home")
-        environment = {**os.environ, "HOME": nowhere, "XDG_CACHE_HOME": nowhere}
-        environment.pop(ways.CHOSEN, None)
-        done = subprocess.run([sys.executable, "-c", BLOCK], capture_output=True, text=True, env=environment)
-        assert (done.stdout, done.stderr) == ("False\n", "")
-        assert [each.name for each in tmp_path.iterdir()] == ["file"]
-
 
 @pytest.mark.skipif(shutil.which("musl-gcc") is None or not sys.platform.startswith("linux"), reason="no musl here")
 def test_the_library_of_this_linux_loads_under_musl_too(monkeypatch, tmp_path):
@@ -333,21 +323,6 @@ class TestArguments:
         arguments = ((side, side), wrong, np.ones(3), np.ones(3), 0, 3, np.empty((3, 6)))
         with pytest.raises(TypeError, match="an array for a kernel"):
             shipped.call(shipped.load(PULSES), PULSES, arguments)
-
-    def test_they_are_those_of_the_kernels(self):
-        for each, fields in (("Deck", kernels.Deck), ("Joints", kernels.Joints), ("Samples", kernels.Samples),
-                             ("Room", kernels.Room)):  # fmt: skip
-            (found,) = [layout for layout in walked(HISTORIES.arguments) if layout[0] == each]
-            assert len(found[1]) == len(fields._fields)
-        assert len(HISTORIES.arguments) == kernels.run.__code__.co_argcount
-        assert len(PULSES.arguments) == pulse_motion.many.__code__.co_argcount
-
-
-def walked(layouts):
-    for each in layouts:
-        if isinstance(each, tuple):
-            yield each
-            yield from walked(each[1])
 
 
 def test_a_status_other_than_0_is_an_error():
