@@ -6,10 +6,12 @@ from functools import partial
 
 from rocking_cli.ask.answer import MappingAnswer
 from rocking_cli.ask.given import StructureLike, structure_figure, structure_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core import CollapseMechanism, Direction
 
 
+@takes_numbers
 def collapse(structure: StructureLike, *, watch: Watcher = SILENT) -> MappingAnswer[Direction, CollapseMechanism]:
     """Find the weakest mechanism of an assembly of rigid blocks in each direction, by limit analysis.
 

@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Unpack
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
+from rocking_cli.ask.given import SiteLike, StructureLike, refuse_idle, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -100,6 +100,16 @@ def design(
     span = _span(vary)
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     signs, given = signs_of(polarity), Motions.of(motions, options)
+    if not aim.metric.shaken:
+        refuse_idle(
+            f"on {aim.metric.name}, which does not depend on a ground motion",
+            polarity=signs != (1,),
+            opening=opening != OPENING,
+            neighbours=neighbours != Neighbourhood.count,
+            amplitude_deviation=amplitude_deviation != Neighbourhood.amplitude,
+            slenderness_deviation=slenderness_deviation,
+            restitution_deviation=restitution_deviation,
+        )
     _check(aim.metric, motions=bool(given), neighbours=neighbours, site=site is not None)
     ready = structure_of(structure, watch, opening)
     ends = span.in_unit(ready.unit_of(span.field))

@@ -8,6 +8,7 @@ from functools import partial
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, structure_figure, structure_of, structures_of
 from rocking_cli.ask.ground_motions import each_of
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.several import Answers, answers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core import Equivalence
@@ -15,6 +16,7 @@ from rocking_cli.errors import MechanismError
 from rocking_cli.structure import Structure
 
 
+@takes_numbers
 def equiv(
     structures: StructureLike | Sequence[StructureLike], *, watch: Watcher = SILENT
 ) -> Answer[Equivalence | None] | Answers[Answer[Equivalence | None]]:

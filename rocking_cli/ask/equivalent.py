@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, sized_pulse, structure_of, structures_of, warn_misleading
+from rocking_cli.ask.given import StructureLike, refuse_idle, sized_pulse, structure_of, structures_of, warn_misleading
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
@@ -92,6 +92,8 @@ def equivalent(
     if eta not in ("first", "own") and not (isinstance(eta, float | int) and 0 < eta <= 1):
         what = f"{eta!r} is not valid: give a number above 0 and at most 1, 'first' or 'own'"
         raise InputError(Problem(what, field="`eta`"))
+    if pulse is not None:
+        refuse_idle("beside `pulse`", ag=ag is not None, period=period is not None, shape=shape != "sine")
     if pulse is None:
         pulse = sized_pulse(shape, ag, period)
     elif isinstance(pulse, str):

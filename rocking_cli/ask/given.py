@@ -163,6 +163,12 @@ def warn_of(mechanism: Mechanism, watch: Watcher) -> None:
         watch.warn(doubt)
 
 
+def refuse_idle(why: str, **given: object) -> None:
+    """Raise `InputError` if arguments are given that have no effect, and say why."""
+    if names := [f"`{name}`" for name, value in given.items() if value]:
+        raise InputError(f"{' and '.join(names)} {'has' if len(names) == 1 else 'have'} no effect {why}")
+
+
 def warn_misleading(structures: Sequence[Structure], watch: Watcher) -> None:
     """Warn of structures for which the linear models mislead."""
     for structure in structures:

@@ -8,6 +8,8 @@ from functools import wraps
 from typing import ParamSpec, TypeVar
 
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.processing.reading_options import READING, SCALING
+from rocking_cli.text import did_you_mean
 from rocking_cli.units import UnitError, number_of
 
 P = ParamSpec("P")
@@ -19,19 +21,28 @@ UNITS = {
 
 
 def takes_numbers(verb: Callable[P, R]) -> Callable[P, R]:
-    """Make a verb refuse text where the annotation of an argument says a number, or several."""
+    """Make a verb refuse unknown arguments, and text where the annotation of one says a number, or several."""
     meant = {
         name: given
         for name, given in verb.__annotations__.items()
         if re.search(r"\b(float|int)\b", given) and not re.search(r"\b(str|Literal|Callable)\b", given)
     }
-    names = verb.__code__.co_varnames
+    code = verb.__code__
+    names = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
+    more = verb.__annotations__.get("options", "")
+    loose = [name for name in (*READING, *SCALING) if more and (name in READING or "Motion" in more)]
 
     @wraps(verb)
     def checked(*given: P.args, **options: P.kwargs) -> R:
+        for name in options:
+            if name not in names and name not in loose:
+                scaled = "the motions of this question are not scaled" if more and name in SCALING else None
+                raise InputError(
+                    Problem(
+                        "is not an argument", field=f"`{name}`", hint=scaled or did_you_mean(name, [*names, *loose])
+                    )
+                )
         for name, value in (*zip(names, given, strict=False), *options.items()):
-            if name == "azimuth" and value == "all" and verb.__name__ == "respond":
-                continue
             if name in meant and (text := _text(value)) is not None:
                 raise InputError(_problem(name, meant[name], text))
         return verb(*given, **options)

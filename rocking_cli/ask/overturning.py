@@ -127,10 +127,6 @@ def _check(
         raise InputError(f"`model` {model} requires a structure: without one, the map is that of the linear block")
     if compare and dimensionless:
         raise InputError("`compare` uses the period in s as its axis: leave out `dimensionless`")
-    scaled = dimensionless or not structures
-    right = dict(zip(*(("period", "ag"), ("omega", "a"))[:: 1 if scaled else -1], strict=True))
-    for name in given:
-        if name in right:
-            why = "without a structure" if not structures else "with `dimensionless`" if scaled else "with a structure"
-            more = "" if scaled or compare else ", or add `dimensionless`"
-            raise InputError(f"`{name}` has no effect {why}: give `{right[name]}`{more}")
+    for name, right in (("omega", "period"), ("a", "ag")):
+        if compare and name in given:
+            raise InputError(f"`{name}` has no effect with `compare`: give `{right}`")

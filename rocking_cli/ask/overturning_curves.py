@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, structures_of
+from rocking_cli.ask.given import StructureLike, refuse_idle, structures_of
 from rocking_cli.ask.ground_motions import signs_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -84,6 +84,8 @@ def overturning_curves(
     from rocking_cli.views import overturning as views
 
     form, signs = parse_shape(shape), signs_of(polarity)
+    if model != "nonlinear":
+        refuse_idle("on linear blocks, which have no joints", opening=opening != OPENING)
     ready = structures_of(structures, watch, opening)
     subjects = [pulsed_model(each, model, form, signs, eta) for each in ready]
     periods = np.geomspace(*(period or study.usual_periods(subjects)), points)

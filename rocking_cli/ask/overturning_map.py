@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, structure_of
+from rocking_cli.ask.given import StructureLike, refuse_idle, structure_of
 from rocking_cli.ask.ground_motions import signs_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.model import ModelName
+from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import OPENING
 
@@ -98,12 +99,20 @@ def overturning_map(
     from rocking_cli.views import overturning as views
 
     form, signs = parse_shape(shape), signs_of(polarity)
+    axes = {"period": period, "ag": ag, "omega": omega, "a": a}
     if structure is None:
         mechanism, subject = None, linear_block(ETA if eta is None else eta)
     else:
         ready = structure_of(structure, watch, opening)
         mechanism, subject = ready.mechanism, pulsed_model(ready, model, form, signs, eta)
     bare = dimensionless or mechanism is None
+    if model != "nonlinear" or mechanism is None:
+        refuse_idle("on a linear block, which has no joints", opening=opening != OPENING)
+    right = dict(zip(*(("period", "ag"), ("omega", "a"))[:: 1 if bare else -1], strict=True))
+    for name in [name for name, ends in axes.items() if ends is not None and name in right]:
+        why = "without a structure" if mechanism is None else "with `dimensionless`" if bare else "with a structure"
+        more = "" if bare else ", or add `dimensionless`"
+        raise InputError(f"`{name}` has no effect {why}: give `{right[name]}`{more}")
     if bare:
         columns, rows = np.linspace(*(omega or study.OMEGAS), points), np.linspace(*(a or study.AMPLITUDES), points)
     else:

@@ -97,6 +97,9 @@ def pulse(
             f"structure with `ag` and `period`{more}"
         )
     if not for_structure:
+        from rocking_cli.ask.given import refuse_idle
+
+        refuse_idle("on the dimensionless block, which has no joints", opening=opening != OPENING)
         return _on_block(a, omega, ETA if eta is None else eta, shape)
     if structure is None:
         raise InputError(Problem("is missing", field="structure", hint="give one, or `a` and `omega` without `ag`"))

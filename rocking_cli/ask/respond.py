@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.ask.answer import MappingAnswer
-from rocking_cli.ask.given import StructureLike, doubts_of, models_of, structure_of
+from rocking_cli.ask.given import StructureLike, doubts_of, models_of, refuse_idle, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.motions import all_directions
 from rocking_cli.ask.numbers import takes_numbers
@@ -175,9 +175,20 @@ def respond(
         if not isinstance(vertical, GroundMotion):
             vertical = motions.vertical(chosen[0], vertical, vertical_dt, vertical_channel, watch)
         chosen[0] = chosen[0]._replace(motion=replace(chosen[0].motion, vertical=vertical))
+    if not motions:
+        refuse_idle("without a ground motion", neighbours=neighbours)
+    if not neighbours:
+        refuse_idle(
+            "without neighbours",
+            amplitude_deviation=amplitude_deviation != Neighbourhood.amplitude,
+            slenderness_deviation=slenderness_deviation,
+            restitution_deviation=restitution_deviation,
+        )
     ratio = tilt.ratio(ready) if tilt is not None else None
     question = Question(signs, ratio, tail, rtol, with_pulse, near, tilt is not None and tilt.is_angle)
     names = models_of(models) if models is not None else usual_models(ready, watch)
+    if "nonlinear" not in names:
+        refuse_idle("on linear blocks, which have no joints", opening=opening != OPENING)
     ready.models(names)
     title = heading(ready.mechanism) if title is None else title
     doubts = doubts_of(ready.mechanism)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.studies.fragility.assess import Bivariate, Fragility, UnknownRuns
@@ -60,6 +61,7 @@ class StudyAnswer(Answer[list[Fragility]]):
     complete: bool = field(kw_only=True)
 
 
+@takes_numbers
 def results(
     store: str | Path,
     *,

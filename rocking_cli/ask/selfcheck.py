@@ -7,6 +7,7 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from rocking_cli.studies.selfcheck import SelfCheck
 
 
+@takes_numbers
 def selfcheck(*, quick: bool = False, watch: Watcher = SILENT) -> Answer[SelfCheck]:
     """Check that this installation computes correctly, against formulas, literal values and a general solver.
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, structures_of
+from rocking_cli.ask.given import StructureLike, refuse_idle, structures_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, each_of, signs_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -105,6 +105,8 @@ def spectrum(
     signs, asked = signs_of(polarity), Motions.of(motions, options)
     if not asked:
         raise InputError("no ground motion is given: give `motions`")
+    if model != "nonlinear":
+        refuse_idle("on linear blocks, which have no joints", opening=opening != OPENING)
     ready = structures_of(each_of(structures), watch, opening)
     shapes = [study.shape_of(each, model, eta) for each in ready]
     shapes += [study.blocks_of(alpha, model, eta) for alpha in dict.fromkeys(slenderness)]

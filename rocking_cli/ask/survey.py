@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
+from rocking_cli.ask.given import SiteLike, StructureLike, refuse_idle, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -101,6 +101,8 @@ def survey(
 
     signs, where = signs_of(polarity), site_of(site) if site is not None else None
     entries, given = _entries(structures, watch), Motions.of(motions, options)
+    if not given:
+        refuse_idle("without ground motions", polarity=signs != (1,), opening=opening != OPENING)
     shaken = [each.motion.scaled(each.factor) for each in given.gather(0.0, watch)] if given else []
     count = _processes(len(entries), bool(shaken) or where is not None) if processes else None
     with watch.progress(len(entries), "structures") as advance:

@@ -8,7 +8,8 @@ from typing import Any
 import click
 
 from rocking_cli.cli import motion_files, options, terminal
-from rocking_cli.cli.groups import GroundMotions
+from rocking_cli.cli.defaults import as_declared
+from rocking_cli.cli.groups import AROUND, GroundMotions
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import POSITIVE
 
@@ -63,6 +64,10 @@ def command(files: tuple[str, ...], asked: GroundMotions, out: Path, as_json: bo
     from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import keep_apart
 
+    if out.suffix.lower() == ".html":
+        as_declared(question, "fps")
+    if not question["neighbours"]:
+        as_declared(question, *AROUND[1:])
     motions, watch = asked.motions, OnTerminal(as_json=as_json)
     keep_apart([("--out", out)], [*files, *(str(each.path) for each in motions.records)])
     structure = motion_files.structure(files, asked.records)

@@ -145,6 +145,13 @@ def of_run(context: click.Context) -> dict[str, Default]:
     return {name: each for name, each in defaults.items() if from_default(name, context)}
 
 
+def as_declared(given: dict[str, Any], *names: str) -> None:
+    """Take back what a user's defaults say of some options: where they have no effect, only typed ones are errors."""
+    for param in click.get_current_context().command.params:
+        if param.name in names and param.name in given and from_default(str(param.name)):
+            given[param.name] = param.default
+
+
 def from_default(name: str, context: click.Context | None = None) -> bool:
     """Return whether the value of a parameter of the running command is such a default, and was not typed."""
     context = context or click.get_current_context(silent=True)

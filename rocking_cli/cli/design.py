@@ -8,7 +8,8 @@ from typing import Any
 import click
 
 from rocking_cli.cli import options
-from rocking_cli.cli.groups import GroundMotions, Output
+from rocking_cli.cli.defaults import as_declared
+from rocking_cli.cli.groups import AROUND, GroundMotions, Output
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import Parsed
 
@@ -77,6 +78,8 @@ def command(file: str | Path, asked: GroundMotions, output: Output, **question: 
     from rocking_cli.ask.design import design
     from rocking_cli.cli.watching import OnTerminal
 
+    if not asked:
+        as_declared(question, *AROUND)
     motions, watch = asked.motions, OnTerminal()
     output.keep_apart(file, *motions.records)
     output.show(design(file, motions=motions, polarity=asked.polarity, watch=watch, **question))

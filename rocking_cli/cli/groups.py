@@ -59,6 +59,10 @@ class GroundMotions(ReadingOptions):
         self.motions.check(with_vertical=vertical is not None)
 
 
+AROUND = ("neighbours", "amplitude_deviation", "slenderness_deviation", "restitution_deviation")
+"""Options of the neighbours of a motion."""
+
+
 @dataclass(frozen=True)
 class Output:
     """The files to write, and whether the result is one JSON object."""

@@ -9,7 +9,8 @@ import click
 from click.core import ParameterSource
 
 from rocking_cli.cli import complete, motion_files, options, terminal
-from rocking_cli.cli.groups import GroundMotions, Output
+from rocking_cli.cli.defaults import as_declared
+from rocking_cli.cli.groups import AROUND, GroundMotions, Output
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import INTERVAL, POSITIVE, TAIL, TILT, Parsed, quantity_of
 from rocking_cli.processing.reading_options import ALL
@@ -122,8 +123,12 @@ def command(files: tuple[str, ...], asked: GroundMotions, output: Output, **ques
     watch, motions = OnTerminal(as_json=output.as_json), asked.motions
     around = motions.reading.azimuth == ALL
     several = motions.count > 1 and not around
-    if around and click.get_current_context().get_parameter_source("neighbours") is not ParameterSource.COMMANDLINE:
-        question["neighbours"] = 0
+    if around or not motions:
+        as_declared(question, *AROUND)
+        if click.get_current_context().get_parameter_source("neighbours") is not ParameterSource.COMMANDLINE:
+            question["neighbours"] = 0
+    if not question["neighbours"]:
+        as_declared(question, *AROUND[1:])
     output.keep_apart(*files, *motions.records, question["vertical"])
     if several:
         if str(output.out) == options.STANDARD_OUTPUT:

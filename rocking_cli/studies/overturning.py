@@ -348,7 +348,7 @@ class _OverturningSearch:
             row = np.arange(left.size)
             low[left] = np.where(first > 0, scan[row, np.maximum(first - 1, 0)], 0.0)
             high[left] = beyond[left] = scan[row, first]
-            left = left[first < SCAN - 1]
+            left = left[(first < SCAN - 1) & (high[left] > TIE)]  # at uplift there is nothing below
         some = np.isfinite(high)
         for _ in range(HALVINGS if some.any() else 0):
             middle = (low + high) / 2
