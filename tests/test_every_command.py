@@ -220,7 +220,8 @@ KNOWN = {"at_rest", "rocks", "still_rocking", "does not uplift", "overturned"}
 PASSED = re.compile(
     r"does not overturn(?! before its first impact)|overturns under none|overturns in no direction\.|"
     r"uplifts under none of \d+ motions\.|"
-    r"^\s*outcome(?!.*unknown).*(?:rocks|at rest|still rocking)|structure rocks|(?<!not )\bsatisfied|\bpasses\b(?! if)",
+    r"^\s*outcome(?!.*unknown).*(?:rocks|at rest|still rocking)|structure rocks|(?<!not )\bsatisfied(?! if)|"
+    r"\bpasses\b(?! if)",
     re.IGNORECASE | re.MULTILINE,
 )
 
