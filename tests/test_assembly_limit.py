@@ -603,7 +603,7 @@ def test_what_leads_is_on_the_ground_and_turns_the_right_way():
     def lead(*turns, direction=POSITIVE):
         velocity = np.column_stack([np.zeros((4, 2)), turns])
         return leading(
-            AssemblyLinkage((("a",), ("b",), ("c",), ("d",)), ("ground",), velocity, hinges, (), (), 1), direction
+            AssemblyLinkage((("a",), ("b",), ("c",), ("d",)), ("ground",), velocity, hinges, (), ()), direction
         )
 
     assert lead(-0.5, -1.0, -0.7, 0.9) == 2  # not the faster one aloft, nor the one that turns back
