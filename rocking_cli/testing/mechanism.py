@@ -252,7 +252,7 @@ def stands_and_can_overturn(structure: Mechanism) -> None:
 
 def closed_forms_agree_with_the_solvers(structure: Mechanism) -> None:
     """The critical rotation in closed form agrees with the bodies and their motion."""
-    for direction in structure.directions:
+    for direction in structure.directions if structure.crushing is None else ():  # which moves pivots, under a mass
         alone = structure.critical_rotation_alone(direction)
         if alone is not None and _overturns(structure, direction):
             what = f"critical_rotation_alone in the {direction.label} direction"
