@@ -28,7 +28,7 @@ def check(mechanism: Mechanism) -> None:
         raise RefusedFields((), "mass", "give mass, or density and depth: one of them")
     check_crushed(mechanism)
     check_one_sided(mechanism)
-    mechanism.weighed()  # refuses a density without a volume
+    mechanism.total_mass()  # refuses a density without a volume
     check_strength(mechanism)
     if mechanism.is_laden and not mechanism.has_mass:
         key = "loads" if mechanism.loads else "ties" if mechanism.ties else "interlock"
