@@ -129,7 +129,7 @@ class TestEachCheck:
             ("blocks", ("OPPENHEIM", lambda arch: arch | {"kappa1": 0.2804046})),
             ("blocks", ("GRAVITY", lambda g: 9.80666)),
             ("neighbours", ("normal", lambda normal: lambda x: normal(x / 1.05))),
-            ("openings", ("made", lambda made: lambda name, **f: made(name, opening=0.0052, **f))),
+            ("openings", ("made", lambda made: lambda name, **f: replace(made(name, **f), opening=0.0052))),
             ("openings", ("made", rougher)),
             ("openings", ("_sliding", lambda sliding: lambda of, radius, mu, tilt: sliding(of, radius, 0.152, tilt))),
             ("filters", ("process", lambda process: lambda motion, steps: motion)),
