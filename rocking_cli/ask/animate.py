@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, models_of, refuse_idle, structure_of
+from rocking_cli.ask.given import StructureLike, around_of, models_of, refuse_idle, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.several import Answers, answers, are_several, ask_each, places_of
@@ -134,18 +134,11 @@ def animate(
 
     path, (name,), signs = Path(file), models_of(model), signs_of(polarity)
     _check(path, signs, speed, fps)
-    around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
+    around = around_of(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     if name != "nonlinear":
         refuse_idle("on a linear block, which has no joints", opening=opening != OPENING)
     if path.suffix.lower() == ".html":
         refuse_idle("on a page, which is drawn as fast as it is shown", fps=fps != FPS)
-    if not neighbours:
-        refuse_idle(
-            "without neighbours",
-            amplitude_deviation=amplitude_deviation != Neighbourhood.amplitude,
-            slenderness_deviation=slenderness_deviation,
-            restitution_deviation=restitution_deviation,
-        )
     ready = structure_of(structure, watch, opening)
     own = ready.model(name)
     motions = Motions.of(motion, options)

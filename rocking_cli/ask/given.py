@@ -23,6 +23,7 @@ from rocking_cli.io.yaml_file import decoded, read_text
 from rocking_cli.names import OPENING
 from rocking_cli.structure import Structure
 from rocking_cli.structure_file import default_name, parse_structure
+from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.text import one_line
 from rocking_cli.views.view import heading
 
@@ -167,6 +168,18 @@ def refuse_idle(why: str, **given: object) -> None:
     """Raise `InputError` if arguments are given that have no effect, and say why."""
     if names := [f"`{name}`" for name, value in given.items() if value]:
         raise InputError(f"{' and '.join(names)} {'has' if len(names) == 1 else 'have'} no effect {why}")
+
+
+def around_of(count: int, amplitude: float, restitution: float | None, slenderness: float | None) -> Neighbourhood:
+    """Return how neighbours are drawn, if any. Raises `InputError` if deviations are given without any."""
+    if not count:
+        refuse_idle(
+            "without neighbours",
+            amplitude_deviation=amplitude != Neighbourhood.amplitude,
+            slenderness_deviation=slenderness,
+            restitution_deviation=restitution,
+        )
+    return Neighbourhood(count, amplitude, restitution, slenderness)
 
 
 def warn_misleading(structures: Sequence[Structure], watch: Watcher) -> None:

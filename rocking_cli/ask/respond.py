@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.ask.answer import MappingAnswer
-from rocking_cli.ask.given import StructureLike, doubts_of, models_of, refuse_idle, structure_of
+from rocking_cli.ask.given import StructureLike, around_of, doubts_of, models_of, refuse_idle, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.motions import all_directions
 from rocking_cli.ask.numbers import takes_numbers
@@ -160,7 +160,7 @@ def respond(
         raise InputError("`vertical` applies to a single motion: give one")
     if not motions and tilt is None:
         raise InputError("no excitation is given: give a motion or a `release`")
-    near = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
+    near = around_of(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     if motions.reading.azimuth == ALL:
         idle = {"polarity": signs != (1,), "with_pulse": with_pulse, "impacts": impacts, "contact": contact,
                 "tail": tail != TAIL, "neighbours": neighbours}  # fmt: skip
@@ -177,13 +177,6 @@ def respond(
         chosen[0] = chosen[0]._replace(motion=replace(chosen[0].motion, vertical=vertical))
     if not motions:
         refuse_idle("without a ground motion", neighbours=neighbours)
-    if not neighbours:
-        refuse_idle(
-            "without neighbours",
-            amplitude_deviation=amplitude_deviation != Neighbourhood.amplitude,
-            slenderness_deviation=slenderness_deviation,
-            restitution_deviation=restitution_deviation,
-        )
     ratio = tilt.ratio(ready) if tilt is not None else None
     question = Question(signs, ratio, tail, rtol, with_pulse, near, tilt is not None and tilt.is_angle)
     names = models_of(models) if models is not None else usual_models(ready, watch)
