@@ -115,7 +115,7 @@ OF_A_KNOWN_MOTION = {"structure": OTHER, "motion": "sine:0.3g:0.2s"}, {"contact"
 """Arguments of `respond` that change nothing where friction is given, or where the outcome is unknown."""
 WITHOUT_EFFECT = {"watch", "threads", "jobs", "processes"}
 """Arguments that change no answer: the watcher, and how many processors work on it."""
-OTHER_TESTS = {"record", "select", "score", "calibrate", "report", "verify", "fragility", "results", "selfcheck"}
+OTHER_TESTS = "record", "select", "score", "calibrate", "report", "verify", "fragility", "results", "selfcheck"
 """Verbs whose questions take longer; their arguments have tests of their own."""
 
 IDLE = [

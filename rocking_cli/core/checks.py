@@ -14,7 +14,7 @@ from rocking_cli.core.hung.element import Element, Stretched
 from rocking_cli.core.kinematics import Direction
 
 if TYPE_CHECKING:
-    from rocking_cli.core.mechanism import Mechanism
+    from rocking_cli.core import Mechanism
 
 ROUNDING = 1e-9  # by which a restitution may exceed its bound, which the kinematic one of equal sides reaches
 LOOKED_AT = 129  # rotations at which it is checked whether a tie stretches
