@@ -59,7 +59,7 @@ _HOME = {
     "dynamics.history": ["History"],
     "dynamics.model": ["Model"],
     "dynamics.outcome": ["Outcome"],
-    "errors": ["InputError", "MechanismError", "Problem", "RockingError", "SolverError"],
+    "errors": ["DoubtWarning", "InputError", "MechanismError", "Problem", "RockingError", "SolverError"],
     "core.equivalence": ["NoEquivalentBlock"],
     "excitation.base": ["GroundMotion"],
     "excitation.measures": ["Measures", "measure"],

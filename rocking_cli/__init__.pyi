@@ -64,6 +64,7 @@ from rocking_cli.dynamics.exact_batch import exact_many as exact_many
 from rocking_cli.dynamics.history import History as History
 from rocking_cli.dynamics.model import Model as Model
 from rocking_cli.dynamics.outcome import Outcome as Outcome
+from rocking_cli.errors import DoubtWarning as DoubtWarning
 from rocking_cli.errors import InputError as InputError
 from rocking_cli.errors import MechanismError as MechanismError
 from rocking_cli.errors import Problem as Problem

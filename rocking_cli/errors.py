@@ -168,6 +168,10 @@ class BrokenKernels(ImportError):
     """Shipped kernels of this system that are damaged, missing or do not load."""
 
 
+class DoubtWarning(UserWarning):
+    """Warning of an input that is used as it is, though it is doubtful, such as a record that drifts."""
+
+
 class KernelWarning(UserWarning):
     """Warning of kernels that run far slower than possible."""
 

@@ -14,6 +14,7 @@ from pydantic import ValidationError
 
 import rocking_cli as rk
 from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.watcher import Watcher
 from rocking_cli.core.registry import Registry
 from rocking_cli.views.view import View
 from tests.conftest import EXAMPLES, PROJECT
@@ -104,8 +105,8 @@ def test_a_model_may_be_one_name_and_an_unknown_one_is_told(wall):
 
 
 def test_a_motion_may_be_a_file_a_pulse_its_text_or_samples(wall):
-    pulse = rk.parse_pulse("sine:0.4g:0.8s")
-    ways = [pulse, "sine:0.4g:0.8s", pulse.sampled()]
+    pulse = rk.parse_pulse("ricker:0.4g:0.8s")
+    ways = [pulse, "ricker:0.4g:0.8s", pulse.sampled()]
     peaks = {rk.respond(wall, each, models="nonlinear")["nonlinear"].peak_ratio for each in ways}
     assert len(peaks) == 1
     assert rk.respond(wall, ACCEL, scale=-1.0, models="nonlinear")["nonlinear"].peak_ratio > 0
@@ -131,7 +132,7 @@ ANSWERS = {
     "collapse": lambda: rk.collapse(rk.Assembly(blocks={"block": BLOCK}, ground={"ground": GROUND})),
     "equiv": lambda: rk.equiv(rk.Block(width=0.7, height=2.8)),
     "draw": lambda: rk.draw(rk.Block(width=0.7, height=2.8), at=0.5),
-    "record": lambda: rk.record("sine:0.6g:0.5s"),
+    "record": lambda: rk.record("ricker:0.6g:0.5s"),
     "respond": lambda: rk.respond(rk.Block(width=0.7, height=2.8), ACCEL),
     "spectrum": lambda: rk.spectrum(rk.Block(width=0.7, height=2.8), ACCEL, slenderness=[0.2], count=5),
     "map": lambda: rk.overturning_map(points=16),
@@ -159,6 +160,22 @@ def test_an_answer_shows_itself(name, tmp_path):
     json.dumps(answer.to_dict(), allow_nan=False)
     answer.plot(tmp_path / "a.svg")
     assert (tmp_path / "a.svg").stat().st_size > 1000
+
+
+def test_doubts_are_warnings_of_python_unless_something_watches():
+    tall = rk.Block(width=0.5, height=700.0)
+    with pytest.warns(rk.DoubtWarning, match="did you mean 700 mm"):
+        rk.equiv(tall)
+    with pytest.warns(rk.DoubtWarning, match="displacement ends"):
+        rk.record(rk.parse_pulse("sine:0.4g:0.8s").sampled())
+
+    class Patient(Watcher):
+        def warn(self, text):
+            said.append(text)
+
+    said = []
+    rk.equiv(tall, watch=Patient())
+    assert "did you mean 700 mm" in said[0]
 
 
 def test_names_of_others_are_text_in_a_notebook():

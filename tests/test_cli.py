@@ -372,7 +372,7 @@ class TestRespond:
             assert "would overwrite an input file" in text
         assert record.read_bytes() == (EXAMPLES / "accel.csv").read_bytes()
         both = ("--out", "same.csv", "--plot", "same.png")
-        run("respond", structure, "--record", record, *both)
+        run("respond", EXAMPLES / "block.yaml", "--record", record, *both)
 
     def test_a_name_with_a_dollar_can_be_drawn(self, tmp_path):
         (tmp_path / "odd.yaml").write_text(

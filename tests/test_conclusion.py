@@ -250,7 +250,8 @@ def test_a_margin_a_pulse_and_a_response_conclude_alike():
     ],
 )  # fmt: skip
 def test_a_design_concludes_whether_any_value_meets_the_requirement(aim, motions, expected):
-    found = rk.design(rk.Block(width=0.5, height=2), "width=0.2m:0.7m", aim, motions, neighbours=10, points=5)
+    around = {"neighbours": 10} if motions else {}
+    found = rk.design(rk.Block(width=0.5, height=2), "width=0.2m:0.7m", aim, motions, points=5, **around)
     assert found.conclusion.concluded == expected == found.to_dict()["conclusion"]["concluded"]
     assert found.conclusion.motions == list(motions)
     assert ("holds at no value" in found.sentences[0]) == (expected == "not_satisfied")

@@ -372,7 +372,7 @@ def test_what_happens_after_the_record_is_decided_by_energy(model, tail):
 def test_a_strong_lasting_push_ends_at_the_kinematic_limit(side, dt):
     # So strong an acceleration may still turn round any motion, so only lying flat ends it.
     samples = -side * 40.0 * uplift("nonlinear") * np.ones(round(5.0 / dt))
-    history = shake("nonlinear", dt, samples, Block(width=0.7, height=2.8, opening=1000.0))  # it leaves the ground
+    history = shake("nonlinear", dt, samples, Block(width=0.7, height=2.8), opening=1000.0)  # it leaves the ground
     assert history.overturned
     equation = Nonlinear(BLOCK)
     # Energy under a constant push: time to 0.99 and to all of the limit, by the midpoint rule in x with phi = end x^2.

@@ -273,8 +273,8 @@ def test_equiv_error_and_respond_disregard_the_same_kappa1(tmp_path):
         assert ("disregard kappa1" in run("equiv", file).stdout) == unfit
         assert unfit <= (run_json("error", file)["grades"]["kappa1"] == "disregard")
         top = 0.7 * max(block[side].lambda_ for side in Direction)
-        asked = "respond", file, "--neighbours", 0, "--opening", 1000, "--pulse", f"sine:{2 * top:.4g}g:0.5s", "--model"
-        data = run_json(*asked, "nonlinear,linear1")
+        asked = "respond", file, "--neighbours", 0, "--pulse", f"sine:{2 * top:.4g}g:0.5s", "--model"
+        data = run_json(*asked, "nonlinear,linear1", "--opening", 1000)
         assert data["agreement"]["linear1"]["uplift_error"] == pytest.approx(off, rel=1e-12)
         assert ("Disregard linear1: its uplift acceleration" in data["verdict"]) == unfit
         alone = run(*asked, "linear1").stdout

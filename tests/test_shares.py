@@ -11,6 +11,7 @@ import pytest
 from rocking_cli import GroundMotion, Registry, build_models
 from rocking_cli.errors import InputError
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
+from rocking_cli.views.neighbours import deviations
 
 NORMAL = NormalDist()
 
@@ -79,7 +80,7 @@ def test_deviations_come_from_the_file_and_options_win():
     assert tuple(measured.scatter) == (0.01, 0.03)
     exact = model("block", width=0.7, height=2.8, uncertainty={"slenderness": 0.0, "restitution": 0.0})
     assert tuple(exact.scatter) == (0.0, 0.0)  # none is not the same as not given
-    assert Neighbourhood().of(measured).words == (
+    assert deviations(Neighbourhood().of(measured)) == (
         "standard deviations 4 % of amplitude, 3 % of slenderness, 0.01 of restitution"
     )
     assert Neighbourhood(slenderness=0.07).of(measured).slenderness == 0.07

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, around_of, models_of, refuse_idle, structure_of
+from rocking_cli.ask.given import StructureLike, around_of, models_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
-from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.several import Answers, answers, are_several, ask_each, places_of
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem

@@ -7,9 +7,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Unpack
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import SiteLike, StructureLike, refuse_idle, site_of, structure_of
+from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
-from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core.size import doubtful_size
 from rocking_cli.errors import InputError, Problem, RockingError

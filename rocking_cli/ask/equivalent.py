@@ -7,8 +7,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.given import StructureLike, refuse_idle, sized_pulse, structure_of, structures_of, warn_misleading
-from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.given import StructureLike, sized_pulse, structure_of, structures_of, warn_misleading
+from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.pulses import Pulse, parse_pulse

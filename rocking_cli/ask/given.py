@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.ground_motions import kind_of
+from rocking_cli.ask.numbers import refuse_idle
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
 from rocking_cli.core.size import doubts
@@ -162,12 +163,6 @@ def warn_of(mechanism: Mechanism, watch: Watcher) -> None:
         watch.warn(f"the mechanism {mechanism.mechanism} has not been verified: check its results yourself")
     for doubt in doubts_of(mechanism):
         watch.warn(doubt)
-
-
-def refuse_idle(why: str, **given: object) -> None:
-    """Raise `InputError` if arguments are given that have no effect, and say why."""
-    if names := [f"`{name}`" for name, value in given.items() if value]:
-        raise InputError(f"{' and '.join(names)} {'has' if len(names) == 1 else 'have'} no effect {why}")
 
 
 def around_of(count: int, amplitude: float, restitution: float | None, slenderness: float | None) -> Neighbourhood:

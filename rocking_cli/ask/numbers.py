@@ -74,3 +74,9 @@ def _number(text: str, unit: str) -> float | None:
         return number_of(text, unit)
     except UnitError:
         return None
+
+
+def refuse_idle(why: str, **given: object) -> None:
+    """Raise `InputError` if arguments are given that have no effect, and say why."""
+    if names := [f"`{name}`" for name, value in given.items() if value]:
+        raise InputError(f"{' and '.join(names)} {'has' if len(names) == 1 else 'have'} no effect {why}")

@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import MappingAnswer
-from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING
@@ -97,8 +97,6 @@ def pulse(
             f"structure with `ag` and `period`{more}"
         )
     if not for_structure:
-        from rocking_cli.ask.given import refuse_idle
-
         refuse_idle("on the dimensionless block, which has no joints", opening=opening != OPENING)
         return _on_block(a, omega, ETA if eta is None else eta, shape)
     if structure is None:

@@ -107,7 +107,7 @@ def record(
     Examples
     --------
     >>> import rocking_cli as rk
-    >>> round(rk.record("sine:0.6g:0.5s").pga, 6)
+    >>> round(rk.record("ricker:0.6g:0.5s").pga, 6)
     0.6
     """
     from rocking_cli.excitation.doubts import coarse_for, doubts

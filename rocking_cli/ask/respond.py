@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.ask.answer import MappingAnswer
-from rocking_cli.ask.given import StructureLike, around_of, doubts_of, models_of, refuse_idle, structure_of
+from rocking_cli.ask.given import StructureLike, around_of, doubts_of, models_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.motions import all_directions
-from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.several import Answers, answers, are_several, ask_each, places_of, write_files
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.history import FINEST_RTOL, RTOL, TAIL, History

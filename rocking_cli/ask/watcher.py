@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import warnings
 from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING, Any, Protocol
 
-from rocking_cli.errors import RockingError
+from rocking_cli.errors import DoubtWarning, RockingError
 
 if TYPE_CHECKING:
     from rocking_cli.ask.answer import Answer
@@ -19,7 +20,7 @@ class Advance(Protocol):
 
 
 class Watcher:
-    """Watcher of a verb. This one is silent, and one motion or structure that cannot be used ends the verb.
+    """Watcher of a verb. This one only warns, and one motion or structure that cannot be used ends the verb.
 
     Derive from it to show the progress of a long study, or to leave out bad records and go on:
 
@@ -32,7 +33,8 @@ class Watcher:
         """Take a note, such as which record was read."""
 
     def warn(self, text: str) -> None:
-        """Take a warning, such as of a record that drifts."""
+        """Take a warning, such as of a record that drifts: here, a `DoubtWarning` of Python."""
+        warnings.warn(DoubtWarning(text), stacklevel=2)
 
     def detail(self, text: str) -> None:
         """Take a detail, for those who ask for it."""
