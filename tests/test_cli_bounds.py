@@ -6,23 +6,15 @@ import io
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
-from rocking_cli.cli.main import main
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.record_csv import write_record_csv
 from rocking_cli.io.tables import write_csv
 from tests.conftest import EXAMPLES
+from tests.test_cli import run
 
 ACCEL, BLOCK = str(EXAMPLES / "accel.csv"), str(EXAMPLES / "block.yaml")
 PULSE = "sine:0.4g:1s"
-
-
-def run(*arguments, code=0):
-    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
-    assert result.exit_code == code, result.output
-    assert "Traceback" not in result.stderr
-    return result
 
 
 @pytest.mark.parametrize(

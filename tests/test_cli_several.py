@@ -8,24 +8,16 @@ import re
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
 import rocking_cli as rk
-from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.records import read_record
 from tests.conftest import EXAMPLES
+from tests.test_cli import run
 
 FRAME = str(EXAMPLES / "frame.yaml")
 ACCEL = EXAMPLES / "accel.csv"
 BLOCK = str(EXAMPLES / "block.yaml")
-
-
-def run(*arguments, code=0):
-    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
-    assert result.exit_code == code, result.output
-    assert "Traceback" not in result.stderr
-    return result
 
 
 def lines(*arguments, code=0):

@@ -5,27 +5,21 @@ from __future__ import annotations
 import csv
 import json
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
-from rocking_cli.cli.main import main
 from rocking_cli.excitation.records import read_record
 from rocking_cli.structure_file import load_structure
 from rocking_cli.studies import spectrum as study
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
 from tests.following import respond
+from tests.test_cli import run as command
 
 ACCEL, BLOCK, FRAME = (str(EXAMPLES / name) for name in ("accel.csv", "block.yaml", "frame.yaml"))
 QUICK = ("--sizes", "1:6:5")
-
-
-def run(*arguments, code=0):
-    result = CliRunner().invoke(main, ["spectrum", *map(str, arguments)])
-    assert result.exit_code == code, result.output
-    assert "Traceback" not in result.stderr
-    return result
+run = partial(command, "spectrum")
 
 
 def run_json(*arguments, code=0):

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import csv
 import json
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from mechanisms.block import Block
 from mechanisms.symmetric_frame import SymmetricFrame
-from rocking_cli.cli.main import main
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -26,6 +25,7 @@ from rocking_cli.views.equivalent_pulses import judge
 from tests.conftest import EXAMPLES
 from tests.following import respond
 from tests.pulses import exact_pulse
+from tests.test_cli import run as command
 
 PULSE = parse_pulse("sine:0.6g:0.5s")
 
@@ -36,14 +36,7 @@ def equivalent(mechanisms, *given, opening=OPENING, **more):
 
 SMALL, LARGE = Block(name="small", width=0.7, height=2.8), Block(name="large", width=7.0, height=28.0)
 BLOCK, WALL, ARCH, FRAME = (str(EXAMPLES / f"{name}.yaml") for name in ("block", "wall", "arch", "frame"))
-
-
-def run(*arguments, code=0):
-    result = CliRunner().invoke(main, ["equivalent", *(str(argument) for argument in arguments)])
-    assert result.exit_code == code, result.output
-    if code:
-        assert result.stdout == "" and "Traceback" not in result.stderr
-    return result
+run = partial(command, "equivalent")
 
 
 def test_similar_blocks_do_the_same_over_p_t():

@@ -11,10 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from mechanisms.block import Block
-from rocking_cli.cli.main import main
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.exact import closed_form, exact_response
@@ -30,6 +28,7 @@ from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape
 from tests.conftest import EXAMPLES
 from tests.following import respond
 from tests.pulses import exact_pulse
+from tests.test_cli import run, run_json
 
 SINE = parse_shape("sine")
 BLOCK = Block(width=0.7, height=2.8)
@@ -47,14 +46,6 @@ def plane():
 def curves():
     structures = [pulsed_model(Structure(load_structure(file)), "linear2", SINE) for file in FILES]
     return compare(structures, SINE, np.linspace(0.3, 3, 12), 3.0)
-
-
-def run(*arguments, code=0):
-    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
-    assert result.exit_code == code, result.output
-    if code:
-        assert result.stdout == "" and "Traceback" not in result.stderr
-    return result
 
 
 class TestMap:
@@ -155,13 +146,6 @@ class TestMap:
     def test_what_is_no_plane_is_refused(self, omega, a, complaint):
         with pytest.raises(InputError, match=complaint):
             overturning_map(linear_block(0.9), SINE, np.array(omega), np.array(a))
-
-    @pytest.mark.parametrize("eta", [0.0, -0.5, 1.1, float("nan")])
-    def test_an_impossible_restitution_is_refused(self, eta):
-        with pytest.raises(InputError, match=r"eta. must be in"):
-            linear_block(eta)
-        with pytest.raises(InputError, match=r"eta. must be in"):
-            pulsed_model(Structure(BLOCK), "linear2", SINE, eta=eta)
 
 
 class TestOnlyPeaks:
@@ -317,14 +301,6 @@ class TestShape:
         shape = parse_shape("mavroeidis:90deg:3")
         assert (shape.amplitude, shape.period, shape.phase, shape.cycles) == (1.0, 1.0, 90.0, 3.0)
 
-    def test_amplitude_and_period_do_not_belong_to_it(self):
-        with pytest.raises(InputError, match="give only the shape, sine: amplitude and period are set separately"):
-            parse_shape("sine:0.6g:0.8s")
-
-    def test_an_unknown_one_gets_a_guess(self):
-        with pytest.raises(InputError, match="did you mean sine"):
-            parse_shape("sinus")
-
     def test_the_weakest_pulse_lifts_the_weaker_direction(self):
         frame = equivalent_block(load_structure(FRAME))
         weaker = min(Direction, key=lambda d: frame[d].lambda_)
@@ -339,17 +315,10 @@ class TestShape:
 
 class TestCommand:
     def test_a_map_in_every_form(self):
-        result = run(
+        data = run_json(
             "overturning", FILES[0], "--points", 24, "--out", "map.csv", "--plot", "map.png", "--period", "0.3:2.5",
-            "--ag", "0.1g:2g", "--json",
+            "--ag", "0.1g:2g",
         )  # fmt: skip
-        (line,) = result.stdout.splitlines()
-        data = json.loads(line)
-        assert set(data) == {
-            "structure", "pulse", "model", "eta", "polarity", "dimensionless", "shares", "omega", "period", "a",
-            "acceleration", "least_a", "largest_safe_a_above",
-        }  # fmt: skip
-        assert set(data["structure"]) == {"mechanism", "name", "direction", "p", "lambda"}
         assert (data["model"], data["dimensionless"], data["polarity"]) == ("linear2", False, 1)
         assert sum(data["shares"].values()) == pytest.approx(1)
         assert data["period"][0] == pytest.approx(0.3) and data["acceleration"][-1] == pytest.approx(2)
@@ -374,28 +343,22 @@ class TestCommand:
         assert "omega" in run("overturning", FILES[0], "--points", 16, "--dimensionless").stdout
 
     def test_curves_in_every_form(self):
-        result = run(
-            "overturning", "--compare", *FILES, "--points", 8, "--model", "linear2", "--plot", "c.svg", "--out",
-            "c.csv", "--json",
-        )  # fmt: skip
-        data = json.loads(result.stdout)
-        assert set(data) == {
-            "pulse", "model", "polarity", "largest_tried", "period", "structures", "first", "tied", "undecided",
-        }  # fmt: skip
+        asked = ("overturning", "--compare", *FILES, "--points", 8, "--model", "linear2")
+        data = run_json(*asked, "--plot", "c.svg", "--out", "c.csv")
         assert all(each["least_or_unknown"] == each["least"] for each in data["structures"])
         assert data["undecided"] == [False] * 8
         assert [each["mechanism"] for each in data["structures"]] == ["block", "asymmetric_frame", "wall"]
         with Path("c.csv").open(encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         assert [row["first"] or None for row in rows] == data["first"] and data["tied"] == [None] * 8
-        text = run("overturning", "--compare", *FILES, "--points", 8, "--model", "linear2").stdout
+        text = run(*asked).stdout
         assert "overturns first" in text and "Overturned by the smallest amplitude:" in text
 
     def test_a_tie_is_said_so(self, tmp_path):
         for name in ("one", "two"):
             (tmp_path / f"{name}.yaml").write_text("mechanism: block\nwidth: 1\nheight: 4\n", encoding="utf-8")
         asked = ("overturning", "--compare", "one.yaml", "two.yaml", "--points", 4, "--model", "linear2")
-        data = json.loads(run(*asked, "--json", "--out", "c.csv").stdout)
+        data = run_json(*asked, "--out", "c.csv")
         tied = [each is not None for each in data["tied"]]
         assert any(tied) and data["first"] == [None] * 4 and ["one", "two"] in data["tied"]
         text = " ".join(run(*asked).stdout.split())
@@ -404,13 +367,10 @@ class TestCommand:
 
     def test_a_bad_file_is_reported_and_the_others_are_compared(self):
         asked = ("overturning", "--compare", *FILES[:2], "no.yaml", "--points", 4, "--model", "linear2", "--json")
-        result = CliRunner().invoke(main, [str(each) for each in asked])
-        assert result.exit_code == 5 and "no.yaml: no such file" in result.stderr
-        assert len(json.loads(result.stdout)["structures"]) == 2
-        assert (
-            "at least two structures that can be used"
-            in run("overturning", "--compare", FILES[0], "no.yaml", code=2).stderr
-        )
+        result = run(*asked, code=5)
+        assert "no.yaml: no such file" in result.stderr and len(json.loads(result.stdout)["structures"]) == 2
+        refused = run("overturning", "--compare", FILES[0], "no.yaml", code=2).stderr
+        assert "at least two structures that can be used" in refused
 
     def test_pulses_beyond_sense_are_refused_with_the_numbers(self):
         structure = pulsed_model(Structure(BLOCK), "linear2", SINE)
@@ -429,7 +389,7 @@ class TestCommand:
     @pytest.mark.parametrize("arguments", [["--a", "0.2:0.9"], [FILES[0], "--ag", "0.01g:0.02g"]])
     def test_a_map_of_pulses_too_weak_to_lift_is_a_result(self, arguments, tmp_path):
         arguments = ["overturning", *arguments, "--points", 8, "--plot", "map.png", "--out", "map.csv"]
-        data = json.loads(run(*arguments, "--json").stdout)
+        data = run_json(*arguments)
         assert data["shares"] == {
             "no_uplift": 1.0, "rocks": 0.0, "after_impact": 0.0, "without_impact": 0.0, "unknown": 0.0,
         }  # fmt: skip
@@ -439,10 +399,8 @@ class TestCommand:
             assert {row["outcome"] for row in csv.DictReader(file)} == {"does not uplift"}
 
     def test_curves_of_pulses_too_weak_to_lift_are_a_result(self, tmp_path):
-        arguments = [
-            "overturning", "--compare", *FILES, "--ag", "0.001g:0.1g", "--points", 4, "--plot", "c.png",
-        ]  # fmt: skip
-        data = json.loads(run(*arguments, "--json").stdout)
+        arguments = ["overturning", "--compare", *FILES, "--ag", "0.001g:0.1g", "--points", 4, "--plot", "c.png"]
+        data = run_json(*arguments)
         assert data["first"] == [None] * 4
         said = run(*arguments).stdout
         low = re.search(r"0\.1 g, the largest amplitude tried, does not uplift (.*)\.", said)[1].split(", ")
@@ -452,15 +410,15 @@ class TestCommand:
         ("arguments", "complaint"),
         [
             (["--a", "5:2"], "is not increasing: give the smaller value first"),
-            (["--a", "2:2"], "is not increasing: give the smaller value first"),
             (["--omega", "0:4"], "is not positive"),
             (["--omega", "4"], "give the smallest and the largest value"),
             (["--omega", "1:x"], "'x' is not a valid number"),
             (["--omega", "1g:2g"], "'1g' has a unit: give a number without one, such as"),
             (["--eta", "0"], "--eta must be in (0, 1]"),
             (["--eta", "1.2"], "--eta must be in (0, 1]"),
+            ([FILES[0], "--eta", "1.2"], "must be in (0, 1]"),
             (["--shape", "sinus"], "did you mean sine?"),
-            (["--shape", "sine:1g:1s"], "give only the shape"),
+            (["--shape", "sine:0.6g:0.8s"], "give only the shape, sine: amplitude and period are set separately"),
             (["--period", "0.2:4"], "give --omega"),
             (["--model", "nonlinear"], "requires a structure"),
             (["--points", "1"], "1 is not in the range"),
@@ -468,8 +426,7 @@ class TestCommand:
             (["--out", "nowhere/map.csv"], "does not exist"),
             ([FILES[0], "--ag", "0.1:2"], "has no unit: give one of g, m/s2"),
             ([FILES[0], "--ag", "1ft:2ft"], "'ft' is not a unit of acceleration"),
-            ([FILES[0], "--ag", "2g:1g"], "is not increasing: give the smaller value first"),
-            ([FILES[0], "--period", "0:1"], "is not positive"),
+            ([FILES[0], "--ag", "2g:2g"], "is not increasing: give the smaller value first"),
             ([FILES[0], "--omega", "1:2"], "give --period, or add --dimensionless"),
             ([FILES[0], FILES[1]], "--compare"),
             (["--compare", FILES[0]], "at least two structures"),
@@ -488,10 +445,8 @@ class TestCommand:
     @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
     def test_pictures_are_of_the_kind_their_name_says(self, suffix, tmp_path):
         run("overturning", "--points", 12, "--plot", f"map.{suffix}")
-        start = (tmp_path / f"map.{suffix}").read_bytes()[:200]
-        assert {"png": b"\x89PNG", "svg": b"<svg", "pdf": b"%PDF"}[suffix] in (tmp_path / f"map.{suffix}").read_bytes()[
-            :2000
-        ], start
+        start = (tmp_path / f"map.{suffix}").read_bytes()[:2000]
+        assert {"png": b"\x89PNG", "svg": b"<svg", "pdf": b"%PDF"}[suffix] in start
 
 
 class TestPictures:
@@ -513,10 +468,8 @@ class TestPictures:
         low, high = axes.get_xlim()
         assert low < found.periods.min() and high > found.periods.max()
 
-    def test_curves_differ_by_dash_and_mark(self):
-        structures = [pulsed_model(Structure(load_structure(file)), "linear2", SINE) for file in FILES]
-        found = compare(structures, SINE, np.linspace(0.4, 3, 9), 3.0)
-        (axes,) = draw_comparison(found, "sine").axes
+    def test_curves_differ_by_dash_and_mark(self, curves):
+        (axes,) = draw_comparison(curves, "sine").axes
         looks = {(line.get_linestyle(), line.get_marker(), line.get_color()) for line in axes.get_lines()}
         assert len({look[0] for look in looks}) == len({look[1] for look in looks}) == 3
-        np.testing.assert_array_equal(axes.get_lines()[1].get_ydata(), found.least[1])
+        np.testing.assert_array_equal(axes.get_lines()[1].get_ydata(), curves.least[1])

@@ -10,10 +10,8 @@ from math import exp, log
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import rocking_cli as rk
-from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError
 from rocking_cli.plotting.score import draw_reliability
 from rocking_cli.studies.experiments import score as score_study
@@ -21,19 +19,14 @@ from rocking_cli.studies.experiments.score import Stated, scored
 from rocking_cli.studies.experiments.scores import distance_from_uniform, fitted_shares
 from rocking_cli.studies.experiments.table import ObservedTest, parse_columns, read_tests
 from rocking_cli.studies.neighbours import Neighbourhood, follow
+from rocking_cli.views.score import view
 from tests.conftest import EXAMPLES, SHARED
 from tests.elsewhere import PROJECT
+from tests.test_cli import run, run_json
 
 BLOCK = str(EXAMPLES / "block.yaml")
 COUNT = 20
 EXPERIMENTS = SHARED / "experiments"
-
-
-def run(*arguments, code=0):
-    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
-    assert result.exit_code == code, result.output
-    assert "Traceback" not in result.output
-    return result
 
 
 def write(folder, rows, headings="structure,record,overturned", name="tests.csv"):
@@ -154,8 +147,7 @@ class TestScores:
         kept = self.rows(stated, rule)
         if rule in ("velocity", "other"):  # some clusters may lack all: the draws are those of all clusters
             names = [each.test.cluster for each in stated]
-            assert set(names) == {each[2] for each in kept}
-            assert list(dict.fromkeys(names)) != [] and found.scores[rule].tests == len(kept)
+            assert set(names) == {each[2] for each in kept} and found.scores[rule].tests == len(kept)
         order = list(dict.fromkeys(each.test.cluster for each in stated))
         kept = sorted(kept, key=lambda each: order.index(each[2]))
         rows, clusters = [each[:2] for each in kept], [each[2] for each in kept]
@@ -208,10 +200,6 @@ class TestScores:
         ]
         assert [each.tests for each in scored(tests, Neighbourhood(300)).bins] == [2, 1, 0, 1, 2]
 
-    def test_a_share_of_one_half_stands(self):
-        half = [Stated(ObservedTest(2, "a", "b", seen, cluster=str(seen)), 10, 0, COUNT) for seen in (False, True)]
-        assert scored(half, Neighbourhood(COUNT)).scores["tool"].right.value == 0.5
-
     def test_a_curve_that_separates_is_a_step_and_none_without_both_outcomes(self):
         at, clusters = np.array([0.1, 0.15, 0.5, 0.8, np.nan, 0.0]), list("abcdef")
         fell = np.array([0.0, 0.0, 1.0, 1.0, 0.0, 0.0])
@@ -242,7 +230,7 @@ def test_each_row_is_stated_in_its_order_and_as_shares_state_it(tmp_path):
     pulses = ["sine:0.9g:0.8s", "sine:0.4g:0.8s", "sine:0.2g:0.8s"]
     rows = [f"{BLOCK},{pulse},{seen},{polarity}" for pulse in pulses for seen, polarity in ((1, ""), (0, -1), (0, 1))]
     table = write(tmp_path, rows[::-1], "structure,record,overturned,polarity")
-    data = json.loads(run("score", table, "--neighbours", COUNT, "--json").stdout)
+    data = run_json("score", table, "--neighbours", COUNT)
     assert [each["line"] for each in data["tests"]] == list(range(2, 11))
     for each, row in zip(data["tests"], rows[::-1], strict=True):
         _, pulse, seen, polarity = row.split(",")
@@ -314,9 +302,7 @@ def test_peaks_are_ranked_among_the_neighbours():
     assert found.distance == pytest.approx(distance_from_uniform(np.array([found.ranks[k].rank for k in (0, 1, 3)])))
     assert found.distance != pytest.approx(distance_from_uniform(np.array([each.rank for each in found.ranks])))
     model = rk.build_models(rk.load_structure(BLOCK), ("nonlinear",))[0]
-    from rocking_cli.excitation.pulses import parse_pulse
-
-    runs = follow(model, parse_pulse("sine:0.3g:0.8s").sampled(), Neighbourhood(50).drawn(model))
+    runs = follow(model, rk.parse_pulse("sine:0.3g:0.8s").sampled(), Neighbourhood(50).drawn(model))
     peaks = np.maximum(runs.peak_positive, runs.peak_negative)
     assert 0 < (peaks == 0).mean() == pytest.approx(2 * found.ranks[0].rank)
     assert found.ranks[3].rank == pytest.approx((peaks < 0.02).mean())
@@ -325,10 +311,8 @@ def test_peaks_are_ranked_among_the_neighbours():
 class TestWords:
     """Each sentence against the numbers it rests on."""
 
-    def text(self, stated, count=COUNT):
-        from rocking_cli.views.score import view
-
-        found = scored(stated, Neighbourhood(count))
+    def text(self, stated):
+        found = scored(stated, Neighbourhood(COUNT))
         return found, self.said(view(found, "tests.csv"))
 
     def said(self, view):
@@ -403,8 +387,8 @@ class TestWords:
         assert found.tests[2].share == found.tests[0].share and found.scores["tool"].tests == 3
 
     def test_commanded_motions_are_named(self):
-        tests = [ObservedTest(2, "a", "b", False, commanded=True, cluster="c")]
-        _, text = self.text([Stated(each, 3, 0, COUNT) for each in tests])
+        test = ObservedTest(2, "a", "b", False, commanded=True, cluster="c")
+        _, text = self.text([Stated(test, 3, 0, COUNT)])
         assert "the motions of 1 test are those commanded, not those recorded" in text
 
 
@@ -436,10 +420,8 @@ class TestBadInput:
         ("headings", "said"),
         [
             ("structure,record", "give what was observed"),
-            ("structure,overturned", "record: the column is missing"),
             ("structure,record,overturnd", "did you mean overturned?"),
             ("structure,record,overturned,pred_tool", "followed by a name other than"),
-            ("structure,record,peak [kg]", "must be one of rad, deg"),
             ("structure,record,peak_kg", "is not a column of a table of tests"),
             ("structure,record,overturned [g]", "has no unit"),
             ("structure,record,peak [deg],peak [rad]", "is the heading of two columns"),
@@ -464,9 +446,8 @@ class TestBadInput:
         assert not errors[0] and "gone.csv: no such file" in errors[1] and "gone.yaml: no such file" in errors[2]
         assert "bad.yaml:2: width" in errors[3] and "tests.csv:5: " in result.stderr
         assert data["scores"]["tool"]["tests"] == 1
-        assert (
-            "3 tests could not be simulated" in run("score", tmp_path / "tests.csv", "--neighbours", 5, code=5).stdout
-        )
+        said = run("score", tmp_path / "tests.csv", "--neighbours", 5, code=5).stdout
+        assert "3 tests could not be simulated" in said
 
     def test_a_table_must_be_there_and_have_rows(self, tmp_path):
         assert "no such file" in run("score", tmp_path / "gone.csv", code=2).stderr
