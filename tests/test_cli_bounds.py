@@ -39,16 +39,6 @@ def test_a_motion_that_is_none_is_refused_everywhere(command, options, said):
     assert said in result.stderr and result.stdout == ""
 
 
-def test_an_arch_that_hung_is_refused(tmp_path):
-    (tmp_path / "arch.yaml").write_text(
-        "mechanism: arch\nradius: 10\nthickness: 0.5\ninclusion_angle_deg: 179.99\nvoussoirs: 3\n", encoding="utf-8"
-    )
-    rows = "\n".join(f"{0.02 * k!r},0.25" for k in range(300))
-    (tmp_path / "const.csv").write_text(f"time_s,accel_g\n{rows}\n", encoding="utf-8")
-    said = run("report", "arch.yaml", "--record", "const.csv", "--target-pgv", "1e9", code=2).stderr
-    assert "not plausible for a ground motion" in said and "PGV = 1e+09 m/s" in said
-
-
 @pytest.mark.parametrize(
     "arguments",
     [

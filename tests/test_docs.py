@@ -188,13 +188,22 @@ def test_the_reference_of_names_reads_as_it_stands_and_is_whole_on_the_site(made
         assert line in directives
 
 
+def indented(section):
+    """The code of a section of a page."""
+    return "\n".join(line[4:] for line in section.split("\n") if line.startswith("    ") or not line)
+
+
+def of_the_guide(title, head=""):
+    """What the code of a section of the guide to plugins defines."""
+    section = text_of("plugins.md").partition(f"## {title}\n")[2].partition("\n## ")[0]
+    names = {"__name__": "guide"}
+    exec(compile(head + indented(section), "guide", "exec", dont_inherit=True), names)
+    return names
+
+
 def test_the_hollow_body_of_the_guide_holds_the_contract():
     """The chimney less its shaft is made of its walls and its cap, each a box."""
-    section = text_of("plugins.md").partition("## Hollow bodies\n")[2].partition("\n## ")[0]
-    code = "\n".join(line[4:] for line in section.split("\n") if line.startswith("    ") or not line)
-    names = {"__name__": "chimney"}
-    exec(code, names)
-    chimney = names["Chimney"](width=3.0, height=20.0, shaft=2.0, cap=1.0)
+    chimney = of_the_guide("Hollow bodies")["Chimney"](width=3.0, height=20.0, shaft=2.0, cap=1.0)
     assert [each for each in contract(chimney) if not each.passed] == []
     parts = [(19.0, 0.5, 3.0, side) for side in (-1.25, 1.25)] + [(19.0, 2.0, 0.5, 0.0)] * 2
     boxes = [box("wall", high * across * deep, across, high, x + 0.5j * high) for high, across, deep, x in parts]
@@ -208,11 +217,7 @@ def test_the_hollow_body_of_the_guide_holds_the_contract():
 
 def test_the_braced_parapet_of_the_guide_holds_the_contract():
     """The brace keeps its length and its top on the back of the parapet, which turns: by hand."""
-    section = text_of("plugins.md").partition("## Bodies that move one another\n")[2].partition("\n## ")[0]
-    code = "\n".join(line[4:] for line in section.split("\n") if line.startswith("    ") or not line)
-    names = {"__name__": "parapet"}
-    exec(code, names)
-    made = names["BracedParapet"]
+    made = of_the_guide("Bodies that move one another")["BracedParapet"]
     given = {"thickness": 0.3, "height": 1.5, "reach": 0.8, "rest": 1.1}
     parapet = made(brace_mass=0.1, **given)
     assert [each for each in contract(parapet) if not each.passed] == []
@@ -233,11 +238,7 @@ def test_the_braced_parapet_of_the_guide_holds_the_contract():
 
 def test_the_statue_of_the_guide_holds_the_contract_and_is_checked():
     """As rocking starts, the ends of its plinth bear what a bracket under u_g'' = lambda g does; then they open."""
-    section = text_of("plugins.md").partition("## Contacts\n")[2].partition("\n## ")[0]
-    code = "\n".join(line[4:] for line in section.split("\n") if line.startswith("    ") or not line)
-    names = {"__name__": "statue"}
-    exec(code, names)
-    statue = names["Statue"](width=0.7, height=1.4, plinth=0.4, tall=1.0, share=0.3)
+    statue = of_the_guide("Contacts")["Statue"](width=0.7, height=1.4, plinth=0.4, tall=1.0, share=0.3)
     assert [each for each in contract(statue) if not each.passed] == []
     g = statue.gravity
     for s in core.Direction:
@@ -259,20 +260,15 @@ def test_the_statue_of_the_guide_holds_the_contract_and_is_checked():
 
 def test_the_ladder_of_the_linkages_is_refused_as_its_page_says(tmp_path):
     section = text_of("linkages.md").partition("## One that is refused\n")[2]
-    text = "\n".join(line[4:] for line in section.split("\n") if line.startswith("    "))
     (said,) = re.findall(r"`(strut turns.*?)`", " ".join(section.split()))
-    (tmp_path / "ladder.yaml").write_text(text, encoding="utf-8")
+    (tmp_path / "ladder.yaml").write_text(indented(section), encoding="utf-8")
     with pytest.raises(rocking_cli.InputError, match=re.escape(said)):
         rocking_cli.load_structure(tmp_path / "ladder.yaml")
 
 
 def test_the_measure_of_the_guide_is_what_it_says():
-    section = text_of("plugins.md").partition("## A measure of intensity\n")[2].partition("\n## ")[0]
-    code = "\n".join(line[4:] for line in section.split("\n") if line.startswith("    ") or not line)
     head = "from dataclasses import dataclass, field\nfrom rocking_cli.processing.intensity import MotionMeasure\n"
-    names = {"__name__": "guide"}
-    exec(compile(head + code, "guide", "exec", dont_inherit=True), names)
-    measure = names["Bracketed"].read(["2", "8 s"])
+    measure = of_the_guide("A measure of intensity", head)["Bracketed"].read(["2", "8 s"])
     motion = rocking_cli.read_record(PROJECT / "examples" / "accel.csv")
     expected = sum((a / 9.80665) ** 2 for a in motion.acceleration[200:801]) / 601
     assert (str(measure), measure.value(motion)) == ("RMS(2.0:8.0)", pytest.approx(expected**0.5))
@@ -366,9 +362,4 @@ def test_the_json_of_collapse_is_what_the_page_says():
     said = set(re.findall(r'"(\w+)"', section)) - {"directions", "positive", "negative", "name", "between", "at"}
     found = data(rocking_cli.load_structure(PROJECT / "examples" / "assembly.yaml").collapse(core.Direction.POSITIVE))
     assert said - {"joint", "force"} == set(found)
-    assert set(found["thrust"][0]) == {"joint", "at", "force"} and set(found["hinges"][0]) == {
-        "name",
-        "between",
-        "joint",
-        "at",
-    }
+    assert {*found["thrust"][0], *found["hinges"][0]} == {"joint", "at", "force", "name", "between"}

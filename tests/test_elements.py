@@ -9,12 +9,10 @@ from textwrap import dedent
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from pytest import approx
 from scipy.integrate import quad, solve_ivp
 
 import rocking_cli as rk
-from rocking_cli.cli.main import main
 from rocking_cli.core import Direction, Spot
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.element import NO_ANSWER, Element
@@ -74,9 +72,7 @@ def in_one_line(text):
 
 def refused(*arguments):
     """What is said of wrong input, of which nothing is printed as a result."""
-    found = CliRunner().invoke(main, [str(argument) for argument in arguments])
-    assert (found.exit_code, found.stdout) == (2, ""), found.output
-    return in_one_line(found.stderr)
+    return in_one_line(run(*arguments, code=2).stderr)
 
 
 @pytest.mark.parametrize("name", ELEMENTS)

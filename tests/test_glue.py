@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
 import yaml
 
@@ -11,7 +9,7 @@ import rocking_cli as rk
 from rocking_cli.core import Direction
 from rocking_cli.errors import MechanismError
 from tests.conftest import EXAMPLES
-from tests.test_cli import run
+from tests.test_cli import run, run_json
 
 FLOOR = {"floor": {"polygon": [[-3.0, -0.5], [5.0, -0.5], [5.0, 0.0], [-3.0, 0.0]]}}
 TOWER = {"polygon": [[0.0, 0.0], [1.2, 0.0], [1.2, 4.0], [0.0, 4.0]]}
@@ -24,6 +22,13 @@ def glued(**fields):
     return rk.Assembly(
         name="glued", blocks={"tower": TOWER, "side": BESIDE}, ground=FLOOR, density=2200.0, depth=1.0, **fields
     )
+
+
+@pytest.fixture
+def file(tmp_path):
+    given = glued().model_dump(exclude_unset=True) | {"mechanism": "assembly"}
+    (tmp_path / "glued.yaml").write_text(yaml.safe_dump(given), encoding="utf-8")
+    return tmp_path / "glued.yaml"
 
 
 class TestGlue:
@@ -55,22 +60,15 @@ class TestGlue:
         ("spectrum", "--pulse", "sine:0.5g:1s", "--sizes", "1:2:2"),
         ("design", "--vary", "density=2000kg/m3:2400kg/m3", "--until", "lambda > 0.2", "--points", "2"),
     ], ids=lambda command: command[0])  # fmt: skip
-    def test_every_command_that_shows_lambda_says_so(self, command, tmp_path):
-        file = tmp_path / "glued.yaml"
-        file.write_text(
-            yaml.safe_dump(glued().model_dump(exclude_unset=True) | {"mechanism": "assembly"}), encoding="utf-8"
-        )
+    def test_every_command_that_shows_lambda_says_so(self, command, file):
         name, *options = command
         said = " ".join(run(name, file, *options).stdout.split())
         assert "0.347 g instead of 0.4117 g in the negative direction" in said
 
-    def test_a_survey_says_so_of_each(self, tmp_path):
-        (tmp_path / "glued.yaml").write_text(
-            yaml.safe_dump(glued().model_dump(exclude_unset=True) | {"mechanism": "assembly"}), encoding="utf-8"
-        )
-        (tmp_path / "rows.csv").write_text("name,file\na,glued.yaml\n", encoding="utf-8")
-        found = run("survey", tmp_path / "rows.csv", "--json")
-        assert "0.347 g instead of 0.4117 g" in json.loads(found.stdout)["rows"][0]["caution"]
+    def test_a_survey_says_so_of_each(self, file):
+        rows = file.with_name("rows.csv")
+        rows.write_text("name,file\na,glued.yaml\n", encoding="utf-8")
+        assert "0.347 g instead of 0.4117 g" in run_json("survey", rows)["rows"][0]["caution"]
 
     def test_a_mechanism_that_such_a_joint_locks_is_shown_with_the_joint(self):
         """Its three hinges are on one line, as the neighbour turns about a joint that bears no more than shear."""

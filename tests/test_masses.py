@@ -64,15 +64,6 @@ def test_with_masses_it_is_in_kilograms(masses, tmp_path):
     assert "kg m²" in page and "Per unit mass" not in page
 
 
-def test_a_mechanism_may_say_so_itself():
-    class Weighed(Wall):
-        @property
-        def has_mass(self):
-            return True
-
-    assert Weighed(thickness=0.3, height=3.0).has_mass and not Wall(thickness=0.3, height=3.0).has_mass
-
-
 # --- what a mechanism warns of
 
 

@@ -68,12 +68,15 @@ def test_a_title_is_as_long_as_there_is_room_for():
     assert style.fitted("\udcff\x1b a") == "\udcff\x1b a"  # it is spelled out when it is written
 
 
-def test_overturning_is_named_and_the_fall_is_cut_off():
+def test_overturning_is_named_and_the_fall_is_cut_off_with_a_cross_inside_the_panel():
     histories = respond(BLOCK, PULSE.scaled(5.0), models=("nonlinear",))
     figure = draw_history(histories, PULSE.scaled(5.0), "a block")
     below = figure.axes[1]
     assert list(curves(below)) == ["nonlinear, overturns"]
-    assert below.get_ylim()[1] <= 1.6
+    (cross,) = [line for line in below.get_lines() if line.get_marker() == "x"]
+    bottom, top = below.get_ylim()
+    assert bottom < cross.get_ydata()[0] < 0.99 * top <= 1.6
+    assert curves(below)["nonlinear, overturns"].get_xdata()[-1] == cross.get_xdata()[0]
 
 
 @pytest.mark.parametrize("motion", [None, PULSE.scaled(0.01)])
@@ -94,15 +97,6 @@ def test_a_reversed_record_has_a_panel_of_its_own():
     (drawn,) = curves(two).values()
     np.testing.assert_array_equal(drawn.get_ydata(), other["linear1"].ratio)
     assert one.get_ylim() == two.get_ylim()
-
-
-def test_a_fall_is_cut_off_with_a_cross_inside_the_panel():
-    figure = draw_history(respond(BLOCK, PULSE.scaled(5.0), models=("nonlinear",)), None, "a block")
-    (below,) = figure.axes
-    (cross,) = [line for line in below.get_lines() if line.get_marker() == "x"]
-    bottom, top = below.get_ylim()
-    assert bottom < cross.get_ydata()[0] < 0.99 * top
-    assert curves(below)["nonlinear, overturns"].get_xdata()[-1] == cross.get_xdata()[0]
 
 
 def grey(color):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import html
 import json
 import platform
 import re
@@ -10,8 +11,8 @@ import shlex
 import subprocess
 import sys
 import zipfile
-from html.parser import HTMLParser
 from importlib.metadata import version
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -34,35 +35,12 @@ LARGEST = 3e6  # bytes
 LOOSE = ARCH, "--opening", 1000  # its joints may open as far as they do
 
 
-class Reader(HTMLParser):
-    """The text of a page, and the data in it."""
-
-    def __init__(self, page):
-        super().__init__()
-        self.text, self.data, self._where = [], [], []
-        self.feed(page)
-
-    def handle_starttag(self, tag, attributes):
-        self._where.append((tag, dict(attributes).get("type")))
-
-    def handle_endtag(self, tag):
-        while self._where and self._where.pop()[0] != tag:
-            pass
-
-    def handle_data(self, data):
-        tag, kind = self._where[-1] if self._where else (None, None)
-        if kind == "application/json":
-            self.data.append(json.loads(data))
-        elif tag not in ("script", "style"):
-            self.text.append(data)
-
-    @property
-    def words(self):
-        return " ".join("".join(self.text).split())
-
-
 def read(path):
-    return Reader(path.read_text(encoding="utf-8"))
+    """The words of a page, and the data in it."""
+    page = path.read_text(encoding="utf-8")
+    data = re.findall(r'<script [^>]*type="application/json"[^>]*>(.*?)</script>', page, re.DOTALL)
+    text = html.unescape(re.sub(r"<(script|style)\b.*?</\1>|<[^>]*>", "", page, flags=re.DOTALL))
+    return SimpleNamespace(words=" ".join(text.split()), data=[json.loads(each) for each in data])
 
 
 @pytest.mark.usefixtures("small_maps")
@@ -275,6 +253,7 @@ class TestReproduction:
         } <= names  # fmt: skip
 
 
+@pytest.mark.usefixtures("small_maps")
 class TestCommand:
     def test_the_page_is_named_after_the_structure_and_json_writes_none(self, tmp_path):
         run("report", *FEW, BLOCK)

@@ -152,13 +152,6 @@ class TestWeights:
         # Errors are by record, whatever a record counts in all: those of copies are the same.
         assert weighted.median.low == pytest.approx(copies.median.low, rel=1e-6)
 
-    def test_equal_weights_change_nothing_but_the_errors(self, runs):
-        x, beyond, record, _ = runs
-        plain = fit_curve(Observations.of(x, beyond, record))
-        alike = fit_curve(Observations.of(x, beyond, record, weight=np.full(x.size, 3.0)))
-        assert alike.median.value == pytest.approx(plain.median.value)
-        assert alike.median.low == pytest.approx(plain.median.low)
-
     def test_capacities_are_weighted_too(self):
         rng = np.random.default_rng(1)
         levels = np.geomspace(0.1, 2, 16)

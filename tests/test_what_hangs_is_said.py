@@ -22,6 +22,7 @@ TIME = 0.01 * np.arange(400)
 WEAK = GroundMotion("weak", 0.01, 3.0 * np.sin(6 * TIME) * np.exp(-TIME))
 STRONG = GroundMotion("strong", 0.01, 9.0 * np.sin(2 * TIME))
 FACADE = {"width": 0.6, "height": 8.0, "density": 1800.0, "depth": 5.0}
+COURSES = {"courses": 40, "overlap": 0.2, "thickness": 0.5, "walls": 2, "height": 8.0}
 
 
 @pytest.mark.parametrize(
@@ -45,8 +46,7 @@ def test_a_wall_whose_top_is_held_says_how_far_its_hinge_moves():
 
 
 def test_names_of_the_tool_are_no_names_of_loads():
-    courses = {"courses": 40, "overlap": 0.2, "thickness": 0.5, "walls": 2, "height": 8.0}
-    for name, more in (("top", {}), ("interlock", {"interlock": courses})):
+    for name, more in (("top", {}), ("interlock", {"interlock": COURSES})):
         with pytest.raises(InputError, match=f"'{name}' is a reserved name: choose another"):
             Block(**FACADE, **more, loads=[{"name": name, "mass": 100.0, "at": [0.0, 4.0]}])
     Block(**FACADE, loads=[{"name": "interlock", "mass": 100.0, "at": [0.0, 4.0]}])  # there is no other
@@ -58,12 +58,11 @@ def test_forces_may_not_lift_a_structure_off_the_ground():
 
 
 def test_crossing_walls_are_no_higher_than_what_they_hold():
-    courses = {"courses": 40, "overlap": 0.2, "thickness": 0.5, "walls": 2}
-    assert Block(**FACADE, interlock={**courses, "height": 8.0}).uplift(1) > 0.4
+    assert Block(**FACADE, interlock=COURSES).uplift(1) > 0.4
     with pytest.raises(InputError, match="outside block"):
-        Block(**FACADE, interlock={**courses, "height": 9.0})
+        Block(**FACADE, interlock={**COURSES, "height": 9.0})
     with pytest.raises(InputError, match="overlap"):
-        Block(**FACADE, interlock={**courses, "height": 8.0, "overlap": 200.0})
+        Block(**FACADE, interlock={**COURSES, "overlap": 200.0})
 
 
 def test_blocks_that_have_slid_apart_are_said(tmp_path):
@@ -79,8 +78,7 @@ def test_blocks_that_have_slid_apart_are_said(tmp_path):
 
 
 def test_one_history_that_tears_it_apart_is_enough_in_whatever_order():
-    courses = {"courses": 40, "overlap": 0.2, "thickness": 0.5, "walls": 2, "height": 8.0}
-    watched = Watched(Block(**FACADE, interlock=courses))
+    watched = Watched(Block(**FACADE, interlock=COURSES))
     model = build_model(watched.mechanism, "nonlinear", 1000.0)  # it would leave the ground
     weak, strong = follow(model, WEAK), follow(model, STRONG.scaled(8.0))
     assert strong.overturned and watched.is_torn_apart(strong) and not watched.is_torn_apart(weak)
@@ -89,21 +87,12 @@ def test_one_history_that_tears_it_apart_is_enough_in_whatever_order():
 
 
 def test_a_tie_that_acts_in_tension_has_its_elongation_and_its_force_before_a_fall():
-    left = {
-        "name": "left",
-        "from": {"ground": [-4.0, 0.0]},
-        "to": {"at": [-0.3, 6.0]},
-        "stiffness": 3e4,
-        "only": "tension",
-    }
-    right = {
-        "name": "right",
-        "from": {"ground": [4.0, 0.0]},
-        "to": {"at": [0.3, 6.0]},
-        "stiffness": 3e4,
-        "only": "tension",
-    }
-    block = Block(**FACADE, ties=[left, right])
+    ties = [
+        {"name": name, "from": {"ground": [sign * 4.0, 0.0]}, "to": {"at": [sign * 0.3, 6.0]}, "stiffness": 3e4,
+         "only": "tension"}
+        for name, sign in (("left", -1), ("right", 1))
+    ]  # fmt: skip
+    block = Block(**FACADE, ties=ties)
     weak, strong = (follow(build_model(block, "nonlinear"), motion) for motion in (WEAK, STRONG))
     for tie in Watched(block).peaks(weak).ties:
         assert tie.force == pytest.approx(3e4 * tie.elongation, rel=1e-9) and tie.elongation > 0
