@@ -87,12 +87,6 @@ def test_the_history_file_has_it_at_the_samples_of_the_record(up, tmp_path):
     assert values[7.0] == 0.0  # after its last
 
 
-def test_the_picture_shows_it(up, tmp_path):
-    run("respond", FRAME, "--record", ACCEL, "--vertical", up, "--plot", tmp_path / "both.svg")
-    run("respond", FRAME, "--record", ACCEL, "--plot", tmp_path / "one.svg")
-    assert (tmp_path / "both.svg").stat().st_size > (tmp_path / "one.svg").stat().st_size
-
-
 def test_one_column_takes_its_own_interval_or_that_of_the_record(tmp_path):
     file = tmp_path / "column.txt"
     file.write_text("0\n0.1\n-0.2\n0.1\n0\n", encoding="utf-8")
@@ -117,9 +111,5 @@ def test_the_tolerance_can_be_set_and_holds():
     usual = run_json("respond", FRAME, "--record", ACCEL)["responses"]["nonlinear"]["peak_ratio"]
     assert usual == pytest.approx(tight, rel=1e-9)
     assert loose == pytest.approx(tight, rel=1e-2) and loose != tight
-    assert "1 is not a number from 1e-14 to below 1" in run("respond", "--record", ACCEL, "--rtol", "1", code=2).stderr
-    assert (
-        "9e-15 is not a number from 1e-14 to below 1"
-        in run("respond", "--record", ACCEL, "--rtol", "9e-15", code=2).stderr
-    )
-    assert "positive" in run("respond", "--record", ACCEL, "--rtol", "0", code=2).stderr
+    for wrong, said in (("1", "from 1e-14 to below 1"), ("9e-15", "from 1e-14 to below 1"), ("0", "positive")):
+        assert said in run("respond", "--record", ACCEL, "--rtol", wrong, code=2).stderr

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -39,6 +41,9 @@ def test_the_record_stands_above_and_the_responses_below_with_their_impacts():
     assert [len(times) for times in marked] == [len(run.felt) for run in histories.values()]
     assert 0 < len(marked[0]) < histories["nonlinear"].impact_count
     assert "time [s]" in below.get_xlabel() and "phi" in below.get_ylabel()
+    with_up = draw_history(histories, replace(PULSE, vertical=PULSE.scaled(0.5)), "a block").axes[0]
+    drawn = [line.get_ydata() for line in with_up.get_lines()]
+    assert any(np.array_equal(y, 0.5 * PULSE.acceleration / STANDARD_GRAVITY) for y in drawn)
 
 
 def test_notes_are_on_no_peak_and_the_marks_say_which_impacts_they_are():

@@ -128,17 +128,18 @@ def runs():
     return x, beyond, record, np.repeat(rng.integers(1, 4, 12).astype(float), 4)
 
 
+def by_statsmodels(beyond, predictors, weight):
+    """Coefficients of a weighted probit regression."""
+    return sm.GLM(beyond.astype(float), sm.add_constant(predictors), PROBIT, freq_weights=weight).fit().params
+
+
 class TestWeights:
     """Records that count otherwise than once."""
 
     def test_a_curve_is_that_of_a_weighted_regression(self, runs):
         x, beyond, record, weight = runs
         curve = fit_curve(Observations.of(x, beyond, record, weight=weight))
-        design = sm.add_constant(np.log(x))
-        model = sm.GLM(
-            beyond.astype(float), design, sm.families.Binomial(sm.families.links.Probit()), freq_weights=weight
-        )
-        a, b = model.fit().params
+        a, b = by_statsmodels(beyond, np.log(x), weight)
         assert (curve.runs, curve.exceedances, curve.records) == (48, int(beyond.sum()), 12)
         assert curve.median.value == pytest.approx(np.exp(-a / b), rel=1e-6)
         assert curve.dispersion.value == pytest.approx(1 / b, rel=1e-6)
@@ -171,11 +172,8 @@ class TestWeights:
         x, beyond, record, weight = runs
         other = x * np.random.default_rng(9).uniform(0.5, 2, x.size)
         found = fit_surface(x, other, beyond, record, weight=weight)
-        design = sm.add_constant(np.log(np.column_stack([x, other])))
-        model = sm.GLM(
-            beyond.astype(float), design, sm.families.Binomial(sm.families.links.Probit()), freq_weights=weight
-        )
-        assert [each.value for each in found.coefficients] == pytest.approx(model.fit().params, rel=1e-5)
+        expected = by_statsmodels(beyond, np.log(np.column_stack([x, other])), weight)
+        assert [each.value for each in found.coefficients] == pytest.approx(expected, rel=1e-5)
 
     def test_of_a_study_they_may_change_at_any_time(self, folder):
         medians = []

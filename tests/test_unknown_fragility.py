@@ -213,25 +213,17 @@ def test_few_runs_of_unknown_outcome_leave_one_curve(whole, monkeypatch):
     assert "these count as exceeding." in shown.stdout and ", lower" not in shown.stdout
     overturning = json.loads(command("results", whole.place, "--json").stdout)["curves"][-1]
     assert not overturning["band"] and overturning["lower"]["exceedances"] < overturning["exceedances"]
-    (each,) = [
-        each for each in assess.curves(counted(whole), "portal", whole.definition, None) if each.limit == "overturning"
-    ]
-    assert LabelledCurve.of("a", each).lower is None
+    found = {each.limit: each for each in assess.curves(counted(whole), "portal", whole.definition, None)}
+    assert LabelledCurve.of("a", found["overturning"]).lower is None
 
 
 def test_words_and_json_state_a_band_and_how_many_runs_are_unknown(whole):
     shown, data = command("results", whole.place), json.loads(command("results", whole.place, "--json").stdout)
     unknown = int((whole.rows.outcome == UNKNOWN).sum())
     assert f"{whole.plan.size} runs ({unknown} of unknown outcome)" in shown.stdout
-    assert data["outcomes"] == [
-        {
-            "structure": "portal",
-            "runs": whole.plan.size,
-            "unknown": unknown,
-            "checked": True,
-            "share": unknown / whole.plan.size,
-        }
-    ]
+    size = whole.plan.size
+    expected = {"structure": "portal", "runs": size, "unknown": unknown, "checked": True, "share": unknown / size}
+    assert data["outcomes"] == [expected]
     assert f"portal: {unknown} of {whole.plan.size} runs" in data["notes"][0]
     lines = [line.strip() for line in shown.stdout.splitlines()]
     for curve in data["curves"]:
@@ -330,11 +322,8 @@ def test_pictures_hatch_what_is_not_known(whole, tmp_path):
     assert said[1].startswith("overturning, if unknown runs do not:")
     assert said[2].startswith("band between the two curves: runs of unknown outcome (overturning ")
     none = replace(each.lower, curve=replace(each.curve, kind="none", fit=None))
-    (band,) = [
-        collection
-        for collection in draw_curves([replace(each, lower=none)], "PGA [g]", "").axes[0].collections
-        if collection.get_hatch()
-    ]
+    (axes,) = draw_curves([replace(each, lower=none)], "PGA [g]", "").axes
+    (band,) = [collection for collection in axes.collections if collection.get_hatch()]
     x, y = band.get_paths()[0].vertices.T
     assert y[x > 1].min() == 0  # nothing bounds it from below
     with Store.reading(whole.place) as held:

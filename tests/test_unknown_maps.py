@@ -376,24 +376,3 @@ class TestHistory:
             _, below = draw_history(runs, RECORD, "").axes
             assert not any(each.get_hatch() for each in below.patches)
             assert max(max(line.get_xdata()) for line in below.lines if len(line.get_xdata()) > 2) > 10
-
-
-@pytest.mark.rest
-@pytest.mark.parametrize(
-    ("command", "read"),
-    [
-        (("overturning", "--model", "nonlinear", "--points", 6), lambda data: data["shares"]["unknown"]),
-        (
-            ("spectrum", "--record", ACCEL, "--scale", 2, "--sizes", "5:6:2"),
-            lambda data: data["spectra"][0]["unknown"][0],
-        ),
-        (("pulse", "--ag", "0.9g", "--period", 0.6), lambda data: data["responses"]["nonlinear"]["unknown"]),
-        (
-            ("equivalent", EXAMPLES / "block.yaml", "--ag", "0.9g", "--period", 0.6),
-            lambda data: data["structures"][0]["unknown"],
-        ),
-    ],
-)
-def test_the_limit_of_openings_is_an_option(command, read):
-    name, *more = command
-    assert not read(json.loads(run(name, FILE, *more, "--opening", "100%", "--json").stdout))
