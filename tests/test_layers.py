@@ -82,6 +82,17 @@ def test_no_class_name_is_defined_in_two_files(package):
     assert {name: files for name, files in homes.items() if len(files) > 1} == SHARED
 
 
+def test_views_declare_the_rows_of_their_tables(package):
+    """Tables are made of columns in `views/column.py`, but for those of the Italian code, in two languages."""
+    by_hand = {
+        place
+        for place, tree in package.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Table"
+    }
+    assert {place for place in by_hand if "/codes/italian/" not in place} == {"rocking_cli/views/column.py"}
+
+
 def imported(tree):
     """Yield line, module and name of what a file imports of the project, also in code that it hands to a process."""
     for line, text in texts(tree):

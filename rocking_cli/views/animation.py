@@ -9,7 +9,7 @@ from rocking_cli.names import UNKNOWN
 from rocking_cli.structure import Structure
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.neighbours import Neighbours
-from rocking_cli.views.column import Column, of, table_of
+from rocking_cli.views.column import Column, of, only_shown, table_of
 from rocking_cli.views.neighbours import neighbour_columns, neighbours_data, neighbours_in_words
 from rocking_cli.views.response import ending, known_data, not_checked
 from rocking_cli.views.restitution import restitution_data, restitution_used
@@ -63,8 +63,8 @@ def row(film: Film, near: Neighbours | None) -> FilmRow:
 def several(structure: Structure, film: Film, rows: Sequence[FilmRow]) -> View:
     """Show the outcomes of several motions by their rows; `film` is one of them."""
     columns: list[Column[FilmRow]] = [
-        Column("", of("name"), head="under", text=True),
-        Column("", of("fate"), head=film.history.model, text=True),
+        only_shown("under", of("name"), text=True),
+        only_shown(film.history.model, of("fate"), text=True),
         *neighbour_columns(of("near"), doubtful=any(row.near is not None and row.near.unknown for row in rows))[:2],
     ]
     table = table_of(heading(structure.mechanism), columns, rows)

@@ -21,7 +21,7 @@ from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.views import processing, verification
 from rocking_cli.views.cautions import cautions_of
-from rocking_cli.views.column import Column, of, table_of
+from rocking_cli.views.column import Column, of, only_shown, table_of
 from rocking_cli.views.conclusion import WAYS, conclusion_data, counted, does, headline, next_in_words, of_verification
 from rocking_cli.views.contact import contact_words
 from rocking_cli.views.equivalent_block import sides_of
@@ -159,9 +159,9 @@ def overview(content: Assessment, over: str) -> Table:
         return run.words if run.fell or run.unknown else f"{run.peak_ratio:.3g}"
 
     columns: list[Column[MotionResult]] = [
-        Column("", of("given.motion.name"), head="ground motion", text=True),
-        Column("", of("pga_of_ground"), head="PGA [g]", form="{:.3g}".format),
-        Column("", peak, head=f"peak {over}"),
+        only_shown("ground motion", of("given.motion.name"), text=True),
+        only_shown("PGA [g]", of("pga_of_ground"), "{:.3g}".format),
+        only_shown(f"peak {over}", peak),
         *neighbour_columns(near, doubtful=any(near(each).unknown for each in content.results)),
     ]
     return table_of("All ground motions", columns, content.results)

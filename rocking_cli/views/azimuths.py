@@ -14,7 +14,7 @@ from rocking_cli.io.tables import Columns
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
 from rocking_cli.studies.azimuths import AzimuthResponses, sectors
-from rocking_cli.views.column import Column, of, table_of
+from rocking_cli.views.column import Column, of, only_shown, table_of
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import Table, View, heading
 
@@ -38,12 +38,12 @@ class _Model(NamedTuple):
 
 UNKNOWN = "are\nunknown"
 MODELS: tuple[Column[_Model], ...] = (
-    Column("", of("name"), head="model", text=True),
-    Column("", lambda row: percent(float(row.each.fell.mean())), head="directions\noverturn"),
-    Column("", lambda row: percent(float(row.each.unknown.mean())), head=UNKNOWN),
-    Column("", lambda row: percent(float((~row.each.lifted).mean())), head="do not\nuplift"),
-    Column("", lambda row: row.highest and row.highest[0], head="largest peak\nof the others"),
-    Column("", lambda row: row.highest and row.highest[1], "deg", "at\n[deg]"),
+    only_shown("model", of("name"), text=True),
+    only_shown("directions\noverturn", lambda row: percent(float(row.each.fell.mean()))),
+    only_shown(UNKNOWN, lambda row: percent(float(row.each.unknown.mean()))),
+    only_shown("do not\nuplift", lambda row: percent(float((~row.each.lifted).mean()))),
+    only_shown("largest peak\nof the others", lambda row: row.highest and row.highest[0]),
+    only_shown("at\n[deg]", lambda row: row.highest and row.highest[1]),
 )
 
 

@@ -12,7 +12,7 @@ from rocking_cli.names import percent
 from rocking_cli.structure import Structure
 from rocking_cli.studies.experiments.region import INSIDE, JointRegion
 from rocking_cli.studies.experiments.trace_fit import OFF, Estimated, TraceFit
-from rocking_cli.views.column import Column, of, rounded, table_of
+from rocking_cli.views.column import Column, of, only_shown, rounded, table_of
 from rocking_cli.views.view import Table, View, heading
 
 
@@ -25,10 +25,10 @@ class ImpactRow(NamedTuple):
 
 
 IMPACTS: tuple[Column[ImpactRow], ...] = (
-    Column("", of("number"), head="impact"),
-    Column("", of("time"), "s", head="time [s]", form=rounded(5)),
-    Column("", of("eta.value"), head="eta", form=rounded(4)),
-    Column("", of("eta.deviation"), head="error of\nits fit", form=rounded(2)),
+    only_shown("impact", of("number")),
+    only_shown("time [s]", of("time"), rounded(5)),
+    only_shown("eta", of("eta.value"), rounded(4)),
+    only_shown("error of\nits fit", of("eta.deviation"), rounded(2)),
 )
 
 
@@ -178,11 +178,8 @@ def _region_parts(found: JointRegion, name: str, file: str, count: int) -> Itera
         for row in zip(above.T, inside.T, strict=True)
     ]
     grid = [
-        Column[int]("", lambda i: f"x {found.slenderness[i]:.3g}", head="slenderness", text=True),
-        *(
-            Column[int]("", column.__getitem__, head=f"{eta:.3g}")
-            for eta, column in zip(found.restitution, cells, strict=True)
-        ),
+        only_shown("slenderness", lambda i: f"x {found.slenderness[i]:.3g}", text=True),
+        *(only_shown(f"{eta:.3g}", column.__getitem__) for eta, column in zip(found.restitution, cells, strict=True)),
     ]
     title = "Log-likelihood less the largest, over restitution; * in the region"
     yield table_of(title, grid, range(found.slenderness.size))

@@ -11,7 +11,7 @@ from rocking_cli.core import CollapseHinge, CollapseMechanism, Direction, Mechan
 from rocking_cli.core.contacts import MASONRY
 from rocking_cli.names import digits_apart
 from rocking_cli.text import in_short
-from rocking_cli.views.column import Column, data_of, frame_of, of, rounded, table_of
+from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, rounded, table_of
 from rocking_cli.views.view import Table, View, force_unit, heading, number
 
 FEW = 6  # blocks of a part, all of which are named
@@ -153,11 +153,11 @@ def _of_hinge(*, by_joint: bool = False) -> list[Column[CollapseHinge]]:
     return [
         Column("name", of("letter"), head="hinge", name="hinge", text=True),
         Column("between", lambda hinge: list(hinge.between), name=None),
-        Column("", between, head="between", name="between", text=True),
+        Column(None, between, head="between", name="between", text=True),
         Column("joint", of("joint"), name=None),
         Column("at", lambda hinge: _pair(hinge.at), name=None),
-        Column("", of("at.real"), "m", "x [m]", number, "x"),
-        Column("", of("at.imag"), "m", "y [m]", number, "y"),
+        Column(None, of("at.real"), "m", "x [m]", number, "x"),
+        Column(None, of("at.imag"), "m", "y [m]", number, "y"),
     ]
 
 
@@ -166,11 +166,11 @@ def _of_joint(per: float = 1.0, unit: str = "N") -> list[Column[tuple[str, compl
     return [
         Column("joint", itemgetter(0), head="joint", text=True),
         Column("at", lambda row: _pair(row[1])),
-        Column("", lambda row: row[1].real, "m", "x [m]", number),
-        Column("", lambda row: row[1].imag, "m", "y [m]", number),
+        only_shown("x [m]", lambda row: row[1].real, number),
+        only_shown("y [m]", lambda row: row[1].imag, number),
         Column("force", lambda row: _pair(row[2])),
-        Column("", lambda row: row[2].real / per, unit, f"Fx [{unit}]", rounded(4)),
-        Column("", lambda row: row[2].imag / per, unit, f"Fy [{unit}]", rounded(4)),
+        only_shown(f"Fx [{unit}]", lambda row: row[2].real / per, rounded(4)),
+        only_shown(f"Fy [{unit}]", lambda row: row[2].imag / per, rounded(4)),
     ]
 
 

@@ -5,20 +5,19 @@ A view lists its columns at the top of its file. Whoever adds a number to an ans
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import nan
-from operator import attrgetter as of
+from operator import attrgetter, itemgetter
 from typing import Any, Generic, TypeVar
 
 from rocking_cli.views.view import ABSENT, Table, number
 
-__all__ = ["Column", "data_of", "frame_of", "lines_of", "of", "rounded", "table_of"]
-
 R = TypeVar("R")
+of = attrgetter
 
 
-def shown(value: Any) -> str:
+def plainly(value: Any) -> str:
     """Format a value as it is, but a number with four digits."""
     return number(value, 4) if isinstance(value, float) else str(value)
 
@@ -34,8 +33,8 @@ class Column(Generic[R]):
 
     Parameters
     ----------
-    key : str
-        Key in JSON; empty for a column that JSON has not.
+    key : str or None
+        Key in JSON; None for a column that JSON has not.
     of : callable
         Returns the value of a row; `of("block.p")` reads attributes.
     unit : str
@@ -52,11 +51,11 @@ class Column(Generic[R]):
         Whether values are words: aligned to the left, and empty in files if they do not exist.
     """
 
-    key: str
+    key: str | None
     of: Callable[[R], Any]
     unit: str = ""
     head: str | None = None
-    form: Callable[[Any], str] = shown
+    form: Callable[[Any], str] = plainly
     name: str | None = ""
     words: str = ""
     text: bool = False
@@ -64,7 +63,8 @@ class Column(Generic[R]):
     @property
     def heading(self) -> str:
         """The heading in files and frames, with the unit."""
-        return f"{self.name or self.key} [{self.unit}]" if self.unit else self.name or self.key
+        name = self.name or self.key or ""
+        return f"{name} [{self.unit}]" if self.unit else name
 
     def cell(self, row: R) -> str:
         """Return the value of a row as it is shown; a dash if it does not exist."""
@@ -77,31 +77,43 @@ class Column(Generic[R]):
         return value if value is not None else "" if self.text else nan
 
 
+def only_shown(
+    head: str | None, of: Callable[[R], Any], form: Callable[[Any], str] = plainly, unit: str = "", **how: Any
+) -> Column[R]:
+    """Return a column that only terminals and pages have; `how` has `text` and `words`."""
+    return Column(None, of, unit, head, form, None, **how)
+
+
+def text_columns(*heads: str) -> list[Column[Sequence[str]]]:
+    """Return the columns of rows whose cells are texts already."""
+    return [only_shown(head, itemgetter(k), text=True) for k, head in enumerate(heads)]
+
+
+UNIT: Mapping[str, Callable[[Column[Any]], str]] = {"unit": of("unit")}
+
+
 def data_of(columns: Iterable[Column[R]], row: R) -> dict[str, Any]:
     """Return a row as plain data.
 
     Examples
     --------
-    >>> name, p = Column("name", str, head="", text=True), Column("p", len, "rad/s", "p\\n[rad/s]")
-    >>> data_of([name, p], "wall")
+    >>> name, p = Column("name", str, head="", text=True), Column("p", len, "rad/s", "p")
+    >>> first = only_shown("starts with", lambda name: name[0])
+    >>> data_of([name, p, first], "wall")
     {'name': 'wall', 'p': 4}
-    >>> frame_of([name, p], ["wall", "arch"])
+    >>> frame_of([name, p, first], ["wall", "arch"])
     {'name': ['wall', 'arch'], 'p [rad/s]': [4, 4]}
-    >>> table_of("Structures", [name, p], ["wall"])
-    Table(title='Structures', columns=['', 'p\\n[rad/s]'], rows=[['wall', '4']], numbers=[1])
-    >>> lines_of([p], ["wall", "arch"])
-    [['p\\n[rad/s]', '4', '4', 'rad/s']]
+    >>> table_of("Structures", [name, p, first], ["wall"])
+    Table(title='Structures', columns=['', 'p', 'starts with'], rows=[['wall', '4', 'w']], numbers=[1, 2])
+    >>> table_across("Structures", [p, first], ["one", "two"], ["wall", "arch"]).rows
+    [['p', '4', '4', 'rad/s'], ['starts with', 'w', 'a', '']]
     """
-    return {column.key: column.of(row) for column in columns if column.key}
+    return {column.key: column.of(row) for column in columns if column.key is not None}
 
 
 def frame_of(columns: Iterable[Column[R]], rows: Sequence[R]) -> dict[str, list[Any]]:
     """Return rows as columns by their headings, as files and frames have them."""
-    return {
-        column.heading: [column.filed(row) for row in rows]
-        for column in columns
-        if column.name is not None and (column.name or column.key)
-    }
+    return {column.heading: [column.filed(row) for row in rows] for column in columns if column.name is not None}
 
 
 def table_of(title: str, columns: Iterable[Column[R]], rows: Iterable[R]) -> Table:
@@ -112,8 +124,20 @@ def table_of(title: str, columns: Iterable[Column[R]], rows: Iterable[R]) -> Tab
     return Table(title, heads, [[column.cell(row) for column in seen] for row in rows], numbers)
 
 
-def lines_of(columns: Iterable[Column[R]], rows: Sequence[R]) -> list[list[str]]:
-    """Return the lines of a table with a column for each row: the heading, a cell for each row, and the unit."""
-    return [
-        [column.head, *(column.cell(row) for row in rows), column.unit] for column in columns if column.head is not None
+def table_across(
+    title: str,
+    columns: Iterable[Column[R]],
+    heads: Sequence[str],
+    rows: Sequence[R],
+    after: Mapping[str, Callable[[Column[R]], str]] = UNIT,
+) -> Table:
+    """Return a table with a line for each column, and the rows side by side under their own headings.
+
+    `after` has what follows in each line, by its heading.
+    """
+    lines = [
+        [column.head, *(column.cell(row) for row in rows), *(said(column) for said in after.values())]
+        for column in columns
+        if column.head is not None
     ]
+    return Table(title, ["", *heads, *after], lines, numbers=range(1, len(rows) + 1))

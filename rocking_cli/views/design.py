@@ -14,7 +14,7 @@ from rocking_cli.studies.conclusion import Concluded, NextStep
 from rocking_cli.studies.design import Design
 from rocking_cli.studies.metrics import Excitation
 from rocking_cli.text import one_line
-from rocking_cli.views.column import Column, frame_of, table_of
+from rocking_cli.views.column import Column, frame_of, only_shown, table_of
 from rocking_cli.views.conclusion import STEPS, conclusion_data, not_counted
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.verdict import unchecked
@@ -63,7 +63,7 @@ def _columns(found: Design) -> list[Column[int]]:
     return [
         Column(found.field, found.values.item, found.unit, _head(found.field, found.unit), _value),
         Column(metric.name, found.metric.item, metric.unit),
-        Column("", partial(_metric, found), head=_head(metric.name, metric.unit)),
+        only_shown(_head(metric.name, metric.unit), partial(_metric, found)),
         *(_unknown(found) if metric.shaken else ()),
         Column("holds", lambda k: "yes" if found.met[k] else "no", head="holds", text=True),
     ]

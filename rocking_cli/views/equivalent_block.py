@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import degrees, isclose, nan
+from operator import itemgetter, methodcaller
 from typing import Any, NamedTuple
 
 from rocking_cli.core import Direction, EquivalentBlock, Mechanism, PointMass, Statics, one_block
@@ -13,11 +14,11 @@ from rocking_cli.core.hung.element import Element
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.structure import Structure
 from rocking_cli.views.cautions import before_rocking, cautions_of, of_restitution
-from rocking_cli.views.column import data_of
+from rocking_cli.views.column import UNIT, Column, data_of, of, only_shown, table_across
 from rocking_cli.views.parameters import PARAMETERS
 from rocking_cli.views.restitution import restitution_source, restitution_used
 from rocking_cli.views.verdict import uplift_in_words
-from rocking_cli.views.view import Table, View, heading, number
+from rocking_cli.views.view import View, heading, number
 
 
 def view(structure: Structure) -> View:
@@ -35,26 +36,13 @@ def view(structure: Structure) -> View:
         "restitution": restitution_source(mechanism),
         "caution": " ".join(cautions_of(mechanism)) or None,
         "misleading": structure.misleading,
-        "directions": {
-            side.direction.label: _data(side) | {each.key: each.value for each in mechanism.found(side.direction)}
-            for side in sides
-        },
+        "directions": {side.direction.label: _data(side) | _found(mechanism, side.direction) for side in sides},
     }
     shown = sides[:1] if is_symmetric(structure) else sides
-    per_mass = "" if mechanism.has_mass else ", per unit mass"
-    columns = [side.parameters for side in shown]
-    rows = [
-        [
-            each.key,
-            *(number(column[each.key]) for column in columns),
-            each.unit_of(mass=mechanism.has_mass),
-            each.words + (per_mass if each.of_mass else ""),
-        ]
-        for each in PARAMETERS
-    ]
-    rows += _found(mechanism, [side.direction for side in shown])
-    heads = ["", *(("value",) if len(shown) == 1 else (side.direction.label for side in shown)), "unit", "meaning"]
-    table = Table(heading(mechanism), heads, rows, numbers=range(1, len(shown) + 1))
+    columns = _columns(mechanism, [side.direction for side in shown])
+    heads = ["value"] if len(shown) == 1 else [side.direction.label for side in shown]
+    rows = [side.parameters | _found(mechanism, side.direction) for side in shown]
+    table = table_across(heading(mechanism), columns, heads, rows, {**UNIT, "meaning": of("words")})
     where = [""] if len(shown) == 1 else [f"{side.direction.label}: " for side in shown]
     said = [f"Caution: {text}" for text in early]
     said += [f"{prefix}{sentence(side)}" for prefix, side in zip(where, shown, strict=True)]
@@ -72,18 +60,25 @@ def view(structure: Structure) -> View:
     return View(data, [table, *said])
 
 
-def _found(mechanism: Mechanism, directions: Sequence[Direction]) -> list[list[str]]:
-    """Return rows of the values that a mechanism found itself, which may differ between directions."""
+def _columns(mechanism: Mechanism, directions: Sequence[Direction]) -> Iterator[Column[Mapping[str, float]]]:
+    """Yield the parameters, and the values that a mechanism found itself, which may differ between directions."""
+    per_mass = "" if mechanism.has_mass else ", per unit mass"
+    for each in PARAMETERS:
+        words = each.words + (per_mass if each.of_mass else "")
+        yield only_shown(each.key, itemgetter(each.key), number, each.unit_of(mass=mechanism.has_mass), words=words)
     found = {direction: {each.key: each for each in mechanism.found(direction)} for direction in directions}
-    rows = []
-    for key in dict.fromkeys(key for of in found.values() for key in of):
-        each = {direction: of[key] for direction, of in found.items() if key in of}
-        first = next(iter(each.values()))
-        values = [number(each[direction].value if direction in each else None) for direction in directions]
-        same = all(other.meaning == first.meaning for other in each.values())
-        meaning = first.meaning if same else "; ".join(f"{d.label}: {other.meaning}" for d, other in each.items())
-        rows.append([key, *values, first.unit, meaning])
-    return rows
+    for key in dict.fromkeys(key for those in found.values() for key in those):
+        meanings = {direction: those[key].meaning for direction, those in found.items() if key in those}
+        same = len(set(meanings.values())) == 1
+        words = "; ".join(
+            dict.fromkeys(meaning if same else f"{d.label}: {meaning}" for d, meaning in meanings.items())
+        )
+        unit = next(those[key].unit for those in found.values() if key in those)
+        yield only_shown(key, methodcaller("get", key), number, unit, words=words)
+
+
+def _found(mechanism: Mechanism, direction: Direction) -> dict[str, float]:
+    return {each.key: each.value for each in mechanism.found(direction)}
 
 
 class EquivalentSide(NamedTuple):

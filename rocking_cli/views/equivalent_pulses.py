@@ -10,7 +10,7 @@ from rocking_cli import names
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.verdict import CLOSE
 from rocking_cli.studies.equivalent_pulses import EquivalentResponses, PulsedStructure
-from rocking_cli.views.column import Column, data_of, of, table_of
+from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.response import known_data
 from rocking_cli.views.verdict import unchecked, why_unknown
 from rocking_cli.views.view import View
@@ -35,7 +35,7 @@ COLUMNS: tuple[Column[PulsedStructure], ...] = (
     Column("eta", of("eta"), head="eta"),
     Column("own_eta", of("own_eta")),
     Column("peak_ratio", of("history.peak_ratio")),
-    Column("", of("history"), head="peak / phi_cr", form=_peak),
+    only_shown("peak / phi_cr", of("history"), _peak),
     Column("overturned", of("history.overturned")),
 )
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import inf, isfinite, isnan
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,12 +12,39 @@ from rocking_cli.core import Equivalence, Mechanism
 from rocking_cli.core.advice import SMALL, Grade
 from rocking_cli.names import percent
 from rocking_cli.studies.linearisation import Errors, Linearisation, errors, preferred, velocity_ratios
+from rocking_cli.views.column import Column, of, only_shown, table_of
 from rocking_cli.views.verdict import uplift_in_words
 from rocking_cli.views.view import ABSENT, Table, View, heading
 
 NEVER = "infinite (it never uplifts)"
 KEPT = 1e-9  # an error of the uplift acceleration that is none
 PREFERRED = {None: None, 0: "either", 1: "kappa1", 2: "kappa2"}
+
+
+class ErrorRow(NamedTuple):
+    """An error: of what, at which amplitude or acceleration, and the ratio to the structure with each kappa."""
+
+    what: str
+    at: str
+    ratio1: float
+    ratio2: float
+
+
+def _percent(ratio: float) -> str:
+    if isnan(ratio):
+        return ABSENT
+    if ratio == inf:
+        return "no uplift"
+    error = 100 * (ratio - 1)
+    return f"{error:+.0f} %" if abs(error) >= 99.95 else f"{error:+.3g} %"
+
+
+ERRORS: tuple[Column[ErrorRow], ...] = (
+    only_shown("error of", of("what"), text=True),
+    only_shown("at", of("at"), text=True),
+    only_shown("kappa1", of("ratio1"), _percent),
+    only_shown("kappa2", of("ratio2"), _percent),
+)
 
 
 def view(
@@ -36,39 +63,27 @@ def view(
     }
     title = heading(mechanism)
     tables = [
-        Table(
-            title if len(asked) == 1 else f"{title}, {each.direction.label} direction",
-            ["error of", "at", "kappa1", "kappa2"],
-            rows(each, mechanism.gravity),
-            numbers=(2, 3),
+        errors_table(
+            title if len(asked) == 1 else f"{title}, {each.direction.label} direction", each, mechanism.gravity
         )
         for each in asked
     ]
     return View(data, [*tables, verdict])
 
 
-def rows(each: Linearisation, gravity: float) -> list[list[str]]:
-    """Return the rows of a table of errors: of what, at which amplitude or acceleration, and with each kappa."""
-    times = zip(each.acceleration, each.overturning_ratio1, each.overturning_ratio2, strict=True)
-    ratios = [
-        ("uplift acceleration", "", each.uplift_ratio1, each.uplift_ratio2),
-        ("overturning velocity", f"v_imp = {each.block.v_imp:.4g} m/s", *velocity_ratios(each.block, gravity)),
-        *(
-            ("free period", f"phi/phi_cr = {r:g}", ratio, ratio)
-            for r, ratio in zip(each.amplitude, each.period_ratio, strict=True)
-        ),
-        *(("overturning time", f"a/lambda = {a:g}", one, two) for a, one, two in times),
-    ]
-    return [[what, at, _percent(one), _percent(two)] for what, at, one, two in ratios]
+def errors_table(title: str, each: Linearisation, gravity: float) -> Table:
+    """Return the errors of a direction as a table."""
+    return table_of(title, ERRORS, _rows(each, gravity))
 
 
-def _percent(ratio: float) -> str:
-    if isnan(ratio):
-        return ABSENT
-    if ratio == inf:
-        return "no uplift"
-    error = 100 * (ratio - 1)
-    return f"{error:+.0f} %" if abs(error) >= 99.95 else f"{error:+.3g} %"
+def _rows(each: Linearisation, gravity: float) -> Iterator[ErrorRow]:
+    yield ErrorRow("uplift acceleration", "", each.uplift_ratio1, each.uplift_ratio2)
+    ratios = velocity_ratios(each.block, gravity)
+    yield ErrorRow("overturning velocity", f"v_imp = {each.block.v_imp:.4g} m/s", *ratios)
+    for r, ratio in zip(each.amplitude, each.period_ratio, strict=True):
+        yield ErrorRow("free period", f"phi/phi_cr = {r:g}", ratio, ratio)
+    for a, *both in zip(each.acceleration, each.overturning_ratio1, each.overturning_ratio2, strict=True):
+        yield ErrorRow("overturning time", f"a/lambda = {a:g}", *both)
 
 
 def _data(each: Linearisation, gravity: float) -> dict[str, Any]:

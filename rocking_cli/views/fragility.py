@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from math import isinf
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -13,7 +14,7 @@ from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.studies.fragility.definition import LAMBDA
 from rocking_cli.studies.fragility.displacements import kept, metres
 from rocking_cli.studies.fragility.intensity import label
-from rocking_cli.views.column import Column, data_of, of, table_of
+from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.view import Table, View, number
 
 if TYPE_CHECKING:  # fits need scipy, and what would be run needs no fit
@@ -27,6 +28,10 @@ if TYPE_CHECKING:  # fits need scipy, and what would be run needs no fit
     from rocking_cli.studies.fragility.study import Study
 
 Fitted = TypeVar("Fitted", "Fragility", "Bivariate")
+PLANNED: tuple[Column[tuple[str, str]], ...] = (
+    only_shown("", itemgetter(0), text=True),
+    only_shown("number", itemgetter(1)),
+)
 Named = tuple[str, Any]
 """A fit, and the name of its row."""
 FINE = 200  # intensities at which it is looked whether a curve is cut
@@ -44,12 +49,12 @@ def planned(study: Study, plan: Plan) -> View:
         "levels": levels,
         "polarities": polarities,
     }
-    rows = [[name, f"{count}"] for name, count in counts.items()]
+    rows = [(name, f"{count}") for name, count in counts.items()]
     for name, usable in (("records", records), ("samples", samples)):
         if not all(usable):
             place = list(counts).index(name) + 1
-            rows.insert(place, [f"{name} left out", f"{len(usable) - sum(usable)}"])
-    table = Table(study.name, ["", "number"], [*rows, ["runs", f"{plan.total:,}"]], numbers=(1,))
+            rows.insert(place, (f"{name} left out", f"{len(usable) - sum(usable)}"))
+    table = table_of(study.name, PLANNED, [*rows, ("runs", f"{plan.total:,}")])
     return View({"study": study.name, **counts, "runs": plan.total, "left_out": left_out(plan)}, [table])
 
 
@@ -358,21 +363,17 @@ def _with_interval(estimate: Mapping[str, float]) -> str:
 def fit_columns(interval: str = "", width: str = "", *, rated: bool = False) -> list[Column[Named]]:
     """Return the columns of a curve by its name, with the headings of its intervals; a rate is shown if there is one.
 
-    The columns without a key are those of a table, and stand for several of the data.
+    Some columns of a table stand for several of the data.
     """
     return [
-        Column("", lambda row: row[0], head="limit state", text=True),
+        only_shown("limit state", lambda row: row[0], text=True),
         Column("kind", of_fit("curve.kind"), head="curve", text=True),
         Column("why", of_fit("curve.why")),
         Column("median", lambda row: _estimate(row[1].curve.median), head=f"median\n{interval}", form=_with_interval),
         Column("dispersion", lambda row: _estimate(row[1].curve.dispersion)),
         Column("scale", lambda row: _estimate(row[1].curve.scale)),
-        Column(
-            "",
-            lambda row: _estimate(row[1].curve.dispersion or row[1].curve.scale),
-            head=f"{width}\n{interval}",
-            form=_with_interval,
-        ),
+        only_shown(f"{width}\n{interval}", lambda row: _estimate(row[1].curve.dispersion or row[1].curve.scale),
+                   _with_interval),
         Column("confidence", of_fit("curve.confidence")),
         Column("goodness", lambda row: None if (found := row[1].curve.goodness) is None else asdict(found),
                head="fit p", form=lambda found: number(found["p_value"], 2)),
@@ -394,8 +395,8 @@ def _coefficient(k: int) -> Callable[[Named], Any]:
 def plane_columns(interval: str = "") -> list[Column[Named]]:
     """Return the columns of a surface by its name, with the headings of its intervals."""
     return [
-        Column("", lambda row: row[0], head="limit state", text=True),
-        *(Column("", _coefficient(k), head=f"c{k}\n{interval}", form=_with_interval) for k in range(3)),
+        only_shown("limit state", lambda row: row[0], text=True),
+        *(only_shown(f"c{k}\n{interval}", _coefficient(k), _with_interval) for k in range(3)),
         Column("kind", of_fit("surface.kind")),
         Column("why", of_fit("surface.why")),
         Column("coefficients", lambda row: [asdict(each) for each in row[1].surface.coefficients or []]),

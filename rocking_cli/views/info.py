@@ -8,14 +8,14 @@ from operator import itemgetter
 from typing import Any
 
 from rocking_cli.studies.installation import OURS, Installation, Plugin
-from rocking_cli.views.column import Column, table_of
+from rocking_cli.views.column import Column, only_shown, table_of, text_columns
 from rocking_cli.views.view import Table, View
 
 DEFAULTS: tuple[Column[Mapping[str, Any]], ...] = (
-    Column("", itemgetter("option"), head="option", text=True),
-    Column("", itemgetter("value"), head="value", text=True),
-    Column("", lambda each: each["command"] or "every command", head="of", text=True),
-    Column("", itemgetter("place"), head="from", text=True),
+    only_shown("option", itemgetter("option"), text=True),
+    only_shown("value", itemgetter("value"), text=True),
+    only_shown("of", lambda each: each["command"] or "every command", text=True),
+    only_shown("from", itemgetter("place"), text=True),
 )
 """Columns of the user's defaults, whose rows are the data."""
 
@@ -46,7 +46,7 @@ def view(found: Installation, defaults: Mapping[str, Any]) -> View:
     ]
     if defaults["environment"]:
         rows.append(["environment", " ".join(f"{name}={value}" for name, value in defaults["environment"].items())])
-    parts: list[Table | str] = [Table("", ["what", "here"], rows)]
+    parts: list[Table | str] = [table_of("", text_columns("what", "here"), rows)]
     if defaults["set"]:
         title = "Defaults (the first entry of an option takes precedence)"
         parts.append(table_of(title, DEFAULTS, defaults["set"]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
 from functools import partial
 from typing import Any, NamedTuple
@@ -17,6 +17,7 @@ from rocking_cli.studies.conclusion import Conclusion
 from rocking_cli.studies.margin import LEVELS, Margin
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.cautions import cautions_of
+from rocking_cli.views.column import Column, of, only_shown, rounded, table_of
 from rocking_cli.views.conclusion import conclusion_data, of_margin
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.verdict import unchecked
@@ -35,15 +36,47 @@ class MarginRow(NamedTuple):
     conclusion: Conclusion
 
 
+class _Line(NamedTuple):
+    """A line of a motion: what governs, with unknown outcomes as overturning, or what is known to overturn."""
+
+    name: str
+    pga: str
+    uplift: str
+    share: float
+    margin: Margin
+    unknown: bool
+
+
+def _lines(rows: Sequence[MarginRow]) -> Iterator[_Line]:
+    """Yield the line of each motion that governs, and below it, if outcomes are unknown, what is known to overturn."""
+    for name, _, pga, found, _ in rows:
+        doubt = bool(found.unknown.any())
+        governing = f"{name}: {MAY}" if doubt else name
+        yield _Line(governing, number(pga, 3), number(found.uplift, 3), found.share.highest, found, unknown=True)
+        if doubt:
+            yield _Line("  known to overturn", "", "", found.share.lowest, found, unknown=False)
+
+
+def _at_level(find: Callable[..., float | None], level: float) -> Callable[[_Line], float | None]:
+    return lambda line: find(line.margin, level, unknown=line.unknown)
+
+
+COLUMNS: tuple[Column[_Line], ...] = (
+    only_shown("motion", of("name"), text=True),
+    only_shown("PGA\n[g]", of("pga")),
+    only_shown("uplift\nat", of("uplift")),
+    only_shown("overturn\nat 1", of("share"), percent),
+    *(only_shown(f"{percent(level)}\nfirst\nat", _at_level(Margin.first, level), rounded(3)) for level in LEVELS),
+    *(only_shown(f"{percent(level)}\nalways\nfrom", _at_level(Margin.always, level), rounded(3)) for level in LEVELS),
+)
+
+
 def view(
     structure: Structure, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood, end: Conclusion
 ) -> View:
     """Show the margins of a structure under some motions, what is concluded of all of them first."""
     mechanism, over = structure.mechanism, peaks_over([side.phi_cr is None for side in structure.statics])
     around = rows[0].margin.around if rows else around  # with the deviations of the structure
-    heads = ["motion", "PGA\n[g]", "uplift\nat", "overturn\nat 1"]
-    heads += [f"{percent(level)}\n{when}" for when in ("first\nat", "always\nfrom") for level in LEVELS]
-    cells = [cell for row in rows for cell in _cells(row)]
     either = {
         "1": "motions as given",
         "-1": "motions reversed",
@@ -54,7 +87,7 @@ def view(
         f"Scale factors on {either}; at each, {around.count} neighbouring motions, {deviations(around)}. 'First at' is "
         "the smallest factor at which so many of them overturn the structure; 'always from' the smallest from which on "
         "no factor tried (up to 5) has fewer.",
-        Table("", heads, cells, numbers=range(1, len(heads))),
+        table_of("", COLUMNS, _lines(rows)),
     ]
     if any(row.margin.unknown.any() for row in rows):
         parts.append(f"The row '{MAY}' governs; the row below it alone does not prove that the structure stands.")
@@ -63,17 +96,6 @@ def view(
     if not all(row.margin.checked for row in rows):
         parts.append(unchecked(why=mechanism.unchecked))
     return View(_data(mechanism, rows, polarity, around) | {"conclusion": conclusion_data(end)}, parts)
-
-
-def _cells(row: MarginRow) -> Iterator[list[str]]:
-    """Yield the row that governs, and below it, if outcomes are unknown, what is known to overturn."""
-    found, doubt = row.margin, bool(row.margin.unknown.any())
-    of_motion = [f"{row.name}: {MAY}" if doubt else row.name, f"{row.pga:.3g}", number(found.uplift, 3)]
-    for unknown in (True, False) if doubt else (True,):
-        share = found.share.highest if unknown else found.share.lowest
-        first = (number(found.first(level, unknown=unknown), 3) for level in LEVELS)
-        always = (number(found.always(level, unknown=unknown), 3) for level in LEVELS)
-        yield [*(of_motion if unknown else ["  known to overturn", "", ""]), percent(share), *first, *always]
 
 
 def _data(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rocking_cli.views.column import Column, data_of, of, table_of
+from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.view import View
 
 
@@ -49,11 +49,11 @@ COLUMNS: tuple[Column[InstalledMeasure], ...] = (
     Column("name", of("name")),
     Column("form", of("form"), head="measure", text=True),
     Column("unit", of("unit")),
-    Column("", lambda each: each.unit or None, head="unit", text=True),
+    only_shown("unit", lambda each: each.unit or None, text=True),
     Column("power", of("power")),
-    Column("", _power, head="scales with", text=True),
+    only_shown("scales with", _power, text=True),
     Column("title", of("title")),
-    Column("", lambda each: each.title or "(cannot be loaded)", head="description", text=True),
+    only_shown("description", lambda each: each.title or "(cannot be loaded)", text=True),
     Column("package", of("package"), head="package", text=True),
     Column("relative", of("relative")),
     Column("source", of("source")),

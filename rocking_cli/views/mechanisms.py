@@ -16,7 +16,7 @@ from rocking_cli.core.hung.interlock import Interlock
 from rocking_cli.core.hung.loads import Load
 from rocking_cli.core.hung.ties import Face, Place, Tie
 from rocking_cli.units import units_of
-from rocking_cli.views.column import Column, data_of, of, table_of
+from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.view import Table, View
 
 BOUNDS = (
@@ -34,12 +34,12 @@ def _default(row: Mapping[str, Any]) -> str | None:
 
 
 COLUMNS: tuple[Column[Mapping[str, Any]], ...] = (
-    Column("", itemgetter("field"), head="field", text=True),
-    Column("", itemgetter("symbol"), head="symbol", text=True),
-    Column("", itemgetter("unit"), head="unit", text=True),
-    Column("", itemgetter("bounds"), head="bounds", text=True),
-    Column("", _default, head="default", text=True),
-    Column("", itemgetter("description"), head="meaning", text=True),
+    only_shown("field", itemgetter("field"), text=True),
+    only_shown("symbol", itemgetter("symbol"), text=True),
+    only_shown("unit", itemgetter("unit"), text=True),
+    only_shown("bounds", itemgetter("bounds"), text=True),
+    only_shown("default", _default, text=True),
+    only_shown("meaning", itemgetter("description"), text=True),
 )
 """Columns of the fields of a file, whose rows are the data."""
 
@@ -55,7 +55,7 @@ class InstalledMechanism(NamedTuple):
 INSTALLED: tuple[Column[InstalledMechanism], ...] = (
     Column("name", of("name"), head="mechanism", text=True),
     Column("title", of("title")),
-    Column("", lambda each: each.title or "(cannot be loaded)", head="description", text=True),
+    only_shown("description", lambda each: each.title or "(cannot be loaded)", text=True),
     Column("package", of("package"), head="package", text=True),
 )
 CHECKS: tuple[Column[Verdict], ...] = (

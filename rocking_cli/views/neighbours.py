@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 from rocking_cli import names
 from rocking_cli.names import percent
 from rocking_cli.studies.neighbours import FRACTILES, Neighbourhood, Neighbours
-from rocking_cli.views.column import Column
+from rocking_cli.views.column import Column, only_shown
 
 R = TypeVar("R")
 ENOUGH = 20  # neighbours from which on the peaks of 16 and 84 % are told: of fewer, one or two decide them
@@ -89,9 +89,9 @@ def neighbour_columns(of: Callable[[R], Neighbours | None], *, doubtful: bool) -
         return lambda row: None if (near := of(row)) is None else show(near)
 
     return [
-        Column("", cell(lambda near: percent(near.overturned)), head="neighbours\noverturn"),
-        Column("", cell(_unknown), head="are\nunknown" if doubtful else None),
-        Column("", cell(_median), head="their\nmedian"),
+        only_shown("neighbours\noverturn", cell(lambda near: percent(near.overturned))),
+        only_shown("are\nunknown" if doubtful else None, cell(_unknown)),
+        only_shown("their\nmedian", cell(_median)),
     ]
 
 

@@ -14,7 +14,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import OVERTURNS, UNKNOWN, percent
 from rocking_cli.studies.overturning import FALLS, Comparison, OverturningMap, Region
 from rocking_cli.studies.under_pulses import PulsedModel, Reals
-from rocking_cli.views.column import Column, rounded, table_of
+from rocking_cli.views.column import only_shown, rounded, table_of
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View, number
 
@@ -50,8 +50,8 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
         curves["unknown\nfrom"] = doubtful
     across = (found.omega if dimensionless else found.periods).tolist()
     columns = [
-        Column[int]("", across.__getitem__, head=what, form=rounded(3), text=True),
-        *(Column[int]("", (unit * curve).item, head=head, form=rounded(3)) for head, curve in curves.items()),
+        only_shown(what, across.__getitem__, rounded(3), text=True),
+        *(only_shown(head, (unit * curve).item, rounded(3)) for head, curve in curves.items()),
     ]
     source = "" if found.structure.eta_given else FROM_KINEMATICS
     shares = ", ".join(f"{region.label} {100 * share:.1f} %" for region, share in found.shares.items() if share)
@@ -181,12 +181,12 @@ def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
         return "several equal" if len(firsts[k]) > 1 else firsts[k][0] if firsts[k] else None
 
     columns = [
-        Column[int]("", found.periods.item, head="T [s]", form=rounded(3), text=True),
+        only_shown("T [s]", found.periods.item, rounded(3), text=True),
         *(
-            Column[int]("", partial(_span, *ends), head=each.name.replace(" ", "\n"))
+            only_shown(each.name.replace(" ", "\n"), partial(_span, *ends))
             for each, *ends in zip(found.structures, found.possible, found.least, strict=True)
         ),
-        Column[int]("", first, head="overturns first", text=True),
+        only_shown("overturns first", first, text=True),
     ]
     parts: list[Table | str] = [
         f"Least a_g [g] that overturns: {comparison_title(found)}",

@@ -20,6 +20,7 @@ class Parameter(Column[EquivalentBlock]):
         Description for a reader who does not know the parameter.
     """
 
+    key: str
     symbol: str = ""
     meaning: str = ""
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from rocking_cli.views.view import Table, View
+from rocking_cli.views.column import table_of, text_columns
+from rocking_cli.views.view import View
 
 
 def view(name: str, kind: str, folder: str, files: Mapping[str, str], commands: Sequence[str]) -> View:
@@ -22,5 +23,5 @@ def view(name: str, kind: str, folder: str, files: Mapping[str, str], commands: 
         The commands to type, in order.
     """
     data = {"plugin": name, "folder": folder, "files": list(files), "commands": list(commands)}
-    rows = [[file, what] for file, what in files.items()]
-    return View(data, [Table(f"{folder}: template of the {kind} {name}", ["file", "description"], rows)])
+    title = f"{folder}: template of the {kind} {name}"
+    return View(data, [table_of(title, text_columns("file", "description"), list(files.items()))])

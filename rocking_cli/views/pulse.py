@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from math import isnan
 from typing import Any, TypeVar
 
@@ -11,7 +11,7 @@ from rocking_cli import names
 from rocking_cli.dynamics.exact import ClosedForm, ExactResponse
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.names import percent
-from rocking_cli.views.column import Column, data_of, of
+from rocking_cli.views.column import Column, data_of, of, only_shown, table_across
 from rocking_cli.views.view import ABSENT, Table, View, number
 
 R = TypeVar("R")
@@ -28,15 +28,13 @@ YES_NO = {True: "yes", False: "no", None: ABSENT}
 
 def _condition(name: str) -> Column[ClosedForm]:
     holds = YES_NO.__getitem__
-    return Column("", lambda closed: closed.conditions[name], "", "  condition", holds, words=CONDITIONS[name])
+    return only_shown("  condition", lambda closed: closed.conditions[name], holds, words=CONDITIONS[name])
 
 
 CLOSED: tuple[Column[ClosedForm], ...] = (
-    Column("D0", of("D0"), "", "closed form D0*", number, words="energy of the free motion after the pulse (Eq. 42)"),
-    Column(
-        "max_ratio", of("max_ratio"), "", "  max ratio", number, words="peak of the first rebound over phi_cr (Eq. 41)"
-    ),
-    Column("overturns", of("overturns"), "", "  overturns", YES_NO.__getitem__, words="eta^2 (1 - D0*) >= 1"),
+    only_shown("closed form D0*", of("D0"), number, words="energy of the free motion after the pulse (Eq. 42)"),
+    only_shown("  max ratio", of("max_ratio"), number, words="peak of the first rebound over phi_cr (Eq. 41)"),
+    only_shown("  overturns", of("overturns"), YES_NO.__getitem__, words="eta^2 (1 - D0*) >= 1"),
     *map(_condition, CONDITIONS),
 )
 EXACT: tuple[Column[ExactResponse], ...] = (
@@ -82,17 +80,14 @@ def view(shape: str, a: float, omega: float, eta: float, closed: ClosedForm | No
         "exact": data_of(EXACT, exact),
     }
     title = "Full sine" if shape == "sine" else shape.replace("_", " ").capitalize()
-    table = Table(
-        f"{title} pulse: a = {a:g}, omega = {omega:g}, eta = {eta:g}",
-        ["", "value", "meaning"],
-        [*(_rows(CLOSED, closed) if closed is not None else []), *_rows(EXACT, exact)],
-        numbers=[1],
-    )
+    table = _table(f"{title} pulse: a = {a:g}, omega = {omega:g}, eta = {eta:g}", EXACT, exact)
+    if closed is not None:
+        table = replace(table, rows=[*_table("", CLOSED, closed).rows, *table.rows])
     return View(data, [table, _verdict(a, closed, exact), LINEAR_BLOCK])
 
 
-def _rows(columns: Sequence[Column[R]], found: R) -> list[list[str]]:
-    return [[each.head, each.cell(found), each.words] for each in columns if each.head is not None]
+def _table(title: str, columns: Sequence[Column[R]], found: R) -> Table:
+    return table_across(title, columns, ["value"], [found], {"meaning": of("words")})
 
 
 def closed_data(closed: ClosedForm, exact: ExactResponse) -> dict[str, Any]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from math import nan
-from typing import Any
+from operator import itemgetter
+from typing import Any, NamedTuple
 
 from rocking_cli import names
 from rocking_cli.core import Direction, Mechanism
@@ -19,7 +20,7 @@ from rocking_cli.studies.conclusion import Concluding
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.pulse_on_structure import KAPPAS, Answer, outcome, scaled
 from rocking_cli.studies.sampled_pulse import SampledHistory
-from rocking_cli.views.column import Column, data_of, lines_of, rounded
+from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
 from rocking_cli.views.conclusion import conclusion_data
 from rocking_cli.views.pulse import (
     CONDITIONS,
@@ -35,6 +36,34 @@ from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.verdict import NO_JOINTS, ends, joints_in_words, uplift_in_words
 from rocking_cli.views.view import Table, View, heading, in_degrees, number
 
+DIRECTIONS: tuple[Column[Mapping[str, Any]], ...] = (
+    only_shown("direction", itemgetter("direction"), text=True),
+    only_shown("omega", itemgetter("omega"), rounded(5)),
+    only_shown("a\nkappa1", itemgetter("a1"), rounded(5)),
+    only_shown("a\nkappa2", itemgetter("a2"), rounded(5)),
+    only_shown("eta", itemgetter("eta"), rounded(5)),
+)
+
+
+class _Beside(NamedTuple):
+    """A closed form, and the exact response that it approximates."""
+
+    closed: ClosedForm
+    exact: ExactResponse
+
+
+def _condition(place: int, name: str) -> Column[_Beside]:
+    return only_shown(f"condition {place}", lambda each: each.closed.conditions[name], YES_NO.__getitem__)
+
+
+CLOSED: tuple[Column[_Beside], ...] = (
+    only_shown("D0* (Eq. 42)", of("closed.D0"), number),
+    only_shown("max ratio (Eq. 41)", of("closed.max_ratio"), number),
+    only_shown("  minus exact first rebound", lambda each: each.closed.off(each.exact.first_rebound), rounded(3)),
+    only_shown("  minus exact peak", lambda each: each.closed.off(each.exact.peak_ratio), rounded(3)),
+    only_shown("overturns after one impact", of("closed.overturns"), YES_NO.__getitem__),
+    *(_condition(place, name) for place, name in enumerate(CONDITIONS, start=1)),
+)
 EXACT = {True: "exact", False: "sampled"}
 
 
@@ -61,6 +90,7 @@ def view(
     blocks = {"positive": equivalence.positive, "negative": equivalence.negative}
     seen = {label: scaled(mechanism, block, pulse) for label, block in blocks.items()}
     polarity, first = next(iter(answers.items()))
+    exact = {name: each for name, each in first.items() if isinstance(each, ExactResponse)}
     each = {
         str(sign): {
             "responses": {
@@ -75,17 +105,12 @@ def view(
         "restitution": restitution_data(structure),
         "conclusion": conclusion_data(answers.conclusion),
         "directions": seen,
-        "closed_form": {name: closed_data(form, exact) for name, (form, exact) in _beside(closed, first).items()}
-        or None,
+        "closed_form": {name: closed_data(form, exact[name]) for name, form in closed.items()} or None,
         **(each.popitem()[1] if len(each) == 1 else {"polarities": each}),
     }
-    rows = [
-        [label, *(number(values[key], 5) for key in ("omega", "a1", "a2", "eta"))] for label, values in seen.items()
-    ]
-    if equivalence.symmetric:
-        rows = [["both", *rows[0][1:]]]
-    columns = ["direction", "omega", "a\nkappa1", "a\nkappa2", "eta"]
-    parts: list[Table | str] = [Table(f"{heading(mechanism)}, {pulse}", columns, rows, numbers=range(1, 5))]
+    sides = {"both": seen["positive"]} if equivalence.symmetric else seen
+    rows = [{"direction": label, **values} for label, values in sides.items()]
+    parts: list[Table | str] = [table_of(f"{heading(mechanism)}, {pulse}", DIRECTIONS, rows)]
     for sign, found in answers.items():
         title = f"Polarity {sign}: {'as given' if sign > 0 else 'reversed'}"
         parts += ["", _answer_table(title, found), _verdict(found, mechanism)]
@@ -96,7 +121,7 @@ def view(
     if not closed:
         parts.append(_why_no_closed_form(mechanism, pulse))
     elif any(form.conditions["uplift"] for form in closed.values()):
-        parts += _closed_parts(closed, first)
+        parts += _closed_parts(closed, exact)
     else:
         parts.append(f"No closed form: by the equivalent blocks, the structure {names.NO_UPLIFT} (a <= 1).")
     runs = [found for each in answers.values() for found in map(outcome, each.values()) if isinstance(found, History)]
@@ -129,11 +154,11 @@ def _columns(answers: Mapping[str, Answer], *, unknown: bool = False) -> list[Co
     over = partial(_over_nonlinear, answers=answers)
     return [
         Column("exact", lambda answer: isinstance(answer, ExactResponse), "", "pulse", EXACT.__getitem__),
-        Column("", end, head="outcome"),
-        Column("", value("known_to"), "s", until, rounded(5)),
+        only_shown("outcome", end),
+        only_shown(until, value("known_to"), rounded(5), "s"),
         Column("peak_ratio", value("peak_ratio"), "", "peak rotation / phi_cr", rounded(5)),
         Column("over_nonlinear", over, "", "  over that of nonlinear", rounded(5)),
-        Column("", bound, "", least, rounded(5)),
+        only_shown(least, bound, rounded(5)),
         Column("peak_positive", value("peak_positive"), "deg", "peak rotation, clockwise", in_degrees),
         Column("peak_negative", value("peak_negative"), "deg", "peak rotation, anticlockwise", in_degrees),
         Column("first_excursion", exactly("first_excursion"), "", "first excursion", rounded(5)),
@@ -158,9 +183,8 @@ def _over_nonlinear(answer: Answer, answers: Mapping[str, Answer]) -> float:
 
 def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
     unknown = any(outcome(each).unknown for each in answers.values())
-    heads = ["", *model_heads(answers, unknown=unknown), "unit"]
-    rows = lines_of(_columns(answers, unknown=unknown), list(answers.values()))
-    return Table(title, heads, rows, numbers=range(1, len(answers) + 1))
+    heads = model_heads(answers, unknown=unknown)
+    return table_across(title, _columns(answers, unknown=unknown), heads, list(answers.values()))
 
 
 def _verdict(answers: Mapping[str, Answer], mechanism: Mechanism) -> str:
@@ -186,34 +210,14 @@ def _verdict(answers: Mapping[str, Answer], mechanism: Mechanism) -> str:
     return said
 
 
-def _closed_parts(closed: Mapping[str, ClosedForm], answers: Mapping[str, Answer]) -> Iterator[Table | str]:
+def _closed_parts(closed: Mapping[str, ClosedForm], exact: Mapping[str, ExactResponse]) -> Iterator[Table | str]:
     """Yield the closed form, its conditions, and a sentence on how far to trust it."""
-    forms = list(closed.values())
-    beside = _beside(closed, answers)
-    rows = [
-        ["D0* (Eq. 42)", *(number(form.D0) for form in forms)],
-        ["max ratio (Eq. 41)", *(number(form.max_ratio) for form in forms)],
-        ["  minus exact first rebound", *(number(form.off(exact.first_rebound), 3) for form, exact in beside.values())],
-        ["  minus exact peak", *(number(form.off(exact.peak_ratio), 3) for form, exact in beside.values())],
-        ["overturns after one impact", *(YES_NO[form.overturns] for form in forms)],
-    ]
-    rows += [
-        [f"condition {place}", *(YES_NO[form.conditions[name]] for form in forms)]
-        for place, name in enumerate(CONDITIONS, start=1)
-    ]
-    yield Table("Closed form of a full sine", ["", *closed], rows, numbers=range(1, len(forms) + 1))
+    rows = [_Beside(form, exact[name]) for name, form in closed.items()]
+    yield table_across("Closed form of a full sine", CLOSED, list(closed), rows, {})
     for place, condition in enumerate(CONDITIONS.values(), start=1):
         yield f"{place}: {condition}"
-    for name, (form, exact) in beside.items():
-        yield f"{name}: {_trust(form, exact)}"
-
-
-def _beside(
-    closed: Mapping[str, ClosedForm], answers: Mapping[str, Answer]
-) -> dict[str, tuple[ClosedForm, ExactResponse]]:
-    """Return each closed form with the exact response that it approximates."""
-    exact = {name: each for name, each in answers.items() if isinstance(each, ExactResponse)}
-    return {name: (form, exact[name]) for name, form in closed.items()}
+    for name, form in closed.items():
+        yield f"{name}: {_trust(form, exact[name])}"
 
 
 def _trust(closed: ClosedForm, exact: ExactResponse) -> str:

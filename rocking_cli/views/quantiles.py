@@ -11,7 +11,7 @@ from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.studies.fragility.assess import UnknownRuns
 from rocking_cli.studies.fragility.intensity import label
 from rocking_cli.studies.fragility.quantiles import FEWEST, SHARES, Group, Quantiles
-from rocking_cli.views.column import Column, data_of, of, table_of
+from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.view import ABSENT, Table, View, number
 
 
@@ -50,7 +50,7 @@ def _tables(found: Quantiles) -> Iterator[Table | str]:
 
 
 def _quantile(k: int, head: str, values: Callable[[Group], Sequence[float | str]]) -> Column[Group]:
-    return Column("", lambda group: values(group)[k], head=head, form=_ratio)
+    return only_shown(head, lambda group: values(group)[k], _ratio)
 
 
 def _ranks(group: Group) -> Iterator[float | str]:

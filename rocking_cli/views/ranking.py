@@ -9,7 +9,7 @@ from typing import Any
 from rocking_cli.names import UNKNOWN
 from rocking_cli.studies.fragility.definition import Limit
 from rocking_cli.studies.fragility.ranking import FEWEST, TREND, Ranked, Ranking
-from rocking_cli.views.column import Column, data_of, of, rounded, table_of
+from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_of
 from rocking_cli.views.fragility import limit_name
 from rocking_cli.views.view import Table, View
 
@@ -59,7 +59,7 @@ def parts(ranking: Ranking) -> Iterator[Table | str]:
 
 def _entry(field: str, key: Limit, head: str, digits: int) -> Column[Ranked]:
     """Return the column of one entry of a mapping of each measure."""
-    return Column("", lambda each: getattr(each, field)[key], head=head, form=rounded(digits))
+    return only_shown(head, lambda each: getattr(each, field)[key], rounded(digits))
 
 
 def _dispersion(limit: Limit) -> str:

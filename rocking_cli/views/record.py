@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rocking_cli.views import processing
 from rocking_cli.views import response_spectrum as spectra
-from rocking_cli.views.column import Column, data_of, lines_of, of, rounded
+from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
 from rocking_cli.views.view import ABSENT, Table, number
 
 if TYPE_CHECKING:
@@ -61,14 +63,14 @@ AS_READ: tuple[Column[Examined], ...] = (
     Column("channel", _channel, head="channel"),
     Column("unit", of("motion.unit"), head="unit in the file"),
     Column("origin", lambda record: record.motion.origin._asdict()),
-    Column("", lambda record: record.motion.origin.event or None, head="earthquake", form=_folded),
-    Column("", lambda record: record.motion.origin.station or None, head="station", form=_folded),
-    Column("", of("motion.origin.magnitude"), head="magnitude", form=number),
-    Column("", of("motion.origin.distance"), "km", "distance"),
+    only_shown("earthquake", lambda record: record.motion.origin.event or None, _folded),
+    only_shown("station", lambda record: record.motion.origin.station or None, _folded),
+    only_shown("magnitude", of("motion.origin.magnitude"), number),
+    only_shown("distance", of("motion.origin.distance"), unit="km"),
     Column("npts", of("motion.npts"), head="points"),
     Column("dt", of("motion.dt"), "s", "dt", number),
     Column("duration", of("motion.duration"), "s", "duration", number),
-    Column("", lambda record: "\n".join(record.motion.processing) or None, head="processed"),
+    only_shown("processed", lambda record: "\n".join(record.motion.processing) or None),
     Column("factor", of("factor"), head="scaled by", form=number),
 )
 MEASURED: tuple[Column[Examined], ...] = (
@@ -107,11 +109,11 @@ def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | st
     If a table has room for one record only, the name is its title. Without a width, as in a pipe, several records are
     one table with a row for each.
     """
-    rows = _rows(records)
+    columns = _columns(records)
     if width is None and len(records) > 1:
-        yield _long(records, rows)
+        yield _long(records, columns)
     else:
-        yield from _columns(records, rows, width)
+        yield from _side_by_side(records, columns, width)
     for record in records:
         if record.pulses:
             from rocking_cli.views import pulse_fits
@@ -120,7 +122,9 @@ def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | st
     yield from (spectra.peaks(each.label, each.spectrum) for each in records if each.spectrum is not None)
 
 
-def _columns(records: Sequence[Examined], rows: Sequence[Sequence[str]], width: int | None) -> Iterator[Table]:
+def _side_by_side(
+    records: Sequence[Examined], columns: Sequence[Column[Examined]], width: int | None
+) -> Iterator[Table]:
     """Yield tables with a column for each record."""
     names = [_folded(record.label) for record in records]
     fitting = len(records)
@@ -129,29 +133,36 @@ def _columns(records: Sequence[Examined], rows: Sequence[Sequence[str]], width: 
         fitting = max((width - LEFT) // (widest + BESIDE), 1)
     for start in range(0, len(records), fitting):
         part = slice(start, start + fitting)
-        cells = [[row[0], *row[1:-1][part], row[-1]] for row in rows]
         title, headings = ("", names[part])
         if len(headings) == 1:
             title, headings = records[start].label, ["value"]
-        yield Table(title, ["", *headings, "unit"], cells, numbers=range(1, len(headings) + 1))
+        yield table_across(title, columns, headings, records[part])
 
 
-def _long(records: Sequence[Examined], rows: Sequence[Sequence[str]]) -> Table:
+def _long(records: Sequence[Examined], columns: Sequence[Column[Examined]]) -> Table:
     """Return a table with a row for each record, none of which has a line break."""
-    heads = ["record", *(_folded(row[0], SHORT) + (f"\n[{row[-1]}]" if row[-1] else "") for row in rows)]
-    cells = zip(*(row[1:-1] for row in rows), strict=True)
-    lines = [
-        [record.label, *(cell.replace("\n", " ") for cell in own)] for record, own in zip(records, cells, strict=True)
-    ]
-    return Table("", heads, lines, numbers=range(1, len(heads)))
+    whole = table_of("", [only_shown("record", of("label"), text=True), *map(_narrow, columns)], records)
+    return replace(whole, rows=[[cell.replace("\n", " ") for cell in row] for row in whole.rows])
 
 
-def _rows(records: Sequence[Examined]) -> list[list[str]]:
-    """Return the rows of the table: a label, a cell for each record, a unit."""
+def _narrow(column: Column[Examined]) -> Column[Examined]:
+    """Return a column with its unit in the heading, which is folded."""
+    unit = f"\n[{column.unit}]" if column.unit else ""
+    return replace(column, head=f"{_folded(column.head or '', SHORT)}{unit}")
+
+
+def _columns(records: Sequence[Examined]) -> list[Column[Examined]]:
+    """Return the columns that tables show: those that say something of any record, and the measures asked for."""
     silent = {"channel": ABSENT, "processed": ABSENT, "scaled by": "1", "p dt": ABSENT}  # says nothing if all are this
     silent |= dict.fromkeys(("earthquake", "station", "magnitude", "distance"), ABSENT)
-    return [
-        [label, *cells, unit]
-        for label, *cells, unit in lines_of([*AS_READ, *MEASURED], records)
-        if label not in silent or any(cell != silent[label] for cell in cells)
-    ] + [[str(each), *(number(record.asked[each], 4) for record in records), each.unit] for each in records[0].asked]
+    said = [
+        column
+        for column in (*AS_READ, *MEASURED)
+        if column.head is not None
+        and (column.head not in silent or any(column.cell(each) != silent[column.head] for each in records))
+    ]
+    return said + [only_shown(str(each), partial(_asked, each), unit=each.unit) for each in records[0].asked]
+
+
+def _asked(measure: Measure, record: Examined) -> float:
+    return record.asked[measure]

@@ -14,7 +14,7 @@ from rocking_cli.studies.record_set import RecordSet
 from rocking_cli.studies.subsets import STARTS
 from rocking_cli.studies.target_spectrum import TargetSpectrum
 from rocking_cli.text import cut
-from rocking_cli.views.column import Column, data_of, of, rounded, table_of
+from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_of
 from rocking_cli.views.view import Table, View
 
 NAME = 40  # characters of an event or a station in the table
@@ -76,10 +76,10 @@ RECORDS: tuple[Column[_Chosen], ...] = (
     Column("pga", lambda row: row.factor * row.motion.of_ground.pga_g, "g", "PGA as\nscaled [g]", rounded(3)),
 )
 ENDS: tuple[Column[_Extreme], ...] = (
-    Column("", of("what"), head="", text=True),
-    Column("", of("ratio"), head="ratio"),
-    Column("", of("period"), "s", "at [s]", rounded(3)),
-    Column("", of("limit"), head="limit"),
+    only_shown("", of("what"), text=True),
+    only_shown("ratio", of("ratio")),
+    only_shown("at [s]", of("period"), rounded(3)),
+    only_shown("limit", of("limit")),
 )
 
 

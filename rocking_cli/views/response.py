@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from math import sqrt
 from typing import Any, NamedTuple
@@ -24,13 +24,13 @@ from rocking_cli.studies.movements import Movements, PointPeak, TiePeak, Watched
 from rocking_cli.studies.response import Histories, Question, Response, Runs
 from rocking_cli.views import processing
 from rocking_cli.views.cautions import cautions_of
-from rocking_cli.views.column import Column, data_of, lines_of, of, rounded, table_of
+from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
 from rocking_cli.views.conclusion import conclusion_data, governing_polarity, headline, next_in_words
 from rocking_cli.views.contact import contact_data, contact_words
 from rocking_cli.views.neighbours import neighbours_data, neighbours_in_words
 from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.verdict import SENSE, unchecked, verdict, why_unknown
-from rocking_cli.views.view import ABSENT, Table, View, force_unit, in_degrees, number
+from rocking_cli.views.view import Table, View, force_unit, in_degrees, number
 
 Reals = NDArray[np.float64]
 FIRST = 12  # impacts of a model in its table; the data have all
@@ -208,16 +208,16 @@ def _columns(*, unknown: bool = False, over: str = "phi_cr") -> list[Column[Hist
     until, bound = ("known until", f"lower bound of peak / {over}") if unknown else (None, None)
     return [
         Column("outcome", ending),
-        Column("", of_structure(of("words")), head="outcome"),
-        Column("", of("known_to"), "s", until, rounded(5)),
+        only_shown("outcome", of_structure(of("words"))),
+        only_shown(until, of("known_to"), rounded(5), "s"),
         Column("peak_ratio", of("peak_ratio"), "", f"peak rotation / {over}", rounded(5)),
-        Column("", lambda run: run.lower_bound if run.unknown else None, "", bound, rounded(5)),
+        only_shown(bound, lambda run: run.lower_bound if run.unknown else None, rounded(5)),
         Column("peak_positive", of("peak_positive"), "deg", "peak rotation, clockwise", in_degrees),
         Column("peak_negative", of("peak_negative"), "deg", "peak rotation, anticlockwise", in_degrees),
         Column("uplift_time", of("uplift_time"), "s", "first uplift", rounded(5)),
         Column("overturned", of("overturned")),
         Column("overturning_time", of("overturning_time")),
-        Column("", of_structure(of("overturning_time")), "s", "overturning time", rounded(5)),
+        only_shown("overturning time", of_structure(of("overturning_time")), rounded(5), "s"),
         Column("overturning_direction", lambda run: Direction(run.fell_to).label if run.fell else None),
         Column("impacts", lambda run: len(run.felt), head="impacts"),
         Column("impacts_all", of("impact_count")),
@@ -249,7 +249,7 @@ class Impact(NamedTuple):
 IMPACTS: tuple[Column[Impact], ...] = (
     Column("time", of("time"), "s", "time [s]", "{:.4f}".format),
     Column("direction", of("direction.label")),
-    Column("", of("direction"), head="ends motion", form=SENSE.__getitem__, text=True),
+    only_shown("ends motion", of("direction"), SENSE.__getitem__, text=True),
     Column("rate_before", of("before"), "rad/s", "before [rad/s]", rounded(4)),
     Column("rate_after", of("after"), "rad/s", "after [rad/s]", rounded(4)),
 )
@@ -394,18 +394,20 @@ def outcome_table(title: str, found: Response, sign: int, watched: Watched) -> T
     unknown = any(run.unknown for run in runs)
     free = runs[0].ends_at_limit
     over = "limit" if all(free) else "phi_cr or limit" if any(free) else "phi_cr"
-    moved = [watched.peaks(run) for run in runs]
-    rows = [*lines_of(_columns(unknown=unknown, over=over), runs), *_movement_rows(moved)]
+    columns = [*_columns(unknown=unknown, over=over), *_movements({run.model: watched.peaks(run) for run in runs})]
     if sign in found.contacts:
         per, unit = force_unit(watched.mechanism)
-        shear = number(found.contacts[sign].base_shear / per, 4)
-        cells = (shear if run.model == "nonlinear" else ABSENT for run in runs)
-        rows.append(["base shear, without impacts", *cells, unit])
+        shear = found.contacts[sign].base_shear / per
+        columns.append(
+            only_shown(
+                "base shear, without impacts", lambda run: shear if run.model == "nonlinear" else None, rounded(4), unit
+            )
+        )
     heads = [
         f"{head},\nuntil {number(run.known_to, 4)} s" if run.unknown else head
         for head, run in zip(model_heads(found.runs[sign], unknown=unknown), runs, strict=True)
     ]
-    return Table(title, ["", *heads, "unit"], rows, numbers=range(1, len(runs) + 1))
+    return table_across(title, columns, heads, runs)
 
 
 def model_heads(models: Iterable[str], *, unknown: bool) -> list[str]:
@@ -413,14 +415,21 @@ def model_heads(models: Iterable[str], *, unknown: bool) -> list[str]:
     return [f"block,\n{model}" if unknown and model != "nonlinear" else model for model in models]
 
 
-def _movement_rows(moved: Sequence[Movements]) -> Iterator[list[str]]:
-    yield ["peak impact velocity", *(number(each.impact_velocity, 4) for each in moved), "m/s"]
-    for points in zip(*(each.points for each in moved), strict=True):
-        cells = (number(1000 * point.horizontal, 4) for point in points)
-        yield [f"{points[0].name}, horizontal displacement", *cells, "mm"]
-    for ties in zip(*(each.ties for each in moved), strict=True):
-        yield [f"{ties[0].name}, force", *(number(tie.force / 1000, 4) for tie in ties), "kN"]
-        yield [f"{ties[0].name}, elongation", *(number(1000 * tie.elongation, 4) for tie in ties), "mm"]
+def _movements(moved: Mapping[str, Movements]) -> Iterator[Column[History]]:
+    """Yield the columns of the movements of a structure, given by model."""
+
+    def peak(kind: str, k: int, name: str, factor: float) -> Callable[[History], float]:
+        return lambda run: factor * getattr(getattr(moved[run.model], kind)[k], name)
+
+    yield only_shown("peak impact velocity", lambda run: moved[run.model].impact_velocity, rounded(4), "m/s")
+    any_model = next(iter(moved.values()))
+    for k, point in enumerate(any_model.points):
+        yield only_shown(
+            f"{point.name}, horizontal displacement", peak("points", k, "horizontal", 1e3), rounded(4), "mm"
+        )
+    for k, tie in enumerate(any_model.ties):
+        yield only_shown(f"{tie.name}, force", peak("ties", k, "force", 1e-3), rounded(4), "kN")
+        yield only_shown(f"{tie.name}, elongation", peak("ties", k, "elongation", 1e3), rounded(4), "mm")
 
 
 def _impact_table(title: str, history: History, etas: tuple[float, float]) -> list[Table | str]:

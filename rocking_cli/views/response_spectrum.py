@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking_cli.views.column import Column, of
+from rocking_cli.views.column import Column, data_of, of
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
@@ -26,7 +26,9 @@ ORDINATES: tuple[Column[ResponseSpectrum], ...] = (
 
 def data(spectrum: ResponseSpectrum) -> dict[str, Any]:
     """Return a spectrum as plain data, in s, standard gravity, m/s and m."""
-    return {"damping": spectrum.damping} | {column.key: column.of(spectrum).tolist() for column in ORDINATES}
+    return {"damping": spectrum.damping} | {
+        key: values.tolist() for key, values in data_of(ORDINATES, spectrum).items()
+    }
 
 
 def table(spectra: Mapping[str, ResponseSpectrum]) -> Columns:

@@ -21,7 +21,7 @@ from rocking_cli.studies.experiments.score import (
 )
 from rocking_cli.studies.experiments.scores import DRAWS, CalibrationBin, ScoreEstimate
 from rocking_cli.text import one_line
-from rocking_cli.views.column import Column, data_of, frame_of, of, rounded, table_of
+from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, rounded, table_of
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.view import ABSENT, Table, View
 
@@ -47,7 +47,7 @@ ROWS: tuple[Column[Stated], ...] = (
     Column("pgv", lambda each: _number(each.pgv)),
 )
 BINS: tuple[Column[CalibrationBin], ...] = (
-    Column("", lambda each: f"{each.low:g} to {each.high:g}", head="stated share", text=True),
+    only_shown("stated share", lambda each: f"{each.low:g} to {each.high:g}", text=True),
     Column("low", of("low")),
     Column("high", of("high")),
     Column("tests", of("tests"), head="tests"),
@@ -118,9 +118,9 @@ def _scores(found: Scored, count: int) -> Iterator[Table | str]:
     unknown = any(each.unknown for each in found.observed)
     shown = {name: each for name, each in found.scores.items() if name != WITH_UNKNOWN or unknown}
     overturned = sum(bool(each.test.overturned) for each in found.observed)
-    rules = (
-        Column[str]("", lambda name: NAMES.get(name, name), head="rule", text=True),
-        Column[str]("", lambda name: shown[name].tests, head="tests"),
+    rules: tuple[Column[str], ...] = (
+        only_shown("rule", lambda name: NAMES.get(name, name), text=True),
+        only_shown("tests", lambda name: shown[name].tests),
         _estimate("Brier", lambda name: shown[name].brier),
         _estimate("tool less\nrule", found.differences.get),
         _estimate("log loss", lambda name: shown[name].log_loss),
@@ -254,7 +254,7 @@ def _estimate(head: str, of_rule: Callable[[str], ScoreEstimate | None]) -> Colu
     def form(each: ScoreEstimate) -> str:
         return ABSENT if isnan(each.value) else f"{each.value:.3f}\n{_range(each.low, each.high)}"
 
-    return Column("", of_rule, head=head, form=form)
+    return only_shown(head, of_rule, form)
 
 
 def _range(low: float | None, high: float | None) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from rocking_cli.studies.selfcheck import Checked, SelfCheck
-from rocking_cli.views.column import Column, data_of, frame_of, of, table_of
+from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, table_of
 from rocking_cli.views.view import View, number
 
 VERDICTS = {True: "passed", False: "FAILED", None: "not run"}
@@ -22,8 +22,8 @@ COLUMNS: tuple[Column[Checked], ...] = (
     Column("found", of("found")),
     Column("limit", of("check.limit")),
     Column("unit", of("check.unit"), text=True),
-    Column("", lambda each: _with_unit(each.found, each.check.unit), head="found"),
-    Column("", lambda each: _with_unit(each.check.limit, each.check.unit), head="limit"),
+    only_shown("found", lambda each: _with_unit(each.found, each.check.unit)),
+    only_shown("limit", lambda each: _with_unit(each.check.limit, each.check.unit)),
     Column("passed", of("passed"), head="result", form=VERDICTS.__getitem__, text=True),
     Column("why", of("why"), text=True),
     Column("seconds", of("seconds")),

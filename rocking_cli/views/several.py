@@ -20,7 +20,7 @@ from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
 from rocking_cli.studies.response import Histories, Response
 from rocking_cli.text import in_short
 from rocking_cli.views.cautions import cautions_of
-from rocking_cli.views.column import Column, of, table_of
+from rocking_cli.views.column import Column, of, only_shown, table_of
 from rocking_cli.views.conclusion import NAMED, counted
 from rocking_cli.views.contact import contact_words
 from rocking_cli.views.neighbours import deviations, neighbour_columns
@@ -99,10 +99,10 @@ class Several:
         self._rows.append(MotionRow(name, pga, {model: _fate(histories[model]) for model in self._models}, near))
 
     def _columns(self) -> Iterator[Column[MotionRow]]:
-        yield Column("", of("name"), head=f"peak phi/{'limit' if any(self._free) else 'phi_cr'}\nunder", text=True)
-        yield Column("", of("pga"), head="PGA\n[g]")
+        yield only_shown(f"peak phi/{'limit' if any(self._free) else 'phi_cr'}\nunder", of("name"), text=True)
+        yield only_shown("PGA\n[g]", of("pga"))
         for model, head in zip(self._models, model_heads(self._models, unknown=bool(self._until)), strict=True):
-            yield Column("", partial(_fate_of, model), head=head)
+            yield only_shown(head, partial(_fate_of, model))
         if self._around is not None:
             yield from neighbour_columns(of("near"), doubtful=self._doubtful)
 

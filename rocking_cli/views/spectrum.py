@@ -14,7 +14,7 @@ from rocking_cli.processing.scaled import Scaled
 from rocking_cli.studies.spectrum import Spectrum
 from rocking_cli.studies.under_pulses import Integers, Reals
 from rocking_cli.views import processing
-from rocking_cli.views.column import Column, rounded, table_of
+from rocking_cli.views.column import Column, only_shown, rounded, table_of
 from rocking_cli.views.overturning import FROM_KINEMATICS, NO_JOINTS, numbers
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View
@@ -217,21 +217,21 @@ def _curve(results: ShownSpectra, each: Spectrum) -> Iterator[Table | str]:
 
 def _columns(results: ShownSpectra, each: Spectrum) -> Iterator[Column[int]]:
     """Yield the columns of the table of a shape, whose rows are its sizes."""
-    yield Column("", each.periods.item, head="2 pi/p\n[s]", form=rounded(3))
+    yield only_shown("2 pi/p\n[s]", each.periods.item, rounded(3))
     scales = ["as given" if k == each.given else f"{scale:.3g}" for k, scale in enumerate(each.scales)]
-    yield Column("", scales.__getitem__, head="scale" if each.shape.slenderness is None else "R\n[m]")
+    yield only_shown("scale" if each.shape.slenderness is None else "R\n[m]", scales.__getitem__)
     if results.one:
         least = np.broadcast_to(each.lower_bound, each.peak_ratio.shape)[0]
-        yield Column("", lambda k: _peak(each.peak_ratio[0, k], least[k]), head="peak\nphi/phi_cr")
+        yield only_shown("peak\nphi/phi_cr", lambda k: _peak(each.peak_ratio[0, k], least[k]))
         return
     for q in results.fractiles:
         falls, peaks = each.fractile_overturns(q), [_peak(value) for value in each.fractile(q)]
         # Unknown outcomes count as overturning in a fractile: where only they make it overturn, it is not known.
         cells = [UNKNOWN if peak == OVERTURNS and not known else peak for peak, known in zip(peaks, falls, strict=True)]
-        yield Column("", cells.__getitem__, head="median" if q == 0.5 else f"{100 * q:g} %")
-    yield Column("", lambda k: f"{each.overturned[k]} of {each.followed[k]}", head="overturned")
+        yield only_shown("median" if q == 0.5 else f"{100 * q:g} %", cells.__getitem__)
+    yield only_shown("overturned", lambda k: f"{each.overturned[k]} of {each.followed[k]}")
     if each.unknown.any():
-        yield Column("", each.doubtful.item, head=UNKNOWN)
+        yield only_shown(UNKNOWN, each.doubtful.item)
 
 
 def _verdict(results: ShownSpectra, each: Spectrum) -> str:

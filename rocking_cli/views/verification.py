@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
@@ -13,10 +13,10 @@ from rocking_cli.studies.verification.installed import codes
 from rocking_cli.studies.verification.results import Verification, Verified
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.cautions import cautions_of
-from rocking_cli.views.column import Column, data_of, frame_of, of, table_of
+from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, table_of
 from rocking_cli.views.conclusion import conclusion_data, next_in_words, of_verification
 from rocking_cli.views.sheet.language import ENGLISH, Language
-from rocking_cli.views.view import ABSENT, Table, View, heading, number
+from rocking_cli.views.view import Table, View, heading, number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,25 +38,25 @@ class MethodRow(NamedTuple):
 
 
 METHODS: Sequence[Column[MethodRow]] = (
-    Column("", of("direction.label"), name="direction", text=True),
-    Column("", of("key"), name="method", text=True),
-    Column("", of("method.title"), head="", name=None, text=True),
+    Column(None, of("direction.label"), name="direction", text=True),
+    Column(None, of("key"), name="method", text=True),
+    only_shown("", of("method.title"), text=True),
     Column("capacity", of("method.capacity"), head="capacity"),
     Column("demand", of("method.demand"), head="demand"),
     Column("unit", of("method.unit"), head="unit", text=True),
     Column("ratio", of("method.ratio"), head="ratio"),
     Column("passes", of("method.passed"), name=None),
     Column("clause", of("method.clause"), head="clause", name=None, text=True),
-    Column("", of("governs"), head="", form={True: "governs", False: ""}.__getitem__, name="governs", text=True),
+    Column(None, of("governs"), head="", form={True: "governs", False: ""}.__getitem__, name="governs", text=True),
 )
 STEPS: Sequence[Column[Working]] = (
-    Column("", of("symbol"), head="", text=True),
-    Column("", of("formula"), head="formula", text=True),
-    Column("", of("numbers"), head="numbers", text=True),
-    Column("", of("value"), head="result", form=number),
-    Column("", of("unit"), head="unit", text=True),
-    Column("", lambda line: cited(line), head="clause", text=True),
-    Column("", of("meaning"), head="meaning", text=True),
+    only_shown("", of("symbol"), text=True),
+    only_shown("formula", of("formula"), text=True),
+    only_shown("numbers", of("numbers"), text=True),
+    only_shown("result", of("value"), number),
+    only_shown("unit", of("unit"), text=True),
+    only_shown("clause", lambda line: cited(line), text=True),
+    only_shown("meaning", of("meaning"), text=True),
 )
 
 
@@ -206,16 +206,21 @@ def _site(found: Verification, symbols: Sequence[str]) -> Table:
     for line in (each.in_plain() for each in found.workings):
         rows.setdefault(line.symbol, {})[line.state] = line
     states = list(dict.fromkeys(state for each in rows.values() for state in each if state)) or [""]
-    cells = []
-    for symbol in symbols or rows:
-        if symbol not in rows:
-            continue
-        each = rows[symbol]
-        known = [each.get(state, each.get("")) for state in states]
-        one = next(iter(each.values()))
-        values = [number(line.value) if line is not None else ABSENT for line in known]
-        cells.append([symbol, *values, one.unit, one.formula, cited(one)])
-    return Table("Site", ["", *states, "unit", "formula", "clause"], cells, numbers=range(1, len(states) + 1))
+
+    def of_any(value: Callable[[Working], str]) -> Callable[[Mapping[str, Working]], str]:
+        return lambda each: value(next(iter(each.values())))
+
+    def at(state: str) -> Callable[[Mapping[str, Working]], float | None]:
+        return lambda each: line.value if (line := each.get(state, each.get(""))) is not None else None
+
+    columns = [
+        only_shown("", of_any(of("symbol")), text=True),
+        *(only_shown(state, at(state), number) for state in states),
+        only_shown("unit", of_any(of("unit")), text=True),
+        only_shown("formula", of_any(of("formula")), text=True),
+        only_shown("clause", of_any(cited), text=True),
+    ]
+    return table_of("Site", columns, [rows[symbol] for symbol in symbols or rows if symbol in rows])
 
 
 def steps(workings: Sequence[Working], where: str = "") -> Iterator[Table]:

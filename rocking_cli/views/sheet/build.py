@@ -12,9 +12,9 @@ from rocking_cli.studies.assessment import File, TitleBlock
 from rocking_cli.studies.verification.check import code_of
 from rocking_cli.studies.verification.results import Verification
 from rocking_cli.studies.verification.site_file import SiteFile
+from rocking_cli.views.column import table_of, text_columns
 from rocking_cli.views.sheet.document import Item, Listing, Sentence, Sheet, SheetPart
 from rocking_cli.views.sheet.language import DIGITS, Language
-from rocking_cli.views.view import Table
 
 MOST = 200  # lines of a file that are printed
 
@@ -123,8 +123,8 @@ def _inputs(say: Language, found: Verification, title: TitleBlock, made: SheetSo
     items: list[Item] = [
         Sentence(say("Run this command with these files and versions to reproduce the sheet.")),
         Listing(title.command),
-        Table(say("Files"), ["", say("file"), "SHA-256"], rows),
-        Table(say("Versions"), [say("package"), say("version")], [[*each] for each in made.versions.items()]),
+        table_of(say("Files"), text_columns("", say("file"), "SHA-256"), rows),
+        table_of(say("Versions"), text_columns(say("package"), say("version")), list(made.versions.items())),
         Sentence(say("Mechanism: {source}.", source=found.mechanism.source)),
     ]
     texts = []
