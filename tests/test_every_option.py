@@ -1,7 +1,8 @@
 """Every argument of every verb, and every option of every command, has an effect or is refused by name.
 
 Each is set to an odd value beside a question in which it means something, and the answer must change (its data, words,
-columns, plot, notes and files) or an `InputError` must name it. `IDLE` has questions in which it means nothing.
+columns, plot, notes and files) or an `InputError` must name it. `IDLE` has questions in which it means nothing. An
+option must change the arguments with which the command calls its verb, what it prints or what it writes.
 """
 
 from __future__ import annotations
@@ -9,13 +10,27 @@ from __future__ import annotations
 import inspect
 import json
 import re
+import shlex
+import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
+import click
 import numpy as np
 import pytest
+import yaml
+from click.testing import CliRunner
+from matplotlib.figure import Figure
 
 import rocking_cli as rk
+import rocking_cli.studies.assessment
+import rocking_cli.studies.selfcheck
+import rocking_cli.views.selfcheck
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.results import StudyAnswer
 from rocking_cli.ask.watcher import Watcher
+from rocking_cli.cli.main import COMMANDS, main
+from rocking_cli.views.view import View
 from tests.conftest import EXAMPLES
 
 BLOCK = rk.Block(width=0.7, height=2.8, name="block", friction=0.6)
@@ -29,6 +44,28 @@ TIME = 0.01 * np.arange(200)
 RECORD = rk.GroundMotion("record", 0.01, 3.0 * np.sin(2 * np.pi * TIME / 0.8) * np.exp(-TIME))
 AROUND = {"neighbours": 3, "amplitude_deviation": 0.3, "slenderness_deviation": 0.3, "restitution_deviation": 0.3}
 SITE = EXAMPLES / "verify" / "site.yaml"
+ACCEL, ACROSS, BLOCK_FILE = EXAMPLES / "accel.csv", EXAMPLES / "accel_transverse.csv", EXAMPLES / "block.yaml"
+CODE = np.array([[0.1, 0.3], [0.5, 0.7], [1.0, 0.4], [4.0, 0.1]]).T
+CANDIDATES = [rk.GroundMotion(f"r{k}", 0.01, RECORD.acceleration * np.cos(k * TIME)) for k in range(6)]
+TESTS = {"structure": ["in.yaml"] * 3, "record": [PULSE, STRONG, "in.txt"], "overturned": [0, 1, 0]}
+TRACED = EXAMPLES / "calibrate" / "block.yaml"
+NTC = {**yaml.safe_load(SITE.read_text("utf-8")), "FC": 1.2}
+STUDY = {
+    "structures": [
+        {"file": str(EXAMPLES / "block.yaml"), "vary": {"width": {"normal": {"mean": 0.7, "deviation": 0.2}}}}
+    ],
+    "records": [{"pulse": "sine:0.9g:1.5s"}, {"pulse": "sine:0.6g:2s"}, {"pulse": STRONG}],
+    "samples": 10,
+    "polarities": [1],
+    "levels": {"measure": "PGA", "least": 0.1, "most": 2, "count": 12},
+    "limit_states": ["overturning"],
+    "method": "stripes",
+}
+OBSERVED = {
+    "structure": [str(BLOCK_FILE)] * 4,
+    "overturned": [0, 1, 1, 0],
+    "record": ["sine:0.3g:1.5s", "sine:0.5g:1.5s", "sine:0.4g:2s", "sine:0.9g:1s"],
+}
 
 CALLS = {
     "equiv": ({"structures": BLOCK}, {"structures": [BLOCK, OTHER]}),
@@ -109,14 +146,58 @@ CALLS = {
         {"motion": RECORD},
         {"motion": PULSE, "periods": [0.5, 1.0], "damping": 0.1, "scale": 2.0},
     ),
+    "record": (
+        {"motion": RECORD, "spectrum": True},
+        {"motion": PULSE, "polarity": "both", "structure": BLOCK, "fit_pulse": True, "measures": "CAV",
+         "spectrum": False, "period": (0.1, 1.0), "damping": 0.1},
+    ),
+    "select": (
+        {"records": CANDIDATES, "target": CODE, "band": (0.2, 1.0), "count": 2, "within": (0.01, 9.0),
+         "one_per": "none"},
+        {"records": CANDIDATES[1:], "target": 0.5 * CODE, "band": (0.3, 2.0), "count": 3, "within": (0.9, 1.1),
+         "damping": 0.1, "factors": (0.5, 1.0), "one_per": "event", "same_factor": True, "seed": 4},
+    ),
+    "score": (
+        {"tests": TESTS, "neighbours": 4},
+        {"tests": TESTS | {"overturned": [1, 1, 0]}, "opening": 1.0, "usual": {"units": "g"}} | AROUND,
+    ),
+    "calibrate": (
+        {"structure": TRACED, "free": EXAMPLES / "calibrate" / "trace.csv"},
+        {"structure": BLOCK, "free": "gone.csv", "tests": TESTS, "free_geometry": True, "slenderness": (0.9, 1.2),
+         "restitution": (0.8, 0.9), "points": 4, "neighbours": 3, "out": "o.yaml"},
+    ),
+    "verify": (
+        {"structure": WEAK, "site": SITE, "motions": RECORD.scaled(2.0), "sheet": "s.html", "opening": 1.0},
+        {"structure": OTHER, "site": NTC, "control": (0.3, 2.0), "motions": PULSE, "polarity": "both", "state": "SLC",
+         "on_floor": True, "opening": 0.0001, "sheet": None, "language": "it", "project": "odd", "place": "odd",
+         "author": "odd", "logo": "in.svg", "every_step": True, "origin": "odd"},
+    ),
+    "fragility": (
+        {"study": STUDY, "store": "in.db", "jobs": 1},
+        {"study": "gone.yaml", "store": "b.db", "check": True, "scheduler": "odd", "restart": True,
+         "rank_measures": True, "quantiles": True, "nrml": "n.xml"},
+    ),
+    "report": (
+        {"structure": BLOCK, "motions": RECORD, "neighbours": 2},
+        {"structure": OTHER, "motions": PULSE, "file": "o.html", "polarity": "1", "verify": SITE, "state": "SLC",
+         "on_floor": True, "opening": 1.0, "project": "odd", "place": "odd", "author": "odd",
+         "logo": "in.svg", "origin": "odd"} | AROUND,
+    ),
 }  # fmt: skip
 """A question of each verb, and an odd value of each of its arguments."""
+LONG = "report", "verify", "calibrate", "survey"
+"""Verbs whose questions take longer: they are asked with the rest."""
 OF_A_KNOWN_MOTION = {"structure": OTHER, "motion": "sine:0.3g:0.2s"}, {"contact": True, "tail": 0.05, "rtol": 1e-5}
 """Arguments of `respond` that change nothing where friction is given, or where the outcome is unknown."""
-WITHOUT_EFFECT = {"watch", "threads", "jobs", "processes"}
-"""Arguments that change no answer: the watcher, and how many processors work on it."""
-OTHER_TESTS = "record", "select", "score", "calibrate", "report", "verify", "fragility", "results", "selfcheck"
-"""Verbs whose questions take longer; their arguments have tests of their own."""
+OF_TESTS = (
+    {"structure": BLOCK_FILE, "tests": OBSERVED, "points": 5, "neighbours": 6,
+     "slenderness": (0.5, 2.0), "restitution": (0.2, 1.0)},
+    {"tests": "gone.csv", "slenderness": (0.4, 2.2), "restitution": (0.1, 1.0),
+     "points": 6, "neighbours": 7, "out": "o.yaml", "free_geometry": True},
+)  # fmt: skip
+"""Arguments of `calibrate` for the outcomes of tests."""
+WITHOUT_EFFECT = {"watch", "threads", "jobs", "processes", "usual"}
+"""Arguments that change no answer: the watcher, how many processors work on it, and defaults of a command's user."""
 
 IDLE = [
     ("design", {"structure": BLOCK, "vary": "width=0.5m:0.9m", "until": "lambda >= 0.2", "points": 3},
@@ -152,7 +233,8 @@ def answered(verb, arguments):
     """Everything that a verb tells, or the error that it raises."""
     watch = Listening()
     for file in Path().iterdir():
-        file.unlink()
+        if file.stem != "in":
+            file.unlink()
     more = {"watch": watch} if "watch" in inspect.signature(verb).parameters else {}
     try:
         answer = verb(**arguments, **more)
@@ -168,10 +250,15 @@ def answered(verb, arguments):
 @pytest.fixture(autouse=True)
 def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(rocking_cli.studies.assessment, "POINTS", 4)
+    Path("in.yaml").write_text("mechanism: block\nwidth: 0.7\nheight: 2.8\nfriction: 0.2\n")
+    rows = zip(TIME, RECORD.acceleration, strict=True)
+    Path("in.txt").write_text("time,a\n" + "".join(f"{t},{a}\n" for t, a in rows))
+    Path("in.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"/>')
 
 
-@pytest.mark.every(3)
-@pytest.mark.parametrize("name", CALLS)
+@pytest.mark.every(4)
+@pytest.mark.parametrize("name", [pytest.param(each, marks=[pytest.mark.rest] * (each in LONG)) for each in CALLS])
 def test_every_argument_has_an_effect_or_is_refused(name):
     verb, (call, odd) = getattr(rk, name), CALLS[name]
     known = {each for each in inspect.signature(verb).parameters if each != "options"} - WITHOUT_EFFECT
@@ -180,16 +267,39 @@ def test_every_argument_has_an_effect_or_is_refused(name):
 
 
 def without_effect(verb, call, odd):
-    before = answered(verb, call)
+    first, before = answered(verb, call), answered(verb, call)
     assert not isinstance(before, Exception), before
+    assert first == before or "store" in call  # the second finds that of the first
     for argument, value in odd.items():
         after = answered(verb, call | {argument: value})
-        if (isinstance(after, Exception) and not re.search(rf"\b{argument}\b", str(after))) or after == before:
+        named = rf"\b{argument}\b|^{re.escape(str(value))}"  # a file by its own name
+        if (isinstance(after, Exception) and not re.search(named, str(after))) or after == before:
             yield argument, str(after)[:100]
 
 
 def test_arguments_of_a_motion_that_is_known_to_its_end_have_an_effect():
     assert not list(without_effect(rk.respond, *OF_A_KNOWN_MOTION))
+
+
+@pytest.mark.rest
+def test_arguments_of_the_outcomes_of_tests_have_an_effect():
+    assert not list(without_effect(rk.calibrate, *OF_TESTS))
+
+
+def test_arguments_of_a_store_have_an_effect():
+    for store, study in (("in.db", STUDY), ("in.store", STUDY | {"seed": 3})):
+        rk.fragility(study, store=store, jobs=1)
+    odd = {"store": "in.store", "quantiles": True, "rank_measures": True, "curves": "c.csv", "nrml": "n.xml"}
+    assert not list(without_effect(rk.results, {"store": "in.db"}, odd))
+
+
+def test_a_quick_selfcheck_computes_less(monkeypatch):
+    asked = []
+    monkeypatch.setattr(rocking_cli.studies.selfcheck, "run_checks", lambda *_, quick, **more: asked.append(quick))
+    monkeypatch.setattr(rocking_cli.views.selfcheck, "view", lambda found: View({}, []))
+    for quick in (False, True):
+        rk.selfcheck(quick=quick)
+    assert asked == [False, True]
 
 
 @pytest.mark.parametrize(("name", "call", "idle"), IDLE, ids=lambda value: value if isinstance(value, str) else "")
@@ -204,7 +314,7 @@ def test_an_argument_that_means_nothing_is_refused_by_name(name, call, idle):
     assert not silent
 
 
-@pytest.mark.parametrize("name", [*CALLS, *OTHER_TESTS])
+@pytest.mark.parametrize("name", [*CALLS, "results", "selfcheck"])
 def test_an_unknown_argument_is_refused_with_a_suggestion(name):
     verb = getattr(rk, name)
     parameters = inspect.signature(verb).parameters
@@ -212,3 +322,153 @@ def test_an_unknown_argument_is_refused_with_a_suggestion(name):
     last = list(parameters)[-1 if "options" not in parameters else -2]
     with pytest.raises(rk.InputError, match=rf"`{last}h` is not an argument\n  did you mean {last}\?"):
         verb(**needed, **{f"{last}h": 1})
+
+
+UNDER = f"{BLOCK_FILE} --record {ACCEL}"
+COMMAND_LINES = {
+    "draw": f"{BLOCK_FILE}",
+    "equiv": f"{BLOCK_FILE}",
+    "collapse": f"{BLOCK_FILE}",
+    "error": f"{BLOCK_FILE}",
+    "record": f"{ACCEL}",
+    "select": f"{ACCEL} {ACROSS} --target {EXAMPLES / 'target.csv'} --band 0.2:2 --count 2",
+    "respond": UNDER,
+    "margin": UNDER,
+    "verify": f"{UNDER} --site {SITE}",
+    "survey": f"{EXAMPLES / 'survey' / 'parapets.csv'} --record {ACCEL}",
+    "design": f"{UNDER} --vary width=0.5:0.9 --until 'lambda>=0.2'",
+    "score": f"{EXAMPLES / 'tests.csv'}",
+    "calibrate": f"{BLOCK_FILE} --tests {EXAMPLES / 'tests.csv'}",
+    "animate": f"{UNDER} --out film.gif",
+    "pulse": f"{BLOCK_FILE} --ag 0.3g --period 0.5",
+    "overturning": f"{BLOCK_FILE}",
+    "spectrum": UNDER,
+    "equivalent": f"{BLOCK_FILE} {BLOCK_FILE} --ag 0.5g --period 0.6",
+    "fragility": "study.yaml",
+    "results": "study.db",
+    "report": UNDER,
+    "mechanisms": "block",
+    "measures": "",
+    "new": "odd --plugin",
+    "info": "",
+    "selfcheck": "",
+    "completion": "bash",
+}
+"""A command line of each command."""
+ODD = {
+    "--a": "3", "--ag": "0.4g", "--amplitude-deviation": "30%", "--at": "0.3", "--author": "odd", "--azimuth": "30",
+    "--band": "0.3:1", "--baseline": "linear", "--channel": "2", "--code": "", "--control": "0.3,2",
+    "--count": "1", "--curves": "c.csv", "--damping": "10%", "--dt": "0.1", "--eta": "0.7", "--factors": "0.5:2",
+    "--floor": "T1=0.4,xi=0.05,z=0.67,gamma=1.29", "--fps": "30", "--fractiles": "0.3,0.7",
+    "--free": f"{EXAMPLES / 'calibrate' / 'trace.csv'}", "--from": "velocity", "--gain": "0.05m/V", "--highpass": "0.5",
+    "--jobs": "1", "--logo": "logo.png", "--lowpass": "20", "--measures": "CAV", "--neighbours": "3", "--nrml": "n.xml",
+    "--omega": "6", "--opening": "2%", "--out": "o.csv", "--page": "p.html", "--period": "0.7", "--place": "odd",
+    "--plot": "p.svg", "--points": "7", "--project": "odd", "--pulse": PULSE, "--record": f"{ACROSS}",
+    "--release": "0.3", "--resample": "0.02", "--restitution": "0.8:0.9", "--restitution-deviation": "0.3",
+    "--rtol": "1e-6", "--scale": "2", "--scheduler": "tcp://odd:1", "--seed": "3", "--shape": "cosine",
+    "--sheet": "s.html", "--site": f"{SITE}2", "--sizes": "1:2", "--slenderness": "0.2:0.3",
+    "--slenderness-deviation": "30%", "--spectrum": "s.csv", "--speed": "3", "--state": "SLC", "--store": "odd.db",
+    "--structure": f"{BLOCK_FILE}", "--tail": "3", "--taper": "5%", "--target": "odd.csv", "--target-pga": "0.4g",
+    "--target-pgv": "0.5m/s", "--tests": "odd.csv", "--top": "3", "--trim": "1:5", "--units": "g",
+    "--until": "lambda>=0.3", "--vary": "height=2:3", "--verify": f"{SITE}", "--vertical": f"{ACROSS}",
+    "--vertical-channel": "2", "--vertical-dt": "0.1", "--with": f"{ACROSS}", "--with-channel": "2",
+    "--within": "0.8:1.2",
+}  # fmt: skip
+"""An odd value of each option, where no type names one."""
+OTHERWISE = {
+    ("respond", "--model"): "linear2",
+    ("select", "--out"): "odd",
+    ("record", "--period"): "0.1:2",
+    ("overturning", "--period"): "0.1:2",
+    ("overturning", "--ag"): "0.1:2",
+    ("overturning", "--omega"): "1:5",
+    ("overturning", "--a"): "1:5",
+    ("spectrum", "--slenderness"): "0.2",
+    ("calibrate", "--out"): "o.yaml",
+    ("animate", "--out"): "odd.html",
+    ("report", "--out"): "odd.html",
+    ("fragility", "--plot"): "odd",
+    ("results", "--plot"): "odd",
+}
+"""An odd value of an option that means something else in a command."""
+BESIDE = {
+    ("record", "--period"): "--spectrum s.csv",
+    ("record", "--damping"): "--spectrum s.csv",
+    ("respond", "--contact"): "--plot p.svg",
+    **dict.fromkeys(("--with", "--with-channel", "--azimuth"), f"--with {ACCEL} --azimuth 10"),
+    **dict.fromkeys(("--vertical-dt", "--vertical-channel"), f"--vertical {ACROSS}"),
+    **{("verify", each): "--sheet s.html" for each in ("--language", "--project", "--place", "--author", "--logo")},
+}
+"""What an option requires, which stands beside it before and after."""
+
+
+def odd_value(command, option):
+    """The words that set an option to an odd value."""
+    name = max(option.opts, key=len)
+    if option.is_flag:
+        return [name]
+    if (command, name) in OTHERWISE:
+        return [name, OTHERWISE[command, name]]
+    if isinstance(option.type, click.Choice):
+        return [name, next(each for each in reversed(option.type.choices) if each != option.default)]
+    return [name, ODD[name]]
+
+
+HEARD = []
+
+
+def listen(monkeypatch, command):
+    """Replace the verb of a command by one that hears its arguments and has an answer ready; and what writes it."""
+
+    def hear(*given, **named):
+        HEARD.append(re.sub(r" at 0x\w+", "", f"{given} {sorted(named.items())}"))
+        return answer
+
+    view = View({"a": 1}, ["words"])
+    parts = (
+        "stub",
+        SimpleNamespace(failed=(), bad=(), rows=(1,), shown=0, readings=0, values=lambda: [answer]),
+    )
+    parts += view, lambda: {"a": [1.0]}, Figure
+    if command in ("fragility", "results"):
+        study = dict.fromkeys(("store", "plan", "definition", "surfaces", "quantiles", "rankings", "failed"), 0)
+        answer = StudyAnswer(*parts, **study, complete=True)
+        monkeypatch.setattr(f"rocking_cli.cli.{command}.show_study", hear)
+    else:
+        answer = Answer(*parts)
+    monkeypatch.setattr("rocking_cli.cli.set_folder.write_set", hear)
+    monkeypatch.setattr("rocking_cli.views.survey.blocks", lambda *given, **named: [{"a": [1.0]}])
+    verb = getattr(rk, command, None)
+    if callable(verb):
+        monkeypatch.setattr(f"{verb.__module__}.{command}", hear)
+
+
+def called(command, words):
+    """With what a command calls its verb, and what it prints and writes then."""
+    HEARD.clear()
+    for file in Path().iterdir():
+        shutil.rmtree(file) if file.is_dir() else file.unlink()
+    result = CliRunner().invoke(main, [command, *words])
+    files = sorted((each.name, each.read_bytes()[:20]) for each in Path().iterdir() if each.is_file())
+    return result, (list(HEARD), re.sub(r"[\d.]+ s\b", "", result.output), files)
+
+
+@pytest.mark.every(3)
+@pytest.mark.parametrize("command", [each for each in COMMANDS if each != "record"])
+def test_every_option_reaches_the_verb_or_is_refused_by_name(command, monkeypatch):
+    listen(monkeypatch, command)
+    words, silent = shlex.split(COMMAND_LINES[command]), []
+    assert called(command, words)[1] == called(command, words)[1]
+    for option in main.get_command(click.Context(main), command).params:
+        if not isinstance(option, click.Option):
+            continue
+        name = max(option.opts, key=len)
+        beside = shlex.split(BESIDE.get((command, name), BESIDE.get(name, "")))
+        without = [each for each in [*words, *beside] if each != name or not option.is_flag]
+        before, heard = called(command, without)
+        assert before.exit_code == 0 or name in words, (name, before.output)
+        after, also = called(command, [*words, *beside, *odd_value(command, option)])
+        refused = after.exit_code == 2 and re.search(rf"`?{name}\b", after.stderr)
+        if also == heard or (after.exit_code and not refused) or isinstance(after.exception, TypeError):
+            silent.append((name, after.output[-160:], after.exception))
+    assert not silent

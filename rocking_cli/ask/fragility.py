@@ -108,7 +108,7 @@ def workers_of(jobs: int | None, scheduler: str | None) -> AbstractContextManage
     if scheduler is None:
         return workers.threads(jobs)
     if jobs is not None:
-        raise InputError("`jobs` applies to this machine only: on a cluster, the number of workers is set there")
+        raise InputError("`jobs` cannot be combined with `scheduler`: a cluster has its own number of workers")
     return workers.cluster(scheduler)
 
 
