@@ -1,7 +1,5 @@
 """Restitution from traces and from tests: against traces integrated here, and as a user runs the command."""
 
-from __future__ import annotations
-
 import csv
 import runpy
 import warnings

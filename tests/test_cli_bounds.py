@@ -1,7 +1,5 @@
 """Options beyond all sense are refused at once, with the numbers; and small things that were written wrongly."""
 
-from __future__ import annotations
-
 import io
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Several ground motions in one call of `respond`, `animate` and `report`."""
 
-from __future__ import annotations
-
 import csv
 import json
 import re

@@ -1,7 +1,5 @@
 """`rocking spectrum` as a user runs it."""
 
-from __future__ import annotations
-
 import csv
 import json
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """A vertical component on the command line: what it does to the answer, and what is said of it."""
 
-from __future__ import annotations
-
 import csv
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Blocks between fixed sides: mechanisms without dilation by hand formulas, and by all states of joints one by one."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import product
 

@@ -1,7 +1,5 @@
 """A structure by its capacity curve: the block from its own, the shape in between, and files that are wrong."""
 
-from __future__ import annotations
-
 from math import radians, tan
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Damaged record files are refused or doubted, files that an editor has saved are not, and hostile ones do no harm."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -3,8 +3,6 @@
 `make docs` holds the rest: every warning of Sphinx, such as a link that leads nowhere, is an error there.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import re
 from enum import Enum

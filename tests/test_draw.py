@@ -1,7 +1,5 @@
 """The picture of a structure: where its parts and hinges are, what is measured on it, and that it is drawn."""
 
-from __future__ import annotations
-
 import io
 import json
 from dataclasses import replace

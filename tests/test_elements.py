@@ -1,7 +1,5 @@
 """Elements: what each says of its force, its energy and itself, and a law of a tie from another package."""
 
-from __future__ import annotations
-
 import ast
 import re
 from importlib.metadata import EntryPoint

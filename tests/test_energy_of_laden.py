@@ -1,7 +1,5 @@
 """Random structures with loads, ties and forces: what the ground puts in, less what impacts lose, is what is stored."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -1,7 +1,5 @@
 """Equivalent pulses: similar structures do the same, others nearly."""
 
-from __future__ import annotations
-
 import csv
 import json
 from functools import partial

@@ -1,7 +1,5 @@
 """Assemblies whose joints have no friction: they carry any shear, and what that adds to lambda is said."""
 
-from __future__ import annotations
-
 import pytest
 import yaml
 

@@ -1,7 +1,5 @@
 """Measures of intensity against their definitions, integrated by other means; their names, and their powers."""
 
-from __future__ import annotations
-
 from math import asin, pi
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Linkages from files: the textbook shapes rebuilt, what has no motion, and which joint is to blame."""
 
-from __future__ import annotations
-
 from math import pi, sqrt
 from typing import ClassVar
 

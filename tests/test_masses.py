@@ -1,7 +1,5 @@
 """Structures without masses: their moments and inertias are per unit mass, and the output states this."""
 
-from __future__ import annotations
-
 import csv
 import json
 from io import StringIO

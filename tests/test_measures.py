@@ -1,7 +1,5 @@
 """Intensity measures against closed forms, polynomials and quadrature; doubts against motions made doubtful."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from math import pi

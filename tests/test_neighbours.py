@@ -1,7 +1,5 @@
 """Shares of neighbours: against neighbours followed one by one, many more of them, and islands known exactly."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import exp, log
 

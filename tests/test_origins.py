@@ -1,7 +1,5 @@
 """Which earthquake and station a record is of, from the headers of every format that states it, and from no other."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np
@@ -88,10 +86,9 @@ def test_smc(tmp_path):
 
 def test_usc(tmp_path):
     lines = made.usc().split("\n")
-    lines[2:2] = ["x", "x", "STATION USC# 0016   34 05 22N", "x", "x", "MADE UP EARTHQUAKE   JAN 17, 1994 -1230 GMT"]
-    assert of(tmp_path, "\n".join(lines)) == Origin(
-        "MADE UP EARTHQUAKE JAN 17, 1994 -1230 GMT", "USC# 0016", None, None
-    )
+    event = "MADE UP EARTHQUAKE JAN 17, 1994 -1230 GMT"
+    lines[2:2] = ["x", "x", "STATION USC# 0016   34 05 22N", "x", "x", event.replace("JAN", "  JAN") + "    46"]
+    assert of(tmp_path, "\n".join(lines)) == Origin(event, "USC# 0016", None, None)
     assert of(tmp_path, made.usc()) == NOT_SAID
 
 

@@ -1,7 +1,5 @@
 """Maps and curves of overturning against single responses and closed forms."""
 
-from __future__ import annotations
-
 import csv
 import json
 import re

@@ -1,7 +1,5 @@
 """The report and the page of `rocking animate`, opened and used in a real Chromium."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

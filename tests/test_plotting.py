@@ -1,7 +1,5 @@
 """The pictures show what happened, in print and in grey, however long the record."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Pulses are found where they were put, and where an independent search finds them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

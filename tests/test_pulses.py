@@ -1,7 +1,5 @@
 """Pulse shapes against their formulas by other routes, and what a specification says."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 from importlib.metadata import EntryPoint
 

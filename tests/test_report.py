@@ -1,7 +1,5 @@
 """The report without a browser: what it says, against what the other commands say."""
 
-from __future__ import annotations
-
 import hashlib
 import html
 import json

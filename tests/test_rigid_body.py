@@ -1,7 +1,5 @@
 """A rigid body of parts, by its own numbers, and on rounded feet: against sums and derivations of their own."""
 
-from __future__ import annotations
-
 from math import atan2, hypot, pi
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Scores of stated shares: against a program of its own, and as a user runs the command."""
 
-from __future__ import annotations
-
 import csv
 import json
 import runpy

@@ -1,7 +1,5 @@
 """SAC and miniSEED: files made with obspy where it is installed, and what is said where it is not."""
 
-from __future__ import annotations
-
 import io
 import struct
 import sys

@@ -1,7 +1,5 @@
 """`rocking selfcheck`: every check fails if what it checks is wrong, and whatever is broken becomes a row."""
 
-from __future__ import annotations
-
 import json
 import pickle
 import re

@@ -1,7 +1,5 @@
 """Stripes with a set of records at each level, and weights of records: against statsmodels and by hand."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

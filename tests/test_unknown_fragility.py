@@ -1,7 +1,5 @@
 """Runs of unknown outcome in fragility studies: counted twice, a band and never one line, and never a peak."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -1,7 +1,5 @@
 """Maps, curves, spectra, pulses, films and plots of histories whose outcome is unknown from some moment on."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Histories of walls of many blocks: the velocities at their joints, and modes of pieces that stay stuck together."""
 
-from __future__ import annotations
-
 import tracemalloc
 from itertools import pairwise
 

@@ -4,8 +4,6 @@ A number is right if it agrees to half of the last digit that is printed. What n
 own: by hand, by Newton and Euler, by energy, by symmetry.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from decimal import Decimal
 from math import atan, cos, pi, sin, sqrt, tan
