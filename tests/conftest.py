@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import gc
 import os
 import re
@@ -110,6 +111,12 @@ def frame_report(tmp_path_factory):
     out = tmp_path_factory.mktemp("report") / "r.html"
     result = run("report", "--neighbours", 20, EXAMPLES / "frame.yaml", "--record", EXAMPLES / "accel.csv", "-o", out)
     return out, result.stdout.strip()
+
+
+def rows_of(place: str | Path) -> list[dict[str, str]]:
+    """The rows of a table in a file, by its headings."""
+    with Path(place).open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
 
 
 def record(name: str) -> Path:

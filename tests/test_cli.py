@@ -18,7 +18,7 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.structure_file import parse_structure
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.neighbours import deviations
-from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
+from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS, rows_of
 
 ACCEL = str(EXAMPLES / "accel.csv")
 FRAME = str(EXAMPLES / "frame.yaml")
@@ -298,8 +298,7 @@ class TestRespond:
 
     def test_the_history_file_agrees_with_the_peaks(self):
         data = run_json("respond", FRAME, "--record", ACCEL, "--scale", "2", "--out", "history.csv")
-        with open("history.csv", encoding="utf-8") as file:  # noqa: PTH123
-            rows = list(csv.DictReader(file))
+        rows = rows_of("history.csv")
         assert list(rows[0])[:5] == [
             "t [s]", "a_g [g]", "nonlinear phi [rad]", "nonlinear phi_dot [rad/s]", "nonlinear phi/phi_cr",
         ]  # fmt: skip
@@ -318,8 +317,7 @@ class TestRespond:
         run(*options, "--out", "history.csv")
         run(*options, "--out", "history.PARQUET")
         table = parquet.read_table("history.PARQUET")
-        with (tmp_path / "history.csv").open(encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+        rows = rows_of(tmp_path / "history.csv")
         assert table.column_names == list(rows[0]) and table.num_rows == len(rows)
         for name in table.column_names:
             texts = ["" if value is None else f"{value:.9g}" for value in table[name].to_pylist()]
@@ -462,8 +460,7 @@ class TestBothPolarities:
         run("respond", FRAME, "--record", ACCEL, "--model", "linear1", "--polarity", "both", "--out", "both.csv")
         rows = {}
         for name in ("one", "other", "both"):
-            with (tmp_path / f"{name}.csv").open(encoding="utf-8") as file:
-                rows[name] = list(csv.DictReader(file))
+            rows[name] = rows_of(tmp_path / f"{name}.csv")
         for name, column in (("one", "linear1 phi [rad]"), ("other", "reversed linear1 phi [rad]")):
             alone = [row["linear1 phi [rad]"] for row in rows[name]]
             assert [row[column] for row in rows["both"]][: len(alone)] == alone
@@ -491,8 +488,7 @@ class TestImpacts:
         """Of a release without a record: before and after the first impact, the samples tend to its rates."""
         options = ("respond", "--release", "0.5", "--model", "nonlinear", "--impacts", "--out", "history.csv")
         first = run_json(*options)["responses"]["nonlinear"]["impact_list"][0]
-        with (tmp_path / "history.csv").open(encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+        rows = rows_of(tmp_path / "history.csv")
         time = np.array([float(row["t [s]"]) for row in rows])
         rate = np.array([float(row["nonlinear phi_dot [rad/s]"] or "nan") for row in rows])
         k = int(np.searchsorted(time, first["time"]))

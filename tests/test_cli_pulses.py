@@ -18,6 +18,7 @@ from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting.history import draw_history
 from rocking_cli.plotting.pulse_fit import draw_pulses
 from rocking_cli.structure_file import load_structure
+from tests.conftest import rows_of
 from tests.following import respond
 from tests.test_cli import ACCEL, FRAME, run, run_json
 
@@ -56,8 +57,7 @@ class TestInPlaceOfARecord:
         assert data["record"]["scale"] == pytest.approx(0.35 / 0.3) and data["governs"] is None
         run("respond", FRAME, "--pulse", SINE, "--out", "out.csv", "--plot", "plot.png")
         assert (tmp_path / "plot.png").read_bytes().startswith(b"\x89PNG")
-        with (tmp_path / "out.csv").open(encoding="utf-8") as stream:
-            rows = list(csv.DictReader(stream))
+        rows = rows_of(tmp_path / "out.csv")
         assert max(float(row["a_g [g]"]) for row in rows) == pytest.approx(0.3, rel=1e-4)
         assert "0.5" in run("respond", "--pulse", SINE, "--target-pgv", "0.5").stderr
         assert run_json("respond", "--pulse", SINE, "--release", "0.3")["release"] == 0.3

@@ -1,6 +1,5 @@
 """Several ground motions in one call of `respond`, `animate` and `report`."""
 
-import csv
 import json
 import re
 from pathlib import Path
@@ -10,7 +9,7 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.records import read_record
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, rows_of
 from tests.test_cli import run
 
 FRAME = str(EXAMPLES / "frame.yaml")
@@ -104,8 +103,7 @@ class TestRespond:
             f"{stem}-{each}.{end}" for stem, end in (("o", "csv"), ("p", "png")) for each in ("east", "north", "west")
         }
         assert (tmp_path / "o-north.csv").read_bytes() == (tmp_path / "alone.csv").read_bytes()
-        with (tmp_path / "o-east.csv").open(encoding="utf-8", newline="") as stream:
-            assert {float(row["linear1 phi [rad]"]) for row in csv.DictReader(stream)} == {0.0}
+        assert {float(row["linear1 phi [rad]"]) for row in rows_of(tmp_path / "o-east.csv")} == {0.0}
 
     def test_names_that_meet_are_told_apart_and_no_input_is_replaced(self, records, tmp_path):
         (tmp_path / "s").mkdir()

@@ -1,6 +1,5 @@
 """`rocking spectrum` as a user runs it."""
 
-import csv
 import json
 from dataclasses import replace
 from functools import partial
@@ -11,7 +10,7 @@ import pytest
 from rocking_cli.excitation.records import read_record
 from rocking_cli.structure_file import load_structure
 from rocking_cli.studies import spectrum as study
-from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS
+from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS, rows_of
 from tests.following import respond
 from tests.test_cli import run as command
 
@@ -49,8 +48,7 @@ class TestNumbers:
 
     def test_csv_and_json_agree_and_overturning_is_inf_and_null(self, records, tmp_path):
         data = run_json(BLOCK, "--slenderness", "0.15", "--record", records, *QUICK, "--out", "s.csv")
-        with (tmp_path / "s.csv").open(encoding="utf-8", newline="") as stream:
-            rows = list(csv.DictReader(stream))
+        rows = rows_of(tmp_path / "s.csv")
         own, blocks = data["spectra"]
         assert [row["structure"] for row in rows] == ["pedestal"] * 6 + ["alpha = 0.15"] * 5
         assert {row["R of the block [m]"] for row in rows[:6]} == {""} == {row["scale"] for row in rows[6:]}

@@ -1,9 +1,7 @@
 """Equivalent pulses: similar structures do the same, others nearly."""
 
-import csv
 import json
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,7 +18,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.studies import equivalent_pulses as study
 from rocking_cli.views.equivalent_pulses import judge
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, rows_of
 from tests.following import respond
 from tests.pulses import exact_pulse
 from tests.test_cli import run as command
@@ -177,8 +175,7 @@ class TestCommand:
             "overturned", "unknown", "known_to", "known_to_reason", "peak_lower_bound", "opening",
         }  # fmt: skip
         assert data["structures"][0]["ag"] == pytest.approx(0.6)
-        with Path("e.csv").open(encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+        rows = rows_of("e.csv")
         assert list(rows[0])[:3] == ["p t", "pedestal t [s]", "pedestal phi/phi_cr"]
         row = rows[100]
         for each in data["structures"]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from importlib import import_module
 from itertools import pairwise
 
@@ -10,7 +9,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from tests.conftest import PROJECT
+from tests.conftest import PROJECT, rows_of
 
 
 @pytest.fixture(scope="module")
@@ -129,8 +128,7 @@ def test_the_script_writes_a_picture_and_the_data(made, tmp_path):
     result = CliRunner().invoke(made.main, ["3", "--out", str(tmp_path), "--format", "svg"], catch_exceptions=False)
     assert result.exit_code == 0
     assert (tmp_path / "figure3.svg").read_text(encoding="utf-8").startswith("<?xml")
-    with (tmp_path / "figure3.csv").open(encoding="utf-8", newline="") as stream:
-        rows = list(csv.DictReader(stream))
+    rows = rows_of(tmp_path / "figure3.csv")
     expected = made.FIGURES[3]()
     assert len(rows) == sum(curve.x.size for row in expected.panels for panel in row for curve in panel.curves)
     assert float(rows[0]["y"]) == pytest.approx(expected.panels[0][0].curves[0].y[0], rel=1e-8)

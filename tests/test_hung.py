@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import html
 import re
 from math import pi
@@ -23,6 +22,7 @@ from rocking_cli.studies.film import Film
 from rocking_cli.studies.movements import Watched
 from rocking_cli.studies.picture import NODES, picture
 from rocking_cli.views.verdict import verdict
+from tests.conftest import rows_of
 from tests.following import respond
 from tests.test_cli import run, run_json
 
@@ -246,8 +246,7 @@ class TestRespond:
     def test_a_table_has_points_and_ties_after_all_else(self, leaning, tmp_path):
         out = tmp_path / "h.csv"
         found = run_json("respond", leaning, "--pulse", "sine:0.4g:0.8s", "--out", out)["responses"]["nonlinear"]
-        with out.open(encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+        rows = rows_of(out)
         assert list(rows[0]) == [
             "t [s]", "a_g [g]", "nonlinear phi [rad]", "nonlinear phi_dot [rad/s]", "nonlinear phi/limit",
             *(f"nonlinear {name} u_{way} [m]" for name in ("top", "floor", "thrust", "bar") for way in "xy"),
@@ -264,8 +263,7 @@ class TestRespond:
     def test_a_history_that_overturns_has_no_places_after_it(self, tmp_path):
         out = tmp_path / "h.csv"
         run("respond", "--pulse", "sine:2g:1s", "--out", out)
-        with out.open(encoding="utf-8") as file:
-            last = list(csv.DictReader(file))[-1]
+        last = rows_of(out)[-1]
         assert last["nonlinear phi [rad]"] == last["nonlinear top u_x [m]"] == last["linear2 top u_x [m]"] == ""
 
     def test_forces_of_ties_are_drawn_below_the_rotation(self):
@@ -394,8 +392,7 @@ limit_states: [uplift, 0.0005, overturning]
         (said,) = found["without_block"]
         assert said.startswith("tied: no equivalent single block exists") and "kinematic limit" in said
         run("results", "s.db", "--out", "runs.csv")
-        with open("runs.csv", encoding="utf-8") as file:  # noqa: PTH123
-            rows = list(csv.DictReader(file))
+        rows = rows_of("runs.csv")
         assert {row["p PGV/(g lambda)"] for row in rows} == {""} and rows[0]["PGA/(g lambda)"] != ""
         one = next(row for row in rows if row["record"] == "sine:1g:0.6s" and float(row["level"]) == 0.6)
         alone = run_json("respond", tied, "--pulse", "sine:1g:0.6s", "--scale", 0.6, "--neighbours", 0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +13,7 @@ from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records.sensor import Gain
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import parse_steps
-from tests.conftest import SHARED
+from tests.conftest import SHARED, rows_of
 from tests.test_cli import run, run_json
 
 EXPERIMENTS = SHARED / "experiments"
@@ -280,8 +279,7 @@ class TestLaboratoryFile:
     """As the laboratory wrote it: eight columns, no units, times of six digits at 800 Hz."""
 
     def row(self):
-        with (EXPERIMENTS / "granite_boulders.csv").open(encoding="utf-8") as file:
-            return next(each for each in csv.DictReader(file) if each["test"] == "438")
+        return next(each for each in rows_of(EXPERIMENTS / "granite_boulders.csv") if each["test"] == "438")
 
     def test_its_accelerometer_by_options_alone(self):
         data = run_json(

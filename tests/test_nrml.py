@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from types import SimpleNamespace
 from xml.etree import ElementTree
@@ -18,7 +17,7 @@ from rocking_cli.studies.fragility.curves import fit_curve
 from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.views.fragility_table import curve_blocks
 from rocking_cli.views.nrml import chosen, identifier, intensity_type, limit_id, nrml
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, rows_of
 from tests.stores import command
 
 URL = "{http://openquake.org/xmlns/nrml/0.5}"
@@ -235,10 +234,7 @@ def test_two_outputs_cannot_be_one_file(store, tmp_path):
 def test_curves_as_a_table(store, tmp_path, ending):
     out = tmp_path / f"curves.{ending}"
     assert command("results", store, "--curves", out).exit_code == 0
-    if ending == "csv":
-        rows = list(csv.DictReader(out.read_text(encoding="utf-8").splitlines()))
-    else:
-        rows = parquet.read_table(out).to_pylist()
+    rows = rows_of(out) if ending == "csv" else parquet.read_table(out).to_pylist()
     names = ["structure", "limit_state", "measure", "unit", "kind", "median", "dispersion", "scale"]
     other = [f"lower_{name}" for name in ("median", "dispersion", "scale", "probability", "low", "high")]
     assert list(rows[0]) == [*names, "x", "probability", "low", "high", "unknown", *other]
@@ -282,5 +278,5 @@ def test_a_curve_that_is_not_there_is_named_and_a_table_of_none_has_its_heading(
     out = tmp_path / "none.csv"
     found = command("results", study.with_suffix(".db"), "--curves", out)
     assert "pedestal, overturning against PGA: no curve: none of the 22 runs exceed" in found.stderr
-    rows = list(csv.DictReader(out.read_text(encoding="utf-8").splitlines()))
+    rows = rows_of(out)
     assert {each["limit_state"] for each in rows} == {"uplift"}  # which is known without a run

@@ -1,6 +1,5 @@
 """Maps and curves of overturning against single responses and closed forms."""
 
-import csv
 import json
 import re
 from dataclasses import replace
@@ -23,7 +22,7 @@ from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.boundaries import boundaries
 from rocking_cli.studies.overturning import SCAN, Region, compare, overturning_map
 from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape, pulsed_model, weakest
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, rows_of
 from tests.following import respond
 from tests.pulses import exact_pulse
 from tests.test_cli import run, run_json
@@ -320,8 +319,7 @@ class TestCommand:
         assert (data["model"], data["dimensionless"], data["polarity"]) == ("linear2", False, 1)
         assert sum(data["shares"].values()) == pytest.approx(1)
         assert data["period"][0] == pytest.approx(0.3) and data["acceleration"][-1] == pytest.approx(2)
-        with Path("map.csv").open(encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+        rows = rows_of("map.csv")
         assert len(rows) == 24 * 24
         labels = [row["outcome"] for row in rows]
         for region in Region:
@@ -346,8 +344,7 @@ class TestCommand:
         assert all(each["least_or_unknown"] == each["least"] for each in data["structures"])
         assert data["undecided"] == [False] * 8
         assert [each["mechanism"] for each in data["structures"]] == ["block", "asymmetric_frame", "wall"]
-        with Path("c.csv").open(encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+        rows = rows_of("c.csv")
         assert [row["first"] or None for row in rows] == data["first"] and data["tied"] == [None] * 8
         text = run(*asked).stdout
         assert "overturns first" in text and "Overturned by the smallest amplitude:" in text
@@ -393,8 +390,7 @@ class TestCommand:
         }  # fmt: skip
         assert set(data["least_a"]["overturning"]) == {None} and max(data["a"]) <= 1
         assert f"the largest has a = {max(data['a']):.4g}, and uplift requires a > 1" in run(*arguments).stdout
-        with Path("map.csv").open(encoding="utf-8") as file:
-            assert {row["outcome"] for row in csv.DictReader(file)} == {"does not uplift"}
+        assert {row["outcome"] for row in rows_of("map.csv")} == {"does not uplift"}
 
     def test_curves_of_pulses_too_weak_to_lift_are_a_result(self, tmp_path):
         arguments = ["overturning", "--compare", *FILES, "--ag", "0.001g:0.1g", "--points", 4, "--plot", "c.png"]

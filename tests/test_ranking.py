@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from dataclasses import replace
 
@@ -17,7 +16,7 @@ from rocking_cli.studies.fragility.ranking import Ranked, Ranking, line, serves
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
 from rocking_cli.views.ranking import judge
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, rows_of
 from tests.stores import command
 
 RNG = np.random.default_rng(7)
@@ -104,8 +103,8 @@ class TestStudy:
     def test_the_numbers_are_those_of_its_runs(self, study):
         folder, shown = study
         assert command("results", folder / "study.db", "--out", folder / "runs.csv").exit_code == 0
-        with (folder / "runs.csv").open(encoding="utf-8") as file:
-            rows = [row for row in csv.DictReader(file) if row["outcome"] == "rocks" and row["structure"] == "pedestal"]
+        found = rows_of(folder / "runs.csv")
+        rows = [row for row in found if row["outcome"] == "rocks" and row["structure"] == "pedestal"]
         of = {each["measure"]: each for each in shown["ranking"][0]["measures"]}
         y = np.log([float(row["phi/phi_cr"]) for row in rows])
         x = np.log([float(row["PGV [m/s]"]) for row in rows])

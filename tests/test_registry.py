@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import os
 import re
@@ -19,7 +18,7 @@ from rocking_cli.core.registry import Registry, conformance
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.plugins.registry import load
 from rocking_cli.testing import CHECKS
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, rows_of
 from tests.test_cli import run, run_json
 
 BUILT_IN = [name for name in Registry() if Registry().package_of(name).startswith("rocking-cli ")]
@@ -246,7 +245,7 @@ class TestMeasuresOfOthers:
         run = rocking(odd_plugin, "fragility", str(study), "--json")
         assert run.returncode == 0 and json.loads(run.stdout)["curves"][0]["measure"] == "PGA squared"
         rocking(odd_plugin, "results", str(tmp_path / "study.db"), "--out", str(tmp_path / "runs.csv"))
-        rows = list(csv.DictReader((tmp_path / "runs.csv").read_text(encoding="utf-8").splitlines()))
+        rows = rows_of(tmp_path / "runs.csv")
         assert [float(row["scale"]) for row in rows] == pytest.approx([1.0, 2.0])
 
     @pytest.mark.every(3)

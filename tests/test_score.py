@@ -1,6 +1,5 @@
 """Scores of stated shares: against a program of its own, and as a user runs the command."""
 
-import csv
 import json
 import runpy
 from dataclasses import replace
@@ -18,7 +17,7 @@ from rocking_cli.studies.experiments.scores import distance_from_uniform, fitted
 from rocking_cli.studies.experiments.table import ObservedTest, parse_columns, read_tests
 from rocking_cli.studies.neighbours import Neighbourhood, follow
 from rocking_cli.views.score import view
-from tests.conftest import EXAMPLES, SHARED
+from tests.conftest import EXAMPLES, SHARED, rows_of
 from tests.elsewhere import PROJECT
 from tests.test_cli import run, run_json
 
@@ -471,8 +470,7 @@ def test_files_and_picture(tmp_path):
     rows = [f"{BLOCK},sine:{level}g:0.8s,{seen}" for level, seen in ((0.2, 0), (0.5, 0), (0.6, 1), (0.9, 1))]
     table = write(tmp_path, rows)
     run("score", table, "--neighbours", COUNT, "--out", tmp_path / "out.csv", "--plot", tmp_path / "plot.png")
-    with (tmp_path / "out.csv").open(encoding="utf-8") as stream:
-        shares = [float(row["share"]) for row in csv.DictReader(stream)]
+    shares = [float(row["share"]) for row in rows_of(tmp_path / "out.csv")]
     assert len(shares) == 4 and (tmp_path / "plot.png").read_bytes().startswith(b"\x89PNG")
     stated = made()
     found = scored(stated, Neighbourhood(COUNT))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import sqlite3
 from contextlib import closing
@@ -17,7 +16,7 @@ from rocking_cli.processing.intensity.built_in import SpectralAcceleration
 from rocking_cli.processing.oscillator import response_spectrum
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, rows_of
 from tests.stores import command
 
 STUDY = f"""\
@@ -47,8 +46,7 @@ def motions():
 
 def runs_of(folder):
     assert command("results", folder / "study.db", "--out", folder / "runs.csv").exit_code == 0
-    with (folder / "runs.csv").open(encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    return rows_of(folder / "runs.csv")
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import os
 import signal
@@ -31,7 +30,7 @@ from rocking_cli.studies.fragility.plan import Trial, weaker
 from rocking_cli.studies.fragility.sources import Source
 from rocking_cli.studies.fragility.store import COLUMNS, Store, StoreError
 from rocking_cli.studies.fragility.study import load_study
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, rows_of
 
 STUDY = f"""\
 structures:
@@ -739,8 +738,7 @@ def test_the_example_runs_with_pictures_and_tables(tmp_path):
     from pyarrow import parquet
 
     table = parquet.read_table(tmp_path / "runs.parquet").to_pydict()
-    with (tmp_path / "runs.csv").open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(tmp_path / "runs.csv")
     with Store.reading(tmp_path / "near.db") as kept:
         plan = kept.plan()
         assert len(rows) == len(table["run"]) == plan.total

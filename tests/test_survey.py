@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import dataclasses
-import io
 import json
 import os
 import re
@@ -24,7 +22,7 @@ from rocking_cli.io.spreadsheet import parse_sheet
 from rocking_cli.studies.structure_table import StructureTable
 from rocking_cli.studies.survey import MadeStructure, Under, survey
 from rocking_cli.views.survey import sentences
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, rows_of
 from tests.test_cli import run, some
 
 ACCEL = EXAMPLES / "accel.csv"
@@ -398,7 +396,7 @@ class TestFiles:
         )
         shown = run("survey", table(text), "--out", "o.csv", "--top", 2).stdout
         assert "Showing 2 of 32" in shown and shown.count("block") == 2
-        written = list(csv.DictReader(io.StringIO(Path("o.csv").read_text(encoding="utf-8"))))
+        written = rows_of("o.csv")
         assert [row["name"] for row in written[:3]] == ["'=cmd|' /C calc'!A0", "'@x", "n0"]
         assert len(written) == 32 and [int(row["rank"]) for row in written] == list(range(1, 33))
         assert float(written[0]["lambda"]) == 0.25

@@ -1,6 +1,5 @@
 """Runs of unknown outcome in fragility studies: counted twice, a band and never one line, and never a peak."""
 
-import csv
 import io
 import json
 import sqlite3
@@ -28,7 +27,7 @@ from rocking_cli.studies.fragility.store import UNKNOWN, Endings, Store
 from rocking_cli.studies.fragility.study import load_study
 from rocking_cli.views import nrml as openquake
 from rocking_cli.views.ranking import judge
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, rows_of
 from tests.following import build_model
 from tests.stores import command
 from tests.test_study_runs import carry_out
@@ -294,12 +293,12 @@ def test_openquake_gets_no_band(whole, tmp_path):
 def test_tables_have_both_curves_and_the_lower_bound(whole, tmp_path):
     curves, runs = tmp_path / "curves.csv", tmp_path / "runs.csv"
     assert command("results", whole.place, "--curves", curves, "--out", runs).exit_code == 0
-    rows = list(csv.DictReader(curves.read_text(encoding="utf-8").splitlines()))
+    rows = rows_of(curves)
     top = [row for row in rows if row["limit_state"] == "overturning"][-1]
     assert float(top["unknown"]) > 0.02 and float(top["lower_probability"]) < float(top["probability"])
     known = next(row for row in rows if row["limit_state"] == "uplift")
     assert known["lower_probability"] == known["probability"] and float(known["unknown"]) == 0
-    for row, each in zip(csv.DictReader(runs.read_text(encoding="utf-8").splitlines()), whole.histories, strict=True):
+    for row, each in zip(rows_of(runs), whole.histories, strict=True):
         assert (row["outcome"] == "unknown") == each.unknown == bool(row["known to [s]"])
         assert not each.unknown or float(row["phi/phi_cr at least"]) == pytest.approx(each.lower_bound, rel=1e-8)
 

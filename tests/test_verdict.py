@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import re
 from dataclasses import replace
@@ -16,7 +15,7 @@ from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade
 from rocking_cli.dynamics.verdict import agreements
 from rocking_cli.views.verdict import NO_JOINTS, OVERTURNS, verdict
-from tests.conftest import EXAMPLES, record
+from tests.conftest import EXAMPLES, record, rows_of
 from tests.following import respond
 from tests.test_cli import run
 
@@ -187,8 +186,7 @@ def check(text, motion, folder, opening=0.005):
         run("respond", file, *motion, "--neighbours", 0, "--opening", opening, "--json", "--out", table).stdout
     )
     block = json.loads(run("equiv", file, "--json").stdout)["directions"]
-    with table.open(encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
+    rows = rows_of(table)
     said, runs = data["verdict"], data["responses"]
     p = max(side["p"] for side in block.values())
     curves = {name: np.array([float(row[f"{name} phi/phi_cr"] or "nan") for row in rows]) for name in runs}
