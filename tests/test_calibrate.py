@@ -98,7 +98,7 @@ class TestFreeRocking:
 
 
 class TestFit:
-    @pytest.mark.every(2)
+    @pytest.mark.rest
     @pytest.mark.parametrize("drift", [0.0, 0.01])
     def test_the_bars_of_accuracy_are_met(self, clean, drift):
         """Bias below .0002 and deviation below .0003; docs/make_traces.py has 200 traces."""

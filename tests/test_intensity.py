@@ -15,7 +15,6 @@ from rocking_cli.processing.intensity import (
     IntensityMeasures,
     MotionMeasure,
     Reference,
-    RunMeasure,
     all_measures,
     parse_measure,
     parse_measures,
@@ -30,10 +29,11 @@ A, T = 3.0, 0.9
 SINE = GroundMotion("sine", T / 900, A * np.sin(2 * pi * np.linspace(0, 1, 901)))
 
 
+DU = parse_measure("Du")
+
+
 def value(name, motion=NOISE):
-    found = parse_measure(name)
-    assert isinstance(found, MotionMeasure)
-    return found.value(motion)
+    return parse_measure(name).value(motion)
 
 
 def fine(motion, parts=1000):
@@ -110,21 +110,17 @@ class TestDefinitions:
 
     @pytest.mark.parametrize("share", [0.01, 0.4, 0.999, 1.001])
     def test_uniform_duration(self, share):
-        uniform = parse_measure("Du")
-        assert isinstance(uniform, RunMeasure)
         closed = T * (1 - 2 / pi * asin(share)) if share < 1 else 0.0
         structure = Reference(1.0, share * A / 9.0, 9.0)
-        assert uniform.value(SINE, structure) == pytest.approx(closed, abs=1e-4)
+        assert DU.value(SINE, structure) == pytest.approx(closed, abs=1e-4)
         t, a = fine(NOISE)
         level = share * np.abs(NOISE.acceleration).max()
         counted = (np.abs(a) >= level).mean() * t[-1]
-        assert uniform.value(NOISE, Reference(1.0, level / 9.0, 9.0)) == pytest.approx(counted, abs=1e-4)
+        assert DU.value(NOISE, Reference(1.0, level / 9.0, 9.0)) == pytest.approx(counted, abs=1e-4)
 
     def test_uniform_duration_of_level_stretches(self):
-        uniform = parse_measure("Du")
-        assert isinstance(uniform, RunMeasure)
         steps = GroundMotion("steps", 1.0, np.array([0.0, 2.0, 2.0, -2.0, -2.0, 0.0]))
-        found = [uniform.value(steps, Reference(1.0, level, 1.0)) for level in (1.0, 2.0, 2.5)]
+        found = [DU.value(steps, Reference(1.0, level, 1.0)) for level in (1.0, 2.0, 2.5)]
         assert found == [pytest.approx(0.5 + 1 + 0.5 + 1 + 0.5), pytest.approx(2.0), 0.0]
 
     def test_relative_ones(self):

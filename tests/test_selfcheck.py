@@ -5,7 +5,6 @@ import pickle
 import re
 import shutil
 import sys
-import tempfile
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
@@ -337,15 +336,6 @@ class TestCommand:
 
 
 class TestHostilePlaces:
-    def test_without_a_folder_for_temporary_files(self, monkeypatch):
-        monkeypatch.setattr(tempfile, "tempdir", "/nowhere/at/all")
-        found = checked("records")
-        assert found.passed is False and found.why.startswith("FileNotFoundError: ")
-
-    def test_without_the_mechanism(self, monkeypatch):
-        monkeypatch.setattr(checks, "Registry", dict)
-        assert checked("release").why == "KeyError: 'block'"
-
     @pytest.mark.parametrize(
         ("module", "names"),
         [("rocking_cli.studies.selfcheck.checks", CHECKS), ("scipy.integrate", ["release", "histories"])],
@@ -363,6 +353,7 @@ class TestHostilePlaces:
         assert checked("kernels").passed is None
         assert checked("openings").passed
 
+    @pytest.mark.rest
     def test_with_a_kernel_that_is_none(self, monkeypatch):
         monkeypatch.setenv(ways.CHOSEN, "fast")
         ways.forget()
