@@ -16,10 +16,12 @@ import rocking_cli as rk
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.core.registry import Registry
+from rocking_cli.dynamics.model import MODELS
 from rocking_cli.views.view import View
 from tests.conftest import EXAMPLES, PROJECT
 from tests.following import respond
 from tests.test_cli import run_json
+from tests.test_every_option import CALLS, RECORD, SITE
 
 ACCEL = str(EXAMPLES / "accel.csv")
 DOCS = PROJECT / "docs"
@@ -176,6 +178,132 @@ def test_doubts_are_warnings_of_python_unless_something_watches():
     said = []
     rk.equiv(tall, watch=Patient())
     assert "did you mean 700 mm" in said[0]
+
+
+ENDS = ("overturned", "peak_ratio", "uplift_time", "overturning_time", "impact_count")
+OF_A_MAP = (
+    "omega; a; period [s]; acceleration [g]; outcome; peak phi/phi_cr; impacts before overturning; known to [s]; "
+    "peak phi/phi_cr, at least"
+)
+FRAMES = {
+    "equiv": (
+        "name; mechanism; direction; p [rad/s]; phi_cr [rad]; lambda [g]; lambda_lin [g]; kappa1; kappa2; "
+        "theta_cr1 [rad]; theta_cr2 [rad]; eta; v_imp [m/s]; I_eq [kg m2]; G_eq [kg m]; B_eq [kg m]; per unit mass",
+        {"lambda [g]": lambda _, data: [side["lambda"] for side in data["directions"].values()]},
+    ),
+    "collapse": (
+        "direction; lambda; hinge; between; x [m]; y [m]",
+        {"y [m]": lambda _, data: [each["at"][1] for side in data["directions"].values() for each in side["hinges"]]},
+    ),
+    "draw": ("length", {"length": lambda answer, _: [each.text for each in answer.sketch.lengths]}),
+    "error": (
+        "direction; phi/phi_cr; period [s]; period_ratio",
+        {"period [s]": lambda _, data: [each["period"] for each in data["directions"]["positive"]["free_period"]]},
+    ),
+    "respond": (
+        "t [s]; a_g [g]; "
+        + "; ".join(f"{model} {what}" for model in MODELS for what in ("phi [rad]", "phi_dot [rad/s]", "phi/phi_cr"))
+        + "".join(f"; {model} top {what} [m]" for model in MODELS for what in ("u_x", "u_y"))
+        + "; nonlinear base shear [N/kg]",
+        {"linear1 phi [rad]": lambda answer, _: answer["linear1"].phi},
+    ),
+    "respond_each": (
+        "structure; motion; scale; "
+        + "; ".join(f"nonlinear {end}" for end in (*ENDS, "unknown", "known_to"))
+        + "".join(f"; {model} {end}" for model in MODELS[1:] for end in ENDS),
+        {"linear2 peak_ratio": lambda _, data: data["linear2"]["peak_ratio"][0][0]},
+    ),
+    "respond_around": (
+        "azimuth [deg]; PGA [g]; peak phi/phi_cr nonlinear; overturns nonlinear",
+        {"PGA [g]": lambda _, data: data["pga"]},
+    ),
+    "animate": ("time; phi", {"phi": lambda answer, _: answer.film.history.phi}),
+    "pulse": (
+        "polarity; model; peak_ratio; outcome",
+        {"peak_ratio": lambda _, data: [each["peak_ratio"] for each in data["responses"].values()]},
+    ),
+    "spectrum": (
+        "structure; 2 pi/p [s]; scale; R of the block [m]; motions; overturned share; unknown share; "
+        "0.16-fractile of peak phi/phi_cr; 0.5-fractile of peak phi/phi_cr; 0.84-fractile of peak phi/phi_cr; "
+        "peak phi/phi_cr under sine:0.9g:0.5s; peak phi/phi_cr under sine:0.3g:0.5s; "
+        "peak phi/phi_cr under sine:0.9g:0.5s, at least; peak phi/phi_cr under sine:0.3g:0.5s, at least",
+        {"scale": lambda _, data: data["spectra"][0]["scale"],
+         "unknown share": lambda _, data: [each / 2 for each in data["spectra"][0]["unknown"]]},
+    ),
+    "overturning": (OF_A_MAP, {"omega": lambda _, data: data["omega"] * 3}),
+    "overturning_map": (OF_A_MAP, {"acceleration [g]": lambda _, data: np.repeat(data["acceleration"], 3)}),
+    "overturning_curves": (
+        "period [s]; weak [g]; weak, overturns or unknown [g]; block [g]; block, overturns or unknown [g]; first",
+        {"weak [g]": lambda _, data: data["structures"][0]["least"],
+         "block [g]": lambda _, data: data["structures"][1]["least"]},
+    ),
+    "margin": (
+        "motion; factor; overturned; unknown",
+        {"factor": lambda _, data: data["motions"][0]["factors"],
+         "overturned": lambda _, data: data["motions"][0]["shares"]},
+    ),
+    "shares": ("overturned; stands; unknown; checked", {"stands": lambda _, data: [data["stands"]]}),
+    "survey": (
+        "rank; name; mechanism; row; line; overturned; unknown; peak_ratio; peak_over; outcome; worst; lambda; "
+        "uplift [g]; direction; p [rad/s]; phi_cr [rad]; kappa1; kappa2; eta; no_block; doubt; caution",
+        {"p [rad/s]": lambda _, data: [row["p"] for row in data["rows"]]},
+    ),
+    "design": (
+        "width [m]; peak_ratio; unknown; holds",
+        {"width [m]": lambda _, data: data["scan"]["values"], "peak_ratio": lambda answer, _: answer.metric},
+    ),
+    "equivalent": (
+        "p t; block t [s]; block phi/phi_cr; weak t [s]; weak phi/phi_cr; linear block phi/phi_cr",
+        {"p t": lambda answer, _: answer.members[0].block.p * answer.members[0].history.time},
+    ),
+    "response_spectrum": (
+        "record; damping; period [s]; pseudo Sa [g]; pseudo Sv [m/s]; Sd [m]",
+        {"pseudo Sv [m/s]": lambda _, data: data["sv"]},
+    ),
+    "record": ("t [s]; a_g [g]", {"a_g [g]": lambda *_: RECORD.acceleration / 9.80665}),
+    "verify": (
+        "direction; method; a_g [g]; asked [g]; zeta_E; TR [years]; governs",
+        {"a_g [g]": lambda answer, _: [
+            method.a_g for side in answer.directions.values() for method in side.methods.values()
+        ]},
+    ),
+    "select": (
+        "period [s]; target Sa [g]; mean Sa [g]; Sa of r0 [g]; Sa of r5 [g]",
+        {"mean Sa [g]": lambda _, data: data["spectrum"]["mean"]},
+    ),
+    "fragility": (
+        "run; structure; sample; record; level; polarity; eta; scale; PGA [g]; PGV [m/s]; PGA/(g lambda); "
+        "p PGV/(g lambda); outcome; fell_to; phi/phi_cr; phi positive [rad]; phi negative [rad]; uplift [s]; "
+        "overturning [s]; known to [s]; phi/phi_cr at least; opening/D_cr",
+        {"run": lambda _, data: range(data["runs"])},
+    ),
+    "score": (
+        "line; structure; record; cluster; share; unknown; overturned; doubtful; pgv; error",
+        {"pgv": lambda _, data: [each["pgv"] for each in data["tests"]]},
+    ),
+}  # fmt: skip
+"""The columns of the frame of each verb but those that take long, and numbers of some as answer or data have them."""
+QUESTIONS = {verb: given for verb, (given, _) in CALLS.items()} | {
+    "verify": {"structure": CALLS["equiv"][0]["structures"], "site": SITE},
+    "score": {"tests": EXAMPLES / "tests.csv", "neighbours": 2},
+}  # fmt: skip
+
+
+@pytest.mark.filterwarnings("ignore::rocking_cli.DoubtWarning")
+def test_every_frame_has_its_columns_and_the_numbers_of_its_answer(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for verb, (heads, numbers) in FRAMES.items():
+        answer = getattr(rk, verb)(**QUESTIONS[verb])
+        frame, data = answer.to_frame(), answer.to_dict()
+        assert list(frame) == heads.split("; "), verb
+        for head, of in numbers.items():
+            expected = list(of(answer, data))
+            if isinstance(expected[0], str):
+                assert frame[head].tolist() == expected
+            else:
+                np.testing.assert_allclose(
+                    frame[head].astype(float), np.array(expected, float), rtol=1e-12, err_msg=verb
+                )
 
 
 def test_names_of_others_are_text_in_a_notebook():
