@@ -14,6 +14,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import rocking_cli as rk
+from rocking_cli.ask.watcher import Watcher
 from rocking_cli.cli.main import main
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import measure
@@ -310,3 +311,28 @@ class TestMeasures:
         for asked, said in (("Saa(1)", "did you mean Sa?"), ("Du", "give a --structure")):
             result = CliRunner().invoke(main, ["record", str(ACCEL), "--measures", asked])
             assert result.exit_code == 2 and said in result.stderr and not result.stdout
+
+
+def test_a_call_in_python_takes_several_records(tmp_path):
+    class Patient(Watcher):
+        def leave_out(self, error):
+            left_out.append(str(error))
+
+    shutil.copy(ACCEL, tmp_path / "accel.csv")
+    across, left_out = EXAMPLES / "accel_transverse.csv", []
+    asked = [ACCEL, "gone.csv", across, tmp_path / "accel.csv"]
+    with pytest.raises(rk.InputError, match=r"gone\.csv: no such file"):
+        rk.record(asked)
+    answer = rk.record(asked, spectrum=True, watch=Patient())
+    first, second, third = answer
+    assert (first, second) == ("accel.csv", "accel_transverse.csv") and third == f"accel.csv ({tmp_path / 'accel.csv'})"
+    assert len(left_out) == 1 and "gone.csv" in left_out[0]
+    alone = rk.record(across, spectrum=True)
+    assert answer[second].to_dict() == alone.to_dict()
+    assert set(answer.tables["spectrum"]()["record"]) == set(answer)
+    with pytest.raises(rk.InputError, match="no common plot"):
+        rk.record([ACCEL, across]).plot()
+    rk.record([ACCEL, across], out=tmp_path / "clean")
+    for name in (first, second):
+        clean = read_record(tmp_path / "clean" / name).acceleration
+        np.testing.assert_allclose(clean, answer[name].motions[0].acceleration, atol=1e-6)

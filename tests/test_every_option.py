@@ -149,7 +149,7 @@ CALLS = {
     "record": (
         {"motion": RECORD, "spectrum": True},
         {"motion": PULSE, "polarity": "both", "structure": BLOCK, "fit_pulse": True, "measures": "CAV",
-         "spectrum": False, "period": (0.1, 1.0), "damping": 0.1},
+         "spectrum": False, "period": (0.1, 1.0), "damping": 0.1, "out": "o.csv"},
     ),
     "select": (
         {"records": CANDIDATES, "target": CODE, "band": (0.2, 1.0), "count": 2, "within": (0.01, 9.0),
@@ -427,7 +427,7 @@ def listen(monkeypatch, command):
     view = View({"a": 1}, ["words"])
     parts = (
         "stub",
-        SimpleNamespace(failed=(), bad=(), rows=(1,), shown=0, readings=0, values=lambda: [answer]),
+        SimpleNamespace(examined=(), failed=(), bad=(), rows=(1,), shown=0, readings=0, values=lambda: [answer]),
     )
     parts += view, lambda: {"a": [1.0]}, Figure
     if command in ("fragility", "results"):
@@ -435,8 +435,9 @@ def listen(monkeypatch, command):
         answer = StudyAnswer(*parts, **study, complete=True)
         monkeypatch.setattr(f"rocking_cli.cli.{command}.show_study", hear)
     else:
-        answer = Answer(*parts)
+        answer = Answer(*parts, tables={"spectrum": lambda: {"a": [1.0]}})
     monkeypatch.setattr("rocking_cli.cli.set_folder.write_set", hear)
+    monkeypatch.setattr("rocking_cli.views.record.parts", lambda *given: ["words"])
     monkeypatch.setattr("rocking_cli.views.survey.blocks", lambda *given, **named: [{"a": [1.0]}])
     verb = getattr(rk, command, None)
     if callable(verb):
@@ -454,7 +455,7 @@ def called(command, words):
 
 
 @pytest.mark.every(3)
-@pytest.mark.parametrize("command", [each for each in COMMANDS if each != "record"])
+@pytest.mark.parametrize("command", COMMANDS)
 def test_every_option_reaches_the_verb_or_is_refused_by_name(command, monkeypatch):
     listen(monkeypatch, command)
     words, silent = shlex.split(COMMAND_LINES[command]), []

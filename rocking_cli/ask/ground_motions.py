@@ -164,7 +164,7 @@ class Motions:
         chosen: list[Scaled] = []
         for place, source in enumerate(self.sources):
             try:
-                one = self._scaled(source)
+                one = self.read(source)
             except InputError as error:
                 if self.count == 1:
                     raise
@@ -209,7 +209,8 @@ class Motions:
         warn_about([component], watch)
         return component
 
-    def _scaled(self, source: Source) -> Scaled:
+    def read(self, source: Source) -> Scaled:
+        """Read one of the motions, and find its scale factor. Raises `InputError`."""
         if isinstance(source, InputError):
             raise source
         if isinstance(source, Scaled):

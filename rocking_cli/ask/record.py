@@ -1,10 +1,12 @@
-"""`rk.record`: how strong a ground motion is, and what is doubtful about it."""
+"""`rk.record`: how strong ground motions are, and what is doubtful about them."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Unpack
 
@@ -13,12 +15,14 @@ import numpy as np
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, done, signs_of, unprocessed
 from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.several import Answers, answers, are_several
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError
+from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import Measures
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.processing.intensity import Measure
+from rocking_cli.processing.listed import Listed
 from rocking_cli.views.record import Examined
 from rocking_cli.views.view import View
 
@@ -52,24 +56,25 @@ class RecordAnswer(Answer[Measures]):
 
 @takes_numbers
 def record(
-    motion: Motion | Motions,
+    motion: Motion | Motions | Sequence[Motion],
     *,
     polarity: str | int = "1",
     structure: StructureLike | None = None,
     fit_pulse: bool = False,
     measures: str | None = None,
-    spectrum: object = None,
+    spectrum: bool = False,
     period: tuple[float, float] | None = None,
     damping: float | None = None,
+    out: str | Path | None = None,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
-) -> RecordAnswer:
-    """Measure the strength of a ground motion, and check it for defects.
+) -> RecordAnswer | Answers[RecordAnswer]:
+    """Measure the strength of ground motions, and check them for defects.
 
     Parameters
     ----------
-    motion : GroundMotion, Pulse, str or Path
-        The motion, its file, or a pulse as text.
+    motion : GroundMotion, Pulse, str or Path, or a sequence of these
+        The motion, its file, or a pulse as text; a pattern such as "records/*.AT2", or a sequence, gives several.
     polarity : {"1", "-1", "both"}
         Polarity of the motion: as given, reversed, or one after the other.
     structure : Mechanism, str or Path, optional
@@ -79,20 +84,24 @@ def record(
     measures : str, optional
         Names of intensity measures to compute as well, such as "Sa(1.0), CAV", or "all".
     spectrum : bool
-        Whether to compute the response spectrum.
+        Whether to compute the response spectrum, for `frames["spectrum"]` and the plot.
     period : (float, float), optional
         Shortest and longest period of the spectrum [s]; by default 0.02 and 10.
     damping : float, optional
         Damping ratio of the spectrum; by default 0.05.
+    out : str or Path, optional
+        Where each record is written as a clean file of time and acceleration: a file that ends in .csv, or a folder,
+        created if missing, that receives NAME.csv.
     watch : Watcher
-        Told what is doubtful about the record, and how far the fits are.
+        Told what is doubtful about the records, how far the fits are, and which of several motions cannot be used.
     **options
         How the motion is read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
 
     Returns
     -------
     RecordAnswer
-        Peaks, Arias intensity, durations and mean period; `examined` has all else.
+        Peaks, Arias intensity, durations and mean period; `examined` has all else. For several motions, `Answers` with
+        one for each, by its name.
 
     Raises
     ------
@@ -110,28 +119,70 @@ def record(
     >>> round(rk.record("ricker:0.6g:0.5s").pga, 6)
     0.6
     """
-    from rocking_cli.excitation.doubts import coarse_for, doubts
-    from rocking_cli.excitation.measures import measure
-    from rocking_cli.excitation.records.opening import name_of
-    from rocking_cli.views.record import data, parts
+    from rocking_cli.ask.given import structure_of
+    from rocking_cli.views.record import parts
 
     if not spectrum and (period is not None or damping is not None):
         raise InputError("`period` and `damping` require a response spectrum: give `spectrum`")
-    ready = None
-    if structure is not None:
-        from rocking_cli.ask.given import structure_of
+    motions, signs = Motions.of(motion, options), signs_of(polarity)
+    if not motions:
+        raise InputError("no ground motion is given: give `motion`")
+    motions.check()
+    places = _clean_places(Path(out), motions, signs) if out is not None else {}
+    ready = structure_of(structure, watch) if structure is not None else None
 
-        ready = structure_of(structure, watch)
+    def one(read: Scaled) -> RecordAnswer:
+        seen, scaled = _examine(read, signs, ready, watch, measures, fit_pulse=fit_pulse)
+        if spectrum:
+            seen = [
+                each._replace(spectrum=_spectrum(own, period, damping)) for each, own in zip(seen, scaled, strict=True)
+            ]
+        return _answer(seen, scaled, read)
+
+    found = dict[str, RecordAnswer]()
+    for k, source in enumerate(motions.sources):
+        try:
+            answer = one(motions.read(source))
+        except InputError as error:
+            if not found and k == motions.count - 1:
+                raise
+            watch.leave_out(error)
+            continue
+        for sign, own in zip(signs, answer.motions, strict=True):
+            if (k, sign) in places:
+                _write_clean(places[k, sign], own, watch)
+        watch.take(answer)
+        found[_unique(answer.examined[0], found)] = answer
+    if not are_several(motion, motions):
+        return answer
+    examined = [seen for each in found.values() for seen in each.examined]
+    kept = {"spectrum": partial(_spectra_table, examined)} if spectrum else {}
+    drawn = partial(_spectra_figure, examined) if spectrum else None
+    return answers("records", "motion", found, list(parts(examined, 100)), drawn, kept)
+
+
+def _examine(
+    read: Scaled,
+    signs: Sequence[int],
+    ready: Structure | None,
+    watch: Watcher,
+    measures: str | None,
+    *,
+    fit_pulse: bool,
+) -> tuple[list[Examined], list[GroundMotion]]:
+    """Return what is found of a motion in each polarity, and the motions; warn of what is doubtful."""
+    from rocking_cli.excitation.doubts import coarse_for, doubts
+    from rocking_cli.excitation.measures import measure
+    from rocking_cli.excitation.records.opening import name_of
+
     p = ready.p if ready is not None else None
-    read, signs = Motions.of(motion, options).one(0.0), signs_of(polarity)
     if any(each.startswith("from ") for each in read.motion.processing):
         watch.note(f"{read.motion.name}{done(read.motion)}")
     found = doubts(read.motion.of_ground, measure(read.motion.of_ground))
     found += coarse_for(read.motion, p) if p is not None else []
-    examined: list[Examined] = []
     scaled = [read.motion.scaled(sign * read.factor) for sign in signs]
-    for sign, one in zip(signs, scaled, strict=True):
-        seen = Examined(
+    examined = [
+        Examined(
             name_of(read.file) if read.file is not None else read.motion.name,
             f"{read.motion.name}, reversed" if len(signs) > 1 and sign < 0 else read.motion.name,
             read.motion,
@@ -141,22 +192,105 @@ def record(
             p * read.motion.dt if p is not None else None,
             _fit(one, watch) if fit_pulse else [],
             _measured(one, measures, ready),
-            _spectrum(one, period, damping) if spectrum else None,
         )
-        examined.append(seen)
+        for sign, one in zip(signs, scaled, strict=True)
+    ]
     for doubt in found:
         watch.warn(f"{read.motion.name}: {doubt.text}")
+    return examined, scaled
+
+
+def _answer(examined: Sequence[Examined], scaled: Sequence[GroundMotion], read: Scaled) -> RecordAnswer:
+    from rocking_cli.views.record import data, parts
+
     first, own = examined[0], examined[0].measures
     said = f"{first.label}: PGA {own.pga:.3g} g, PGV {own.pgv:.3g} m/s."
+    with_spectra = first.spectrum is not None
     return RecordAnswer(
         "record",
         own,
         View(lambda: data(first), [*parts(examined, 100), said]),
         partial(_columns, scaled[0]),
-        partial(_figure, scaled[0], first, read),
+        partial(_spectra_figure, examined) if with_spectra else partial(_figure, scaled[0], first, read),
+        tables={"spectrum": partial(_spectra_table, examined)} if with_spectra else {},
         examined=tuple(examined),
         motions=tuple(scaled),
     )
+
+
+def _clean_places(out: Path, motions: Motions, signs: Sequence[int]) -> dict[tuple[int, int], Path]:
+    """Return the clean file of each record, by its place and polarity; in a folder, named after record and channel.
+
+    All are checked: they can be written, no file that is read is among them, and files that are not clean records are
+    kept.
+    """
+    from rocking_cli.excitation.record_csv import is_record_csv
+    from rocking_cli.excitation.records.opening import name_of
+    from rocking_cli.io.files import check_writable, folder, keep_apart
+
+    paths: dict[tuple[int, int], Path] = {}
+    alone = out.suffix.lower() == ".csv" and not out.is_dir()
+    if alone and (motions.count > 1 or len(signs) > 1):
+        raise InputError("`out` FILE.csv takes one record: give one motion and one polarity, or a folder")
+    if alone:
+        paths[0, signs[0]] = out
+    else:
+        folder(str(out))
+    for k, record in enumerate(motions.sources if not alone else ()):
+        if not isinstance(record, Listed):
+            continue
+        own = record.reading(motions.reading).channel
+        suffix = "-" + re.sub(r"\W+", "-", own.strip()) if own is not None else ""
+        for sign in signs:
+            turned = "-reversed" if len(signs) > 1 and sign < 0 else ""
+            path = out / f"{Path(name_of(record.path)).stem}{suffix}{turned}.csv"
+            if path in paths.values():
+                what = "two records would be written to the same file"
+                raise InputError(Problem(what, str(path), hint="write them one by one"))
+            paths[k, sign] = path
+    for path in paths.values():
+        keep_apart([("`out`", path)], [str(each.path) for each in motions.records])
+        if not alone and path.exists() and not is_record_csv(path):
+            what = "`out` would overwrite a file that rocking did not write"
+            raise InputError(Problem(what, str(path), hint="move it, or name another folder"))
+        check_writable(path)
+    return paths
+
+
+def _write_clean(path: Path, motion: GroundMotion, watch: Watcher) -> None:
+    from rocking_cli.excitation.record_csv import write_record_csv
+    from rocking_cli.io.files import write_whole
+
+    write_whole(path, partial(write_record_csv, motion=motion))
+    watch.note(f"wrote {path.resolve()}")
+
+
+def _unique(record: Examined, taken: Iterable[str]) -> str:
+    """Return the name of a record, with its file or a number if it is taken."""
+    known = set(taken)
+    more = (f"{record.label} ({k})" for k in range(2, len(known) + 3))
+    names = (record.label, f"{record.label} ({record.file})", *more)
+    return next(name for name in names if name not in known)
+
+
+def _spectra(examined: Sequence[Examined]) -> dict[str, ResponseSpectrum]:
+    spectra: dict[str, ResponseSpectrum] = {}
+    for each in examined:
+        if each.spectrum is not None:
+            spectra[_unique(each, spectra)] = each.spectrum
+    return spectra
+
+
+def _spectra_table(examined: Sequence[Examined]) -> Columns:
+    from rocking_cli.views.response_spectrum import table
+
+    return table(_spectra(examined))
+
+
+def _spectra_figure(examined: Sequence[Examined]) -> Figure:
+    from rocking_cli.plotting.response_spectrum import draw_response_spectra
+
+    return draw_response_spectra(_spectra(examined))
 
 
 def _fit(motion: GroundMotion, watch: Watcher) -> list[PulseFit]:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from math import nan
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from rocking_cli.ask.answer import Answer, MappingAnswer
@@ -37,11 +38,23 @@ def are_several(given: object, motions: Motions) -> bool:
     return motions.count > 1 or (isinstance(given, list | tuple) and not isinstance(given, Scaled))
 
 
-def answers(question: str, what: str, found: Mapping[str, A], parts: Sequence[Table | str]) -> Answers[A]:
-    """Return the answers about several of something, such as motions, with the parts of their common view."""
+def answers(
+    question: str,
+    what: str,
+    found: Mapping[str, A],
+    parts: Sequence[Table | str],
+    figure: Callable[[], Figure] | None = None,
+    tables: Mapping[str, Callable[[], Columns]] = MappingProxyType({}),
+) -> Answers[A]:
+    """Return the answers about several of something, such as motions, with the parts of their common view.
+
+    `figure` is their common plot and `tables` are further tables of all, if there are any.
+    """
     view = View(lambda: {name: each.to_dict() for name, each in found.items()}, parts)
-    tables = {name: each.columns for name, each in found.items()}
-    return Answers(question, found, view, partial(_columns, what, found), partial(_no_figure, what), tables=tables)
+    tables = {**{name: each.columns for name, each in found.items()}, **tables}
+    return Answers(
+        question, found, view, partial(_columns, what, found), figure or partial(_no_figure, what), None, tables
+    )
 
 
 def ask_each(
