@@ -375,6 +375,34 @@ def test_a_type_checker_accepts_the_page(maker, tmp_path):
     assert not wrong and code in (0, 1), out + err
 
 
+TYPED = """
+from typing import assert_type
+import rocking_cli as rk
+from rocking_cli.ask.record import RecordAnswer
+from rocking_cli.ask.respond import ResponseAnswer
+from rocking_cli.ask.several import Answers
+block = rk.Block(width=0.7, height=2.8)
+assert_type(rk.respond(block, "sine:0.3g:0.5s", tail=3), ResponseAnswer)
+assert_type(rk.respond(structure=block, motion=["a.csv", "b.csv"]), Answers[ResponseAnswer])
+assert_type(rk.record("a.csv", scale=2.0), RecordAnswer)
+assert_type(rk.record(["a.csv"]), Answers[RecordAnswer])
+rk.animate(block, "a.csv", "a.html").film
+rk.animate(block, ["a.csv"], "a.html")["a.csv"].film
+rk.equiv(block).positive
+rk.equiv([block])["block"].positive
+rk.respond(block, "a.csv", tale=3)
+"""
+
+
+@pytest.mark.types
+def test_one_motion_gives_one_answer_to_a_type_checker_and_several_give_answers(tmp_path):
+    (tmp_path / "typed.py").write_text(TYPED, encoding="utf-8")
+    cache = ["--cache-dir", str(PROJECT / ".mypy_cache")]
+    out, _, _ = mypy.run(["--config-file", str(PROJECT / "pyproject.toml"), *cache, str(tmp_path / "typed.py")])
+    wrong = [line for line in out.splitlines() if "typed.py" in line and " error: " in line]
+    assert wrong and all(f":{TYPED.count(chr(10))}:" in line for line in wrong), out
+
+
 FILES = sorted((PROJECT / "rocking_cli" / "ask").glob("*.py"))
 VERBS = [f".ask.{path.stem}" for path in FILES if ">>>" in path.read_text(encoding="utf-8")]
 MODULES = ("", *VERBS, ".dynamics.batch", ".dynamics.exact", ".names", ".units", ".views.column")

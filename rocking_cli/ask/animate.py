@@ -14,7 +14,7 @@ from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, around_of, models_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
-from rocking_cli.ask.several import Answers, answers, are_several, ask_each, places_of
+from rocking_cli.ask.several import Answers, answers, are_several, ask_each, places_of, under_motions
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING
@@ -50,6 +50,7 @@ class Animation:
     neighbours: Neighbours | None
 
 
+@under_motions
 @takes_numbers
 def animate(
     structure: StructureLike,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from typing import Any, overload
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import StructureLike, structure_figure, structure_of, structures_of
@@ -16,6 +17,10 @@ from rocking_cli.errors import MechanismError
 from rocking_cli.structure import Structure
 
 
+@overload
+def equiv(structures: StructureLike, *, watch: Watcher = ...) -> Answer[Equivalence | None]: ...
+@overload
+def equiv(structures: list[Any] | tuple[Any, ...], *, watch: Watcher = ...) -> Answers[Answer[Equivalence | None]]: ...
 @takes_numbers
 def equiv(
     structures: StructureLike | Sequence[StructureLike], *, watch: Watcher = SILENT

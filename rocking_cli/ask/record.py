@@ -15,7 +15,7 @@ import numpy as np
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, done, signs_of, unprocessed
 from rocking_cli.ask.numbers import takes_numbers
-from rocking_cli.ask.several import Answers, answers, are_several
+from rocking_cli.ask.several import Answers, answers, are_several, of_motions
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
@@ -54,6 +54,7 @@ class RecordAnswer(Answer[Measures]):
     motions: tuple[GroundMotion, ...] = field(kw_only=True)
 
 
+@of_motions
 @takes_numbers
 def record(
     motion: Motion | Motions | Sequence[Motion],

@@ -16,7 +16,7 @@ from rocking_cli.ask.given import StructureLike, around_of, doubts_of, models_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.motions import all_directions
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
-from rocking_cli.ask.several import Answers, answers, are_several, ask_each, places_of, write_files
+from rocking_cli.ask.several import Answers, answers, are_several, ask_each, places_of, under_motions, write_files
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.history import FINEST_RTOL, RTOL, TAIL, History
 from rocking_cli.dynamics.model import MODELS, ModelName
@@ -43,6 +43,7 @@ class ResponseAnswer(MappingAnswer[ModelName, History]):
     result: Response
 
 
+@under_motions
 @takes_numbers
 def respond(
     structure: StructureLike,

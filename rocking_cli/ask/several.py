@@ -8,10 +8,10 @@ from functools import partial
 from math import nan
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Protocol, TypeVar, cast, overload
 
 from rocking_cli.ask.answer import Answer, MappingAnswer
-from rocking_cli.ask.ground_motions import Motions
+from rocking_cli.ask.ground_motions import Motion, Motions
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.processing.scaled import Scaled
@@ -21,9 +21,12 @@ from rocking_cli.views.view import Table, View
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from rocking_cli.ask.given import StructureLike
     from rocking_cli.io.tables import Columns
 
 A = TypeVar("A", bound=Answer[Any])
+T = TypeVar("T", bound=Answer[Any])
+P = ParamSpec("P")
 
 
 class Answers(MappingAnswer[str, A]):
@@ -31,6 +34,44 @@ class Answers(MappingAnswer[str, A]):
 
     `frames` has that of each, by its name. Each has its own plot.
     """
+
+
+class OfMotions(Protocol[P, T]):
+    """A verb of motions, to a type checker: one gives one answer, a list `Answers`; so does a pattern, unseen."""
+
+    @overload  # a `Scaled` is a tuple, but one motion
+    def __call__(self, motion: Motion, *args: P.args, **options: P.kwargs) -> T: ...  # type: ignore[overload-overlap]
+    @overload
+    def __call__(self, motion: list[Any] | tuple[Any, ...], *args: P.args, **options: P.kwargs) -> Answers[T]: ...
+    @overload
+    def __call__(self, motion: Motions, *args: P.args, **options: P.kwargs) -> T | Answers[T]: ...
+
+
+class UnderMotions(Protocol[P, T]):
+    """A verb of a structure under motions, to a type checker: as `OfMotions`."""
+
+    @overload
+    def __call__(  # type: ignore[overload-overlap]
+        self, structure: StructureLike, motion: Motion | None = None, *args: P.args, **options: P.kwargs
+    ) -> T: ...
+    @overload
+    def __call__(
+        self, structure: StructureLike, motion: list[Any] | tuple[Any, ...], *args: P.args, **options: P.kwargs
+    ) -> Answers[T]: ...
+    @overload
+    def __call__(
+        self, structure: StructureLike, motion: Motions | None, *args: P.args, **options: P.kwargs
+    ) -> T | Answers[T]: ...
+
+
+def of_motions(verb: Callable[Concatenate[Any, P], A | Answers[A]]) -> OfMotions[P, A]:
+    """Return a verb, with the types of `OfMotions`."""
+    return cast("OfMotions[P, A]", verb)
+
+
+def under_motions(verb: Callable[Concatenate[Any, Any, P], A | Answers[A]]) -> UnderMotions[P, A]:
+    """Return a verb, with the types of `UnderMotions`."""
+    return cast("UnderMotions[P, A]", verb)
 
 
 def are_several(given: object, motions: Motions) -> bool:
