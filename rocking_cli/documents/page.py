@@ -33,7 +33,8 @@ from rocking_cli.text import printable
 from rocking_cli.views import assessment as words
 from rocking_cli.views.contact import contact_columns
 from rocking_cli.views.equivalent_block import EquivalentSide, is_symmetric, kappa_in_words, sentence, sides_of
-from rocking_cli.views.error import errors_table
+from rocking_cli.views.error import ERRORS
+from rocking_cli.views.error import rows as error_rows
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.parameters import PARAMETERS
 from rocking_cli.views.response import outcome_table
@@ -144,7 +145,10 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         error_tables=[
             (
                 each.direction.label if len(content.asked) > 1 else "",
-                [[_greek(cell) for cell in row] for row in errors_table("", each, content.mechanism.gravity).rows],
+                [
+                    [_greek(column.cell(row)) for column in ERRORS]
+                    for row in error_rows(each, content.mechanism.gravity)
+                ],
             )
             for each in content.asked
         ],

@@ -14,7 +14,7 @@ from rocking_cli.names import percent
 from rocking_cli.studies.linearisation import Errors, Linearisation, errors, preferred, velocity_ratios
 from rocking_cli.views.column import Column, of, only_shown, table_of
 from rocking_cli.views.verdict import uplift_in_words
-from rocking_cli.views.view import ABSENT, Table, View, heading
+from rocking_cli.views.view import ABSENT, View, heading
 
 NEVER = "infinite (it never uplifts)"
 KEPT = 1e-9  # an error of the uplift acceleration that is none
@@ -62,21 +62,13 @@ def view(
         "verdict": verdict,
     }
     title = heading(mechanism)
-    tables = [
-        errors_table(
-            title if len(asked) == 1 else f"{title}, {each.direction.label} direction", each, mechanism.gravity
-        )
-        for each in asked
-    ]
+    titles = [title] if len(asked) == 1 else [f"{title}, {each.direction.label} direction" for each in asked]
+    tables = [table_of(where, ERRORS, rows(each, mechanism.gravity)) for where, each in zip(titles, asked, strict=True)]
     return View(data, [*tables, verdict])
 
 
-def errors_table(title: str, each: Linearisation, gravity: float) -> Table:
-    """Return the errors of a direction as a table."""
-    return table_of(title, ERRORS, _rows(each, gravity))
-
-
-def _rows(each: Linearisation, gravity: float) -> Iterator[ErrorRow]:
+def rows(each: Linearisation, gravity: float) -> Iterator[ErrorRow]:
+    """Yield the errors of a direction."""
     yield ErrorRow("uplift acceleration", "", each.uplift_ratio1, each.uplift_ratio2)
     ratios = velocity_ratios(each.block, gravity)
     yield ErrorRow("overturning velocity", f"v_imp = {each.block.v_imp:.4g} m/s", *ratios)
