@@ -1,7 +1,5 @@
 """The Chromium of the system, driven by playwright: pages are opened in it as a reader opens them."""
 
-from __future__ import annotations
-
 import os
 import shutil
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Damage to record files: one character lost, and worse; what is said of it. `make damage` prints the table."""
 
-from __future__ import annotations
-
 import os
 import sys
 import tempfile

@@ -4,8 +4,6 @@ Other processors round the last bits of linear algebra otherwise, and other vers
 What this machine cannot run is said and left out.
 """
 
-from __future__ import annotations
-
 import os
 import platform
 import subprocess

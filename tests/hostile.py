@@ -3,8 +3,6 @@
 A spoilt input is a good one with a few faults put in, as they get far: random bytes are refused at the door.
 """
 
-from __future__ import annotations
-
 import re
 from functools import cache
 

@@ -3,8 +3,6 @@
 The tests try a few, `make soak` dozens.
 """
 
-from __future__ import annotations
-
 import random
 import re
 import shutil

@@ -3,8 +3,6 @@
 The tests try a few, `make soak` thousands.
 """
 
-from __future__ import annotations
-
 import gzip
 import io
 import os

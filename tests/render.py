@@ -4,8 +4,6 @@
 committing them.
 """
 
-from __future__ import annotations
-
 import io
 from collections.abc import Callable
 from functools import cache, partial

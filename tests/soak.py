@@ -3,8 +3,6 @@
 STORES, RACES, KILLS and READERS in the environment are how often: `READERS=20 make soak`.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import tempfile

@@ -1,7 +1,5 @@
 """A tie whose force grows with the cube of its elongation, as a package of its own would give it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal

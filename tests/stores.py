@@ -3,8 +3,6 @@
 The tests try some of it, `make soak` hundreds.
 """
 
-from __future__ import annotations
-
 import json
 import random
 import shutil

@@ -1,7 +1,5 @@
 """The moving picture: it shows the rotations of the history, as a GIF and as a page that needs nothing else."""
 
-from __future__ import annotations
-
 import html
 import json
 import re

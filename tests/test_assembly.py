@@ -1,7 +1,5 @@
 """Assemblies from files and Python, against the built-in arch, statics written out, hand formulas and users' errors."""
 
-from __future__ import annotations
-
 import re
 from itertools import product
 from math import atan

@@ -1,7 +1,5 @@
 """The limit analysis of assemblies against hand formulas, statics written out, and programmes that share no code."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Walls of many blocks: sparse programmes, rigid parts and searches against dense and direct ways."""
 
-from __future__ import annotations
-
 from contextlib import suppress
 from dataclasses import replace
 from itertools import combinations, pairwise

@@ -1,7 +1,5 @@
 """What a file asserts is checked: supports, props and equal columns, beside lever arms and other solvers."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

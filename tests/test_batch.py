@@ -1,7 +1,5 @@
 """Many histories in one call are what each would be alone, in any order, and cost no memory to speak of."""
 
-from __future__ import annotations
-
 import tracemalloc
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 """The commands as a user runs them: results on standard output, everything else on standard error."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -1,7 +1,5 @@
 """Pulses on the command line: in place of a record, and found in one."""
 
-from __future__ import annotations
-
 import csv
 import json
 from dataclasses import replace

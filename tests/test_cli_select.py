@@ -1,7 +1,5 @@
 """`rocking select` as a user runs it: with records of known spectra, and with everything that can be wrong."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

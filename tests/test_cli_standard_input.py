@@ -1,7 +1,5 @@
 """Records on standard input, in archives and in tables, as a user gives them to a command."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The check of a history: friction, contact and strength, beside sums over a block that are written out here."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import atan2, cos, hypot, sin
 

@@ -1,7 +1,5 @@
 """Every installed mechanism, built-in or third-party, keeps the contract: the registry decides, nothing is listed."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Ties that go slack or come into play: a corner of the force, which no step of the integration may pass."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

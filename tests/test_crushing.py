@@ -1,7 +1,5 @@
 """Pivots of finite strength move inwards: single bodies and walls, against sums by hand."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

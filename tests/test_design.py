@@ -1,7 +1,5 @@
 """Where a requirement holds: against closed forms, and counted by hand."""
 
-from __future__ import annotations
-
 import json
 from math import isclose, nan
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Limit states on how far the top moves: against closed forms, dense looks at the way, and single histories."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Distributions of a study against scipy's, and samples of them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy import stats

@@ -1,7 +1,5 @@
 """Elements that the kernel does not simulate: wherever histories are needed, they are named."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """However a command is ended, it says so by its exit code and leaves nothing half-made behind."""
 
-from __future__ import annotations
-
 import os
 import signal
 import sys

@@ -1,7 +1,5 @@
 """What is requested of a history of one structure, and what is refused."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

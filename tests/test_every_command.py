@@ -4,8 +4,6 @@ Its text fits terminals of every width and loses nothing there; names, keys and 
 the keys of its JSON are those of `json_keys.txt`; and a structure whose outcome is unknown does not pass.
 """
 
-from __future__ import annotations
-
 import html
 import json
 import os

@@ -1,7 +1,5 @@
 """What makes a tool pleasant every day: how it is called, what defaults it assumes, what it says of itself."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

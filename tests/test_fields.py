@@ -3,8 +3,6 @@
 A sample in the suite, always the same; `make fields` tries every field in every way, and `PAIRS=1000` as many pairs.
 """
 
-from __future__ import annotations
-
 import copy
 import os
 import random

@@ -1,7 +1,5 @@
 """The paper's figures, as docs/make_figures.py computes them: their data say what the text says."""
 
-from __future__ import annotations
-
 from importlib import import_module
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Two components in one plane, and the motion of a floor."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from math import sqrt

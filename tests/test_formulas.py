@@ -1,7 +1,5 @@
 """Each formula of the Italian code stands once: the terminal, the workings and the sheet are written from it."""
 
-from __future__ import annotations
-
 import ast
 import importlib
 import re

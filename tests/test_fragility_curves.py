@@ -1,7 +1,5 @@
 """Fragility curves against synthetic truth, independent optimisation, and a block whose step is known."""
 
-from __future__ import annotations
-
 import runpy
 from collections import Counter
 from typing import NamedTuple

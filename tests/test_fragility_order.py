@@ -1,7 +1,5 @@
 """Curves of limit states that imply each other never cross, and that of uplift is a step where it is known."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """Pictures of fragility show the data, the curves, and what could not be fitted."""
 
-from __future__ import annotations
-
 import io
 from dataclasses import replace
 from itertools import combinations

@@ -3,8 +3,6 @@
 A few hundred inputs in the suite, always the same; `make fuzz INPUTS=100000` tries others for as long as one likes.
 """
 
-from __future__ import annotations
-
 import faulthandler
 import json
 import os

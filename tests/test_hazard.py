@@ -1,7 +1,5 @@
 """Annual rates against Cornell's closed form, plain sums and steps; hazard files and what is wrong in them."""
 
-from __future__ import annotations
-
 from math import exp, inf, log
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Histories as CSV and Parquet: a block at a time, and no line lost or changed between blocks."""
 
-from __future__ import annotations
-
 import csv
 import io
 import tracemalloc

@@ -1,7 +1,5 @@
 """What is said of the joints of a history: which were checked, and what the result rests on."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace

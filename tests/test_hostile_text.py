@@ -3,8 +3,6 @@
 That files of such names are worked on by all commands is in `test_every_command.py`.
 """
 
-from __future__ import annotations
-
 import re
 import sys
 

@@ -1,7 +1,5 @@
 """Loads and ties of a structure, and what keeps it to one side, as pictures, pages, tables and reports show them."""
 
-from __future__ import annotations
-
 import html
 import re
 from math import pi

@@ -1,7 +1,5 @@
 """What instruments write: displacements, velocities, volts, counts, uneven clocks."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

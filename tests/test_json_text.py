@@ -1,7 +1,5 @@
 """The one encoder of JSON: whatever is written can be read, by anything that reads JSON."""
 
-from __future__ import annotations
-
 import json
 from types import MappingProxyType
 

@@ -1,7 +1,5 @@
 """Files in which loads, ties and supports are wrong: each gets one message, with its line and its field."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """Loads, ties and supports in all that is done with structures: copies, sizes, batches, pulses, studies."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise

@@ -4,8 +4,6 @@ Each link's rotation is a coordinate of its own, and what holds the links togeth
 same is done for the asymmetric frame, in exact numbers, in test_asymmetric_frame.py.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 from math import hypot

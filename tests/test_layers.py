@@ -1,7 +1,5 @@
 """What layers may say: the import contracts hold what they may know."""
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The worked examples of linkages and assemblies: they are structures, and what their pages say of them is so."""
 
-from __future__ import annotations
-
 import json
 import runpy
 

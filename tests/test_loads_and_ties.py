@@ -1,7 +1,5 @@
 """Loads, ties, supports and forces by the tool, held to the printed values and to the second program."""
 
-from __future__ import annotations
-
 from functools import cache
 from math import atan
 

@@ -1,7 +1,5 @@
 """Records of hundreds of thousands of lines: read in a memory of the size of the file, and wrong in one line only."""
 
-from __future__ import annotations
-
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path

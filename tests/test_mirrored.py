@@ -1,7 +1,5 @@
 """One table stands for both directions of rocking only where they are the same to the last bit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

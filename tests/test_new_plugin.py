@@ -1,7 +1,5 @@
 """`rocking new --plugin` writes a package that works as it is, and writes it whole or not at all."""
 
-from __future__ import annotations
-
 import errno
 import json
 import os

@@ -1,7 +1,5 @@
 """Curves for OpenQuake, read back by the rules of its format, and curves as a table."""
 
-from __future__ import annotations
-
 import re
 from types import SimpleNamespace
 from xml.etree import ElementTree

@@ -1,7 +1,5 @@
 """What was observed: which runs have one intensity, which are looked at together, and what intervals say of records."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.stats import binom, binomtest

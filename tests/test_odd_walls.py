@@ -1,7 +1,5 @@
 """Walls of odd blocks: an answer as without them, or an error that names the place; and how large files are read."""
 
-from __future__ import annotations
-
 import hashlib
 import signal
 import threading

@@ -1,7 +1,5 @@
 """A command asks the verb of its name: what its options say, the arguments of the verb say by the same names."""
 
-from __future__ import annotations
-
 import ast
 import inspect
 import re

@@ -1,7 +1,5 @@
 """Joints released alone beside a history: how far they open, and until when its result stands."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from itertools import pairwise, product

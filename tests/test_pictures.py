@@ -3,8 +3,6 @@
 `make pictures` writes the baselines anew.
 """
 
-from __future__ import annotations
-
 import pytest
 from matplotlib.contour import QuadContourSet
 from matplotlib.lines import Line2D

@@ -1,7 +1,5 @@
 """Polygons of many corners: the same verdicts as side by side, in a time that nobody notices."""
 
-from __future__ import annotations
-
 from itertools import combinations, pairwise
 
 import numpy as np

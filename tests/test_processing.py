@@ -1,7 +1,5 @@
 """Corrections of motions: each against scipy's own, in the order they are given, and said."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

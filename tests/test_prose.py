@@ -1,7 +1,5 @@
 """Results carry what decides and the views say it: below the views there are no sentences but those of errors."""
 
-from __future__ import annotations
-
 import ast
 import re
 from textwrap import dedent

@@ -1,7 +1,5 @@
 """Histories under sampled pulses against the pulses themselves: DOP853 on the formula, and the exact linear answers."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from math import atan, cos, hypot, pi, sin, sqrt, tan
 

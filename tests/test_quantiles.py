@@ -1,7 +1,5 @@
 """Quantiles of the peak rotation: against what the runs of the store say one by one."""
 
-from __future__ import annotations
-
 import io
 import json
 

@@ -1,7 +1,5 @@
 """Which measure serves: statistics against statsmodels, a ranking against its runs, words against numbers."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

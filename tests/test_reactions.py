@@ -5,8 +5,6 @@ accelerations are differences of their places, and the acceleration is the one w
 joint is freed, what is on one side of it moved in every way that its other joints allow, and the work of all is none.
 """
 
-from __future__ import annotations
-
 from itertools import pairwise
 from math import cos, sin, tan
 

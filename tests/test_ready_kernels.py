@@ -1,7 +1,5 @@
 """The kernels that are shipped: what is in their libraries, and that all ways to run them give the same bits."""
 
-from __future__ import annotations
-
 import functools
 import hashlib
 import json

@@ -1,7 +1,5 @@
 """The data centres' formats: real files where they are here, and small made ones with everything that can be wrong."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Sets of records for a target spectrum, against all sets tried one by one in the plainest way."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The registry: third-party packages come in by the same door, and broken ones say what is wrong with them."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -3,8 +3,6 @@
 `make release` itself builds, installs and tries; here is what it rests on.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

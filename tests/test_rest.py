@@ -1,7 +1,5 @@
 """Structures at rest: what slides or opens before it rocks, beside sums over time and lever arms of their own."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import yaml

@@ -1,7 +1,5 @@
 """The page of scores: a line a set and version, of which none is lost."""
 
-from __future__ import annotations
-
 import runpy
 
 import pytest

@@ -1,7 +1,5 @@
 """A code that has nothing in common with the Italian one works in every command, and fails in plain words."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

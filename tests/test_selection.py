@@ -1,7 +1,5 @@
 """Which record files are meant by names and patterns."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Shares of neighbours: how they are drawn, and what they are where that is known exactly."""
 
-from __future__ import annotations
-
 from math import log, sqrt
 from statistics import NormalDist
 

@@ -1,7 +1,5 @@
 """The calculation sheet: every result recomputed from the numbers that are printed above it."""
 
-from __future__ import annotations
-
 import hashlib
 import re
 import sys

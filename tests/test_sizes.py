@@ -1,7 +1,5 @@
 """Structures with loads that do not grow with them: the spectrum is that of structures scaled by hand."""
 
-from __future__ import annotations
-
 import json
 from math import inf, pi
 

@@ -1,7 +1,5 @@
 """The spanning wall: closed forms, Lagrange's equation, the wall without a load, and files that are wrong."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

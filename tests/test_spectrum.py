@@ -1,7 +1,5 @@
 """Rocking spectra against exact responses, really enlarged structures and dimensional analysis."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import atan, cos, inf, nan, pi, sin, tan
 

@@ -1,7 +1,5 @@
 """Every reader has a sample that `make soak` spoils, and what it sees in a process is told."""
 
-from __future__ import annotations
-
 import random
 
 import pytest

@@ -1,7 +1,5 @@
 """What makes a command start fast, and must not change what it says."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

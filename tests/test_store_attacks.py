@@ -1,7 +1,5 @@
 """A store under attack loses nothing, and never gives other results without a word."""
 
-from __future__ import annotations
-
 import random
 import shutil
 

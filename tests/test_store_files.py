@@ -1,7 +1,5 @@
 """The file of a store: what is kept, under which name, and what is never touched."""
 
-from __future__ import annotations
-
 import os
 import re
 import sqlite3

@@ -1,7 +1,5 @@
 """A study file: what it may say, and every problem at once with its line."""
 
-from __future__ import annotations
-
 import pytest
 
 from rocking_cli.errors import InputError

@@ -1,7 +1,5 @@
 """Measures in fragility studies: levels of them, curves over them, and what a store keeps of them."""
 
-from __future__ import annotations
-
 import json
 import sqlite3
 from contextlib import closing

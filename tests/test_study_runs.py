@@ -1,7 +1,5 @@
 """Running studies: the same runs whatever stops them, however many workers there are, and wherever they run."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """Sliding as a limit state of a study: found run by run as `respond` finds it, and kept only on request."""
 
-from __future__ import annotations
-
 import json
 import pickle
 import sqlite3

@@ -1,7 +1,5 @@
 """Tables of structures: what spreadsheets write, what is wrong with rows, and how they are ranked."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import os

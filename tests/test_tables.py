@@ -1,7 +1,5 @@
 """The tables a history runs on are the mechanism's own coefficients, over dq = sqrt(I) dphi."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import quad

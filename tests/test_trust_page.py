@@ -1,7 +1,5 @@
 """The page on shake-table tests: it is made of its parts, and what was given agrees with itself."""
 
-from __future__ import annotations
-
 import runpy
 
 import pytest

@@ -1,7 +1,5 @@
 """Quantities with units, and what is said of sizes that look like a slip of the unit."""
 
-from __future__ import annotations
-
 import re
 from fractions import Fraction
 from math import degrees, pi

@@ -3,8 +3,6 @@
 That it passes for no command is in `test_every_command.py`.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from math import isclose, nan

@@ -1,7 +1,5 @@
 """docs/validation.md is what the code gives, and the tests it names are there."""
 
-from __future__ import annotations
-
 import re
 import runpy
 

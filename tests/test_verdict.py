@@ -1,7 +1,5 @@
 """The words say what the histories did, and which model to trust for it."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Verification by the Italian code: numbers two other programs agree on, closed forms, and what may change nothing."""
 
-from __future__ import annotations
-
 import itertools
 from math import atan, cos, log, pi, sin, sqrt, tan
 

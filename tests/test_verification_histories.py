@@ -1,7 +1,5 @@
 """The dynamic method: histories with a confidence factor against an integration of their own, and what they say."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import atan, cos, sin, sqrt, tan
 

@@ -1,7 +1,5 @@
 """Site files: what they may say, and what is wrong with place and field."""
 
-from __future__ import annotations
-
 import pytest
 
 from rocking_cli.core import Direction

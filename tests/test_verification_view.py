@@ -1,7 +1,5 @@
 """What a verification shows: the form of its JSON, its tables, and sentences checked against its numbers."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Walls of many blocks: the elevation with openings, what is said of many blocks, and how they are drawn."""
 
-from __future__ import annotations
-
 import io
 import runpy
 

@@ -3,8 +3,6 @@
 The results of all commands are in `test_every_command.py`.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 from collections import Counter

@@ -1,7 +1,5 @@
 """The style guide, as far as it can be counted: phrases that are not English an engineer would write."""
 
-from __future__ import annotations
-
 import re
 
 from rocking_cli.errors import Problem

@@ -1,7 +1,5 @@
 """Structures with their loads and ties, each twice: as the tool takes it, and as the second program does."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Structures that do not name their contacts, so that all of their equation of motion can be tested."""
 
-from __future__ import annotations
-
 from mechanisms.arch import Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.wall import Wall

@@ -4,8 +4,6 @@ A row is the velocity at which two blocks part at a point of their joint, by the
 is what a force there does to them. The same rows make the statics at rest and keep joints shut on the way.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """A motion from impact to impact: DOP853 at 1e-12, cut where anything of the equation of motion is not smooth."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from math import inf

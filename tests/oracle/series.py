@@ -1,7 +1,5 @@
 """Derivatives of analytic functions from their values on a small circle around a point (Cauchy's integral)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Shapes that rock, in closed form; a joint can part in each."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import pi

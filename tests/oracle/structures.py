@@ -4,8 +4,6 @@ A point is x + iy of the structure at rest, in metres. In what moves, x and y ar
 taken off the real axis, to be differentiated.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
