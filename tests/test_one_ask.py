@@ -122,6 +122,7 @@ def test_the_refusal_of_a_text_says_what_to_give():
         rk.spectrum(block, motion, sizes="0.2:2")
 
 
+@pytest.mark.filterwarnings("ignore::rocking_cli.DoubtWarning")
 @pytest.mark.parametrize(
     ("text", "number"),
     [
