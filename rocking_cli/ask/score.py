@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
@@ -13,7 +12,7 @@ from rocking_cli.ask.given import structure_of
 from rocking_cli.ask.ground_motions import Motions, ReadingArguments, check_known, files_of, pulse_in
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import RockingError
+from rocking_cli.errors import InputError, RockingError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import OPENING
 from rocking_cli.processing.reading import reading_of
@@ -146,10 +145,13 @@ def _known(structures: Mapping[str, Structure | RockingError], named: str) -> St
 
 
 def _motion(folder: Path, motions: Motions, named: str) -> GroundMotion:
-    """Read the record of a test as these motions are read, or sample its pulse."""
+    """Read the record of a test as these motions are read, without a word on doubts, or sample its pulse."""
     if (pulse := pulse_in(named)) is not None:
         return motions.reading.on_floor(pulse.sampled())
-    return replace(motions, sources=tuple(files_of(str(folder / named)))).one(0.0).motion
+    found = files_of(str(folder / named))
+    if len(found) > 1:
+        raise InputError(f"{len(found)} motions are given where one is expected: ask for one after the other")
+    return motions.read(found[0]).motion
 
 
 def _figure(found: Scored) -> Figure:
