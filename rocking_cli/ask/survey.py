@@ -127,7 +127,7 @@ def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
     if not isinstance(table, StructureTable):
         if isinstance(given, Mapping) or hasattr(given, "columns"):
             return of_mapping(given)
-        return [MadeStructure(structure_of(each).mechanism) for each in given]
+        return [MadeStructure(structure_of(each, watch).mechanism) for each in given]
     if not len(table):
         raise InputError(Problem("the table has no rows below its headings", table.sheet.file))
     if short := table.short:
