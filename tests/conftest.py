@@ -24,6 +24,7 @@ hypothesis.settings.load_profile("search" if PROPERTIES else "suite")
 
 PROJECT = Path(__file__).resolve().parents[1]
 EXAMPLES = PROJECT / "examples"
+YAML_FILES = [file for file in sorted(EXAMPLES.rglob("*.yaml")) if file.parent.name != "plugin"]  # it is not installed
 SHARED = PROJECT.parent / "shared"
 # Real strong motion is not part of the project. Tests of it are skipped, and counted, where it is absent.
 RECORDS = Path(os.environ.get("ROCKING_RECORDS", SHARED / "records"))

@@ -27,7 +27,7 @@ from rocking_cli.views.conclusion import (
     of_verification,
 )  # fmt: skip
 from rocking_cli.views.view import Table
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, YAML_FILES
 from tests.test_cli import run, run_json, some
 from tests.test_rest import CRACKS, of
 
@@ -444,7 +444,7 @@ def test_a_row_of_a_survey_has_the_outcome_that_the_structure_has_alone(tmp_path
 
 @pytest.mark.every(8)
 @pytest.mark.parametrize("pulse", ["sine:0.15g:0.5s", "sine:0.5g:0.7s"])
-@pytest.mark.parametrize("file", sorted(EXAMPLES.glob("**/*.yaml")), ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", YAML_FILES, ids=lambda file: file.stem)
 def test_every_surface_of_a_response_has_one_conclusion(file, pulse):
     """Text, data and Python of all shipped structures."""
     if not yaml.safe_load(file.read_text(encoding="utf-8")).get("mechanism"):

@@ -120,6 +120,7 @@ def test_a_bump_narrower_than_the_look_is_found_and_one_that_is_too_low_is_not()
 
 
 @pytest.mark.rest
+@pytest.mark.filterwarnings("ignore::rocking_cli.errors.DoubtWarning")  # a sine ends displaced
 def test_each_run_exceeds_when_its_own_history_says_so(whole):
     path, prepared, place = whole
     study, plan = load_study(path), prepared.plan

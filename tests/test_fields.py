@@ -22,7 +22,7 @@ from rocking_cli.cli.main import main
 from rocking_cli.cli.new import STARTERS
 from rocking_cli.core.registry import Registry
 from rocking_cli.io.yaml_file import parse
-from tests.conftest import EXAMPLES, PROJECT
+from tests.conftest import EXAMPLES, PROJECT, YAML_FILES
 
 pytestmark = pytest.mark.rest
 
@@ -60,7 +60,7 @@ def _printed(name: str) -> str:
 def files() -> dict[str, tuple[str, tuple[tuple[str, ...], ...]]]:
     """What is handed out, by names: its text, and the commands that read it."""
     found: dict[str, tuple[str, tuple[tuple[str, ...], ...]]] = {}
-    for path in sorted(EXAMPLES.rglob("*.yaml")):
+    for path in YAML_FILES:
         kind = STUDIES if path.parent.name == "study" else SITES if path.stem == "site" else STRUCTURES
         found[str(path.relative_to(PROJECT))] = path.read_text(encoding="utf-8"), kind
     for name in (*Registry(), *STARTERS, "study", "site"):

@@ -9,7 +9,7 @@ from rocking_cli import GroundMotion, Runs, respond_many
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.resting import first_failure, resting
 from rocking_cli.structure import build_models
-from tests.conftest import EXAMPLES
+from tests.conftest import YAML_FILES
 from tests.following import respond
 from tests.test_cli import run, run_json
 
@@ -204,7 +204,7 @@ def test_a_frame_on_smooth_feet_slides_as_a_whole():
 
 
 @pytest.mark.every(3)
-@pytest.mark.parametrize("file", sorted(EXAMPLES.glob("**/*.yaml")), ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", YAML_FILES, ids=lambda file: file.stem)
 def test_where_the_hinge_is_the_weakest_nothing_opens_before_it_does(file):
     """Of every example, by two ways: the work of rocking, and the forces at rest."""
     if not yaml.safe_load(file.read_text(encoding="utf-8")).get("mechanism"):
