@@ -6,6 +6,7 @@ import json
 import re
 import subprocess
 import sys
+import warnings
 
 import numpy as np
 import pytest
@@ -34,7 +35,9 @@ DRAWN = "count", "amplitude", "restitution", "slenderness"
 
 
 def run(*arguments, code=0):
-    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # what is doubtful goes to the terminal
+        result = CliRunner().invoke(main, [str(argument) for argument in arguments])
     assert result.exit_code == code, result.output
     assert "Traceback" not in result.stderr
     assert result.stdout == "" or code in (0, 5)  # 5: a part of the work is done

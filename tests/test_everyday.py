@@ -139,7 +139,7 @@ class TestDefaults:
             monkeypatch.setenv("ROCKING_JOBS", "3")
             CliRunner().invoke(main, ["fragility", "study.yaml", "--scheduler", "tcp://there", *typed])
         assert asked == [None, 2]  # the verb refuses a number of workers that was typed
-        with pytest.raises(InputError, match="on a cluster, the number of workers is set there"):
+        with pytest.raises(InputError, match="a cluster has its own number of workers"):
             workers_of(2, "tcp://there")
 
     def test_the_options_that_can_have_one_are_options(self):

@@ -120,7 +120,6 @@ def record(
     >>> round(rk.record("ricker:0.6g:0.5s").pga, 6)
     0.6
     """
-    from rocking_cli.ask.given import structure_of
     from rocking_cli.views.record import parts
 
     if not spectrum and (period is not None or damping is not None):
@@ -130,7 +129,11 @@ def record(
         raise InputError("no ground motion is given: give `motion`")
     motions.check()
     places = _clean_places(Path(out), motions, signs) if out is not None else {}
-    ready = structure_of(structure, watch) if structure is not None else None
+    ready = None
+    if structure is not None:
+        from rocking_cli.ask.given import structure_of
+
+        ready = structure_of(structure, watch)
 
     def one(read: Scaled) -> RecordAnswer:
         seen, scaled = _examine(read, signs, ready, watch, measures, fit_pulse=fit_pulse)
