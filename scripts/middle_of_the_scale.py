@@ -35,6 +35,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies import neighbours
 from rocking_cli.studies.experiments.scores import ClusterDraws, ScoreEstimate, surprise
 from rocking_cli.studies.neighbours import Neighbourhood, follow
+from rocking_cli.views.neighbours import deviations
 
 Reals = NDArray[np.float64]
 
@@ -298,7 +299,7 @@ def drawn(study: Study) -> str:
 
 def sample() -> str:
     """Return a part of the text by which a change of the rule is noticed."""
-    return f"The rule has {RULE.words}."
+    return f"The rule has {deviations(RULE)}."
 
 
 def page(study: Study) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import warnings
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping
+from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import ClassVar, TypeVar
 
@@ -30,6 +31,7 @@ def find(group: str) -> dict[str, list[EntryPoint]]:
     return points
 
 
+@cache  # each call reads the metadata of the package, a page of text
 def package_of(point: EntryPoint) -> str:
     """Return the name and version of the package of a plugin."""
     return f"{point.dist.name} {point.dist.version}" if point.dist is not None else "unknown package"
