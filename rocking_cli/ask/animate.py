@@ -76,7 +76,7 @@ def animate(
     structure : Mechanism, str or Path
         The structure, or its YAML file.
     motion : GroundMotion, Pulse, str or Path, or a sequence of these
-        The motion, its file, or a pulse as text; a pattern such as "records/*.AT2", or a sequence, gives several.
+        The motion, its file, or a pulse as text; a pattern such as `records/*.AT2`, or a sequence, gives several.
     file : str or Path
         File to write: .gif, or .html for a page. Of several motions each has its own, with its name in the file name.
     model : str

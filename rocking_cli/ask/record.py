@@ -75,7 +75,7 @@ def record(
     Parameters
     ----------
     motion : GroundMotion, Pulse, str or Path, or a sequence of these
-        The motion, its file, or a pulse as text; a pattern such as "records/*.AT2", or a sequence, gives several.
+        The motion, its file, or a pulse as text; a pattern such as `records/*.AT2`, or a sequence, gives several.
     polarity : {"1", "-1", "both"}
         Polarity of the motion: as given, reversed, or one after the other.
     structure : Mechanism, str or Path, optional

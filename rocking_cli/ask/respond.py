@@ -78,7 +78,7 @@ def respond(
     structure : Mechanism, str or Path
         The structure, or its YAML file.
     motion : GroundMotion, Pulse, str or Path, or a sequence of these, optional
-        The motion, its file, or a pulse as text; a pattern such as "records/*.AT2", or a sequence, gives several.
+        The motion, its file, or a pulse as text; a pattern such as `records/*.AT2`, or a sequence, gives several.
     models : str or sequence of str, optional
         Models "nonlinear", "linear1" or "linear2"; by default all, or the nonlinear one alone if the others mislead.
     polarity : {"1", "-1", "both"}
