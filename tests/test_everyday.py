@@ -186,7 +186,7 @@ class TestInfo:
         monkeypatch.delenv("ROCKING_KERNELS", raising=False)
         assert run_json("info")["slow_kernels"] is None
         monkeypatch.setattr(shipped, "LIBRARIES", ())
-        shipped.library.cache_clear()
+        shipped.loaded.cache_clear()
         assert run_json("info")["slow_kernels"].startswith("no kernels are shipped for ")
         monkeypatch.setenv("ROCKING_KERNELS", "python")
         assert "sixty times slower: ROCKING_KERNELS is python" in run("info").stdout

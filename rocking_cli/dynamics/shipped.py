@@ -64,11 +64,11 @@ def place() -> Path:
 
 def load(kernel: KernelSet) -> Any:
     """Return the function of a kernel. Raises `ImportError` if its library cannot be used."""
-    return ctypes.CFUNCTYPE(ctypes.c_int32, *_ROWS)((symbol(kernel.name), library()))
+    return ctypes.CFUNCTYPE(ctypes.c_int32, *_ROWS)((symbol(kernel.name), loaded()))
 
 
 @functools.cache
-def library() -> ctypes.CDLL:
+def loaded() -> ctypes.CDLL:
     """Load the library for this system, and give it the C functions that it calls. Raises as `load`."""
     at = place()
     listed = manifest()["files"].get(at.name)

@@ -57,7 +57,7 @@ def forget() -> None:
     from rocking_cli.dynamics import shipped
 
     _choose.cache_clear()
-    shipped.library.cache_clear()
+    shipped.loaded.cache_clear()
 
 
 def _chosen() -> tuple[str, dict[str, Kernel]]:
