@@ -12,6 +12,7 @@ import threading
 import warnings
 from dataclasses import replace
 from importlib import import_module
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -257,6 +258,14 @@ class TestLibrary:
     def test_one_that_is_not_there(self, folder):
         shipped.place().unlink()
         with pytest.raises(BrokenKernels, match=f"{shipped.place().name} is missing, reinstall"):
+            shipped.load(PULSES)
+
+    def test_one_that_may_not_be_read(self, folder, monkeypatch):
+        def refused(file):
+            raise PermissionError(13, "Permission denied", str(file))
+
+        monkeypatch.setattr(Path, "read_bytes", refused)
+        with pytest.raises(BrokenKernels, match=r"cannot be loaded, reinstall rocking-cli: .*Permission denied"):
             shipped.load(PULSES)
 
     def test_a_folder_in_its_place(self, folder):

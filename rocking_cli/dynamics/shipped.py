@@ -76,10 +76,10 @@ def loaded() -> ctypes.CDLL:
         raise ImportError(f"no kernels are shipped for {at.stem}")
     if not at.is_file():
         raise BrokenKernels(f"{at} is missing, reinstall rocking-cli")
-    # The system would load half a file as well, and end the process in the missing half.
-    if hashlib.sha256(at.read_bytes()).hexdigest() != listed:
-        raise BrokenKernels(f"{at} is damaged, reinstall rocking-cli")
     try:
+        # The system would load half a file as well, and end the process in the missing half.
+        if hashlib.sha256(at.read_bytes()).hexdigest() != listed:
+            raise BrokenKernels(f"{at} is damaged, reinstall rocking-cli")
         found = ctypes.CDLL(str(at))
         c = ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None)
         for name in FUNCTIONS:
