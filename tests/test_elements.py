@@ -11,7 +11,7 @@ from pytest import approx
 from scipy.integrate import quad, solve_ivp
 
 import rocking_cli as rk
-from rocking_cli.core import Direction, Spot
+from rocking_cli.core import Direction, Spot, length
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.element import NO_ANSWER, Element
 from rocking_cli.core.hung.elements import ConstantForce, Spring, SpringBed
@@ -21,7 +21,7 @@ from rocking_cli.plugins import registry
 from rocking_cli.plugins.registry import load
 from rocking_cli.testing import check_law
 from tests.conftest import EXAMPLES, PROJECT
-from tests.stiffening import Cubic
+from tests.stiffening import Cubic, Stiffening
 from tests.test_cli import run, run_json
 
 ACCEL = EXAMPLES / "accel.csv"
@@ -224,6 +224,18 @@ def test_a_law_from_another_package_says_why_it_does_not_answer(law, tmp_path, m
     equiv = run_json("equiv", "wall.yaml")
     assert equiv["misleading"] == f"the {SAYS}"
     assert equiv["directions"]["positive"]["p"] > 0
+
+
+class Slack(Stiffening):
+    slack: float = length("elongation before it acts", example=0.01)
+
+
+def test_a_tie_of_a_larger_structure_has_larger_lengths_and_the_same_stiffness():
+    bar = {"name": "bar", "from": {"ground": [-4.0, 3.0]}, "to": {"at": [-0.5, 3.0]}, "area": 1e-4, "modulus": 2e11}
+    tie = Slack.model_validate({**bar, "length": 2.0, "cubic": 4e6, "slack": 0.01})
+    larger = tie.enlarged(3.0)
+    assert (larger.span, larger.slack) == approx((3 * tie.span, 0.03), rel=1e-12)
+    assert (larger.k, larger.cubic) == (tie.k, tie.cubic) == (1e7, 4e6)
 
 
 def test_the_fields_of_a_law_are_fields_of_its_tie(law, tmp_path, monkeypatch):

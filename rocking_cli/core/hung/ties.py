@@ -169,16 +169,10 @@ class Tie(Described):
             return SpringBed(self.name, spots[0], spots[1], self.modulus, count)
         return Spring(self.name, tuple(spots), self.k, self.prestress, only=self.only, count=count)
 
-    def enlarged(self, factor: float) -> Tie:
-        """Return the tie on a structure of another size: its path is multiplied, its stiffness and force stay."""
-        moved: dict[str, Any] = {
-            key: value.enlarged(factor) for key in ("start", "end", "bed") if (value := getattr(self, key)) is not None
-        }
-        if self.path is not None:
-            moved["path"] = [place.enlarged(factor) for place in self.path]
-        if self.bed is None:
-            moved |= {"stiffness": self.k, "area": None, "modulus": None, "length": None}
-        return self.model_copy(update=moved)
+    def enlarged(self, factor: float) -> Self:
+        """Return the tie on a structure of another size: its lengths are multiplied, its stiffness and force stay."""
+        kept = {} if self.bed is not None else {"stiffness": self.k, "area": None, "modulus": None, "length": None}
+        return super().enlarged(factor).model_copy(update=kept)
 
 
 class Laws(Plugins[type[Tie]]):
