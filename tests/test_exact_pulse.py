@@ -608,6 +608,13 @@ def test_what_cannot_be_answered_is_said():
     assert exact_many(equivalence, sine, [], [], kappa=1, gravity=G).overturned.size == 0
 
 
+def test_progress_is_told_and_adds_up():
+    told, (amplitudes, periods) = [], grid(40)
+    sine = SHAPE["sine"](1.0, 1.0)
+    exact_many(equivalent_block(FRAME), sine, amplitudes, periods, kappa=2, gravity=G, progress=told.append)
+    assert sum(told) == len(amplitudes) and len(told) > 1
+
+
 def test_bouncing_all_through_a_slow_pulse_is_refused_by_one_and_marked_by_many():
     equivalence = equivalent_block(replaced(BLOCK, restitution=1.0))
     one = equivalence.positive

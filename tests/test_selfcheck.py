@@ -286,6 +286,12 @@ class TestEachCheck:
 
 
 class TestCommand:
+    def test_all_pass(self, monkeypatch):
+        few(monkeypatch, one=1e-12, two=1e-9)
+        done = asked()
+        assert done.exit_code == 0
+        assert "All 2 checks passed in " in done.stdout and done.stdout.count("passed") == 3
+
     def test_one_that_fails_gives_exit_code_4_and_says_what_to_do(self, monkeypatch):
         few(monkeypatch, one=1e-12, two=2e-9, three=ValueError("no such thing"), four=float("nan"))
         done = asked()
