@@ -17,7 +17,7 @@ import rocking_cli
 from rocking_cli import Registry, core
 from rocking_cli.cli.main import COMMANDS
 from rocking_cli.core import Angle, Length, Line, box
-from rocking_cli.core.answers import Drawn, Jointed, Kinematics
+from rocking_cli.core.answers import Jointed, Kinematics
 from rocking_cli.core.released import released
 from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.testing import contract
@@ -311,7 +311,7 @@ def test_every_helper_of_the_core_is_in_the_guide_to_plugins():
     assert set(HELPERS) - kinds - set(listed) == set()
     methods = {name for name in listed if hasattr(core.Mechanism, name)}
     assert set(listed) - set(HELPERS) - methods == set()
-    answers = {name for each in (Drawn, Kinematics, Jointed) for name, it in vars(each).items() if isfunction(it)}
+    answers = {name for each in (Kinematics, Jointed) for name, it in vars(each).items() if isfunction(it)}
     assert {name for name in answers if name[0] != "_"} - methods == set()
 
 

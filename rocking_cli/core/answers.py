@@ -21,16 +21,8 @@ from rocking_cli.core.results import CollapseMechanism, Extra
 from rocking_cli.core.sketch import Sketch
 
 
-class Drawn:
-    """Drawing of a mechanism."""
-
-    def sketch(self) -> Sketch:
-        """Return what a drawing shows beside the bodies and their motion; by default nothing."""
-        return Sketch()
-
-
-class Kinematics(Drawn, Given, ABC):
-    """Bodies of a mechanism and their motion, without loads and ties."""
+class Kinematics(Given, ABC):
+    """Bodies of a mechanism, their motion and their drawing, without loads and ties."""
 
     title: ClassVar[str]
     """What it is, in a few words."""
@@ -56,6 +48,10 @@ class Kinematics(Drawn, Given, ABC):
     @abstractmethod
     def limit(self, direction: Direction) -> float:
         """Return the rotation phi [rad] at which the mechanism ends, because it lies on the ground or locks."""
+
+    def sketch(self) -> Sketch:
+        """Return what a drawing shows beside the bodies and their motion; by default nothing."""
+        return Sketch()
 
     def critical_rotation_alone(self, direction: Direction) -> float | None:
         """Return phi_cr without masses, loads and ties in closed form [rad]; by default None, for the solver."""

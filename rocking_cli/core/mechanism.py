@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from rocking_cli.core import equilibrium
-from rocking_cli.core.answers import Drawn, Jointed
+from rocking_cli.core.answers import Jointed, Kinematics
 from rocking_cli.core.checks import check
 from rocking_cli.core.coefficients import Coefficients, coefficients
 from rocking_cli.core.given import DirectionalRestitution
@@ -62,7 +62,7 @@ class Mechanism(Jointed):
             if any(_is_final(vars(base).get(name)) for base in cls.__mro__[1:]):
                 hint = f": give a closed form as `{name}_alone`" if hasattr(cls, f"{name}_alone") else ""
                 raise TypeError(f"{cls.__name__} cannot override {name}, which follows from bodies and motion{hint}")
-        answers = [name for base in Mechanism.__mro__ if issubclass(base, Drawn) for name in vars(base)]
+        answers = [name for base in Mechanism.__mro__ if issubclass(base, Kinematics) for name in vars(base)]
         guard(cls, [name for name in answers if name[0] != "_"], failed("mechanism", "mechanism"), but=RefusedFields)
 
     def columns_alone(self) -> Sequence[Mechanism]:
