@@ -271,7 +271,12 @@ def test_the_law_of_the_guide_is_this_one():
     ("command", "said"),
     [
         (("error",), "the linear models do not hold: cable yields"),
+        (("overturning", "--model", "nonlinear"), "spectra and maps are not available: cable yields"),
         (("spectrum", "--record", ACCEL), "spectra and maps are not available: cable yields"),
+        (
+            ("calibrate", "--free", EXAMPLES / "calibrate" / "trace.csv"),
+            "no trace of free rocking can be fitted: cable yields",
+        ),
         (("equivalent", EXAMPLES / "block.yaml", "--ag", "1g", "--period", "0.5"), "wall: the linear models do not"),
     ],
     ids=lambda value: value[0] if isinstance(value, tuple) else "",
