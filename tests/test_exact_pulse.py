@@ -21,7 +21,6 @@ from rocking_cli import load_structure
 from rocking_cli.core import Equivalence, equivalent_block
 from rocking_cli.dynamics.exact import SHAPES, closed_form, exact_response
 from rocking_cli.dynamics.exact_batch import exact_many
-from rocking_cli.dynamics.pulse_motion import Side
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, Segment
 from tests.following import respond
@@ -342,10 +341,6 @@ def test_histories_tend_to_it(shape, kappa, name, polarity):
 
 
 # What can be derived by hand
-
-
-def side_of(eta):
-    return Side(1.0, 1.0, 1.0, eta)
 
 
 def overturns(shape, a, w, eta=0.9):

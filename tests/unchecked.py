@@ -2,7 +2,6 @@
 
 from mechanisms.arch import Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame
-from mechanisms.wall import Wall
 
 
 class UncheckedArch(Arch):
@@ -14,13 +13,6 @@ class UncheckedArch(Arch):
 
 class UncheckedFrame(AsymmetricFrame):
     """A frame whose joints are not checked."""
-
-    def contacts(self, direction):
-        return None
-
-
-class UncheckedWall(Wall):
-    """A wall whose joints are not checked."""
 
     def contacts(self, direction):
         return None
