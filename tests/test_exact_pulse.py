@@ -280,6 +280,8 @@ def test_exact_answer_agrees_with_50_digits(shape, a, w, polarity, equivalence):
         assert got.peak_negative / equivalence.negative.phi_cr == approx(float(wanted.peaks[-1]), abs=1e-10)
     assert known(got.first_excursion) == near(next(iter(wanted.excursions), None), abs=1e-10)
     assert known(got.first_excursion) == near(next(iter(wanted.excursions), None), rel=1e-6)
+    for found, peak in zip((got.first_excursion, got.first_rebound), wanted.excursions, strict=False):
+        assert found == near(peak, abs=1e-9)
     assert len(got.impacts) >= len(wanted.impacts)
     for (t, side, rate), (time, ended, before) in zip(got.impacts, wanted.impacts, strict=False):
         assert side == ended
