@@ -353,8 +353,33 @@ def test_a_study_given_in_python_is_that_of_its_file(tmp_path, monkeypatch):
     again = rk.fragility("study.yaml", store="other.db")
     assert first.result[0].structure == "pillar" and len(first.result) == 2
     assert first.to_frame().equals(again.to_frame())
+    assert first.sentences[0].startswith("pillar: stripes") and again.sentences[0].startswith("study: stripes")
+    told, noted = Watcher(), []
+    told.note = noted.append
+    assert rk.fragility("study.yaml", store="pillar.db", watch=told).result  # whichever started it, both go on
+    rk.fragility(study, store="other.db", watch=told)
+    assert noted.count("24 of 24 runs are in the store already") == 2
+    assert rk.results("pillar.db").to_frame().equals(first.to_frame())
     with pytest.raises(rk.InputError, match=r"study: levels"):
         rk.fragility({**study, "levels": 3}, store="bad.db")
+    with pytest.raises(rk.InputError, match=r"study: structures must be a list"):
+        rk.fragility({**study, "structures": study["structures"][0]}, store="bad.db")
+
+
+def test_a_mechanism_stands_for_the_file_of_an_entry(tmp_path):
+    width = {"normal": {"mean": 0.6, "deviation": 0.06}}
+    study = {
+        "structures": [
+            {"file": rk.Block(name="pillar", width=0.6, height=2.6), "vary": {"width": width}},
+            {"file": EXAMPLES / "block.yaml", "name": "other"},
+        ],
+        "records": [{"file": EXAMPLES / "accel.csv", "factor": 2}],
+        "method": "cloud",
+        "samples": 2,
+    }
+    plan = rk.fragility(study, store=tmp_path / "a.db", check=True).result
+    assert [each.structure for each in plan.trials] == ["pillar", "pillar", "other"]
+    assert len({each.lambda_ for each in plan.trials}) == 3
 
 
 # --- what the documentation shows

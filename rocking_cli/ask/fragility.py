@@ -43,8 +43,8 @@ def fragility(
     Parameters
     ----------
     study : str, Path or mapping
-        YAML file of the study, or its fields in Python, in which structures may be mechanisms; docs/fragility.md lists
-        the fields.
+        YAML file of the study, or its fields in Python, in which a mechanism may stand for the file of a structure;
+        docs/fragility.md lists the fields.
     store : str or Path, optional
         File in which the runs are stored; by default next to the study file, or study.db in this folder.
     check : bool
@@ -87,9 +87,9 @@ def fragility(
     from rocking_cli.studies.fragility.study import load_study
     from rocking_cli.studies.fragility.thresholds import held
 
-    asked = load_study(study)
     file = Path("study") if isinstance(study, Mapping) else Path(study)
     place = Path(store) if store is not None else file.with_suffix(".db")
+    asked = load_study(study, place.stem)
     # What varies may be far from the file: the first sample stands for all.
     for mechanism in {sample.structure: sample.mechanism for sample in asked.samples if sample.number == 0}.values():
         warn_of(mechanism, watch)

@@ -162,7 +162,7 @@ def digest(description: dict[str, Any]) -> str:
     return hashlib.sha256(json_text(description, sort_keys=True).encode()).hexdigest()
 
 
-def load_study(given: str | Path | Mapping[str, Any]) -> Study:
+def load_study(given: str | Path | Mapping[str, Any], name: str = "study") -> Study:
     """Read a study and the structures it names; of the records, only the names are read.
 
     Parameters
@@ -170,6 +170,8 @@ def load_study(given: str | Path | Mapping[str, Any]) -> Study:
     given : str, Path or mapping
         The study file, or its fields, in which structures may be mechanisms; the files that it names are relative to
         its folder, or to the present one.
+    name : str
+        Name of a study given by its fields, if these have none; one in a file is named after it.
 
     Raises
     ------
@@ -184,6 +186,7 @@ def load_study(given: str | Path | Mapping[str, Any]) -> Study:
         document = Document("study", "study", [], _plain(given, made))
     else:
         path = Path(given)
+        name = path.stem
         document = parse(read_text(path, "study"), str(path), "study", HINT)
 
     def load(file: str) -> Mechanism:
@@ -218,20 +221,32 @@ def load_study(given: str | Path | Mapping[str, Any]) -> Study:
     document.check()
     assert definition is not None
     known = tuple(each for each in structures if each is not None)
-    return Study(definition.name or one_line(path.stem), definition, known, tuple(samples), tuple(sources), hazard)
+    return Study(definition.name or one_line(name), definition, known, tuple(samples), tuple(sources), hazard)
 
 
 def _plain(given: Mapping[str, Any], made: dict[str, Mechanism]) -> dict[str, Any]:
     """Return a study made in Python as plain data, and put its mechanisms aside by the names that stand for them."""
-    structures: list[Any] = []
-    for k, each in enumerate(given.get("structures", []), start=1):
+
+    def plain(each: Any) -> Any:
         if isinstance(each, Mechanism):
-            made[f"structure {k}"] = each
-            structures.append({"file": f"structure {k}", "name": each.name or each.mechanism})
-        else:
-            structures.append(str(each) if isinstance(each, Path) else each)
-    records = [str(each) if isinstance(each, Path) else each for each in given.get("records", [])]
-    data: dict[str, Any] = json.loads(json_text({**given, "structures": structures, "records": records}))
+            made[name := f"structure {len(made) + 1}"] = each
+            return name
+        if isinstance(each, Mapping):
+            return {key: plain(value) for key, value in each.items()}
+        if isinstance(each, list | tuple):
+            return [plain(value) for value in each]
+        return str(each) if isinstance(each, Path) else each
+
+    def named(each: Any) -> Any:
+        entry = {"file": each} if isinstance(each, Mechanism) else each
+        of = entry.get("file") if isinstance(entry, Mapping) else None
+        return {"name": of.name or of.mechanism, **entry} if isinstance(of, Mechanism) else entry
+
+    structures = given.get("structures")
+    given = (
+        {**given, "structures": [named(each) for each in structures]} if isinstance(structures, list | tuple) else given
+    )
+    data: dict[str, Any] = json.loads(json_text(plain(given)))
     return data
 
 
