@@ -305,7 +305,7 @@ class Store:
             try:
                 self._check(to_write=True)
             except BaseException:
-                self._connection.execute("ROLLBACK")  # with damaged pages there is no commit
+                self._connection.rollback()  # with damaged pages there is no commit
                 raise
             self._name_who_is_at_work()
 
