@@ -119,6 +119,12 @@ class TestStudy:
         assert "PGA/(g lambda)" not in bridge["alike"]  # its lambda differs from sample to sample
         assert bridge["alike"]["Sd(1.0)"] == "Sa(1.0)"
 
+    def test_the_order_is_that_of_the_efficiency(self, study):
+        for each in study[1]["ranking"]:
+            found = [of["efficiency"] for of in each["measures"]]
+            assert found == sorted(found) and len(found) > 10
+            assert each["against"] == ["Tm", "D5-95"]
+
     def test_dispersions_are_those_of_the_curves(self, study):
         curves = {(each["structure"], each["measure"], each["limit_state"]): each for each in study[1]["curves"]}
         compared = 0
@@ -212,6 +218,16 @@ class TestWords:
         assert "Of 2 measures PGV is the most efficient over the 40 runs of 8 records" in first and "by 0.31" in first
         assert second.startswith("It is the most efficient of the 1 whose residuals show no trend with Tm or D5-95")
         assert one.proficiency == pytest.approx(0.155)
+
+    def test_another_one_is_sufficient(self):
+        best, other = ranked("PGV", 0.31, 0.4, 0.049), ranked("CAV", 0.52, 0.05, 0.7)
+        _, second, *_ = judge(Ranking("block", (best, other), ("Tm", "D5-95"), {}, {}))
+        assert second.startswith("CAV, with 0.52, is the most efficient of the 1 ")
+        assert (best.sufficient, other.sufficient) == (False, True)
+
+    def test_none_is(self):
+        both = (ranked("PGV", 0.31, 0.4, 0.01), ranked("CAV", 0.52, 0.02, 0.7))
+        assert "none is sufficient" in " ".join(judge(Ranking("block", both, ("Tm", "D5-95"), {}, {})))
 
     def test_nothing_can_be_told(self):
         alone = ranked("PGV", 0.31, np.nan, np.nan, slope=-1.0)

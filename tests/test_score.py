@@ -197,6 +197,10 @@ class TestScores:
         ]
         assert [each.tests for each in scored(tests, Neighbourhood(300)).bins] == [2, 1, 0, 1, 2]
 
+    def test_a_share_of_one_half_stands(self):
+        half = [Stated(ObservedTest(2, "a", "b", seen, cluster=str(seen)), 10, 0, COUNT) for seen in (False, True)]
+        assert scored(half, Neighbourhood(COUNT)).scores["tool"].right.value == 0.5
+
     def test_a_curve_that_separates_is_a_step_and_none_without_both_outcomes(self):
         at, clusters = np.array([0.1, 0.15, 0.5, 0.8, np.nan, 0.0]), list("abcdef")
         fell = np.array([0.0, 0.0, 1.0, 1.0, 0.0, 0.0])

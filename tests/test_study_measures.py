@@ -200,6 +200,25 @@ class TestStore:
         expected = [response_spectrum(motion, 1.0).sa[0] for motion in motions()]
         assert [row[5] for row in rows] == pytest.approx(expected) and levels == (2 * 3 * 4,)
 
+    @pytest.mark.parametrize(
+        "statement",
+        [
+            "UPDATE measured SET value = 1.01 * value WHERE measure = 'Sa(1.0)' AND record = 1",
+            "DELETE FROM measured WHERE id = 3",
+            "DROP TABLE measured",
+            "UPDATE measured SET record = 77 WHERE id = 1",
+            "UPDATE measured SET measure = 'Du' WHERE measure = 'Sa(1.0)'",
+        ],
+    )
+    def test_damage_is_found(self, measured, tmp_path, statement):
+        place = tmp_path / "study.db"
+        place.write_bytes((measured[0] / "study.db").read_bytes())
+        with closing(sqlite3.connect(place, isolation_level=None)) as connection:
+            connection.executescript(statement)
+        for arguments in (("results", place), ("fragility", write(tmp_path), "--store", place)):
+            shown = command(*arguments)
+            assert shown.exit_code == 2 and "the store is damaged" in shown.stderr
+
     def test_a_measure_that_is_not_installed_any_more_is_said_and_keeps_the_runs(self, measured, tmp_path):
         place = tmp_path / "study.db"
         place.write_bytes((measured[0] / "study.db").read_bytes())

@@ -24,6 +24,7 @@ from rocking_cli.studies.fragility import assess, curves, sources, store, store_
 from rocking_cli.studies.fragility.campaign import differences, prepare, run
 from rocking_cli.studies.fragility.definition import RecordEntry
 from rocking_cli.studies.fragility.intensity import ALWAYS
+from rocking_cli.studies.fragility.observed import few_records
 from rocking_cli.studies.fragility.plan import Trial, weaker
 from rocking_cli.studies.fragility.sources import Source
 from rocking_cli.studies.fragility.store import COLUMNS, Store, StoreError
@@ -329,7 +330,7 @@ class TestChanges:
     @pytest.mark.parametrize(
         ("old", "new", "said"),
         [
-            ("azimuth: 30", "azimuth: 40", "azimuth was 30"),
+            ("azimuth: 30", "azimuth: 40", "azimuth was 30.0, is now 40.0"),
             ("lowpass 20", "lowpass 15", "processing[1] was lowpass 20, is now lowpass 15"),
             ("from: displacement", "gain: 1 m/V", "records[1]"),
             ("units: m,", "units: mm,", "units was m, is now mm"),
@@ -639,6 +640,40 @@ def test_runs_are_grouped_by_level_where_it_decides_their_intensity(whole):
     x = of.over("PGA").intensities("PGA")
     expected = rows.scale[30:].reshape(4, 3, 5, 2)[..., 0] * np.array([each.pga for each in plan.records])[:, None]
     np.testing.assert_allclose(x, expected[sample, record, level], rtol=1e-14)
+
+
+def test_what_is_counted_does_not_depend_on_how_it_is_read(whole, monkeypatch):
+    with Store.reading(whole[2]) as kept:
+        plan, seen = kept.plan(), []
+        once = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ALWAYS, ladders=True, counted=seen.append)
+        monkeypatch.setattr(store, "READ", 7)
+        piecewise = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ALWAYS, ladders=True, counted=seen.append)
+    assert sum(seen) == 2 * 120
+    np.testing.assert_array_equal(piecewise.runs, once.runs)
+    np.testing.assert_array_equal(piecewise.ladders.there, once.ladders.there)
+    for limit in ("uplift", 0.25):
+        np.testing.assert_array_equal(piecewise.exceeding[limit], once.exceeding[limit])
+        np.testing.assert_array_equal(piecewise.ladders.first[limit], once.ladders.first[limit])
+
+
+@pytest.mark.rest
+@pytest.mark.parametrize("method", ["stripes", "ida"])
+def test_few_records_and_what_is_not_tested_are_said_in_words_and_in_json(tmp_path, method):
+    text = STUDY.replace("method: stripes", f"method: {method}").replace("method:", MORE)
+    said, curves, surfaces = both_as_text_and_json(write(tmp_path, text))
+    warning = few_records(3)
+    fitted = {"lognormal": warning, "logistic": warning}
+    for each in (*curves, *surfaces):
+        assert (each["distinct_records"], each["warning"]) == (3, fitted.get(each["kind"]))
+    warned = {(each["structure"], each["measure"]) for each in curves if each["warning"]}
+    warned |= {(each["structure"], *each["measures"]) for each in surfaces if each["warning"]}
+    assert said.count(f"Warning: {warning}.") == len(warned) > 0
+    reasons = [each["goodness"]["why"] for each in curves if each["goodness"] and each["goodness"]["p_value"] is None]
+    assert reasons
+    for each in curves:
+        if each["goodness"] and each["goodness"]["p_value"] is None:
+            assert f"is not tested: {each['goodness']['why']}" in each["why"]
+        assert f"{each['why']}." in said
 
 
 @pytest.mark.rest

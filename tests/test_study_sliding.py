@@ -221,6 +221,13 @@ class TestTheStore:
         assert any(each.name.startswith("sliding") for each in (tmp_path / "pictures").iterdir())
         assert "sliding  " in command("results", whole[2]).stdout
 
+    def test_any_program_reads_it(self, whole):
+        with closing(sqlite3.connect(whole[2])) as connection:
+            (count,) = connection.execute("SELECT count(*) FROM runs WHERE slide_time >= uplift_time").fetchone()
+            names = [row[1] for row in connection.execute("PRAGMA table_info(run)")]
+        rows = rows_of(whole[2])
+        assert count == np.isfinite(rows.slide_time).sum() and tuple(names) == (*rows.columns, "checksum")
+
     def test_damage_is_found(self, whole, tmp_path):
         place = tmp_path / "study.db"
         place.write_bytes(whole[2].read_bytes())
