@@ -624,7 +624,7 @@ class TestAskingForIt:
 
     def test_a_head_without_a_sheet_is_refused(self, tmp_path):
         result = self.asked(tmp_path, "--author", "me")
-        assert "--author belongs to the heading of a sheet" in result.stderr
+        assert "--author has no effect without a calculation sheet: give --sheet" in result.stderr
 
     def test_it_does_not_write_over_its_input(self, tmp_path):
         (tmp_path / "in.html").write_text(FACADE, encoding="utf-8")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Unpack
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
-from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.names import OPENING
@@ -127,6 +127,16 @@ def report(
     signs, given = signs_of(polarity), Motions.of(motions, options)
     if (state is not None or on_floor) and (verify is None or not given):
         raise InputError("`state` and `on_floor` describe records of a verification: give `verify` and `motions`")
+    if not given:
+        refuse_idle(
+            "without ground motions",
+            polarity=len(signs) == 1,
+            neighbours=neighbours != Neighbourhood.count,
+            amplitude_deviation=amplitude_deviation != Neighbourhood.amplitude,
+            slenderness_deviation=slenderness_deviation,
+            restitution_deviation=restitution_deviation,
+            opening=opening != OPENING,
+        )
     if not neighbours:
         raise InputError("a report shows how close the result is: `neighbours` must be at least 1")
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)

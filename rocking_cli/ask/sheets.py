@@ -25,7 +25,7 @@ from rocking_cli.views.sheet.language import Language
 
 
 class SheetOrigin(NamedTuple):
-    """SheetOrigin of a document: the command that wrote it, and the file of the structure as it was given."""
+    """Origin of a document: the command that wrote it, and the file of the structure as it was given."""
 
     command: str
     structure: File

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Unpack
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
-from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.names import OPENING
@@ -110,6 +110,13 @@ def verify(
     signs, given, known = signs_of(polarity), Motions.of(motions, options), site_of(site)
     if not given and (state is not None or on_floor):
         raise InputError("`state` and `on_floor` describe records: give `motions`")
+    if not given and signs != (1,):
+        raise InputError("`polarity` reverses a ground motion: give `motions`")
+    if not given:
+        refuse_idle("without ground motions", opening=opening != OPENING)
+    if sheet is None:
+        head = {"project": project, "place": place, "author": author, "logo": logo}
+        refuse_idle("without a calculation sheet: give `sheet`", language=language != "en", **head)
     refuse(known, control=control is not None, motions=bool(given))
     if sheet is not None:
         from rocking_cli.ask import sheets

@@ -3,30 +3,16 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import click
 
 from rocking_cli.cli import complete, defaults, options
-from rocking_cli.cli.defaults import from_default
 from rocking_cli.processing.reading_options import CORRECTIONS
 
-if TYPE_CHECKING:
-    pass
-
 LANGUAGES = ("en", "it")
-
-
-def check(sheet: Path | None, given: Mapping[str, Any]) -> None:
-    """Raise if a heading was typed, and no sheet has it."""
-    typed = [f"--{name}" for name in ("project", "place", "author", "logo") if given[name] is not None]
-    typed = [name for name in typed if not from_default(name[2:])]
-    if sheet is None and typed:
-        word = "belongs" if len(typed) == 1 else "belong"
-        raise click.UsageError(f"{' and '.join(typed)} {word} to the heading of a sheet: give --sheet FILE.html.")
-
+HEAD = ("project", "place", "author", "logo")
+"""Options of the heading of a document."""
 
 head: options.Decorator = options.in_order(
     click.option("--project", metavar="TEXT", help="Project name, for the heading of the document."),

@@ -8,7 +8,8 @@ from typing import Any
 import click
 
 from rocking_cli.cli import complete, heads, motion_files, options, terminal
-from rocking_cli.cli.groups import GroundMotions
+from rocking_cli.cli.defaults import as_declared
+from rocking_cli.cli.groups import AROUND, GroundMotions
 from rocking_cli.cli.help import Command
 
 
@@ -57,6 +58,9 @@ def command(
     from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import keep_apart
 
+    question["polarity"] = asked.polarity
+    if not asked:
+        as_declared(question, "polarity", *AROUND)
     file = motion_files.structure(files, asked.records)
     if out is None and not as_json:
         out = Path(f"{options.stem(file)}.html")
@@ -64,6 +68,6 @@ def command(
     read = [*files, *(str(each.path) for each in motions.records), question["logo"], question["verify"]]
     keep_apart([("--out", out)], read)
     origin = heads.command_line(ctx)
-    answer = report(file, motions, out, polarity=asked.polarity, origin=origin, watch=watch, **question)
+    answer = report(file, motions, out, origin=origin, watch=watch, **question)
     terminal.show(answer.view, as_json=as_json)
     watch.end()

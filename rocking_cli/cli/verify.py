@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from rocking_cli.cli import complete, heads, options, terminal
+from rocking_cli.cli.defaults import as_declared
 from rocking_cli.cli.groups import GroundMotions, Output
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import Parsed, number
@@ -80,13 +81,12 @@ def command(
       rocking verify block.yaml --site site.yaml --record "records/*.AT2" --target-pga 0.24
     """
     asked.check()
-    if not asked and asked.polarity != "1":
-        raise click.UsageError("--polarity reverses a ground motion: give --record FILE or --pulse PULSE.")
-    heads.check(sheet, question)
     from rocking_cli.ask.verify import verify
     from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import keep_apart
 
+    if sheet is None:
+        as_declared(question, *heads.HEAD)
     motions, output, watch = asked.motions, Output(None, plot, as_json), OnTerminal()
     read = [file, site, question["logo"], *(str(each.path) for each in motions.records)]
     keep_apart([("--plot", plot), ("--sheet", sheet)], read)
