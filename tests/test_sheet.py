@@ -1,5 +1,6 @@
 """The calculation sheet: every result recomputed from the numbers that are printed above it."""
 
+import calendar
 import hashlib
 import re
 import sys
@@ -15,6 +16,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from rocking_cli.codes.italian import Italian
+from rocking_cli.codes.italian.remarks import differences
 from rocking_cli.codes.italian.sheet import build, dynamic, site, steps, summary
 from rocking_cli.core import Direction
 from rocking_cli.core.registry import Registry
@@ -22,11 +24,13 @@ from rocking_cli.documents import sheet_docx, sheet_page
 from rocking_cli.documents.sheet_page import MARKS
 from rocking_cli.io.yaml_file import parse
 from rocking_cli.structure_file import parse_structure
+from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.studies.verification.check import site_in
 from rocking_cli.studies.verification.control import control_at
 from rocking_cli.views.sheet.document import Steps
 from rocking_cli.views.sheet.language import texts_of
-from rocking_cli.views.verification import data
+from rocking_cli.views.verdict import SENSE
+from rocking_cli.views.verification import data, view
 from rocking_cli.views.view import Table
 from tests.browser import launch
 from tests.conftest import EXAMPLES
@@ -105,6 +109,11 @@ FIELDS = [site.OF_GROUND, site.OF_SITE, site.OF_FLOOR]
 TABLES = {
     text for each in (build.WHERE, dynamic.SETS, steps.TITLES, summary.SHORT) for text in each.values()
 } | {meaning for each in FIELDS for *_, meaning in each.values()}  # fmt: skip
+
+
+OF_CODES = Concluded.SATISFIED, Concluded.NOT_SATISFIED, Concluded.UNKNOWN, Concluded.NOT_CHECKED
+REASONS = "elastic", "too_few", "too_few_and_past", "starts_first"  # see `LeftOut`
+ENDS = {*OF_CODES, *REASONS, "satisfied_at", "not_covered", "unproven", "past"}
 
 
 class Step(NamedTuple):
@@ -666,6 +675,40 @@ def test_italian_has_all_texts_with_the_same_slots(package):
     used = {*re.findall(r'(?:\bsay\(|meaning=|Remark\.of\()"([^"]+)"', written), *TABLES}
     known = texts_of("rocking_cli.codes.italian", "it").keys() | texts_of("rocking_cli.views.sheet", "it").keys()
     assert len(used) > 20 and used <= known
+
+
+def test_every_text_has_a_user():
+    """Keys of families, of which a part is filled in, by what fills it in; the others stand in code or a page."""
+    packages = "rocking_cli.codes.italian", "rocking_cli.views.sheet"
+    keys = {key for package in packages for key in texts_of(package, "it")}
+    known = Registry()
+    own = {key: known[key] for key in known if known[key].__module__.startswith("mechanisms.")}
+    families = {f"mechanism_{key}" for key in own} | {f"caution_{key}" for key, each in own.items() if each.caution}
+    assert families <= keys
+    families |= {*calendar.month_name[1:], "Project", "Place", "Author", "Structure file", "Site file"}
+    families |= {"drawing at rest", *(f"drawing {each.label} ({SENSE[each]})" for each in Direction)}
+    families |= {f"end_direction_{each.label}" for each in Direction} | {f"end_{each}" for each in ENDS}
+    families |= {"a_g_start_iterated", "a_g_method_iterated"}
+    files = [each for each in files_of("rocking_cli").rglob("*") if each.suffix in (".py", ".html")]
+    written = "".join(each.read_text(encoding="utf-8") for each in files)
+    assert not [key for key in keys - families if not re.search(rf"""["']{re.escape(key)}["']""", written)]
+
+
+@pytest.mark.parametrize("language", ["en", "it"])
+@pytest.mark.parametrize("name", CASES)
+def test_every_remark_is_on_the_sheet_and_in_the_terminal(name, language):
+    """What limits a verification, and why its methods differ, is said wherever it is shown."""
+    found, given = verified(*CASES[name])
+    remarks = [each for side in found.distinct for each in (*differences(side, found.first), *side.remarks)]
+    remarks += found.remarks
+    say = build.SHEET.language(language)
+    summary = next(iter(build.parts(say, found, given)))
+    (part,) = summary.parts
+    said = " ".join(item.text for item in part.items)
+    assert len(remarks) > 1 and all(say(each) in said for each in remarks)
+    assert found.mechanism.caution == "" or ("Caution: " if language == "en" else "Attenzione: ") in said
+    terminal = [each for each in view(found).parts if isinstance(each, str)]
+    assert all(steps.TERMINAL(each) in terminal for each in remarks)
 
 
 @pytest.mark.usefixtures("small_maps")

@@ -126,8 +126,11 @@ def test_a_motion_that_dies_out_earlier_does_not_agree_though_the_peaks_do():
 
 def test_a_motion_that_comes_and_goes_between_two_samples_is_judged_by_its_peak():
     unseen = replace(RESTED, peak_ratio=1e-9, ratio=0 * RESTED.ratio)
-    found = agreements({"nonlinear": unseen, "linear2": replace(unseen, peak_ratio=1.1e-9)})["linear2"]
+    histories = {"nonlinear": unseen, "linear2": replace(unseen, peak_ratio=1.1e-9)}
+    found = agreements(histories)["linear2"]
     assert (found.grade, found.difference, found.peak_delay) == (Grade.ESTIMATE, None, None)
+    said = verdict(histories, agreements(histories))
+    assert "linear2 is good for a first estimate: its peak is 10 % higher." in said
     json.dumps(vars(found), allow_nan=False)
 
 
