@@ -117,6 +117,21 @@ class TestDefaults:
         typed = run("respond", BLOCK, "--release", "0.5", "--polarity", "-1", code=2).stderr
         assert "was not typed" not in typed
 
+    @pytest.mark.parametrize(
+        "words",
+        [
+            ("respond", BLOCK, "--release", "0.3", "--model", "nonlinear"),
+            ("verify", BLOCK, "--site", EXAMPLES / "verify" / "site.yaml"),
+            ("report", BLOCK, "--json"),
+        ],
+    )
+    def test_what_has_no_effect_is_an_error_only_where_it_is_typed(self, words, tmp_path):
+        text = "author = 'me'\nneighbours = 7\nslenderness-deviation = 0.2\n[report]\npolarity = '1'\n"
+        (tmp_path / "rocking.toml").write_text(text, encoding="utf-8")
+        run(*words)
+        option = ("--author", "me") if words[0] == "verify" else ("--slenderness-deviation", 0.2)
+        assert f"{option[0]} has no effect without" in run(*words, *option, code=2).stderr
+
     def test_a_list_is_what_is_typed_with_commas(self, tmp_path):
         (tmp_path / "rocking.toml").write_text("[respond]\nmodel = ['linear1', 'linear2']\n", encoding="utf-8")
         found = run_json("respond", BLOCK, "--pulse", "sine:0.5g:1s", "--neighbours", "0")

@@ -149,7 +149,7 @@ def as_declared(given: dict[str, Any], *names: str) -> None:
     """Take back what a user's defaults say of some options: where they have no effect, only typed ones are errors."""
     for param in click.get_current_context().command.params:
         if param.name in names and param.name in given and from_default(str(param.name)):
-            given[param.name] = param.default
+            given[param.name] = param.to_info_dict()["default"]  # the attribute has an object for None
 
 
 def from_default(name: str, context: click.Context | None = None) -> bool:
