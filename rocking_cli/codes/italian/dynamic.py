@@ -77,7 +77,7 @@ def with_histories(
 ) -> ItalianVerification:
     """Return a verification with time histories under a set of records; see `check.with_histories`."""
     taken = structure if found.mechanism is structure.mechanism else structure.of(found.mechanism)
-    checked = taken.model("nonlinear").joints is not None
+    unchecked = taken.mechanism.unchecked if taken.model("nonlinear").joints is None else None
     curves = {direction: each.exact for direction, each in found.directions.items()}
     state = _state_of_records(found, asked.state)
     what, moved = where_it_stands(asked, floor_at(site, state))
@@ -93,7 +93,7 @@ def with_histories(
                 each.d0,
                 {state: each.states[state].d},
                 RECORDS,
-                checked=checked,
+                unchecked=unchecked,
                 motions=what,
             ),
         )

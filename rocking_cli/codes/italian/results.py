@@ -126,8 +126,8 @@ class Dynamic:
         The displacement that the mean may reach at the limit state to which the records belong [m].
     enough : int
         Number of records that the code requires.
-    checked : bool
-        Whether the joints of the structure are known; if not, no outcome is unknown.
+    unchecked : str, optional
+        Why the joints of the structure are not checked, see `Mechanism.unchecked`; then no outcome is unknown.
     motions : MotionPlace
         Kind of the motions: of the ground or of a floor.
     """
@@ -136,8 +136,13 @@ class Dynamic:
     d0: float
     allowed: Mapping[str, float]
     enough: int
-    checked: bool = True
+    unchecked: str | None = None
     motions: MotionPlace = field(default_factory=MotionPlace)
+
+    @property
+    def checked(self) -> bool:
+        """Whether the joints of the structure are checked."""
+        return self.unchecked is None
 
     def mean(self, *, confident: bool) -> float | None:
         """Return the mean of the peak displacements [m]; None if one overturned, exceeded d0* or is unknown."""

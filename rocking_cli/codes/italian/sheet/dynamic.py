@@ -27,8 +27,8 @@ def items(say: Language, found: Dynamic, FC: float) -> Iterator[Sentence | Table
         yield from map(Sentence, _said(say, found, state, confident=confident))
     if FC != 1 and found.holds(state, confident=True) != found.holds(state, confident=False):
         yield Sentence(say("The confidence factor FC changes the verdict at {state}.", state=state))
-    if not found.checked:
-        yield Sentence(say("not_checked"))
+    if found.unchecked is not None:
+        yield Sentence(say("not_checked", why=say(found.unchecked)))
     if found.too_few:
         count = len(found.records)
         yield Sentence(say("one" if count == 1 else "few", count=count, enough=found.enough))
