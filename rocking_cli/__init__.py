@@ -81,7 +81,7 @@ def _own_mechanisms() -> dict[str, str]:
 
     Mechanisms of other packages are in `mechanisms`, by name.
     """
-    from importlib.metadata import entry_points
+    from rocking_cli.plugins.registry import entry_points
 
     own = [point for point in entry_points(group="rocking.mechanisms") if point.value.startswith("mechanisms.")]
     return {point.value.partition(":")[2]: point.name for point in own}

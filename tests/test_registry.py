@@ -509,6 +509,26 @@ def test_the_same_entry_listed_twice_is_one(monkeypatch):
     assert Registry()["block"] is Block
 
 
+def test_packages_are_searched_again_only_when_one_may_have_come_or_gone(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    assert "late" not in Registry()
+    with monkeypatch.context() as unread:
+        unread.setattr("rocking_cli.plugins.registry.metadata.entry_points", lambda group: pytest.fail("searched"))
+        assert "block" in Registry()
+    os.utime(tmp_path, ns=(1, 1))  # whatever the clock of the file system
+    info = tmp_path / "late-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: late\nVersion: 1.0\n", encoding="utf-8")
+    (info / "entry_points.txt").write_text("[rocking.mechanisms]\nlate = elsewhere:Late\n", encoding="utf-8")
+    assert Registry().package_of("late") == "late 1.0"
+    sys.path.remove(str(tmp_path))
+    assert "late" not in Registry()
+
+
+def test_an_unknown_name_is_no_key():
+    assert Registry().get("nope") is None
+
+
 def test_an_unknown_name_comes_with_a_guess():
     with pytest.raises(InputError, match="did you mean symmetric_frame"):
         Registry()["symetric_frame"]

@@ -1,16 +1,19 @@
 """Plugins of installed packages, found by their entry points and looked up by name.
 
-Mechanisms, record readers, pulse shapes, intensity measures, laws of ties, codes of practice and engines are all
+Mechanisms, record readers, pulse shapes, intensity measures, laws of ties and codes of practice are all
 plugins of one kind each.
 """
 
 from __future__ import annotations
 
+import os
+import sys
 import warnings
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping
-from functools import cache
-from importlib.metadata import EntryPoint, entry_points
+from functools import cache, lru_cache
+from importlib import metadata
+from importlib.metadata import EntryPoint, EntryPoints
 from typing import ClassVar, TypeVar
 
 from rocking_cli.errors import InputError, MechanismError, PluginWarning
@@ -18,6 +21,25 @@ from rocking_cli.plugins.errors import blame
 from rocking_cli.text import did_you_mean
 
 T = TypeVar("T")
+
+
+def entry_points(group: str) -> EntryPoints:
+    """Return the entry points of a group; they are searched anew once `sys.path`, or a folder of it, has changed."""
+    return _installed(group, (*map(id, sys.meta_path), *((path, *_state(path)) for path in sys.path)))
+
+
+def _state(path: str) -> tuple[int, ...]:
+    """Return what changes when a package is installed in a folder; empty if there is no such folder."""
+    try:
+        status = os.stat(path or ".")  # noqa: PTH116  a Path would cost more than the question
+    except OSError:
+        return ()
+    return status.st_dev, status.st_ino, status.st_mtime_ns
+
+
+@lru_cache(maxsize=32)  # a search reads a file of every package, as long as most commands compute
+def _installed(group: str, state: tuple[object, ...]) -> EntryPoints:
+    return metadata.entry_points(group=group)
 
 
 def find(group: str) -> dict[str, list[EntryPoint]]:
