@@ -527,7 +527,10 @@ class TestStart:
             (["pulse", "--a", "2", "--omega", "3"], {"numba", "scipy", "matplotlib", "numpy"}),
             (["pulse", "--a", "2", "--omega", "3", "--shape", "rectangular"], {"numpy"}),
             (["record", ACCEL], {"numba", "scipy", "matplotlib", "pydantic"}),
-            (["respond", FRAME, "--record", ACCEL], {"numba", "scipy", "matplotlib", "rocking_cli.plotting"}),
+            (
+                ["respond", FRAME, "--record", ACCEL],
+                {"numba", "scipy", "matplotlib", "rich.console", "rocking_cli.plotting"},
+            ),
         ],
     )
     def test_a_command_imports_what_it_uses(self, words, heavy):

@@ -34,7 +34,6 @@ Motion = GroundMotion | Pulse | Scaled | str | Path
 MOST_PGA, MOST_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and too long to simulate
 Source = GroundMotion | Scaled | Pulse | Listed | InputError
 """What a motion is made of: a file of a pattern or a list by itself, or why a place has no file."""
-MOST_PGA, MOST_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and too long to simulate
 
 
 def check_known(options: Mapping[str, Any], accepted: Mapping[str, object] = READING) -> None:

@@ -1,10 +1,32 @@
-"""The options of records under a heading of their own in the help of a command."""
+"""The help of commands: the options of records under a heading of their own, and lines that fit a narrow terminal."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable
+from shutil import get_terminal_size
+from typing import Any
 
 import click
 
 OPTIONS, OF_RECORDS = "Options", "Reading and processing of records"  # headings
+MARGIN = 2  # columns that stay free, as in click
+LEAST, NARROW = 20, 52  # columns that are used at least, and from which on click has a layout
+
+
+class HelpFormatter(click.HelpFormatter):
+    """Formatter of click, and for terminals that are too narrow for it, with texts below their options."""
+
+    def __init__(self, indent_increment: int = 2, width: int | None = None, max_width: int | None = None) -> None:
+        columns = get_terminal_size().columns
+        if width is None and columns < NARROW:
+            width = max(columns, LEAST) - MARGIN
+        super().__init__(indent_increment, width, max_width)
+
+    def write_dl(self, rows: Iterable[tuple[str, str]], *layout: Any, **more: Any) -> None:
+        """Write options, or commands, and what they mean."""
+        if self.width < NARROW - MARGIN:
+            layout, more = (2 * self.indent_increment - MARGIN,), {}
+        super().write_dl(rows, *layout, **more)
 
 
 class RecordOption(click.Option):

@@ -14,6 +14,7 @@ import click
 
 from rocking_cli import __version__
 from rocking_cli.cli import defaults, endings, terminal
+from rocking_cli.cli.help import HelpFormatter
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.text import cut, one_line, printable
 
@@ -28,7 +29,13 @@ DO_WITHOUT = ("info", "selfcheck")
 LATEST = 11  # digits of SOURCE_DATE_EPOCH, up to the year 5138
 
 
-class _Context(click.Context):
+class _Helped(click.Context):
+    """Context whose help fits narrow terminals."""
+
+    formatter_class = HelpFormatter
+
+
+class _Context(_Helped):
     """Context of a command: its options have the user's defaults, and only results go to standard output."""
 
     def __init__(self, *args: Any, **more: Any) -> None:
@@ -64,6 +71,8 @@ def _check_environment() -> None:
 
 class LazyGroup(click.Group):
     """Group of commands, each in a module of its name; errors of the package become a message and an exit code."""
+
+    context_class = _Helped
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names in the order in which a newcomer needs them."""

@@ -42,7 +42,7 @@ as_json: Decorator = click.option(
 def output_path(*suffixes: str) -> Callable[[click.Context, click.Parameter, str | None], Path | None]:
     """Make a callback of click that checks an output file: one of these suffixes, and a folder that can be written to.
 
-    A table in text may be written to - for standard output, as `tables.write` does.
+    A table in text may be written to - for standard output, as `written.write_table` does.
     """
 
     def check(ctx: click.Context, param: click.Parameter, value: str | None) -> Path | None:
