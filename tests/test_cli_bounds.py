@@ -9,7 +9,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.record_csv import write_record_csv
 from rocking_cli.io.tables import write_csv
 from tests.conftest import EXAMPLES
-from tests.test_cli import run
+from tests.test_cli import run, run_json
 
 ACCEL, BLOCK = str(EXAMPLES / "accel.csv"), str(EXAMPLES / "block.yaml")
 PULSE = "sine:0.4g:1s"
@@ -60,6 +60,12 @@ def test_ranges_have_bounds(arguments):
 def test_a_film_has_a_speed_that_can_be_watched(file, speed):
     result = run("animate", BLOCK, "--pulse", PULSE, "--out", file, "--speed", speed, code=2)
     assert result.stdout == "" and "--speed: " in result.stderr and "is not between 0.001 and 1000" in result.stderr
+
+
+def test_the_finest_tolerance_is_reached():
+    asked = ("respond", BLOCK, "--record", ACCEL, "--neighbours", "0", "--rtol")
+    finest, usual = (run_json(*asked, rtol)["responses"]["nonlinear"]["peak_ratio"] for rtol in ("1e-14", "1e-9"))
+    assert finest == pytest.approx(usual, rel=1e-8)
 
 
 def test_a_pulse_too_short_to_be_shown_is_no_question_of_dt():

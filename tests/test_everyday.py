@@ -306,6 +306,10 @@ class TestStandardStreams:
         assert shown.stdout.strip() in run(*command, "--out", "-").stderr
         assert not Path("-").exists()
 
+    def test_after_it_results_are_on_standard_output_again(self):
+        run("overturning", BLOCK, "--points", "6", "--out", "-")
+        assert run("equiv", BLOCK).stdout
+
     def test_the_runs_of_a_study_go_there_too(self):
         Path("block.yaml").write_text(run("new", "block").stdout, encoding="utf-8")
         Path("study.yaml").write_text(run("new", "study").stdout, encoding="utf-8")
@@ -340,3 +344,11 @@ class TestStandardStreams:
         said = piped(*both, given=Path(BLOCK).read_text(encoding="utf-8"), code=2).stderr
         assert "can be read once only, and something else has been read from it" in said
         assert "larger than 10 MB" in piped("equiv", "-", given="#" * 10_000_001, code=2).stderr
+
+    def test_a_record_is_read_by_defaults_from_there_too(self, monkeypatch):
+        monkeypatch.setenv("ROCKING_UNITS", "m/s2")
+        monkeypatch.setenv("ROCKING_DT", "0.02")
+        bare = "\n".join(f"{k % 7 - 3}.5" for k in range(50))
+        assert json.loads(piped("record", "-", "--json", given=bare).stdout)["dt"] == 0.02
+        own = Path(ACCEL).read_text(encoding="utf-8")
+        assert json.loads(piped("record", "-", "--json", given=own).stdout)["dt"] == 0.01

@@ -1,4 +1,4 @@
-"""`rk.error`, which is also `rk.linearisation`: compute the errors of the equivalent block of a structure."""
+"""`rk.error`: compute the errors of the equivalent block of a structure."""
 
 from __future__ import annotations
 
