@@ -57,7 +57,7 @@ def test_with_masses_it_is_in_kilograms(masses, tmp_path):
     assert load_structure(file).has_mass
     data, said = run_json("equiv", file), flat(run("equiv", file).stdout)
     assert data["per_unit_mass"] is False and "kg m2" in said and "per unit mass" not in said
-    run("report", "--neighbours", 20, file, "-o", tmp_path / "r.html")
+    run("report", file, "-o", tmp_path / "r.html")
     page = (tmp_path / "r.html").read_text(encoding="utf-8")
     assert "kg m²" in page and "Per unit mass" not in page
 
@@ -73,9 +73,9 @@ def test_the_caution_of_the_wall_is_shown_where_it_is_looked_up_and_used(tmp_pat
     assert wall.caution in flat(run("mechanisms", "wall").stdout)
     assert wall.caution in flat(run("equiv", file).stdout) and run_json("equiv", file)["caution"] == wall.caution
     out = tmp_path / "r.html"
-    run("report", "--neighbours", 20, file, "-o", out)
+    run("report", file, "-o", out)
     assert wall.caution in flat(out.read_text(encoding="utf-8"))
-    assert wall.caution in json.loads(run("report", "--neighbours", 20, file, "--json").stdout)["doubts"]
+    assert wall.caution in json.loads(run("report", file, "--json").stdout)["doubts"]
 
 
 def test_without_one_nothing_is_shown():

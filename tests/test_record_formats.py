@@ -2,6 +2,8 @@
 
 import json
 import re
+import sys
+from importlib.metadata import EntryPoint
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -571,7 +573,8 @@ def test_a_file_of_no_format_lists_what_was_tried(write):
 
 
 def test_a_broken_reader_is_named(monkeypatch):
-    point = SimpleNamespace(name="odd", value="elsewhere:odd", dist=None, load=lambda: SimpleNamespace(sniff=len))
+    point = EntryPoint(name="odd", value="elsewhere:odd", group=Readers.group)
+    monkeypatch.setitem(sys.modules, "elsewhere", SimpleNamespace(odd=SimpleNamespace(sniff=len)))
     monkeypatch.setattr(
         "rocking_cli.plugins.registry.entry_points", lambda group: [point] if group == Readers.group else []
     )

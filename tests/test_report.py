@@ -168,7 +168,7 @@ class TestContent:
         stocky = tmp_path / "stocky.yaml"
         stocky.write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")
         out = tmp_path / "r.html"
-        run("report", *FEW, stocky, "-o", out)
+        run("report", stocky, "-o", out)
         words = read(out).words
         assert "they need a measured restitution" in words and "No map is given" in words
         assert "restitution" in run("report", *FEW, stocky, "--record", ACCEL, "-o", out, code=2).stderr
@@ -254,10 +254,10 @@ class TestReproduction:
 @pytest.mark.usefixtures("small_maps")
 class TestCommand:
     def test_the_page_is_named_after_the_structure_and_json_writes_none(self, tmp_path):
-        run("report", *FEW, BLOCK)
+        run("report", BLOCK)
         assert (tmp_path / "block.html").exists()
         (tmp_path / "block.html").unlink()
-        data = run_json("report", *FEW, BLOCK)
+        data = run_json("report", BLOCK)
         assert list(tmp_path.iterdir()) == []
         assert data["motions"] == [] and set(data["parameters"]) == {"positive", "negative"}
 
@@ -342,9 +342,9 @@ class TestSize:
 def test_the_head_names_project_place_and_author(tmp_path):
     out = tmp_path / "r.html"
     head = ("--project", "Survey <2026>", "--place", "L'Aquila", "--author", "A. & B.")
-    data = run_json("report", *FEW, BLOCK, *head, "-o", out)
+    data = run_json("report", BLOCK, *head, "-o", out)
     assert (data["project"], data["place"], data["author"]) == ("Survey <2026>", "L'Aquila", "A. & B.")
     page = out.read_text(encoding="utf-8")
     assert "Project: Survey &lt;2026&gt;. Place: L&#39;Aquila. Author: A. &amp; B.." in page
-    run("report", *FEW, BLOCK, "-o", out)
+    run("report", BLOCK, "-o", out)
     assert "Project:" not in out.read_text(encoding="utf-8")

@@ -88,8 +88,8 @@ def fragility(
     from rocking_cli.studies.fragility.thresholds import held
 
     file = Path("study") if isinstance(study, Mapping) else Path(study)
+    asked = load_study(study, Path(store or file).stem)
     place = Path(store) if store is not None else file.with_suffix(".db")
-    asked = load_study(study, place.stem)
     # What varies may be far from the file: the first sample stands for all.
     for mechanism in {sample.structure: sample.mechanism for sample in asked.samples if sample.number == 0}.values():
         warn_of(mechanism, watch)
