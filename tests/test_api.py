@@ -281,11 +281,30 @@ FRAMES = {
         "line; structure; record; cluster; share; unknown; overturned; doubtful; pgv; error",
         {"pgv": lambda _, data: [each["pgv"] for each in data["tests"]]},
     ),
+    "report": (
+        "motion; peak_ratio; overturned; unknown",
+        {"motion": lambda _, data: [each["name"] for each in data["motions"]],
+         "peak_ratio": lambda _, data: [
+             each["polarities"][f"{each['polarity']}"]["responses"]["nonlinear"]["peak_ratio"]
+             for each in data["motions"]
+         ]},
+    ),
+    "calibrate": (
+        "time [s]; angle [rad]; fitted [rad]; fitted, eta of each impact [rad]",
+        {"fitted [rad]": lambda answer, _: answer.fitted},
+    ),
+    "selfcheck": (
+        "check; meaning; found; limit; unit; passed; why; seconds",
+        {name: lambda _, data, name=name: [each[name] for each in data["checks"]] for name in ("check", "found")},
+    ),
 }  # fmt: skip
-"""The columns of the frame of each verb but those that take long, and numbers of some as answer or data have them."""
+FRAMES["results"] = FRAMES["fragility"]
+"""The columns of the frame of each verb, and numbers of some as answer or data have them."""
 QUESTIONS = {verb: given for verb, (given, _) in CALLS.items()} | {
     "verify": {"structure": CALLS["equiv"][0]["structures"], "site": SITE},
     "score": {"tests": EXAMPLES / "tests.csv", "neighbours": 2},
+    "results": {"store": "in.db"},
+    "selfcheck": {"quick": True},
 }  # fmt: skip
 
 

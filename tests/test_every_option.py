@@ -218,6 +218,9 @@ IDLE = [
      {"polarity": "-1", "with_pulse": "sine", "vertical_dt": 0.1, "vertical_channel": "2", "vertical": RECORD}
      | AROUND),
     ("respond", {"structure": BLOCK, "motion": PULSE, "models": "linear2"}, {"opening": 0.1}),
+    ("fragility", {"study": STUDY, "store": "c.db", "check": True},
+     {"jobs": 2, "scheduler": "tcp://odd:1", "restart": True, "rank_measures": True, "quantiles": True,
+      "nrml": "n.xml"}),
     ("equivalent", {"structures": [BLOCK, OTHER], "pulse": PULSE}, {"ag": 0.4, "period": 0.4, "shape": "cosine"}),
 ]  # fmt: skip
 """A question, and arguments that have no effect on it."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.given import warn_of
-from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 
@@ -48,7 +48,7 @@ def fragility(
     store : str or Path, optional
         File in which the runs are stored; by default next to the study file, or study.db in this folder.
     check : bool
-        Whether only to show what would be run.
+        Whether only to show what would be run; arguments on the runs and their curves are then refused.
     jobs : int, optional
         Number of time histories at a time; by default, one for each processor.
     scheduler : str, optional
@@ -87,6 +87,11 @@ def fragility(
     from rocking_cli.studies.fragility.study import load_study
     from rocking_cli.studies.fragility.thresholds import held
 
+    if check:
+        refuse_idle(
+            "with `check`, which runs nothing", jobs=jobs is not None, scheduler=scheduler, restart=restart,
+            rank_measures=rank_measures, quantiles=quantiles, nrml=nrml is not None,
+        )  # fmt: skip
     file = Path("study") if isinstance(study, Mapping) else Path(study)
     asked = load_study(study, Path(store or file).stem)
     place = Path(store) if store is not None else file.with_suffix(".db")

@@ -48,6 +48,7 @@ def command(ctx: click.Context, file: str, shown: CurveOutput, as_json: bool, **
       rocking results study.db --out runs.csv
     """
     from rocking_cli.ask.fragility import fragility
+    from rocking_cli.ask.numbers import refuse_idle
     from rocking_cli.ask.results import StudyAnswer
     from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import check_writable, folder, keep_apart
@@ -56,12 +57,14 @@ def command(ctx: click.Context, file: str, shown: CurveOutput, as_json: bool, **
     place = Path(file).resolve().with_suffix(".db") if study["store"] is None else Path(study["store"])
     named = "the store beside the study" if study["store"] is None else "--store"
     keep_apart([(named, place), ("--nrml", shown.nrml)], [file])
-    if from_default("jobs") and study["scheduler"] is not None:
+    if from_default("jobs") and (study["check"] or study["scheduler"] is not None):
         study["jobs"] = None
-    if not study["check"]:
+    if study["check"]:
+        refuse_idle("with `check`, which runs nothing", plot=shown.plot, nrml=shown.nrml)
+    else:
         check_writable(place)
-    if shown.plot is not None and not study["check"]:
-        folder(shown.plot)
+        if shown.plot is not None:
+            folder(shown.plot)
     try:
         answer = fragility(file, watch=watch, **study)
     except KeyboardInterrupt as stopped:
