@@ -210,7 +210,7 @@ class TestAzimuths:
         assert np.isnan(azimuth_views.columns(found)["overturns nonlinear"][1:3]).all()
 
     def test_no_curve_is_drawn_there(self):
-        axes = draw_azimuths(self.found(), "", "phi").axes[0]
+        axes = draw_azimuths(self.found(), "", (False, False)).axes[0]
         curve, crosses, circles = axes.lines[:3]
         assert np.isnan(curve.get_ydata()).tolist() == [True, True, True, False, False, False, True]
         assert len(crosses.get_xdata()) == 1 and np.allclose(circles.get_xdata(), np.radians([60, 120]))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
-from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.given import StructureLike, around_of, models_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
@@ -24,10 +24,7 @@ from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from rocking_cli.io.tables import Columns
-    from rocking_cli.structure import Structure
 
 LONGEST = 20.0  # s of a GIF whose speed is not given
 MOST_FRAMES = 3000
@@ -160,7 +157,9 @@ def animate(
         watch.note(f"wrote {place}")
         near = outcomes(own, scaled, around) if neighbours else None
         shown = views.view(ready, film, near, {"speed": pace, "frames": frames, "file": str(place)})
-        figure = partial(_figure, film, ready)
+        figure = drawn(
+            "history.draw_history", {history.model: history}, scaled, heading(ready.mechanism), uplift=ready.uplift
+        )
         return Answer("animation", Animation(film, near), shown, partial(_columns, film), figure)
 
     if not several:
@@ -222,10 +221,3 @@ def _write_gif(file: Path, film: Film, title: str, speed: float, fps: float, wat
 
 def _columns(film: Film) -> Columns:
     return {"time": film.history.time, "phi": film.history.phi}
-
-
-def _figure(film: Film, structure: Structure) -> Figure:
-    from rocking_cli.plotting.history import draw_history
-
-    histories = {film.history.model: film.history}
-    return draw_history(histories, film.motion, heading(structure.mechanism), uplift=structure.uplift)

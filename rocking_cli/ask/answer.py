@@ -9,6 +9,7 @@ from functools import partial
 from html import escape
 from importlib.util import find_spec
 from pathlib import Path
+from pkgutil import resolve_name
 from threading import RLock
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -59,13 +60,12 @@ class Answer(Generic[R]):
     tables: Mapping[str, Callable[[], Columns]] = field(default_factory=dict)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return what a pickle keeps: everything but a plot whose function is not that of a module."""
+        """Return what a pickle keeps: everything, with data and columns computed."""
         data = self.view.data() if callable(self.view.data) else self.view.data
-        columns, figure = partial(_kept, self.columns()), self.figure
-        figure = figure if isinstance(figure, partial) else partial(_not_kept, self.question)
+        columns = partial(_kept, self.columns())
         tables = {name: partial(_kept, each()) for name, each in self.tables.items()}
         view = View(data, self.view.parts)
-        return {**vars(self), "view": view, "columns": columns, "figure": figure, "blocks": None, "tables": tables}
+        return {**vars(self), "view": view, "columns": columns, "blocks": None, "tables": tables}
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name == "result":
@@ -162,10 +162,23 @@ def _write(figure: Figure, path: Path) -> None:
     write_whole(path, lambda stream: save(figure, stream, format=path.suffix[1:].lower()))
 
 
-def _not_kept(question: str) -> Figure:
-    raise InputError(
-        Problem(f"the plot of the answer {question!r} was not pickled with it", hint="ask again, and plot")
-    )
+def drawn(function: str, *args: Any, **named: Any) -> Callable[[], Figure]:
+    """Return what draws a plot by a function of `plotting`, such as "margin.draw_margins", imported when called."""
+    return partial(_draw, function, *args, **named)
+
+
+def _draw(function: str, *args: Any, **named: Any) -> Figure:
+    figure: Figure = resolve_name(f"rocking_cli.plotting.{function}")(*args, **named)
+    return figure
+
+
+def no_plot(why: str, hint: str | None = None) -> Callable[[], Figure]:
+    """Return the plot of an answer that has none: it raises `InputError`."""
+    return partial(_refuse, why, hint)
+
+
+def _refuse(why: str, hint: str | None) -> Figure:
+    raise InputError(Problem(why, hint=hint))
 
 
 def _kept(columns: Columns) -> Columns:

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.given import StructureLike, structure_of
-from rocking_cli.ask.ground_motions import ReadingArguments, check_known
+from rocking_cli.ask.ground_motions import ReadingArguments
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.score import motions_of, tests_of
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -21,8 +21,6 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.studies.neighbours import Neighbourhood
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from rocking_cli.structure import Structure
     from rocking_cli.studies.experiments.region import JointRegion
     from rocking_cli.studies.experiments.table import ObservedTest, TableOfTests
@@ -95,7 +93,6 @@ def calibrate(
     MechanismError
         If the structure has no critical rotation.
     """
-    check_known(options)
     if (free is None) == (tests is None):
         raise InputError("give either `free`, a trace of free rocking, or `tests`, a table of shake-table tests")
     ready = structure_of(structure, watch)
@@ -129,7 +126,8 @@ def calibrate(
             threads=threads, progress=advance,
         )  # fmt: skip
     shown = region_view(found, ready.name, table.file, len(table.tests))
-    return Answer("calibrate", found, shown, partial(region_columns, found), partial(_region_figure, found, ready.name))
+    figure = drawn("calibrate.draw_region", found, ready.name)
+    return Answer("calibrate", found, shown, partial(region_columns, found), figure)
 
 
 def _of_trace(
@@ -147,13 +145,8 @@ def _of_trace(
         if source is None:
             raise InputError(Problem("needs the file of the structure, of which it is a copy", field="`out`"))
         _write(ready, source, Path(out), found)
-    return Answer(
-        "calibrate",
-        found,
-        trace_view(found, ready),
-        partial(trace_columns, found),
-        partial(_trace_figure, found, ready.name),
-    )
+    figure = drawn("calibrate.draw_trace", found, ready.name)
+    return Answer("calibrate", found, trace_view(found, ready), partial(trace_columns, found), figure)
 
 
 def _write(structure: Structure, source: Path, out: Path, found: TraceFit) -> None:
@@ -209,15 +202,3 @@ def _grid(name: str, ends: tuple[float, float], points: int) -> np.ndarray[Any, 
         what = "from above 0 to 1" if name == "restitution" else "above 0"
         raise InputError(Problem(f"must be two increasing numbers {what}, got {low:g} and {high:g}", field=f"`{name}`"))
     return np.geomspace(low, high, points) if name == "slenderness" else np.linspace(low, high, points)
-
-
-def _trace_figure(found: TraceFit, name: str) -> Figure:
-    from rocking_cli.plotting.calibrate import draw_trace
-
-    return draw_trace(found, name)
-
-
-def _region_figure(found: JointRegion, name: str) -> Figure:
-    from rocking_cli.plotting.calibrate import draw_region
-
-    return draw_region(found, name)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Unpack
+from typing import Unpack
 
-from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
@@ -18,9 +18,6 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.design import POINTS, Aim, Design, Span
 from rocking_cli.studies.metrics import Excitation, Metric
 from rocking_cli.studies.neighbours import Neighbourhood
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @takes_numbers
@@ -119,7 +116,8 @@ def design(
     excitation = Excitation(shaken, signs, around, where) if given or where is not None else None
     with watch.progress(points, "values") as advance:
         found = study(ready, span.field, ends, aim, excitation, points=points, progress=advance)
-    return Answer("design", found, view(found, excitation), partial(columns, found), partial(_figure, found))
+    figure = drawn("design.draw_design", found)
+    return Answer("design", found, view(found, excitation), partial(columns, found), figure)
 
 
 def _span(given: Span | str | tuple[str, float, float]) -> Span:
@@ -153,9 +151,3 @@ def _warn_of_sizes(structure: Structure, field: str, span: tuple[float, float], 
         if doubt is not None and doubt != doubtful_size(structure.mechanism):
             at = f"{field} = {value:g} {structure.unit_of(field)}".strip()
             watch.warn(f"at {at}: {doubt}")
-
-
-def _figure(found: Design) -> Figure:
-    from rocking_cli.plotting.design import draw_design
-
-    return draw_design(found)

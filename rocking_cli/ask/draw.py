@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.given import StructureLike, structure_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -13,8 +13,6 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from rocking_cli.io.tables import Columns
     from rocking_cli.studies.picture import Picture
 
@@ -68,15 +66,9 @@ def draw(structure: StructureLike, *, at: float | None = None, watch: Watcher = 
         of = "the limit" if None in found.phi_cr.values() else "phi_cr"
         what = f"{at:g} times {of} is beyond the kinematic limit of the mechanism"
         raise InputError(Problem(what, field="`at`", hint=f"at most {found.furthest:.4g} times {of}"))
-    figure = partial(_figure, found, heading(ready.mechanism), at)
+    figure = drawn("structure.draw_structure", found, heading(ready.mechanism), at)
     return Answer("drawing", found, view(found), partial(_columns, found), figure)
 
 
 def _columns(found: Picture) -> Columns:
     return {"length": [each.text for each in found.sketch.lengths]}
-
-
-def _figure(found: Picture, title: str, at: float | None) -> Figure:
-    from rocking_cli.plotting.structure import draw_structure
-
-    return draw_structure(found, title, at)

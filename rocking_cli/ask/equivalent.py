@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Literal
 
-from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.given import StructureLike, sized_pulse, structure_of, structures_of, warn_misleading
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -15,8 +15,6 @@ from rocking_cli.excitation.pulses import Pulse, parse_pulse
 from rocking_cli.names import OPENING
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from rocking_cli.studies.equivalent_pulses import EquivalentResponses
 
 
@@ -103,12 +101,5 @@ def equivalent(
     scaling: Literal[1, 2] = 1 if str(kappa) == "1" else 2
     found = study.equivalent(ready, pulse, polarity=int(polarity), kappa=scaling, eta=eta)
     warn_misleading(ready, watch)
-    shown = views.view(found)
-    return Answer("equivalent pulses", found, shown, partial(views.table, found), partial(_figure, found))
-
-
-def _figure(found: EquivalentResponses) -> Figure:
-    from rocking_cli.plotting.equivalent_pulses import draw_equivalent
-    from rocking_cli.views.equivalent_pulses import title
-
-    return draw_equivalent(found, title(found))
+    figure = drawn("equivalent_pulses.draw_equivalent", found, views.title(found))
+    return Answer("equivalent pulses", found, views.view(found), partial(views.table, found), figure)

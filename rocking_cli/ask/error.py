@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.given import StructureLike, structure_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -16,10 +16,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from rocking_cli.io.tables import Columns
-    from rocking_cli.structure import Structure
     from rocking_cli.studies.linearisation import Linearisation
 
 
@@ -80,7 +77,7 @@ def error(
     with ready.named():
         curves, found = compare(ready, at, a)
     shown = view(ready.mechanism, ready.equivalence, curves, found)
-    figure = partial(_figure, curves, found, ready)
+    figure = drawn("linearisation.draw_linearisation", curves, found, heading(ready.mechanism))
     return Answer("linearisation", found, shown, partial(_columns, found), figure)
 
 
@@ -91,9 +88,3 @@ def _columns(found: Sequence[Linearisation]) -> Columns:
         "period [s]": np.concatenate([each.period for each in found]),
         "period_ratio": np.concatenate([each.period_ratio for each in found]),
     }
-
-
-def _figure(curves: Sequence[Linearisation], found: Sequence[Linearisation], structure: Structure) -> Figure:
-    from rocking_cli.plotting.linearisation import draw_linearisation
-
-    return draw_linearisation(curves, found, heading(structure.mechanism))

@@ -7,16 +7,13 @@ from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.answer import Answer, no_plot
 from rocking_cli.ask.given import warn_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from rocking_cli.io.tables import Columns
     from rocking_cli.studies.fragility.plan import Plan
     from rocking_cli.studies.fragility.study import Study
     from rocking_cli.studies.fragility.workers import Workers
@@ -126,13 +123,9 @@ def _planned(study: Study, watch: Watcher) -> Answer[Plan]:
         plan, _ = survey(study, advance)
     _leave_out(plan, watch)
 
-    def columns() -> Columns:
-        return {"record": [record.name for record in plan.records]}
-
-    def figure() -> Figure:
-        raise InputError("the plan of a study has no plot: run the study, and plot its curves")
-
-    return Answer("plan", plan, planned(study, plan), columns, figure)
+    columns = {"record": [record.name for record in plan.records]}
+    figure = no_plot("the plan of a study has no plot: run the study, and plot its curves")
+    return Answer("plan", plan, planned(study, plan), lambda: columns, figure)
 
 
 def _bring_up_to_date(

@@ -20,12 +20,11 @@ from rocking_cli.excitation.records.opening import allow_again
 from rocking_cli.excitation.selection import select
 from rocking_cli.processing.listed import Listed, is_list
 from rocking_cli.processing.reading import Reading, reading_of
-from rocking_cli.processing.reading_options import READING, SCALING
+from rocking_cli.processing.reading_options import SCALING
 from rocking_cli.processing.reading_options import MotionArguments as MotionArguments
 from rocking_cli.processing.reading_options import ReadingArguments as ReadingArguments
 from rocking_cli.processing.scaled import Scaled
 from rocking_cli.processing.steps import Resample, process
-from rocking_cli.text import did_you_mean
 from rocking_cli.views.processing import in_words
 from rocking_cli.views.view import FEW
 
@@ -34,15 +33,6 @@ Motion = GroundMotion | Pulse | Scaled | str | Path
 MOST_PGA, MOST_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and too long to simulate
 Source = GroundMotion | Scaled | Pulse | Listed | InputError
 """What a motion is made of: a file of a pattern or a list by itself, or why a place has no file."""
-
-
-def check_known(options: Mapping[str, Any], accepted: Mapping[str, object] = READING) -> None:
-    """Refuse keyword arguments of a verb that are not among those it accepts. Raises `InputError`."""
-    for name in options:
-        if name not in accepted:
-            scaled = "the motions of this question are not scaled"
-            hint = scaled if name in SCALING else did_you_mean(name, list(accepted))
-            raise InputError(Problem("is not an argument", field=f"`{name}`", hint=hint))
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,14 +61,12 @@ class Motions:
         given: Motions | Motion | Sequence[Motion],
         options: MotionArguments | ReadingArguments | Mapping[str, Any],
         *,
-        accepted: Mapping[str, object] = READING | SCALING,
         usual: Mapping[str, Any] | None = None,
     ) -> Motions:
         """Return the motions of a verb, from what it is given and its keyword arguments. Raises `InputError`.
 
-        `accepted` are the arguments of the verb, and `usual` is how files are read that do not state it themselves.
+        `usual` is how files are read that do not state it themselves.
         """
-        check_known(options, accepted)
         if isinstance(given, Motions):
             return given
         for name, value in options.items():

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import Any
 
-from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.given import StructureLike, doubts_of, models_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, Motions, introduce, motion_of, warn_about
 from rocking_cli.ask.numbers import takes_numbers
@@ -22,11 +23,6 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.azimuths import AzimuthResponses
 from rocking_cli.studies.release import Release
 from rocking_cli.views.view import heading
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from rocking_cli.io.tables import Columns
 
 
 def correct(motion: Motion, *steps: Step | str | Mapping[str, Any]) -> GroundMotion:
@@ -133,17 +129,10 @@ def respond_around(
     ratio = tilt.ratio(ready) if tilt is not None else None
     found = all_around(ready, chosen, (motion_of(one), motion_of(other)), scale, release=ratio, rtol=rtol)
 
-    def table() -> Columns:
-        return columns(found)
-
-    def figure() -> Figure:
-        from rocking_cli.plotting import style
-        from rocking_cli.plotting.azimuths import draw_azimuths
-
-        first, second = (side.phi_cr is None for side in ready.statics)
-        return draw_azimuths(found, heading(ready.mechanism), style.over((first, second), math=True))
-
-    return Answer("all directions", found, view(ready, found, doubts_of(ready.mechanism)), table, figure)
+    free = [side.phi_cr is None for side in ready.statics]
+    figure = drawn("azimuths.draw_azimuths", found, heading(ready.mechanism), free)
+    shown = view(ready, found, doubts_of(ready.mechanism))
+    return Answer("all directions", found, shown, partial(columns, found), figure)
 
 
 def all_directions(

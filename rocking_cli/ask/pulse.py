@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from rocking_cli.ask.answer import MappingAnswer
+from rocking_cli.ask.answer import MappingAnswer, no_plot
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
@@ -13,8 +13,6 @@ from rocking_cli.names import OPENING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-    from matplotlib.figure import Figure
 
     from rocking_cli.ask.given import StructureLike
     from rocking_cli.io.tables import Columns
@@ -136,7 +134,8 @@ def _on_block(a: float | None, omega: float | None, eta: float, shape: str) -> M
         "peak_ratio": [exact.peak_ratio],
         "outcome": [exact.words],
     }
-    return MappingAnswer("pulse", found, view(shape, a, omega, eta, closed, exact), lambda: columns, _no_figure)
+    figure = no_plot("a pulse on the dimensionless block has no plot", "map many with `overturning`")
+    return MappingAnswer("pulse", found, view(shape, a, omega, eta, closed, exact), lambda: columns, figure)
 
 
 def _answers(structure: Structure, given: Any, polarity: int, watch: Watcher) -> dict[str, Answer]:
@@ -161,7 +160,3 @@ def _columns(found: Mapping[int, Mapping[str, Answer]]) -> Columns:
         "peak_ratio": [run.peak_ratio for _, _, run in runs],
         "outcome": [run.words for _, _, run in runs],
     }
-
-
-def _no_figure() -> Figure:
-    raise InputError(Problem("a pulse on the dimensionless block has no plot", hint="map many with `overturning`"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -11,9 +11,10 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, done, signs_of, unprocessed
+from rocking_cli.ask.answer import Answer, drawn
+from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, done, motion_of, signs_of, unprocessed
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.several import Answers, answers, are_several, of_motions
 from rocking_cli.ask.watcher import SILENT, Watcher
@@ -161,8 +162,8 @@ def record(
         return answer
     examined = [seen for each in found.values() for seen in each.examined]
     kept = {"spectrum": partial(_spectra_table, examined)} if spectrum else {}
-    drawn = partial(_spectra_figure, examined) if spectrum else None
-    return answers("records", "motion", found, list(parts(examined, 100)), drawn, kept)
+    figure = _spectra_figure(examined) if spectrum else None
+    return answers("records", "motion", found, list(parts(examined, 100)), figure, kept)
 
 
 def _examine(
@@ -215,7 +216,7 @@ def _answer(examined: Sequence[Examined], scaled: Sequence[GroundMotion], read: 
         own,
         View(lambda: data(first), [*parts(examined, 100), said]),
         partial(_columns, scaled[0]),
-        partial(_spectra_figure, examined) if with_spectra else partial(_figure, scaled[0], first, read),
+        _spectra_figure(examined) if with_spectra else partial(_figure, scaled[0], first, read),
         tables={"spectrum": partial(_spectra_table, examined)} if with_spectra else {},
         examined=tuple(examined),
         motions=tuple(scaled),
@@ -291,10 +292,8 @@ def _spectra_table(examined: Sequence[Examined]) -> Columns:
     return table(_spectra(examined))
 
 
-def _spectra_figure(examined: Sequence[Examined]) -> Figure:
-    from rocking_cli.plotting.response_spectrum import draw_response_spectra
-
-    return draw_response_spectra(_spectra(examined))
+def _spectra_figure(examined: Sequence[Examined]) -> Callable[[], Figure]:
+    return drawn("response_spectrum.draw_response_spectra", _spectra(examined))
 
 
 def _fit(motion: GroundMotion, watch: Watcher) -> list[PulseFit]:
@@ -354,3 +353,51 @@ def _best(fits: Sequence[PulseFit]) -> list[PulseFit]:
     """Return the fitted pulse that captures most, by each criterion, velocity first."""
     by_criterion = {fit.criterion: fit for fit in sorted(fits, key=lambda fit: fit.captured)}
     return [by_criterion["velocity"], by_criterion["acceleration"]]
+
+
+@takes_numbers
+def response_spectrum(
+    motion: Motion, periods: ArrayLike | None = None, *, damping: float = 0.05, scale: float = 1.0
+) -> Answer[ResponseSpectrum]:
+    """Compute the response spectrum of a ground motion: the peak responses of linear oscillators.
+
+    Parameters
+    ----------
+    motion : GroundMotion, Pulse, str or Path
+        The motion, its file, or a pulse as text.
+    periods : array_like, shape (n,), optional
+        Undamped periods of the oscillators [s]; by default 200 from 0.02 to 10 s at equal ratios.
+    damping : float
+        Damping ratio of the oscillators, from 0 to below 1.
+    scale : float
+        Scale factor on the motion.
+
+    Returns
+    -------
+    Answer of ResponseSpectrum
+        `periods`, and at each of them the displacement `sd` [m], the pseudo-velocity `sv` [m/s] and the
+        pseudo-acceleration `sa` [standard gravity].
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+
+    Notes
+    -----
+    The spectrum is exact for straight lines between the samples, during the motion and after it.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> rk.response_spectrum("sine:0.2g:0.8s", [0.8]).sa.round(2).tolist()
+    [0.54]
+    """
+    from rocking_cli.processing.oscillator import response_spectrum as respond_linearly
+    from rocking_cli.views import response_spectrum as views
+
+    scaled = motion_of(motion).scaled(scale)
+    found = respond_linearly(scaled, periods, damping)
+    named = {scaled.name: found}
+    figure = drawn("response_spectrum.draw_response_spectra", named)
+    return Answer("response spectrum", found, views.view(scaled.name, found), partial(views.table, named), figure)

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
-from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
@@ -18,8 +18,6 @@ from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from rocking_cli.ask.sheets import SheetOrigin
     from rocking_cli.documents.page import VerifiedReport
     from rocking_cli.io.tables import Columns
@@ -159,7 +157,8 @@ def report(
         write_whole(Path(file), lambda stream: stream.write(page))
         watch.note(f"wrote {file} ({len(page) / 1e6:.2g} MB)")
     shown = view(found, verified.found if verified is not None else None)
-    return Answer("report", found, shown, partial(_columns, found), partial(_figure, found))
+    figure = drawn("structure.draw_structure", found.picture, heading(found.mechanism))
+    return Answer("report", found, shown, partial(_columns, found), figure)
 
 
 def _verified(
@@ -185,9 +184,3 @@ def _columns(found: Assessment) -> Columns:
         "overturned": [run.overturned for _, run in runs],
         "unknown": [run.unknown for _, run in runs],
     }
-
-
-def _figure(found: Assessment) -> Figure:
-    from rocking_cli.plotting.structure import draw_structure
-
-    return draw_structure(found.picture, heading(found.mechanism))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking_cli.ask.answer import MappingAnswer
+from rocking_cli.ask.answer import MappingAnswer, no_plot
 from rocking_cli.ask.given import StructureLike, models_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, each_of, motion_of
 from rocking_cli.ask.numbers import takes_numbers
@@ -21,8 +21,6 @@ from rocking_cli.names import OPENING
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from rocking_cli.io.tables import Columns
 
 
@@ -114,9 +112,6 @@ def respond_each(
                 table |= {f"{name} {column}": getattr(outcome, column).ravel() for column in ("unknown", "known_to")}
         return table
 
-    def figure() -> Figure:
-        raise InputError("many responses have no plot of their own: plot a spectrum, a map or a margin")
-
     first = found[chosen[0]]
     said = f"By the {chosen[0]} model {int(first.fell.sum())} of {first.fell.size} motions overturn"
     said += f", and the outcome of {int(first.unknown.sum())} is unknown." if first.unknown.any() else "."
@@ -126,6 +121,7 @@ def respond_each(
         data[name] |= {column: getattr(each, column) for column in OUTCOME}
         if name == "nonlinear" and np.isnan(each.opening).any():
             data[name]["unknown"] = _with_gaps(each.unknown, np.isnan(each.opening) & ~each.unknown)
+    figure = no_plot("many responses have no plot of their own: plot a spectrum, a map or a margin")
     return MappingAnswer("responses", found, View(data, [said]), columns, figure)
 
 

@@ -7,9 +7,9 @@ from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.given import structure_of
-from rocking_cli.ask.ground_motions import Motions, ReadingArguments, check_known, files_of, pulse_in
+from rocking_cli.ask.ground_motions import Motions, ReadingArguments, files_of, pulse_in
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, RockingError
@@ -20,8 +20,6 @@ from rocking_cli.structure import Structure, check_opening
 from rocking_cli.studies.neighbours import Neighbourhood
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from rocking_cli.studies.experiments.score import Scored
     from rocking_cli.studies.experiments.table import TableOfTests
 
@@ -101,7 +99,8 @@ def score(
         found = score_tests(
             table.tests, partial(_known, structures), motion_of, around, threads=threads, progress=advance
         )
-    return Answer("score", found, view(found, table.file), partial(columns, found), partial(_figure, found))
+    figure = drawn("score.draw_reliability", found)
+    return Answer("score", found, view(found, table.file), partial(columns, found), figure)
 
 
 def tests_of(given: str | Path | Mapping[str, Sequence[Any]] | TableOfTests) -> TableOfTests:
@@ -119,7 +118,6 @@ def motions_of(
     table: TableOfTests, options: ReadingArguments, usual: Mapping[str, Any] | None
 ) -> Callable[[str], GroundMotion]:
     """Return the function that reads the record of a test, or samples its pulse; it keeps the last ones."""
-    check_known(options)
     motions = Motions((), reading_of(options, usual).check())
     return lru_cache(KEPT)(partial(_motion, table.folder, motions))
 
@@ -152,9 +150,3 @@ def _motion(folder: Path, motions: Motions, named: str) -> GroundMotion:
     if len(found) > 1:
         raise InputError(f"{len(found)} motions are given where one is expected: ask for one after the other")
     return motions.read(found[0]).motion
-
-
-def _figure(found: Scored) -> Figure:
-    from rocking_cli.plotting.score import draw_reliability
-
-    return draw_reliability(found)

@@ -11,19 +11,16 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.ground_motions import Motion, Motions, ReadingArguments, Source
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.records.opening import STANDARD_INPUT
 from rocking_cli.processing.listed import Listed
-from rocking_cli.processing.reading_options import READING
 from rocking_cli.studies.record_set import RecordSet
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from rocking_cli.processing.reading import Reading
     from rocking_cli.studies.target_spectrum import TargetSpectrum
     from rocking_cli.views.record_set import ShownSet
@@ -112,7 +109,7 @@ def select(
     wanted = record_set.SetRequirements(count, band, within, damping, factors, one_per, same_factor, seed)
     spectrum = _target(target, watch)
     spectrum.check(wanted.band)
-    motions = _without(target, Motions.of(records, options, accepted=READING), watch)
+    motions = _without(target, Motions.of(records, options), watch)
     chosen = motions.gather(0.0, watch)
     candidates = [each.motion for each in chosen]
     with watch.progress(len(candidates), "spectra") as advance:
@@ -130,11 +127,7 @@ def select(
     unusable = [str(each.path) for each in motions.records if all(each is not one.record for one in chosen)]
     results = ShownSet(result, spectrum, files, unusable)
 
-    def figure() -> Figure:
-        from rocking_cli.plotting.record_set import draw_record_set
-
-        return draw_record_set(result, title(results))
-
+    figure = drawn("record_set.draw_record_set", result, title(results))
     readings = tuple(
         None if str(chosen[k].file) == STANDARD_INPUT else chosen[k].reading for k in result.chosen.tolist()
     )

@@ -6,14 +6,11 @@ from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.answer import Answer, no_plot
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.errors import InputError, Problem
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from rocking_cli.studies.selfcheck import SelfCheck
 
 
@@ -46,8 +43,5 @@ def selfcheck(*, quick: bool = False, watch: Watcher = SILENT) -> Answer[SelfChe
     began = monotonic()
     with watch.progress(len(CHECKS), "checks") as advance:
         found = run_checks(CHECKS, quick=quick, progress=advance, began=began)
-    return Answer("selfcheck", found, view(found), partial(columns, found), _figure)
-
-
-def _figure() -> Figure:
-    raise InputError(Problem("the checks of an installation have no plot", hint="`to_frame` has them as a table"))
+    figure = no_plot("the checks of an installation have no plot", "`to_frame` has them as a table")
+    return Answer("selfcheck", found, view(found), partial(columns, found), figure)

@@ -10,10 +10,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Protocol, TypeVar, cast, overload
 
-from rocking_cli.ask.answer import Answer, MappingAnswer
+from rocking_cli.ask.answer import Answer, MappingAnswer, no_plot
 from rocking_cli.ask.ground_motions import Motion, Motions
 from rocking_cli.ask.watcher import Watcher
-from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.errors import RockingError
 from rocking_cli.processing.scaled import Scaled
 from rocking_cli.text import numbered
 from rocking_cli.views.view import Table, View
@@ -93,9 +93,8 @@ def answers(
     """
     view = View(lambda: {name: each.to_dict() for name, each in found.items()}, parts)
     tables = {**{name: each.columns for name, each in found.items()}, **tables}
-    return Answers(
-        question, found, view, partial(_columns, what, found), figure or partial(_no_figure, what), None, tables
-    )
+    figure = figure or no_plot(f"several {what}s have no common plot", "plot the answer to each")
+    return Answers(question, found, view, partial(_columns, what, found), figure, None, tables)
 
 
 def ask_each(
@@ -189,7 +188,3 @@ def _columns(what: str, found: Mapping[str, Answer[Any]]) -> Columns:
     for head in heads:
         joined[head] = [value for name, table in tables.items() for value in table.get(head, [nan] * rows[name])]
     return joined
-
-
-def _no_figure(what: str) -> Figure:
-    raise InputError(Problem(f"several {what}s have no common plot", hint="plot the answer to each"))

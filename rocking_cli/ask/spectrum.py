@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
-from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.given import StructureLike, structures_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, each_of, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
@@ -19,10 +19,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from rocking_cli.studies.spectrum import Spectrum
-    from rocking_cli.views.spectrum import ShownSpectra
 
 
 @takes_numbers
@@ -122,14 +119,8 @@ def spectrum(
     results = views.ShownSpectra(found, chosen, tuple(sorted({*fractiles, 0.5})), str(polarity))
     if unfollowed := views.lost(results):
         watch.incomplete(unfollowed)
-    return Answer("spectrum", found, views.view(results), partial(views.table, results), partial(_figure, results))
-
-
-def _figure(results: ShownSpectra) -> Figure:
-    from rocking_cli.plotting.spectrum import draw_spectra
-    from rocking_cli.views.spectrum import title
-
-    return draw_spectra(results.spectra, results.fractiles, title(results))
+    figure = drawn("spectrum.draw_spectra", found, results.fractiles, views.title(results))
+    return Answer("spectrum", found, views.view(results), partial(views.table, results), figure)
 
 
 def _check_count(name: str, count: int, least: int = 1) -> None:

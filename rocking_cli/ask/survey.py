@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
@@ -20,8 +20,6 @@ from rocking_cli.text import one_line
 from rocking_cli.views.survey import TOP
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from rocking_cli.studies.structure_table import StructureTable
     from rocking_cli.studies.survey import Survey, SurveyEntry
 
@@ -97,7 +95,7 @@ def survey(
     ['b', 'a']
     """
     from rocking_cli.studies.survey import survey as study
-    from rocking_cli.views.survey import blocks, columns, view
+    from rocking_cli.views.survey import blocks, columns, title, view
 
     signs, where = signs_of(polarity), site_of(site) if site is not None else None
     entries, given = _entries(structures, watch), Motions.of(motions, options)
@@ -113,10 +111,8 @@ def survey(
     if page is not None and found.rows:
         file = getattr(entries, "sheet", None)
         _write_page(Path(page), found, Path(file.file).name if file is not None else "structures", watch)
-    return Answer(
-        "survey", found, view(found, top), partial(columns, found), partial(_figure, found),
-        partial(blocks, found, for_spreadsheets=True),
-    )  # fmt: skip
+    figure, files = drawn("survey.draw_survey", found, title(found)), partial(blocks, found, for_spreadsheets=True)
+    return Answer("survey", found, view(found, top), partial(columns, found), figure, files)
 
 
 def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
@@ -163,10 +159,3 @@ def _write_page(place: Path, found: Survey, table: str, watch: Watcher) -> None:
     page = render(found, table, [f"Written on {today} with rocking-cli {__version__}."]).encode()
     write_whole(place, lambda stream: stream.write(page))
     watch.note(f"wrote {place} ({len(page) / 1e6:.2g} MB)")
-
-
-def _figure(found: Survey) -> Figure:
-    from rocking_cli.plotting.survey import draw_survey
-    from rocking_cli.views.survey import title
-
-    return draw_survey(found, title(found))

@@ -171,8 +171,7 @@ def _greek(text: str) -> str:
 
 def _over(content: Assessment) -> str:
     """Return the label of a normalised rotation."""
-    free = [side.phi_cr is None for side in content.structure.statics]
-    return style.over((free[0], free[1])).replace("φcr", "φ_cr")
+    return style.over([side.phi_cr is None for side in content.structure.statics]).replace("φcr", "φ_cr")
 
 
 def _number(value: float | None, digits: int = 4) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from textwrap import shorten
 from typing import Any
 
@@ -16,7 +17,7 @@ OUTSIDE = 1.08  # phi/phi_cr at which directions that overturn are marked: beyon
 LONGEST = 32  # characters of a name
 
 
-def draw_azimuths(found: AzimuthResponses, title: str, over: str) -> Figure:
+def draw_azimuths(found: AzimuthResponses, title: str, free: Sequence[bool]) -> Figure:
     """Plot the peak rotation in each direction.
 
     Parameters
@@ -25,8 +26,8 @@ def draw_azimuths(found: AzimuthResponses, title: str, over: str) -> Figure:
         The responses: a closed curve for each model, crosses outside for overturning, circles for an unknown outcome.
     title : str
         Heading.
-    over : str
-        Label of the normalised rotation, from `style.over`.
+    free : sequence of bool
+        Whether each direction has no critical rotation.
 
     Returns
     -------
@@ -63,7 +64,7 @@ def draw_azimuths(found: AzimuthResponses, title: str, over: str) -> Figure:
     axes.tick_params(labelsize=style.TICK, colors=style.INK)
     axes.set_rlabel_position(67)
     axes.grid(True, color=style.GRID, linewidth=style.THIN)
-    said = f"peak {over}; 0° is {style.plain(one)}, 90° {style.plain(other)}"
+    said = f"peak {style.over(free, math=True)}; 0° is {style.plain(one)}, 90° {style.plain(other)}"
     crosses = f"; crosses: {names.OVERTURNS}" if falls else ""
     circles = f"; circles: {names.UNKNOWN}" if doubtful else ""
     axes.set_xlabel(said + crosses + circles, fontsize=style.LABEL)

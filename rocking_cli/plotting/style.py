@@ -137,7 +137,7 @@ def heading(axes: Axes, text: str) -> None:
     axes.set_title(fitted(text, WIDTH - MARGIN), loc="left", fontsize=TITLE, color=INK, parse_math=False)
 
 
-def over(ends_at_limit: tuple[bool, bool], *, math: bool = False) -> str:
+def over(ends_at_limit: Sequence[bool], *, math: bool = False) -> str:
     """Return the axis label of rotations divided by the critical rotation.
 
     In directions without a critical rotation, rotations are divided by the kinematic limit, and the label says so.
