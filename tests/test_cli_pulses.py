@@ -14,7 +14,7 @@ from rocking_cli.excitation.pulse_fit import FITTED, fit_pulse
 from rocking_cli.excitation.pulses import PulseShapes, parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting.history import draw_history
-from rocking_cli.plotting.pulse_fit import draw_pulses
+from rocking_cli.plotting.record import draw_pulses
 from rocking_cli.structure_file import load_structure
 from tests.conftest import rows_of
 from tests.following import respond

@@ -12,7 +12,7 @@ from rocking_cli.excitation.measures import measure
 from rocking_cli.plotting import style
 from rocking_cli.plotting.history import FELT, draw_history
 from rocking_cli.plotting.record import draw_record
-from rocking_cli.plotting.thinning import BINS, visible
+from rocking_cli.plotting.style import BINS, visible
 from rocking_cli.studies.contact import Contacts
 from tests.following import respond
 

@@ -336,9 +336,7 @@ def _columns(motion: GroundMotion) -> Columns:
 
 def _figure(motion: GroundMotion, examined: Examined, read: Scaled) -> Figure:
     """Draw the fitted pulses, or the record before and after its corrections, or the record alone."""
-    from rocking_cli.plotting.processing import draw_before_and_after
-    from rocking_cli.plotting.pulse_fit import draw_pulses
-    from rocking_cli.plotting.record import draw_record
+    from rocking_cli.plotting.record import draw_before_and_after, draw_pulses, draw_record
     from rocking_cli.processing.steps import Trim
 
     if examined.pulses:

@@ -31,7 +31,6 @@ from rocking_cli.plotting import hung, style
 from rocking_cli.plotting.moving import as_script, asset, ground_chart, moving, ratio_chart
 from rocking_cli.plotting.panels import Panel
 from rocking_cli.plotting.structure import colour, draw_ground, draw_scale, weight
-from rocking_cli.plotting.thinning import visible
 from rocking_cli.studies.film import Film
 from rocking_cli.text import printable
 from rocking_cli.views.animation import why_it_ends
@@ -271,11 +270,10 @@ def _draw_traces(upper: Axes, lower: Axes, film: Film, start: float, end: float)
         axes.set_xlim(start, max(end, start + 1e-3))
         tall = 1.1 * max(float(np.abs(values).max()), 1e-3)
         axes.set_ylim(-tall, tall)
-        axes.set_ylabel(label, fontsize=style.LABEL)
         axes.yaxis.set_label_coords(-(LEFT - 0.3) / (style.WIDTH - LEFT - GAP), 0.5)  # whatever the numbers are
         axes.yaxis.set_major_locator(MaxNLocator(4))
         axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
-        style.tidy(axes)
+        style.tidy(axes, y=label)
     for level in (-1.0, 1.0):
         upper.axhline(level, color=style.FAINT, linewidth=style.THIN, linestyle=":")
     upper.tick_params(labelbottom=False)
@@ -285,14 +283,14 @@ def _draw_traces(upper: Axes, lower: Axes, film: Film, start: float, end: float)
 def ratio_trace(film: Film) -> tuple[Reals, Reals]:
     """Return times [s] and phi/phi_cr of a history, thinned to what is visible."""
     ratio = film.history.ratio[np.isfinite(film.history.ratio)]
-    shown = visible(ratio)
+    shown = style.visible(ratio)
     return film.history.time[shown], ratio[shown]
 
 
 def ground_trace(motion: GroundMotion) -> tuple[Reals, Reals]:
     """Return times [s] and accelerations [g] of a ground motion, thinned to what is visible."""
     motion = motion.kept
-    shown = visible(motion.acceleration)
+    shown = style.visible(motion.acceleration)
     return shown.astype(np.float64) * motion.dt, motion.acceleration[shown] / STANDARD_GRAVITY
 
 

@@ -40,7 +40,6 @@ def draw_trace(found: TraceFit, name: str) -> Figure:
     axes.plot(times, rest, color=style.FAINT, linewidth=style.THIN, linestyle="--", label="at rest")
     at_impact = degrees(found.offset.value + found.drift.value * found.impacts)
     axes.plot(found.impacts, at_impact, label="impacts", linestyle="none", **{**style.MARKED, "markersize": 5})
-    axes.set_ylabel("angle [deg]", fontsize=style.LABEL)
     axes.legend(loc="upper right", ncols=2, **style.LEGEND)
     for values, look, label in (
         (found.fitted, {"color": style.INK, "linewidth": style.THIN}, "one eta"),
@@ -49,13 +48,11 @@ def draw_trace(found: TraceFit, name: str) -> Figure:
         below.plot(*_broken(times, degrees(found.trace.angles - values)), label=label, **look)
     noise = degrees(found.noise)
     below.axhspan(-2 * noise, 2 * noise, color=style.SHADE, zorder=0, label="twice the noise")
-    below.set_ylabel("residual [deg]", fontsize=style.LABEL)
-    below.set_xlabel("time [s]", fontsize=style.LABEL)
     below.legend(loc="upper right", ncols=3, **style.LEGEND)
     low, high = below.get_ylim()
     below.set_ylim(low, high + 0.35 * (high - low))  # room for the legend
-    for panel in (axes, below):
-        style.tidy(panel)
+    style.tidy(axes, y="angle [deg]")
+    style.tidy(below, "time [s]", "residual [deg]")
     return figure
 
 
@@ -76,9 +73,9 @@ def draw_region(found: JointRegion, name: str) -> Figure:
     name : str
         Name of the structure.
     """
-    figure = style.new_figure(4.6)
-    axes = figure.subplots()
-    style.heading(axes, f"{name}: slenderness and restitution from {found.tests} tests in {found.clusters} clusters")
+    figure, axes = style.one_panel(
+        4.6, f"{name}: slenderness and restitution from {found.tests} tests in {found.clusters} clusters"
+    )
     across, up = found.restitution, found.slenderness
     below = np.maximum(found.likelihood - found.likelihood.max(), -20.0)
     filled = axes.contourf(across, up, below, levels=[-20, -15, -10, -7, -5, -DROP, -1, 0], cmap="Blues")
@@ -87,11 +84,9 @@ def draw_region(found: JointRegion, name: str) -> Figure:
     axes.plot([], [], color=style.INK, linewidth=style.BOLD, label="joint region of 90 %")
     points = np.meshgrid(across, up)
     axes.plot(*(each.ravel() for each in points), ".", color=style.FAINT, markersize=2)
-    axes.set_xlabel("restitution eta", fontsize=style.LABEL)
-    axes.set_ylabel("factor on slenderness", fontsize=style.LABEL)
     axes.legend(loc="lower left", **style.LEGEND)
     bar = figure.colorbar(filled, ax=axes)
     bar.set_label("log-likelihood less the largest", fontsize=style.LABEL)
     bar.ax.tick_params(labelsize=style.TICK)
-    style.tidy(axes)
+    style.tidy(axes, "restitution eta", "factor on slenderness")
     return figure

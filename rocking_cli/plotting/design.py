@@ -23,9 +23,7 @@ def draw_design(found: Design) -> Figure:
     found : Design
         The result of the search to plot.
     """
-    figure = style.new_figure(3.8)
-    axes = figure.subplots()
-    style.heading(axes, f"{found.structure}: {found.field} for {found.aim}")
+    figure, axes = style.one_panel(3.8, f"{found.structure}: {found.field} for {found.aim}")
     finite = np.isfinite(found.metric)
     shown = np.where(finite, found.metric, np.nan)
     for k, (low, high) in enumerate(found.holds):
@@ -49,9 +47,8 @@ def draw_design(found: Design) -> Figure:
     unit = f" [{found.unit}]" if found.unit else ""
     of_metric = f" [{found.aim.metric.unit}]" if found.aim.metric.unit else ""
     axes.set_xlabel(style.fitted(f"{found.field}{unit}", 5, style.LABEL), fontsize=style.LABEL, parse_math=False)
-    axes.set_ylabel(f"{found.aim.metric.name}{of_metric}", fontsize=style.LABEL)
-    style.tidy(axes)
-    figure.legend(loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False)
+    style.tidy(axes, y=f"{found.aim.metric.name}{of_metric}")
+    style.legend_below(figure)
     return figure
 
 

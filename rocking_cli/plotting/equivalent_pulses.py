@@ -51,10 +51,6 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
     end = found.pulse_end + FREE
     below.set_xlim(0.0, min(end, float(found.tau[-1])))
     above.set_xlim(left=0.0)
-    above.set_xlabel("time [s]", fontsize=style.LABEL)
-    above.set_ylabel("pulse of each [g]", fontsize=style.LABEL)
-    below.set_xlabel(r"$p\,t$", fontsize=style.LABEL)
-    below.set_ylabel(r"$\phi/\phi_{cr}$, first lifted side up", fontsize=style.LABEL)
     below.axvline(found.pulse_end, color=style.FAINT, linewidth=style.CURVE, linestyle=":")
     below.annotate(
         "end of the pulses", (found.pulse_end, 1.0), (3, -3), xycoords=("data", "axes fraction"),
@@ -62,8 +58,8 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
     )  # fmt: skip
     below.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
     below.legend(**style.LEGEND, handlelength=4)
-    for axes in (above, below):
-        style.tidy(axes)
+    style.tidy(above, "time [s]", "pulse of each [g]")
+    style.tidy(below, r"$p\,t$", r"$\phi/\phi_{cr}$, first lifted side up")
     return figure
 
 

@@ -13,7 +13,6 @@ from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import PercentFormatter
 from numpy.typing import NDArray
 
 from rocking_cli import names
@@ -97,15 +96,12 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
     -------
     matplotlib.figure.Figure
     """
-    figure = style.new_figure(4.6 + BAND * sum(each.lower is not None for each in drawn))
-    axes = figure.subplots()
-    style.heading(axes, title)
+    figure, axes = style.one_panel(4.6 + BAND * sum(each.lower is not None for each in drawn), title)
     reach = np.concatenate([each.observations.x for each in drawn])
     start, stop = float(reach.min()), float(reach.max())
     if stop > WIDEST * start:
         fine = np.geomspace(start / 1.1, stop * 1.1, FINE)
-        axes.set_xscale("log")
-        style.plain_numbers(axes.xaxis)
+        style.logarithmic(axes.xaxis)
     else:
         fine = np.linspace(0.0, stop * 1.05, FINE)
     for k, each in enumerate(drawn):
@@ -118,10 +114,8 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
         _draw_curve(axes, each, look, fine, filled=len(drawn) <= FILLED)
     axes.set_xlim(fine[0], fine[-1])
     axes.set_ylim(-0.03, 1.06 if len(drawn) > 1 else 1.1)
-    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
-    axes.set_xlabel(label, fontsize=style.LABEL)
-    axes.set_ylabel("probability of exceedance", fontsize=style.LABEL)
-    style.tidy(axes)
+    style.in_percent(axes.yaxis)
+    style.tidy(axes, label, "probability of exceedance")
     handles: list[Any] = [_key(*edge) for k, each in enumerate(drawn) for edge in _named(each, style.distinct(k))]
     if doubtful := [each for each in drawn if each.lower is not None]:
         shares = ", ".join(f"{each.name} {names.percent(each.share)}" for each in doubtful)
@@ -133,15 +127,7 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
     if (every := _every(most, alone=len(drawn) == 1)) > 1:
         marks += f"; one of every {every} intensities is marked"
     handles += [Line2D([], [], linestyle="none", label=_lines(each)) for each in (marks, *_remarks(drawn))]
-    figure.legend(
-        handles=handles,
-        loc="outside lower center",
-        ncols=1,
-        fontsize=style.TICK,
-        frameon=False,
-        handlelength=4,
-        alignment="left",
-    )
+    style.legend_below(figure, handles, 1, handlelength=4, alignment="left")
     return figure
 
 
@@ -292,9 +278,7 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str, records: in
         Runs that overturn are shown in a band above the rotations, with their number at each level; so are unknown
         outcomes, which rank below overturning.
     """
-    figure = style.new_figure(4.6)
-    axes = figure.subplots()
-    style.heading(axes, title)
+    figure, axes = style.one_panel(4.6, title)
     fallen, doubtful = np.isnan(peaks), np.isposinf(peaks)
     floor = 1.05 * max(1.0, float(np.max(peaks, initial=0.0, where=np.isfinite(peaks))))  # of the bands
     high = 0.15 * floor
@@ -329,18 +313,15 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str, records: in
                 axes.annotate(f"{count}", (x, edge), xytext=(0, -2), textcoords="offset points", ha="center", va="top",
                               fontsize=style.SMALL)  # fmt: skip
     if intensity[-1] > WIDEST * intensity[0]:
-        axes.set_xscale("log")
-        style.plain_numbers(axes.xaxis)
+        style.logarithmic(axes.xaxis)
     axes.set_xlim(float(intensity[0]), float(intensity[-1]))
     axes.set_ylim(0.0, top)
     ticks = np.arange(0.0, 1.1, 0.2)
     axes.set_yticks([*ticks, *places.values()], [*(f"{y:.1f}" for y in ticks), *places])
-    axes.set_xlabel(label, fontsize=style.LABEL)
-    axes.set_ylabel(r"peak rotation $\phi/\phi_{cr}$", fontsize=style.LABEL)
-    style.tidy(axes)
+    style.tidy(axes, label, r"peak rotation $\phi/\phi_{cr}$")
     also = f" or\nare of {names.UNKNOWN} outcome" if doubtful.any() else ""
     handles.append(Line2D([], [], linestyle="none", label=f"numbers: records that overturn{also}, of {len(peaks)}"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=style.TICK, frameon=False)
+    style.legend_below(figure, handles, 5)
     return figure
 
 
@@ -362,9 +343,7 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
         Of many runs, only every n-th is drawn. If many are of unknown outcome, grey contours show the surface in which
         these count as not exceeding.
     """
-    figure = style.new_figure(4.9)
-    axes = figure.subplots()
-    style.heading(axes, title)
+    figure, axes = style.one_panel(4.9, title)
     surface, spared, exceeding = found.surface, found.runs - found.exceeding, (found.lower or found).exceeding
     doubtful = found.exceeding - exceeding
     share = max(sum(int(np.count_nonzero(each)) for each in (spared, exceeding, doubtful)), 1)
@@ -380,8 +359,8 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
             axes.scatter(*_some(found, doubtful, every), s=14, marker="D", facecolors="none", edgecolors=style.FAINT,
                          linewidths=style.CURVE, label=f"{names.UNKNOWN} outcome ({doubtful.sum()})")
         )  # fmt: skip
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    for axis in (axes.xaxis, axes.yaxis):
+        style.logarithmic(axis)
     across, up = (np.geomspace(x.min() / 1.15, x.max() * 1.15, FINE) for x in (found.x1, found.x2))
     band = found.is_band and found.lower is not None
     if band and found.lower is not None:
@@ -390,15 +369,11 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
     said = [surface.warning] if surface.warning else []
     said += [f"one of every {every} runs is drawn"] if every > 1 else []
     handles += [Line2D([], [], linestyle="none", label=_lines(each)) for each in said]
-    for axis in (axes.xaxis, axes.yaxis):
-        style.plain_numbers(axis)
     axes.set_xlim(across[0], across[-1])
     axes.set_ylim(up[0], up[-1])
-    axes.set_xlabel(labels[0], fontsize=style.LABEL)
-    axes.set_ylabel(labels[1], fontsize=style.LABEL)
-    style.tidy(axes)
+    style.tidy(axes, labels[0], labels[1])
     columns = 1 if surface.kind == "none" or said or band else 2
-    figure.legend(handles=handles, loc="outside lower center", ncols=columns, fontsize=style.TICK, frameon=False)
+    style.legend_below(figure, handles, columns)
     return figure
 
 

@@ -18,7 +18,6 @@ from rocking_cli.dynamics.verdict import known_until
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
-from rocking_cli.plotting.thinning import visible
 from rocking_cli.studies.contact import ContactDemand
 from rocking_cli.studies.movements import Watched
 
@@ -143,13 +142,11 @@ def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit |
     """Draw the record up to the end of the plot [s], and the pulse over it."""
     motion = motion.kept
     ground = motion.acceleration[: int(min(end, motion.duration) / motion.dt) + 2] / STANDARD_GRAVITY
-    shown = visible(ground)
     color = style.INK if pulse is None else style.RECORD
-    axes.plot(shown * motion.dt, ground[shown], color=color, linewidth=style.CURVE)
+    style.draw_samples(axes, ground, motion.dt, color=color, linewidth=style.CURVE)
     if pulse is not None:
         t = pulse.start + np.linspace(0.0, pulse.pulse.duration, POINTS)
         axes.plot(t, pulse.acceleration(t) / STANDARD_GRAVITY, **style.PULSES[0])
-    axes.set_ylabel("ground [g]", fontsize=style.LABEL)
     what = "floor, peak" if motion.ground is not None else "PGA"
     named = f"{motion.name}, {what} {motion.pga_g:.3g} g"
     if pulse is not None:
@@ -157,12 +154,11 @@ def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit |
     if motion.vertical is not None:
         up = motion.vertical
         part = up.acceleration[: int(min(end, up.duration) / up.dt) + 2] / STANDARD_GRAVITY
-        seen = visible(part)
-        axes.plot(seen * up.dt, part[seen], color=style.FAINT, linewidth=style.CURVE, zorder=1)
+        style.draw_samples(axes, part, up.dt, color=style.FAINT, linewidth=style.CURVE, zorder=1)
         named += f"; grey: {up.name}, vertical, {up.pga_g:.3g} g"
     style.make_room(axes)
     style.note(axes, named)
-    style.tidy(axes)
+    style.tidy(axes, y="ground [g]")
 
 
 def _draw_responses(
@@ -175,7 +171,6 @@ def _draw_responses(
     axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
     axes.set_ylim(-1.3 * tall, tall)  # room for the impacts below
     over = style.over(next(iter(histories.values())).ends_at_limit, math=True)
-    axes.set_ylabel(f"rotation {over}, clockwise up", fontsize=style.LABEL)
     place = (0.005, (len(histories) + 1.2) * LANE)
     axes.annotate(
         IMPACTS, place, xycoords="axes fraction", fontsize=style.SMALL, color=style.INK,
@@ -191,13 +186,13 @@ def _draw_responses(
         alignment="left",
         **style.LEGEND,
     )
-    style.tidy(axes)
+    style.tidy(axes, y=f"rotation {over}, clockwise up")
 
 
 def _draw_contacts(axes: Axes, contacts: Sequence[ContactDemand]) -> None:
     """Draw the friction required at the joints, and the friction available."""
     for k, found in enumerate(contacts):
-        shown = visible(found.demand)
+        shown = style.visible(found.demand)
         polarity = f"polarity {1 - 2 * k}" if len(contacts) > 1 else "required"
         look = style.family(k) | {"linewidth": style.MEDIUM}
         axes.plot(found.times[shown], found.demand[shown], label=polarity, **look)
@@ -206,9 +201,8 @@ def _draw_contacts(axes: Axes, contacts: Sequence[ContactDemand]) -> None:
         axes.axhline(there, color=style.CURSOR, linewidth=style.MEDIUM, linestyle=":", label=f"available: {there:.3g}")
     most = max(float(found.demand.max(initial=0.0)) for found in contacts)
     axes.set_ylim(0.0, 1.15 * min(max(most, there or 0.0, 1e-3), MOST_NEEDED))
-    axes.set_ylabel("friction required", fontsize=style.LABEL)
     axes.legend(loc="upper right", ncols=3, **style.LEGEND)
-    style.tidy(axes)
+    style.tidy(axes, y="friction required")
 
 
 def _draw_wall(axes: Axes, free: Direction, tall: float) -> None:
@@ -232,18 +226,17 @@ def _draw_forces(axes: Axes, histories: Mapping[ModelName, History], watched: Wa
     strongest = sorted(forces, key=lambda name: -float(np.nanmax(np.abs(forces[name]))))[:MOST_TIES]
     for k, name in enumerate(each for each in forces if each in strongest):
         known = forces[name][np.isfinite(forces[name])]
-        shown = visible(known)
+        shown = style.visible(known)
         look = {key: value for key, value in style.distinct(k).items() if "marker" not in key}
         axes.plot(run.time[shown], known[shown], label=style.plain(shorten(name, LONGEST, placeholder=" ...")), **look)
     axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
-    axes.set_ylabel("tie force [kN]", fontsize=style.LABEL)
     some = f", the {MOST_TIES} strongest of {len(forces)}" if len(forces) > MOST_TIES else ""
     style.make_room(axes, 0.3)
     axes.legend(
         loc="upper right", title=f"tension up, {model} model{some}", title_fontsize=style.TICK, alignment="left",
         ncols=min(3, len(strongest)), **style.LEGEND,
     )  # fmt: skip
-    style.tidy(axes)
+    style.tidy(axes, y="tie force [kN]")
 
 
 def _draw_run(axes: Axes, name: str, run: History, height: float, until: float) -> None:
@@ -254,7 +247,7 @@ def _draw_run(axes: Axes, name: str, run: History, height: float, until: float) 
     if falls:
         followed = followed[: np.flatnonzero(np.abs(followed) <= FALLING)[-1] + 1]
         axes.plot(run.time[followed.size - 1], followed[-1], marker="x", markersize=6, color=look["color"])
-    shown = visible(followed)
+    shown = style.visible(followed)
     axes.plot(run.time[shown], followed[shown], label=style.LABELS[name] + fate, **look)  # type: ignore[arg-type]
     felt = run.felt[:, 0]
     felt = felt[felt <= until]

@@ -84,11 +84,11 @@ def draw_hung(axes: Axes, picture: Picture, rotation: float, panel: Panel, label
         square = at + ANCHOR / panel.scale * SQUARE
         order = BEHIND if behind else 5
         axes.add_patch(
-            Polygon(_xy(square), facecolor=style.EARTH, edgecolor=style.INK, linewidth=style.THIN, zorder=order)
+            Polygon(xy(square), facecolor=style.EARTH, edgecolor=style.INK, linewidth=style.THIN, zorder=order)
         )
         labels.keep_off([at], MARK)
     for outline in shown.weights:
-        axes.add_patch(Polygon(_xy(outline), facecolor=style.INK, edgecolor="white", linewidth=style.THIN, zorder=5))
+        axes.add_patch(Polygon(xy(outline), facecolor=style.INK, edgecolor="white", linewidth=style.THIN, zorder=5))
         labels.keep_off([*outline, outline[0]], MARK)
     for tail, tip in shown.forces:
         axes.annotate(
@@ -178,5 +178,6 @@ def _length(ends: Sequence[complex]) -> float:
     return abs(ends[1] - ends[0])
 
 
-def _xy(z: Points) -> NDArray[np.float64]:
+def xy(z: Points) -> NDArray[np.float64]:
+    """Return points of the complex plane as those of a plot."""
     return np.stack([z.real, z.imag], axis=-1)

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import PercentFormatter
 from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
@@ -41,8 +40,6 @@ def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearis
     for (left, right), curve, marks in zip(panels, curves, asked, strict=True):
         _line(left, curve.amplitude, curve.period_ratio, "either kappa", style.LINES["nonlinear"])
         _dots(left, marks.amplitude, marks.period_ratio)
-        left.set_xlabel(r"amplitude $\phi/\phi_{cr}$", fontsize=style.LABEL)
-        left.set_ylabel("error of the free period", fontsize=style.LABEL)
         left.set_xlim(0.0, 1.0)
         for kappa in (1, 2):
             ratio = getattr(curve, f"overturning_ratio{kappa}")
@@ -58,17 +55,18 @@ def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearis
         right.set_xticks([1, 2, 5, 10], ["1", "2", "5", "10"])
         right.minorticks_off()
         right.set_xlim(1.0, curve.acceleration.max())
-        right.set_xlabel(r"constant acceleration $a/\lambda$", fontsize=style.LABEL)
-        right.set_ylabel("error of the overturning time", fontsize=style.LABEL)
         ratios = np.concatenate([curve.overturning_ratio1, curve.overturning_ratio2])
         cut = f"not drawn: beyond {100 * TALLEST:g} %" if (np.abs(ratios - 1) > TALLEST).any() else None
         right.legend(**style.LEGEND, loc="lower right", title=cut, title_fontsize=style.TICK, alignment="left")
         if len(curves) > 1:
             left.set_title(f"{curve.direction.label} direction", fontsize=style.LABEL, loc="left")
-        for axes in (left, right):
+        for axes, x, y in (
+            (left, r"amplitude $\phi/\phi_{cr}$", "error of the free period"),
+            (right, r"constant acceleration $a/\lambda$", "error of the overturning time"),
+        ):
             axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
-            axes.yaxis.set_major_formatter(PercentFormatter(1.0))
-            style.tidy(axes)
+            style.in_percent(axes.yaxis)
+            style.tidy(axes, x, y)
     figure.suptitle(style.plain(style.fitted(title)), fontsize=style.TITLE, x=0.01, ha="left", color=style.INK)
     return figure
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from textwrap import shorten
 
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator, PercentFormatter
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from rocking_cli.plotting import style
 from rocking_cli.studies.margin import LEVELS, Margin
@@ -27,9 +27,7 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
     title : str
         Heading.
     """
-    figure = style.new_figure(3.6 + 0.16 * ((len(margins) + 1) // 2 if len(margins) > 1 else 0))
-    axes = figure.subplots()
-    style.heading(axes, title)
+    figure, axes = style.one_panel(3.6 + 0.16 * ((len(margins) + 1) // 2 if len(margins) > 1 else 0), title)
     for level in LEVELS:
         axes.axhline(level, color=style.FAINT, linewidth=style.THIN, linestyle=":")
     axes.axvline(1.0, color=style.FAINT, linewidth=style.CURVE)
@@ -58,15 +56,14 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.set_ylim(-0.03, 1.03)
-    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+    style.in_percent(axes.yaxis)
     doubtful = any(each.unknown.any() for each in margins.values())
-    axes.set_ylabel("share of neighbours that overturn", fontsize=style.LABEL)
     arrow = ", arrowhead: beyond the axis" if beyond else ""
-    axes.set_xlabel(f"scale factor of the motion (star: as given; tick: uplift{arrow})", fontsize=style.LABEL)
     axes.margins(x=0.01)
     if doubtful:
         axes.fill_between([], [], [], label="hatched: unknown, the share is between the lines", **style.UNKNOWN)
-    style.tidy(axes)
+    x = f"scale factor of the motion (star: as given; tick: uplift{arrow})"
+    style.tidy(axes, x, "share of neighbours that overturn")
     if len(margins) > 1 or doubtful:
-        figure.legend(loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False, handlelength=3.5)
+        style.legend_below(figure, handlelength=3.5)
     return figure

@@ -18,7 +18,7 @@ from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.io.json_text import json_text
 from rocking_cli.plotting import style
 from rocking_cli.plotting.structure import colour
-from rocking_cli.plotting.thinning import BINS, visible
+from rocking_cli.plotting.style import BINS, visible
 from rocking_cli.studies.film import Film
 from rocking_cli.views.animation import verdict_of, why_it_ends
 

@@ -39,9 +39,7 @@ def draw_map(
     marks : sequence of (str, float, float)
         Pulses to mark: name and coordinates on the axes.
     """
-    figure = style.new_figure(6.0)
-    axes = figure.subplots()
-    style.heading(axes, title)
+    figure, axes = style.one_panel(6.0, title)
     across, up = (found.omega, found.a) if dimensionless else (found.periods, found.accelerations)
     kinds = _kinds(found)
     axes.pcolormesh(
@@ -60,7 +58,7 @@ def draw_map(
     ]  # fmt: skip
     handles += contours
     handles += _draw_boundaries(axes, found, dimensionless=dimensionless)
-    figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False)
+    style.legend_below(figure, handles)
     for name, x, y in marks:
         axes.plot(x, y, linestyle="none", zorder=6, **style.MARKED)
         right = x > (across.min() + across.max()) / 2
@@ -70,12 +68,9 @@ def draw_map(
             parse_math=False, path_effects=[withStroke(linewidth=2.5, foreground="white")],
         )  # fmt: skip
     if dimensionless:
-        axes.set_xlabel(r"frequency $\omega_g/p$", fontsize=style.LABEL)
-        axes.set_ylabel(r"amplitude $a_g/(g\lambda)$", fontsize=style.LABEL)
+        style.tidy(axes, r"frequency $\omega_g/p$", r"amplitude $a_g/(g\lambda)$")
     else:
-        axes.set_xlabel("period of the pulse [s]", fontsize=style.LABEL)
-        axes.set_ylabel("amplitude of the pulse [g]", fontsize=style.LABEL)
-    style.tidy(axes)
+        style.tidy(axes, "period of the pulse [s]", "amplitude of the pulse [g]")
     axes.grid(False)
     return figure
 
@@ -151,9 +146,7 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
     title : str
         Heading.
     """
-    figure = style.new_figure(4.6)
-    axes = figure.subplots()
-    style.heading(axes, f"{title}, up to {found.top:.4g} g")
+    figure, axes = style.one_panel(4.6, f"{title}, up to {found.top:.4g} g")
     every = max(1, found.periods.size // 8)
     for k, (structure, least) in enumerate(zip(found.structures, found.least, strict=True)):
         name = style.plain(structure.name)
@@ -161,18 +154,14 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
         _draw_doubt(axes, found, k)
     if found.doubtful.any():
         axes.fill_between([], [], [], label="hatched down to the thin line: unknown outcome", **style.UNKNOWN)
-    axes.set_xscale("log")  # a curve is steep where pulses are short
-    axes.set_yscale("log")
+    for axis in (axes.xaxis, axes.yaxis):  # a curve is steep where pulses are short
+        style.logarithmic(axis)
     if np.isnan(found.possible).all():
         axes.set_ylim(found.top / 10, found.top)  # there is no curve to choose them by
         style.note(axes, "no structure overturns")
-    for axis in (axes.xaxis, axes.yaxis):
-        style.plain_numbers(axis)
     axes.set_xlim(float(found.periods[0]), float(found.periods[-1]))
-    axes.set_xlabel("period of the pulse [s]", fontsize=style.LABEL)
-    axes.set_ylabel("least amplitude that overturns [g]", fontsize=style.LABEL)
     axes.legend(**style.LEGEND, handlelength=4)
-    style.tidy(axes)
+    style.tidy(axes, "period of the pulse [s]", "least amplitude that overturns [g]")
     return figure
 
 

@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import PercentFormatter
 from numpy.typing import NDArray
 
 from rocking_cli import names
@@ -47,14 +46,12 @@ def draw_quantiles(found: Quantiles, label: str) -> Figure:
     x = np.array([each.x for each in found.groups])
     handles = _peaks(above, x, found) + _shares(below, x, found)
     if x[-1] > WIDEST * x[0]:
-        below.set_xscale("log")
-        style.plain_numbers(below.xaxis)
+        style.logarithmic(below.xaxis)
     else:
         below.set_xlim(0.0, 1.03 * x[-1])
-    below.set_xlabel(label + ("" if found.stripes else ", means of tenths of the runs"), fontsize=style.LABEL)
-    for axes in (above, below):
-        style.tidy(axes)
-    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=style.TICK, frameon=False)
+    style.tidy(above, y=r"peak rotation $\phi/\phi_{cr}$")
+    style.tidy(below, label + ("" if found.stripes else ", means of tenths of the runs"), "runs")
+    style.legend_below(figure, handles, 3)
     return figure
 
 
@@ -87,7 +84,6 @@ def _peaks(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
         word = names.OVERTURNS if known else f"{names.OVERTURNS}\nor {names.UNKNOWN}"
         axes.set_yticks([*ticks, middle], [*(f"{y:.2g}" for y in ticks), word])
     axes.set_ylim(0.0, top)
-    axes.set_ylabel(r"peak rotation $\phi/\phi_{cr}$", fontsize=style.LABEL)
     return handles
 
 
@@ -109,6 +105,5 @@ def _shares(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
             each.set_hatch(style.UNKNOWN["hatch"])
             each.set_edgecolor(style.UNKNOWN["edgecolor"])
     axes.set_ylim(0.0, 1.0)
-    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
-    axes.set_ylabel("runs", fontsize=style.LABEL)
+    style.in_percent(axes.yaxis)
     return list(drawn)

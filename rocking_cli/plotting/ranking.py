@@ -42,10 +42,9 @@ def draw_ranking(ranking: Ranking) -> Figure:
             look = style.distinct(k) | {"linestyle": ""}
             panels[1].plot(np.maximum(values, LEAST), places, **look, label=name)
         panels[1].axvline(TREND, color=style.INK, linewidth=style.MEDIUM, linestyle="--")
-        panels[1].set_xscale("log")
         panels[1].set_xlim(LEAST / 1.3, 1.3)
         panels[1].set_xlabel(f"p-value of no trend; trend if below {TREND:g}", fontsize=style.LABEL)
-        style.plain_numbers(panels[1].xaxis, (1.0,))
+        style.logarithmic(panels[1].xaxis, (1.0,))
         panels[1].legend(loc="best", fontsize=style.TICK, frameon=True)
     for axes in panels:
         style.tidy(axes)

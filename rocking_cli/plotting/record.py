@@ -1,6 +1,9 @@
-"""Plot of a ground motion: acceleration, velocity, displacement and the build-up of its Arias intensity."""
+"""Plots of a ground motion: by itself, before and after its corrections, and with its pulses."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -9,8 +12,16 @@ from numpy.typing import NDArray
 
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import Measures, arias_build_up
+from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
-from rocking_cli.plotting.thinning import visible
+from rocking_cli.processing.oscillator import DAMPING, response_spectrum
+
+PERIODS = np.geomspace(0.02, 10.0, 120)  # s
+WITHIN = 3.0  # times the peak after: what was there before may be far beyond, and is cut off
+BEFORE: dict[str, Any] = {"color": style.RECORD, "linewidth": style.CURVE}
+AFTER: dict[str, Any] = {"color": style.INK, "linewidth": style.MEDIUM}
+AROUND = 2.0  # durations of a pulse that are shown after it, at least
+POINTS = 2000  # of a pulse
 
 
 def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
@@ -30,44 +41,121 @@ def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
     figure = style.new_figure(7.0)
     panels = figure.subplots(4, 1, sharex=True)
     style.heading(panels[0], motion.name)
-    _draw_curve(panels[0], motion, motion.acceleration / STANDARD_GRAVITY, "acceleration [g]")
-    _draw_curve(panels[1], motion, motion.velocity, "velocity [m/s]")
-    _draw_curve(panels[2], motion, motion.displacement, "displacement [m]")
-    for axes in panels[:3]:
+    peaks = f"PGA {measures.pga:.3g} g", f"PGV {measures.pgv:.3g} m/s", f"PGD {measures.pgd:.3g} m"
+    for axes, (label, values), peak in zip(panels, _quantities(motion), peaks, strict=False):
+        style.draw_samples(axes, values, motion.dt, color=style.INK, linewidth=style.CURVE)
+        axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
         style.make_room(axes)
-    style.note(panels[0], f"PGA {measures.pga:.3g} g")
-    style.note(panels[1], f"PGV {measures.pgv:.3g} m/s")
-    style.note(panels[2], f"PGD {measures.pgd:.3g} m")
+        style.note(axes, peak)
+        style.tidy(axes, y=label)
     _draw_build_up(panels[3], motion, measures)
+    style.tidy(panels[3], "time [s]", "Arias intensity [%]")
     for axes in panels:
         if measures.t_5 is not None and measures.t_95 is not None:
             axes.axvspan(measures.t_5, measures.t_95, color=style.SHADE, linewidth=0, zorder=0)
-        style.tidy(axes)
-    panels[-1].set_xlim(0.0, motion.duration)
-    panels[-1].set_xlabel("time [s]", fontsize=style.LABEL)
+    panels[3].set_xlim(0.0, motion.duration)
     figure.align_ylabels()
     return figure
 
 
-def _draw_curve(axes: Axes, motion: GroundMotion, values: NDArray[np.float64], label: str) -> None:
-    shown = visible(values)
-    axes.plot(shown * motion.dt, values[shown], color=style.INK, linewidth=style.CURVE)
-    axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
-    axes.set_ylabel(label, fontsize=style.LABEL)
+def _quantities(motion: GroundMotion) -> list[tuple[str, NDArray[np.float64]]]:
+    return [
+        ("acceleration [g]", motion.acceleration / STANDARD_GRAVITY),
+        ("velocity [m/s]", motion.velocity),
+        ("displacement [m]", motion.displacement),
+    ]
 
 
 def _draw_build_up(axes: Axes, motion: GroundMotion, measures: Measures) -> None:
     """Draw the Husid plot, with 5 and 95 % marked unless the motion is zero."""
-    axes.set_ylabel("Arias intensity [%]", fontsize=style.LABEL)
     axes.set_ylim(-15.0, 105.0)  # room for a word below 5 %
     if measures.t_5 is None or measures.t_95 is None:
         return
     built = 100 * arias_build_up(motion) / measures.arias
-    shown = visible(built)
-    axes.plot(shown * motion.dt, built[shown], color=style.INK, linewidth=style.MEDIUM)
+    style.draw_samples(axes, built, motion.dt, color=style.INK, linewidth=style.MEDIUM)
     for time, level in ((measures.t_5, 5), (measures.t_95, 95)):
         axes.plot(time, level, marker="o", markersize=4.5, color=style.INK)
         text = f"{level} % at {time:.4g} s"
         # Below and to the right: a curve that only grows leaves that corner free.
         axes.annotate(text, (time, level), (6, -3), textcoords="offset points", va="top", fontsize=style.TICK)
     style.note(axes, f"{measures.arias:.3g} m/s; 5 to 95 % in {measures.t_95 - measures.t_5:.4g} s", height=0.5)
+
+
+def draw_before_and_after(before: GroundMotion, after: GroundMotion, shift: float) -> Figure:
+    """Plot a motion as read and as corrected.
+
+    Parameters
+    ----------
+    before, after : GroundMotion
+        The motion as read, grey, and as it is used, dark.
+    shift : float
+        Start of the corrected motion on the time axis of the motion as read [s].
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = style.new_figure(9.2)
+    panels = figure.subplots(4, 1, height_ratios=[1, 1, 1, 1.3])
+    style.heading(panels[0], after.name)
+    for axes, (label, old), (_, new) in zip(panels, _quantities(before), _quantities(after), strict=False):
+        style.draw_samples(axes, old, before.dt, label="as read", **BEFORE)
+        style.draw_samples(axes, new, after.dt, shift, label="processed", **AFTER)
+        _set_height(axes, old, new)
+        axes.set_xlim(0.0, max(before.duration, shift + after.duration))
+        style.tidy(axes, y=label)
+    panels[0].legend(loc="upper right", ncols=2, **style.LEGEND)
+    panels[2].set_xlabel(f"time [s]; {', '.join(after.processing)}", fontsize=style.LABEL)
+    for motion, look in ((before, BEFORE), (after, AFTER)):
+        found = response_spectrum(motion, PERIODS[2 * motion.dt < PERIODS])
+        panels[3].plot(found.periods, found.sa, **look)
+    style.logarithmic(panels[3].xaxis)
+    panels[3].set_yscale("log")
+    style.tidy(panels[3], "period [s]", f"Sa at {100 * DAMPING:g} % [g]")
+    figure.align_ylabels()
+    return figure
+
+
+def _set_height(axes: Axes, old: NDArray[np.float64], new: NDArray[np.float64]) -> None:
+    """Set the height so that the corrected curve is shown whole, and the curve as read as far as both stay legible."""
+    most, all_ = float(np.abs(new).max()), float(np.abs(old).max())
+    top = max(min(all_, WITHIN * most), most) * 1.05 or 1.0
+    axes.set_ylim(-top, top)
+    if all_ > top:
+        style.note(axes, f"as read up to {all_:.3g}", height=0.14)
+
+
+def draw_pulses(motion: GroundMotion, fits: Sequence[PulseFit], end: float) -> Figure:
+    """Plot a record with the pulses over it.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The record to which the pulses were fitted.
+    fits : sequence of PulseFit
+        At most three; each is drawn in both panels, whatever it was fitted in.
+    end : float
+        Time up to which the record is shown [s]; later if a pulse ends later.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = style.new_figure(4.8)
+    above, below = figure.subplots(2, 1, sharex=True)
+    style.heading(above, motion.name)
+    for axes, values in ((above, motion.acceleration / STANDARD_GRAVITY), (below, motion.velocity)):
+        style.draw_samples(axes, values, motion.dt, color=style.RECORD, linewidth=style.CURVE)
+        axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
+    for fit, look in zip(fits, style.PULSES, strict=False):
+        t = fit.start + np.linspace(0.0, fit.pulse.duration, POINTS)
+        label = f"{fit.pulse.title}, fitted in {fit.criterion}: {100 * fit.captured:.0f} % of its energy"
+        above.plot(t, fit.acceleration(t) / STANDARD_GRAVITY, label=label, **look)
+        below.plot(t, fit.velocity(t), **look)
+        end = max(end, fit.start + (1 + AROUND) * fit.pulse.duration)
+    style.tidy(above, y="acceleration [g]")
+    style.tidy(below, "time [s]", "velocity [m/s]")
+    below.set_xlim(min([0.0, *(fit.start for fit in fits)]), min(end, motion.duration))
+    style.legend_below(figure, ncols=1)
+    figure.align_ylabels()
+    return figure

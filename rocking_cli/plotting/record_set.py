@@ -27,9 +27,7 @@ def draw_record_set(found: RecordSet, title: str) -> Figure:
     """
     periods, target, mean = found.candidates.periods, found.candidates.target, found.mean
     low, high = found.wanted.within
-    figure = style.new_figure(4.4)
-    axes = figure.subplots()
-    style.heading(axes, title)
+    figure, axes = style.one_panel(4.4, title)
     axes.fill_between(periods, low * target, high * target, color=LIMITS, linewidth=0, zorder=0)
     faint = min(1.0, max(CLEAR / len(found.chosen), 0.2))
     axes.plot(periods, found.spectra.T, color=style.FAINT, linewidth=style.CURVE, alpha=faint, zorder=1.5)
@@ -38,15 +36,12 @@ def draw_record_set(found: RecordSet, title: str) -> Figure:
     missed = found.too_low | found.too_high
     if missed.any():
         axes.plot(periods[missed], mean[missed], linestyle="none", marker="x", markersize=5, color=MISSED, zorder=4)
-    axes.set_xscale("log")
     short = periods[-1] / periods[0] <= SHORT
-    style.plain_numbers(axes.xaxis, (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0) if short else (1.0, 2.0, 5.0))
+    style.logarithmic(axes.xaxis, (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0) if short else (1.0, 2.0, 5.0))
     axes.set_xlim(periods[0], periods[-1])
     axes.set_ylim(0.0, 1.05 * max(float(found.spectra.max()), float((high * target).max())))
-    axes.set_xlabel("period [s]", fontsize=style.LABEL)
     damping = f"{100 * found.wanted.damping:g} % damping"
-    axes.set_ylabel(f"pseudo-acceleration [g], {damping}", fontsize=style.LABEL)
-    style.tidy(axes)
+    style.tidy(axes, "period [s]", f"pseudo-acceleration [g], {damping}")
     handles: list[Line2D | Patch] = [
         Line2D([], [], color=MEAN, linewidth=2.2, label="mean"),
         Line2D([], [], color=TARGET, linestyle="--", linewidth=style.BOLD, label="target"),
@@ -55,5 +50,5 @@ def draw_record_set(found: RecordSet, title: str) -> Figure:
     ]
     if missed.any():
         handles.append(Line2D([], [], linestyle="none", marker="x", color=MISSED, label="outside the limits"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), fontsize=style.TICK, frameon=False)
+    style.legend_below(figure, handles, len(handles))
     return figure

@@ -36,15 +36,12 @@ def draw_response_spectra(spectra: Mapping[str, ResponseSpectrum]) -> Figure:
             look = style.distinct(k) | {"marker": ""} if len(names) <= NAMED else {"color": style.INK, "alpha": 0.5}
             width = {"linewidth": style.CURVE if len(names) == 1 else style.MEDIUM}
             axes.plot(each.periods, getattr(each, quantity), **look | width, label=style.plain(style.fitted(name, 3.2)))
-        axes.set_xscale("log")
         axes.set_ylim(bottom=0.0)
         axes.margins(x=0.01)
-        axes.set_ylabel(label, fontsize=style.LABEL)
-        style.plain_numbers(axes.xaxis)
-        style.tidy(axes)
+        style.logarithmic(axes.xaxis)
+        style.tidy(axes, y=label)
     panels[-1].set_xlabel("period [s]", fontsize=style.LABEL)
     figure.align_ylabels()
     if 1 < len(names) <= NAMED:
-        handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False)
+        style.legend_below(figure, panels[0].get_lines())
     return figure

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator, PercentFormatter
+from matplotlib.ticker import MaxNLocator
 
 from rocking_cli.errors import InputError
 from rocking_cli.plotting import style
@@ -48,7 +48,6 @@ def draw_reliability(found: Scored) -> Figure:
             f"{each.tests}", (each.stated, each.observed.value), (9 if right else -9, -9), textcoords="offset points",
             ha="left" if right else "right", va="top", fontsize=style.TICK,
         )  # fmt: skip
-    axes.set_ylabel("observed share", fontsize=style.LABEL)
     axes.set_ylim(-0.08, 1.04)
     axes.legend(loc="upper left", **style.LEGEND)
     shares = [
@@ -64,12 +63,11 @@ def draw_reliability(found: Scored) -> Figure:
         below.yaxis.set_major_formatter(lambda count, _: f"{count:g}")
     else:
         below.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=4))
-    below.set_ylabel("tests", fontsize=style.LABEL)
-    below.set_xlabel("stated share of neighbours that overturn (numbers: tests in the bin)", fontsize=style.LABEL)
     below.set_xlim(-0.02, 1.02)
     below.legend(loc="upper center", **style.LEGEND)
     for panel in (axes, below):
-        panel.xaxis.set_major_formatter(PercentFormatter(1.0))
-        style.tidy(panel)
-    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+        style.in_percent(panel.xaxis)
+    style.in_percent(axes.yaxis)
+    style.tidy(axes, y="observed share")
+    style.tidy(below, "stated share of neighbours that overturn (numbers: tests in the bin)", "tests")
     return figure

@@ -12,7 +12,7 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import MaxNLocator, PercentFormatter
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from rocking_cli import names
@@ -70,7 +70,7 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
     _scale_peaks(panels[0], top, [known for _, known in rows])
     if many:
         panels[1].set_ylim(-0.04, 1.04)
-        panels[1].yaxis.set_major_formatter(PercentFormatter(1.0))
+        style.in_percent(panels[1].yaxis)
         panels[1].set_ylabel("share that overturns", fontsize=style.LABEL)
     what = r"median peak $\phi/\phi_{cr}$" if many else r"peak $\phi/\phi_{cr}$"
     panels[0].set_ylabel(what, fontsize=style.LABEL)
@@ -82,9 +82,7 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
         style.tidy(axes)
     _second_axis(panels[0], spectra)
     handles = _legend(spectra, (low, high) if shaded else None, many=many)
-    figure.legend(
-        handles=handles, loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False, handlelength=3.5
-    )
+    style.legend_below(figure, handles, handlelength=3.5)
     return figure
 
 

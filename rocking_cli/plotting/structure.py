@@ -247,8 +247,8 @@ def _draw_outline_at_rest(axes: Axes, picture: Picture, line: float) -> None:
 def _patches(part: DrawnPart, polygons: Sequence[Points], **look: Any) -> list[Patch]:
     """Return the outlines of a part, the first at the back; those of many blocks as one path."""
     if not part.mass:
-        return [Polygon(_xy(each), closed=True, **look) for each in polygons]
-    paths = [Path(_xy(np.append(each, each[:1])), closed=True) for each in polygons]
+        return [Polygon(hung.xy(each), closed=True, **look) for each in polygons]
+    paths = [Path(hung.xy(np.append(each, each[:1])), closed=True) for each in polygons]
     return [PathPatch(Path.make_compound_path(*paths), **look)]
 
 
@@ -330,7 +330,7 @@ def _draw_forces(axes: Axes, picture: Picture, scale: float) -> None:
             seen = share > LEAST
             half = force[seen] / np.abs(force[seen]) * min(STROKE, SHORT * _smaller_side(picture) * scale) / scale / 2
             middle = np.asarray(each.points)[seen]
-            strokes = [_xy(np.array(ends)) for ends in zip(middle - half, middle + half, strict=True)]
+            strokes = [hung.xy(np.array(ends)) for ends in zip(middle - half, middle + half, strict=True)]
             look = {"colors": style.THRUST["color"], "linewidths": HEAVIEST * np.sqrt(share[seen]), "zorder": 3}
             axes.add_collection(LineCollection(strokes, **look), autolim=False)
 
@@ -345,7 +345,7 @@ def draw_ground(axes: Axes, picture: Picture, panel: Panel) -> None:
     """Draw the ground and side walls, hatched."""
     for line in (*picture.ground, *picture.walls):
         axes.plot(line.real, line.imag, color=style.EARTH, linewidth=style.BOLD, zorder=1)
-        ticks = [_xy(each) for each in _hatches(line, panel)]
+        ticks = [hung.xy(each) for each in _hatches(line, panel)]
         axes.add_collection(LineCollection(ticks, colors=style.EARTH, linewidths=style.THIN))
 
 
@@ -375,7 +375,3 @@ def draw_scale(axes: Axes, panel: Panel) -> None:
         f"{length:g} m", (0.5, 0.0), (0, -9), xycoords="axes fraction", textcoords="offset points",
         ha="center", va="top", fontsize=style.SMALL, color=style.INK, annotation_clip=False,
     )  # fmt: skip
-
-
-def _xy(z: Points) -> NDArray[np.float64]:
-    return np.stack([z.real, z.imag], axis=-1)

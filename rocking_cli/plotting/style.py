@@ -8,13 +8,15 @@ from textwrap import shorten
 from typing import IO, Any
 from warnings import catch_warnings, filterwarnings
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.text import Text
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, PercentFormatter
+from numpy.typing import NDArray
 
 from rocking_cli import names
 from rocking_cli.text import printable
@@ -104,6 +106,14 @@ def family(k: int) -> dict[str, Any]:
 def new_figure(height: float) -> Figure:
     """Return an empty figure of the common width; `height` in inches."""
     return Figure(figsize=(WIDTH, height), dpi=DPI, layout="constrained")
+
+
+def one_panel(height: float, title: str) -> tuple[Figure, Axes]:
+    """Return a new figure of this height [in], and its only panel under a heading."""
+    figure = new_figure(height)
+    axes = figure.subplots()
+    heading(axes, title)
+    return figure, axes
 
 
 def size_of(text: str, points: float, weight: str = "normal") -> complex:
@@ -198,10 +208,67 @@ def plain_numbers(axis: Axis, subs: Sequence[float] = (1.0, 2.0, 5.0)) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def tidy(axes: Axes) -> None:
+def logarithmic(axis: Axis, subs: Sequence[float] = (1.0, 2.0, 5.0)) -> None:
+    """Make an axis logarithmic, with plain numbers."""
+    axes = axis.axes
+    (axes.set_xscale if axis is axes.xaxis else axes.set_yscale)("log")
+    plain_numbers(axis, subs)
+
+
+def in_percent(axis: Axis) -> None:
+    """Number an axis of shares in per cent."""
+    axis.set_major_formatter(PercentFormatter(1.0))
+
+
+def legend_below(figure: Figure, handles: Sequence[Any] | None = None, ncols: int = 2, **look: Any) -> None:
+    """Draw the legend of a figure below its panels."""
+    keys = {} if handles is None else {"handles": handles}
+    figure.legend(**keys, loc="outside lower center", ncols=ncols, fontsize=TICK, frameon=False, **look)
+
+
+def tidy(axes: Axes, x: str = "", y: str = "") -> None:
     """Apply the common style to axes."""
+    if x:
+        axes.set_xlabel(x, fontsize=LABEL)
+    if y:
+        axes.set_ylabel(y, fontsize=LABEL)
     axes.grid(True, color=GRID, linewidth=THIN)
     axes.set_axisbelow(True)
     axes.tick_params(labelsize=TICK, colors=INK)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
+
+
+BINS = 4000  # across a picture: more than its pixels, so that nothing visible is lost even enlarged in print
+
+
+def visible(values: NDArray[np.float64], bins: int = BINS) -> NDArray[np.intp]:
+    """Return the indices of the samples to draw: all of a short curve, lowest and highest of each bin of a long one.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Finite values at even times.
+    bins : int
+        Number of bins.
+
+    Returns
+    -------
+    ndarray of int
+        Increasing indices, including the first and the last sample and the extremes.
+    """
+    size = values.size // bins
+    if size <= 2:
+        return np.arange(values.size)
+    whole = values[: bins * size].reshape(bins, size)
+    starts = np.arange(bins) * size
+    rest = np.arange(bins * size, values.size)  # fewer than bins
+    return np.unique(
+        np.concatenate([[0, values.size - 1], starts + whole.argmin(axis=1), starts + whole.argmax(axis=1), rest])
+    )
+
+
+def draw_samples(axes: Axes, values: NDArray[np.float64], dt: float, start: float = 0.0, **look: Any) -> None:
+    """Plot even samples against time, those that are visible."""
+    shown = visible(values)
+    axes.plot(start + shown * dt, values[shown], **look)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -34,9 +33,7 @@ def draw_survey(found: Survey, title: str) -> Figure:
     title : str
         Heading.
     """
-    figure = style.new_figure(4.2)
-    axes = figure.subplots()
-    style.heading(axes, title)
+    figure, axes = style.one_panel(4.2, title)
     p = np.array([each.p for each in found.rows])
     uplift = np.array([each.uplift for each in found.rows])
     there = np.isfinite(p)
@@ -61,12 +58,15 @@ def draw_survey(found: Survey, title: str) -> Figure:
             p[first], uplift[first], linestyle="none", marker="o", markersize=9, color="none",
             markeredgecolor=style.INK, label=f"the {len(first)} most vulnerable",
         )  # fmt: skip
-    _axes(axes)
+    axes.margins(0.08)
+    axes.set_ylim(bottom=0.0)
+    x = "frequency parameter p [rad/s]: large structures left, small ones right"
+    style.tidy(axes, x, "ground acceleration at uplift [g]")
     if missing := int((~there).sum()):
         label = f"not drawn: {missing:,} without an equivalent block (no p)"
         axes.plot([], [], linestyle="none", label=label)
     if axes.get_legend_handles_labels()[1]:
-        figure.legend(loc="outside lower center", ncols=2, fontsize=style.TICK, frameon=False)
+        style.legend_below(figure)
     return figure
 
 
@@ -84,11 +84,3 @@ def _groups(found: Survey) -> dict[str, NDArray[np.bool_]]:
         "unknown under at least one motion": doubtful,
         "overturns under at least one motion": falls,
     }
-
-
-def _axes(axes: Axes) -> None:
-    axes.margins(0.08)
-    axes.set_ylim(bottom=0.0)
-    axes.set_xlabel("frequency parameter p [rad/s]: large structures left, small ones right", fontsize=style.LABEL)
-    axes.set_ylabel("ground acceleration at uplift [g]", fontsize=style.LABEL)
-    style.tidy(axes)
