@@ -69,11 +69,10 @@ def beside_runs(folder: Path) -> None:
 def _fits(place: Path) -> float:
     """Seconds from a finished store to its curves, in a new process but for what every command imports."""
     code = (
-        "import sys, time; from pathlib import Path; from rocking_cli.cli.study_output import CurveOutput, show_study;"
-        "from rocking_cli.studies.fragility.store import Store; import rocking_cli.studies.fragility.campaign;"
-        "start = time.perf_counter();\n"
-        "with Store.reading(Path(sys.argv[1])) as store:\n"
-        "    show_study(store, CurveOutput(None, None, False, False), as_json=True)\n"
+        "import sys, time; from rocking_cli.cli.study_output import StudyOutput, show_study;"
+        "from rocking_cli.cli.watching import OnTerminal; from rocking_cli.ask.results import results;"
+        "import rocking_cli.studies.fragility.campaign; start = time.perf_counter();"
+        "show_study(results(sys.argv[1]), StudyOutput(None, None, as_json=True), OnTerminal());"
         "print(time.perf_counter() - start, file=sys.stderr)"
     )
     done = subprocess.run([sys.executable, "-c", code, str(place)], check=True, capture_output=True, text=True)

@@ -95,7 +95,8 @@ def spectrum(
     from rocking_cli.studies import spectrum as study
     from rocking_cli.views import spectrum as views
 
-    _check_count("count", count)
+    if not isinstance(count, int) or count < 1:
+        raise InputError(Problem(f"must be a whole number of at least 1, got {count!r}", field="count"))
     for fractile in fractiles:
         if not 0 < fractile < 1:
             raise InputError(Problem(f"{fractile:g} is not a fractile between 0 and 1", field="`fractiles`"))
@@ -121,9 +122,3 @@ def spectrum(
         watch.incomplete(unfollowed)
     figure = drawn("spectrum.draw_spectra", found, results.fractiles, views.title(results))
     return Answer("spectrum", found, views.view(results), partial(views.table, results), figure)
-
-
-def _check_count(name: str, count: int, least: int = 1) -> None:
-    """Raise `InputError` if a number of values is not a whole number, or too small."""
-    if not isinstance(count, int) or count < least:
-        raise InputError(Problem(f"must be a whole number of at least {least}, got {count!r}", field=name))

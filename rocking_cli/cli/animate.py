@@ -7,14 +7,11 @@ from typing import Any
 
 import click
 
-from rocking_cli.cli import motion_files, options, terminal
+from rocking_cli.cli import options, terminal
 from rocking_cli.cli.defaults import as_declared
 from rocking_cli.cli.groups import AROUND, GroundMotions
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import POSITIVE
-
-# The names of the models stand here again so that `--help` needs no numpy.
-MODELS = ("nonlinear", "linear1", "linear2")
 
 
 @click.command(cls=Command, short_help="Animate a structure under a ground motion (GIF or HTML).")
@@ -22,7 +19,7 @@ MODELS = ("nonlinear", "linear1", "linear2")
 @options.ground_motions
 @options.reading
 @options.scaling("1", "-1")
-@click.option("--model", type=click.Choice(MODELS), default="nonlinear", show_default=True, help=options.HELP["model"])
+@options.model
 @options.out(
     ".gif", ".html", required=True, metavar="FILE.html",
     what="Output file: an animated GIF (.gif), or a self-contained page with a slider (.html).",
@@ -70,7 +67,7 @@ def command(files: tuple[str, ...], asked: GroundMotions, out: Path, as_json: bo
         as_declared(question, *AROUND[1:])
     motions, watch = asked.motions, OnTerminal(as_json=as_json)
     keep_apart([("--out", out)], [*files, *(str(each.path) for each in motions.records)])
-    structure = motion_files.structure(files, asked.records)
+    structure = asked.structure(files)
     answer = animate(structure, motions, out, polarity=asked.polarity, watch=watch, **question)
     if not as_json or motions.count == 1:
         terminal.show(answer.view, as_json=as_json)

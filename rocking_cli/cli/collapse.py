@@ -14,7 +14,8 @@ from rocking_cli.cli.groups import Output
 @options.structure
 @options.plot("Plot the mechanism and a line of thrust")
 @options.as_json
-def command(file: str | Path, plot: Path | None, as_json: bool) -> None:
+@options.grouped(output=Output)
+def command(file: str | Path, output: Output) -> None:
     """Find the weakest mechanism of an assembly of rigid blocks in each direction, by limit analysis.
 
     Joints carry no tension. The output gives lambda, the hinges, the blocks that move together and those at rest, a
@@ -26,8 +27,6 @@ def command(file: str | Path, plot: Path | None, as_json: bool) -> None:
       rocking collapse portal.yaml --plot portal.png
     """
     from rocking_cli.ask.collapse import collapse
-    from rocking_cli.cli.watching import OnTerminal
 
-    output = Output(None, plot, as_json)
     output.keep_apart(file)
-    output.show(collapse(file, watch=OnTerminal()))
+    output.show(collapse(file, watch=output.watch))

@@ -76,11 +76,8 @@ def command(file: str | Path, asked: GroundMotions, output: Output, **question: 
     """
     asked.check()
     from rocking_cli.ask.design import design
-    from rocking_cli.cli.watching import OnTerminal
 
     if not asked:
         as_declared(question, *AROUND)
-    motions, watch = asked.motions, OnTerminal()
-    output.keep_apart(file, *motions.records)
-    output.show(design(file, motions=motions, polarity=asked.polarity, watch=watch, **question))
-    watch.end()
+    output.keep_apart(file, *asked.motions.records)
+    output.show(design(file, motions=asked.motions, polarity=asked.polarity, watch=output.watch, **question))

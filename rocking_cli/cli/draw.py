@@ -20,7 +20,8 @@ from rocking_cli.cli.quantities import NUMBER
 )  # fmt: skip
 @options.plot("Output file", "[default: FILE with .png, in this folder; none with --json]")
 @options.as_json
-def command(file: str | Path, at: float | None, plot: Path | None, as_json: bool) -> None:
+@options.grouped(output=Output)
+def command(file: str | Path, at: float | None, output: Output) -> None:
     """Draw a structure at rest with its dimensions, and displaced in both directions, to scale.
 
     Check the drawing before you trust a number: is this the intended mechanism, and were the dimensions read correctly?
@@ -36,12 +37,10 @@ def command(file: str | Path, at: float | None, plot: Path | None, as_json: bool
       rocking draw arch.yaml --at 0.5 --plot arch.svg
     """
     from rocking_cli.ask.draw import draw
-    from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import check_writable
 
-    if plot is None and not as_json:
-        plot = Path(f"{options.stem(file)}.png")
+    if output.plot is None and not output.as_json:
+        output = Output(as_json=False, plot=(plot := Path(f"{options.stem(file)}.png")))
         check_writable(plot)
-    output = Output(None, plot, as_json)
     output.keep_apart(file)
-    output.show(draw(file, at=at, watch=OnTerminal()))
+    output.show(draw(file, at=at, watch=output.watch))

@@ -60,9 +60,6 @@ def command(files: tuple[str, ...], output: Output, **question: Any) -> None:
     Source: DeJong and Dimitrakopoulos (2014), Section 6.2 and Fig. 15.
     """
     from rocking_cli.ask.equivalent import equivalent
-    from rocking_cli.cli.watching import OnTerminal
 
     output.keep_apart(*files)
-    watch = OnTerminal()
-    output.show(equivalent(files, watch=watch, **question))
-    watch.end()
+    output.show(equivalent(files, watch=output.watch, **question))

@@ -25,7 +25,8 @@ from rocking_cli.cli.quantities import NUMBER
 )  # fmt: skip
 @options.plot("Plot the errors against amplitude and acceleration")
 @options.as_json
-def command(file: str | Path, at: tuple[float, ...], a: tuple[float, ...], plot: Path | None, as_json: bool) -> None:
+@options.grouped(output=Output)
+def command(file: str | Path, at: tuple[float, ...], a: tuple[float, ...], output: Output) -> None:
     """Compute the errors of the equivalent block of a structure, in each direction.
 
     The errors are those of its free rocking period, of its uplift acceleration, and of its overturning time under a
@@ -41,8 +42,6 @@ def command(file: str | Path, at: tuple[float, ...], a: tuple[float, ...], plot:
     Source: DeJong and Dimitrakopoulos (2014), Eqs. 24-25.
     """
     from rocking_cli.ask.error import error
-    from rocking_cli.cli.watching import OnTerminal
 
-    output = Output(None, plot, as_json)
     output.keep_apart(file)
-    output.show(error(file, at=at, a=a, watch=OnTerminal()))
+    output.show(error(file, at=at, a=a, watch=output.watch))

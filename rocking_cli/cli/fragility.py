@@ -10,8 +10,8 @@ import click
 from rocking_cli.cli import endings, options, terminal
 from rocking_cli.cli.defaults import from_default
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.study_output import CurveOutput, show_study
-from rocking_cli.errors import INCOMPLETE
+from rocking_cli.cli.study_output import StudyOutput, show_study
+from rocking_cli.cli.watching import OnTerminal
 
 
 @click.command(cls=Command, short_help="Run a fragility study and fit its curves.")
@@ -29,8 +29,8 @@ from rocking_cli.errors import INCOMPLETE
 @options.quantiles
 @options.as_json
 @click.pass_context
-@options.grouped(shown=CurveOutput)
-def command(ctx: click.Context, file: str, shown: CurveOutput, as_json: bool, **study: Any) -> None:
+@options.grouped(shown=StudyOutput)
+def command(ctx: click.Context, file: str, shown: StudyOutput, **study: Any) -> None:
     """Run a fragility study and fit its curves.
 
     STUDY.yaml names structures, records, intensity levels and limit states; docs/fragility.md lists its fields. Every
@@ -50,7 +50,6 @@ def command(ctx: click.Context, file: str, shown: CurveOutput, as_json: bool, **
     from rocking_cli.ask.fragility import fragility
     from rocking_cli.ask.numbers import refuse_idle
     from rocking_cli.ask.results import StudyAnswer
-    from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import check_writable, folder, keep_apart
 
     watch = OnTerminal()
@@ -70,8 +69,8 @@ def command(ctx: click.Context, file: str, shown: CurveOutput, as_json: bool, **
     except KeyboardInterrupt as stopped:
         terminal.error("interrupted: finished runs are kept; run the same command again to continue")
         ctx.exit(endings.exit_code(stopped))
-    if not isinstance(answer, StudyAnswer):
-        terminal.show(answer.view, as_json=as_json)
-    elif not show_study(answer, shown, as_json=as_json):
-        ctx.exit(INCOMPLETE)
+    if isinstance(answer, StudyAnswer):
+        show_study(answer, shown, watch)
+    else:
+        terminal.show(answer.view, as_json=shown.as_json)
     watch.end()

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import click
+
 from rocking_cli.cli import terminal
+from rocking_cli.cli.watching import OnTerminal
 from rocking_cli.cli.written import write_picture, write_table
 
 if TYPE_CHECKING:
     from rocking_cli.ask.answer import Answer
     from rocking_cli.ask.ground_motions import Motion, Motions
+    from rocking_cli.io.tables import Columns
     from rocking_cli.processing.listed import Listed
 
 
@@ -54,6 +58,25 @@ class GroundMotions(ReadingOptions):
 
         return self.of(*map(Path, self.records), *map(parse_pulse, self.pulses))
 
+    def structure(self, files: Sequence[str]) -> str | Path:
+        """Return the single structure of a command, by default that of `options.structure`."""
+        self.check_strays(files)
+        if len(files) > 1:
+            raise click.UsageError(f"This command takes one structure, but {len(files)} are given: {', '.join(files)}.")
+        from rocking_cli.ask.given import HERE
+
+        return files[0] if files else HERE
+
+    def check_strays(self, files: Sequence[str]) -> None:
+        """Raise if records stand in the place of a structure: the shell puts the files of a bare pattern there."""
+        endings = {Path(place).suffix.lower() for place in self.records} - {"", ".yaml", ".yml"}
+        strays = [file for file in files if Path(file).suffix.lower() in endings]
+        if strays:
+            raise click.UsageError(
+                f"{strays[0]} is given where a structure is expected. If it is a record, put --record before each "
+                f"file, or use a quoted pattern: --record '*{Path(strays[0]).suffix}'."
+            )
+
     def check(self, vertical: str | None = None) -> None:
         """Raise if an option has no effect; `units` and `dt` also apply to the vertical component beside a pulse."""
         self.motions.check(with_vertical=vertical is not None)
@@ -67,9 +90,14 @@ AROUND = ("neighbours", "amplitude_deviation", "slenderness_deviation", "restitu
 class Output:
     """The files to write, and whether the result is one JSON object."""
 
-    out: Path | None
-    plot: Path | None
     as_json: bool
+    out: Path | None = None
+    plot: Path | None = None
+
+    @cached_property
+    def watch(self) -> OnTerminal:
+        """The watcher of the verb, which ends the command when its answer is shown."""
+        return OnTerminal(as_json=self.as_json)
 
     def keep_apart(self, *read: str | Path | Listed | None) -> None:
         """Raise `InputError` if an output would overwrite a file that is read, or a table cannot be written."""
@@ -80,14 +108,15 @@ class Output:
         keep_apart([("--out", self.out), ("--plot", self.plot)], files)
         check_table(self.out)
 
-    def write(self, answer: Answer[Any]) -> None:
-        """Write the requested table and plot of an answer, make each only if needed, and report them."""
-        if self.out is not None:
-            write_table(self.out, answer.blocks() if answer.blocks is not None else [answer.columns()])
-        if self.plot is not None:
-            write_picture(self.plot, answer.figure())
+    def blocks(self, answer: Answer[Any]) -> Iterable[Columns]:
+        """Return the table to write of an answer, in blocks of rows."""
+        return answer.blocks() if answer.blocks is not None else [answer.columns()]
 
     def show(self, answer: Answer[Any]) -> None:
-        """Write the requested files of an answer, and show it."""
-        self.write(answer)
+        """Write the requested files of an answer, each made only if needed, show it, and end the command."""
+        if self.out is not None:
+            write_table(self.out, self.blocks(answer))
+        if self.plot is not None:
+            write_picture(self.plot, answer.figure())
         terminal.show(answer.view, as_json=self.as_json)
+        self.watch.end()

@@ -21,8 +21,8 @@ from rocking_cli.cli.help import Command
 @options.opening
 @options.plot("Plot the shares against the scale factor")
 @options.as_json
-@options.grouped(asked=GroundMotions)
-def command(file: str | Path, asked: GroundMotions, plot: Path | None, as_json: bool, **around: Any) -> None:
+@options.grouped(asked=GroundMotions, output=Output)
+def command(file: str | Path, asked: GroundMotions, output: Output, **around: Any) -> None:
     """Compute how close ground motions are to overturning a structure.
 
     A structure may overturn at one scale factor and survive a larger one, so there is no single critical factor. At
@@ -45,9 +45,6 @@ def command(file: str | Path, asked: GroundMotions, plot: Path | None, as_json: 
         raise click.UsageError("No ground motion given: add --record PLACE or --pulse PULSE, each repeatable.")
     asked.check()
     from rocking_cli.ask.margin import margin
-    from rocking_cli.cli.watching import OnTerminal
 
-    motions, output, watch = asked.motions, Output(None, plot, as_json), OnTerminal()
-    output.keep_apart(file, *motions.records)
-    output.show(margin(file, motions, polarity=asked.polarity, watch=watch, **around))
-    watch.end()
+    output.keep_apart(file, *asked.motions.records)
+    output.show(margin(file, asked.motions, polarity=asked.polarity, watch=output.watch, **around))

@@ -18,6 +18,8 @@ from rocking_cli.names import OPENING
 from rocking_cli.processing.reading_options import CORRECTIONS, READING, SCALING, Option
 
 STANDARD_OUTPUT = "-"
+# The names of the models stand here again so that `--help` needs no numpy.
+MODELS = ("nonlinear", "linear1", "linear2")
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 HELP = {
@@ -127,7 +129,7 @@ def grouped(**groups: type) -> Decorator:
         @wraps(command)
         def with_groups(*args: Any, **given: Any) -> Any:
             made = {
-                name: group(**{field.name: given.pop(field.name) for field in fields(group)})
+                name: group(**{field.name: given.pop(field.name) for field in fields(group) if field.name in given})
                 for name, group in groups.items()
             }
             return command(*args, **made, **given)
@@ -215,6 +217,11 @@ def _packed(command: Callable[..., Any]) -> Callable[..., Any]:
 
 reading: Decorator = in_order(_declared(READING), _packed)
 """The options for reading and processing records; corrections are made in the order in which they are given."""
+
+
+model: Decorator = click.option(
+    "--model", type=click.Choice(MODELS), default="nonlinear", show_default=True, help=HELP["model"]
+)
 
 
 def polarity(*choices: str, default: str = "1") -> Decorator:

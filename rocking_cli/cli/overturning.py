@@ -67,9 +67,6 @@ def command(files: tuple[str, ...], output: Output, **question: Any) -> None:
     Source: DeJong and Dimitrakopoulos (2014), Section 6; Zhang and Makris (2001).
     """
     from rocking_cli.ask.overturning import overturning
-    from rocking_cli.cli.watching import OnTerminal
 
     output.keep_apart(*files)
-    watch = OnTerminal()
-    output.show(overturning(files, watch=watch, **question))
-    watch.end()
+    output.show(overturning(files, watch=output.watch, **question))

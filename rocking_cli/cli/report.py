@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from rocking_cli.cli import complete, heads, motion_files, options, terminal
+from rocking_cli.cli import complete, heads, options, terminal
 from rocking_cli.cli.defaults import as_declared
 from rocking_cli.cli.groups import AROUND, GroundMotions
 from rocking_cli.cli.help import Command
@@ -61,7 +61,7 @@ def command(
     question["polarity"] = asked.polarity
     if not asked:
         as_declared(question, "polarity", *AROUND)
-    file = motion_files.structure(files, asked.records)
+    file = asked.structure(files)
     if out is None and not as_json:
         out = Path(f"{options.stem(file)}.html")
     motions, watch = asked.motions, OnTerminal()

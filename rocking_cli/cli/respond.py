@@ -8,15 +8,14 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
-from rocking_cli.cli import complete, motion_files, options, terminal
+from rocking_cli.cli import complete, options, terminal
 from rocking_cli.cli.defaults import as_declared
 from rocking_cli.cli.groups import AROUND, GroundMotions, Output
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import INTERVAL, POSITIVE, TAIL, TILT, Parsed, quantity_of
 from rocking_cli.processing.reading_options import ALL
 
-# The models and the pulses that are fitted stand here again so that `--help` needs no numpy.
-NAMES = ("nonlinear", "linear1", "linear2")
+# The pulses that are fitted stand here again so that `--help` needs no numpy.
 FITTED = ("sine", "ricker", "mavroeidis")
 BEST = "best"
 
@@ -24,8 +23,8 @@ BEST = "best"
 def _models(text: str) -> tuple[str, ...]:
     """Return the models of a text, separated by commas."""
     chosen = tuple(dict.fromkeys(word.strip() for word in text.split(",")))
-    if unknown := [word for word in chosen if word not in NAMES]:
-        raise ValueError(f"{', '.join(unknown) or 'nothing'} is not a model: choose from {', '.join(NAMES)}")
+    if unknown := [word for word in chosen if word not in options.MODELS]:
+        raise ValueError(f"{', '.join(unknown) or 'nothing'} is not a model: choose from {', '.join(options.MODELS)}")
     return chosen
 
 
@@ -63,7 +62,7 @@ def _models(text: str) -> tuple[str, ...]:
     "models",
     type=Parsed("models", _models),
     metavar="MODEL,...",
-    shell_complete=complete.listed(NAMES),
+    shell_complete=complete.listed(options.MODELS),
     help=options.HELP["model"],
 )
 @click.option(
@@ -118,9 +117,8 @@ def command(files: tuple[str, ...], asked: GroundMotions, output: Output, **ques
     """
     _check(asked, output, question)
     from rocking_cli.ask.respond import respond
-    from rocking_cli.cli.watching import OnTerminal
 
-    watch, motions = OnTerminal(as_json=output.as_json), asked.motions
+    motions = asked.motions
     around = motions.reading.azimuth == ALL
     several = motions.count > 1 and not around
     if around or not motions:
@@ -134,13 +132,13 @@ def command(files: tuple[str, ...], asked: GroundMotions, output: Output, **ques
         if str(output.out) == options.STANDARD_OUTPUT:
             raise click.UsageError("--out - works for a single motion only: for several, give a file name.")
         question |= {"out": output.out, "plot": output.plot}
-    structure = motion_files.structure(files, asked.records)
-    answer = respond(structure, motions or None, polarity=asked.polarity, watch=watch, **question)
+    structure = asked.structure(files)
+    answer = respond(structure, motions or None, polarity=asked.polarity, watch=output.watch, **question)
     if not several:
         output.show(answer)
     elif not output.as_json:
         terminal.show(answer.view, as_json=False)
-    watch.end()
+    output.watch.end()
 
 
 def _check(asked: GroundMotions, output: Output, question: Mapping[str, Any]) -> None:
@@ -150,5 +148,5 @@ def _check(asked: GroundMotions, output: Output, question: Mapping[str, Any]) ->
     if not asked and question["release"] is None:
         raise click.UsageError("No excitation given: add --record FILE, --pulse PULSE or --release TILT.")
     asked.check(question["vertical"])
-    if question["contact"] and (output.plot is None or "nonlinear" not in (question["models"] or NAMES)):
+    if question["contact"] and (output.plot is None or "nonlinear" not in (question["models"] or options.MODELS)):
         raise click.UsageError("--contact adds a panel to the plot of the nonlinear history: give --plot FILE.")

@@ -6,8 +6,8 @@ import click
 
 from rocking_cli.cli import complete, options
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.study_output import CurveOutput, Tables, show_study
-from rocking_cli.errors import INCOMPLETE
+from rocking_cli.cli.study_output import StudyOutput, show_study
+from rocking_cli.cli.watching import OnTerminal
 
 
 @click.command(cls=Command, short_help="Summarise and export the store of a study.")
@@ -25,17 +25,8 @@ from rocking_cli.errors import INCOMPLETE
 @options.curve_plots
 @options.rank_measures
 @options.as_json
-@click.pass_context
-@options.grouped(shown=CurveOutput, tables=Tables)
-def command(
-    ctx: click.Context,
-    file: str,
-    shown: CurveOutput,
-    tables: Tables,
-    quantiles: bool,
-    rank_measures: bool,
-    as_json: bool,
-) -> None:
+@options.grouped(shown=StudyOutput)
+def command(file: str, shown: StudyOutput, quantiles: bool, rank_measures: bool) -> None:
     """Summarise and export the fragility curves and runs of a study, from its store.
 
     The command needs no other file of the study, and can read the store while the study runs.
@@ -48,15 +39,14 @@ def command(
       rocking results study.db --rank-measures
     """
     from rocking_cli.ask.results import results
-    from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import folder, keep_apart
     from rocking_cli.io.tables import check_table
 
-    keep_apart([("--out", tables.out), ("--curves", tables.curves), ("--nrml", shown.nrml)], [file])
-    check_table(tables.out)
-    check_table(tables.curves)
+    keep_apart([("--out", shown.out), ("--curves", shown.curves), ("--nrml", shown.nrml)], [file])
+    check_table(shown.out)
+    check_table(shown.curves)
     if shown.plot is not None:
         folder(shown.plot)
-    answer = results(file, quantiles=quantiles, rank_measures=rank_measures, watch=OnTerminal())
-    if not show_study(answer, shown, tables, as_json=as_json):
-        ctx.exit(INCOMPLETE)
+    watch = OnTerminal()
+    show_study(results(file, quantiles=quantiles, rank_measures=rank_measures, watch=watch), shown, watch)
+    watch.end()

@@ -47,20 +47,17 @@ def command(file: str, reading: ReadingOptions, output: Output, **around: Any) -
       rocking score tests.csv --amplitude-deviation 2% --json
     """
     from rocking_cli.ask.score import score
-    from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.excitation.records.opening import name_of
     from rocking_cli.studies.experiments.table import parse_tests
     from rocking_cli.views.score import reason
 
     output.keep_apart(file)
-    watch = OnTerminal()
     table = read_table(file, lambda sheet: parse_tests(sheet, Path()))
-    answer = score(table, watch=watch, usual=reading.usual, **around, **reading.options)
+    answer = score(table, watch=output.watch, usual=reading.usual, **around, **reading.options)
     failed = answer.failed
     for each in failed[:NAMED]:
         terminal.error(f"{name_of(file)}:{each.test.line}: {reason(each)}")
     if len(failed) > NAMED:
         terminal.error(f"{len(failed) - NAMED} more tests could not be simulated: JSON and --out have their errors")
+    output.watch.left_out += len(failed)
     output.show(answer)
-    watch.left_out += len(failed)
-    watch.end()

@@ -6,12 +6,11 @@ from typing import Any
 
 import click
 
-from rocking_cli.cli import motion_files, options
+from rocking_cli.cli import options
 from rocking_cli.cli.groups import GroundMotions, Output
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import NUMBER, Parsed, QuantityKind, angle, share, span
 
-MODELS = ("nonlinear", "linear1", "linear2")
 SIZES, MOST = 60, 2000  # of a curve: by default, and at most
 SIZE = QuantityKind("period", "s", "0.8s", "1s:10s", 1e-3, 1e4)  # blocks of 0.2 um to 19,000 km
 
@@ -52,7 +51,7 @@ def _sizes(text: str) -> tuple[float, float, int]:
     metavar="FROM:TO[:COUNT]",
     help="Sizes, as 2 pi/p in s, such as 1:10:60.  [default: FILE scaled by 0.1 to 10; 1:10 for blocks alone]",
 )
-@click.option("--model", type=click.Choice(MODELS), default="nonlinear", show_default=True, help=options.HELP["model"])
+@options.model
 @click.option(
     "--eta",
     type=NUMBER,
@@ -97,13 +96,10 @@ def command(files: tuple[str, ...], asked: GroundMotions, output: Output, **ques
     if not asked:
         raise click.UsageError("No ground motion given: add --record PLACE or --pulse PULSE, each repeatable.")
     asked.check()
-    motion_files.check_strays(files, asked.records)
+    asked.check_strays(files)
     from rocking_cli.ask.given import HERE
     from rocking_cli.ask.spectrum import spectrum
-    from rocking_cli.cli.watching import OnTerminal
 
-    motions, watch = asked.motions, OnTerminal()
-    output.keep_apart(*files, *motions.records)
+    output.keep_apart(*files, *asked.motions.records)
     given = files or (() if question["slenderness"] else (HERE,))
-    output.show(spectrum(given, motions, polarity=asked.polarity, watch=watch, **question))
-    watch.end()
+    output.show(spectrum(given, asked.motions, polarity=asked.polarity, watch=output.watch, **question))

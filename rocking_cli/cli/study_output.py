@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rocking_cli.cli import terminal
+from rocking_cli.cli.watching import OnTerminal
 from rocking_cli.cli.written import save, write_table
 from rocking_cli.text import numbered
 
@@ -18,40 +19,33 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class CurveOutput:
-    """Additional outputs of curves: plots, and a file for OpenQuake."""
+class StudyOutput:
+    """What to write of a study: plots, a file for OpenQuake, the tables of runs and of curves; or one JSON object."""
 
     plot: str | None
     nrml: Path | None
-
-
-@dataclass(frozen=True)
-class Tables:
-    """Files of the tables of runs and of curves."""
-
+    as_json: bool
     out: Path | None = None
     curves: Path | None = None
 
 
-def show_study(answer: StudyAnswer, shown: CurveOutput, tables: Tables = Tables(), *, as_json: bool) -> bool:
-    """Show what a study found, write its runs and curves and draw them; return whether it is complete."""
+def show_study(answer: StudyAnswer, shown: StudyOutput, watch: OnTerminal) -> None:
+    """Show what a study found, write its runs and curves and draw them; tell the watcher if it is not complete."""
     from rocking_cli.ask.results import curve_blocks, write_nrml
-    from rocking_cli.cli.watching import OnTerminal
 
-    watch = OnTerminal()
-    if tables.out is not None:
+    if shown.out is not None:
         assert answer.blocks is not None
-        write_table(tables.out, answer.blocks())
-    if tables.curves is not None:
-        write_table(tables.curves, curve_blocks(answer, watch))
+        write_table(shown.out, answer.blocks())
+    if shown.curves is not None:
+        write_table(shown.curves, curve_blocks(answer, watch))
     if shown.plot is not None:
         _draw_all(Path(shown.plot), answer)
-    terminal.show(answer.view, as_json=as_json)
+    terminal.show(answer.view, as_json=shown.as_json)
     if shown.nrml is not None:  # last: curves that OpenQuake cannot read have been shown
         write_nrml(answer, shown.nrml, watch)
     if answer.failed:
         terminal.error(f"{answer.failed} runs could not be simulated and are left out of the curves")
-    return answer.complete
+    watch.left_out += not answer.complete
 
 
 def _draw_all(folder: Path, answer: StudyAnswer) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,37 +10,31 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rocking_cli.cli import complete, options, terminal
-from rocking_cli.cli.groups import GroundMotions
+from rocking_cli.cli.groups import GroundMotions, Output
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.written import read_table, write_picture, write_table
+from rocking_cli.cli.written import read_table
 from rocking_cli.errors import InputError, MechanismError
 
 if TYPE_CHECKING:
     from rocking_cli.ask.answer import Answer
-    from rocking_cli.studies.survey import Survey
+    from rocking_cli.io.tables import Columns
 
 NAMED = 20  # rows that cannot be used, named one by one
 
 
 @dataclass(frozen=True)
-class SurveyOutput:
-    """Outputs of a survey."""
+class SurveyOutput(Output):
+    """The files to write, among them a page, and whether the result is one JSON object."""
 
-    out: Path | None
-    page: Path | None
-    plot: Path | None
-    as_json: bool
+    page: Path | None = None
 
-    def show(self, answer: Answer[Survey]) -> None:
-        """Write the requested files, and show the answer; a Parquet file has its texts as they are."""
-        if self.out is not None:
-            from rocking_cli.io.tables import PARQUET
-            from rocking_cli.views.survey import blocks
+    def blocks(self, answer: Answer[Any]) -> Iterable[Columns]:
+        """Return all rows: in a CSV file, which spreadsheets open, texts that look like formulas are marked."""
+        from rocking_cli.io.tables import PARQUET
+        from rocking_cli.views.survey import blocks
 
-            write_table(self.out, blocks(answer.result, for_spreadsheets=self.out.suffix.lower() != PARQUET))
-        if self.plot is not None:
-            write_picture(self.plot, answer.figure())
-        terminal.show(answer.view, as_json=self.as_json)
+        assert self.out is not None
+        return blocks(answer.result, for_spreadsheets=self.out.suffix.lower() != PARQUET)
 
 
 @click.command(cls=Command, short_help="Rank the structures of a table, the most vulnerable first.")
@@ -86,7 +81,6 @@ def command(
     """
     asked.check()
     from rocking_cli.ask.survey import survey
-    from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.excitation.records.opening import name_of
     from rocking_cli.io.files import keep_apart
     from rocking_cli.io.tables import check_table
@@ -94,7 +88,7 @@ def command(
     from rocking_cli.views.survey import bad_lines
 
     check_table(results.out)
-    motions, watch = asked.motions, OnTerminal()
+    motions, watch = asked.motions, results.watch
     written = [("--out", results.out), ("--page", results.page), ("--plot", results.plot)]
     keep_apart(written, [file, *(str(each.path) for each in motions.records)])
     table = read_table(file, lambda sheet: StructureTable(sheet, Path()))
@@ -104,6 +98,5 @@ def command(
     if not answer.rows:
         first = answer.bad[0].error
         ctx.exit(first.exit_code if isinstance(first, MechanismError) else InputError.exit_code)
-    results.show(answer)
     watch.left_out += len(answer.bad)
-    watch.end()
+    results.show(answer)

@@ -44,15 +44,14 @@ def _point(text: str) -> tuple[float, float, str | None]:
 @heads.sheet
 @options.as_json
 @click.pass_context
-@options.grouped(asked=GroundMotions)
+@options.grouped(asked=GroundMotions, output=Output)
 def command(
     ctx: click.Context,
     file: str | Path,
     site: str,
     asked: GroundMotions,
     sheet: Path | None,
-    plot: Path | None,
-    as_json: bool,
+    output: Output,
     **question: Any,
 ) -> None:
     """Verify a rocking mechanism by the code that the site file names: the Italian, NTC 2018 and Circolare 7/2019.
@@ -82,17 +81,15 @@ def command(
     """
     asked.check()
     from rocking_cli.ask.verify import verify
-    from rocking_cli.cli.watching import OnTerminal
     from rocking_cli.io.files import keep_apart
 
     if sheet is None:
         as_declared(question, *heads.HEAD)
-    motions, output, watch = asked.motions, Output(None, plot, as_json), OnTerminal()
+    motions = asked.motions
     read = [file, site, question["logo"], *(str(each.path) for each in motions.records)]
-    keep_apart([("--plot", plot), ("--sheet", sheet)], read)
+    keep_apart([("--plot", output.plot), ("--sheet", sheet)], read)
     answer = verify(
         file, site, motions=motions, polarity=asked.polarity, sheet=sheet, every_step=terminal.asked("verbose"),
-        origin=heads.command_line(ctx), watch=watch, **question,
+        origin=heads.command_line(ctx), watch=output.watch, **question,
     )  # fmt: skip
     output.show(answer)
-    watch.end()

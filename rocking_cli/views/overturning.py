@@ -57,7 +57,7 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
     shares = ", ".join(f"{region.label} {100 * share:.1f} %" for region, share in found.shares.items() if share)
     parts: list[Table | str] = [
         f"{map_title(found)}{source}: amplitudes {amplitude} against {what}",
-        table_of("", columns, _some(len(across))),
+        table_of("", columns, spaced(len(across))),
         f"Shares of the pulses on the map: {shares}.",
     ]
     if some_unknown:
@@ -166,9 +166,9 @@ def numbers(values: Reals) -> list[float | None]:
     return [None if value != value else value for value in values.tolist()]
 
 
-def _some(count: int) -> list[int]:
+def spaced(count: int, most: int = ROWS) -> list[int]:
     """Return the indices of a few columns, including the first and the last."""
-    return sorted({round(place) for place in np.linspace(0, count - 1, min(ROWS, count)).tolist()})
+    return sorted({round(place) for place in np.linspace(0, count - 1, min(most, count)).tolist()})
 
 
 def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
@@ -190,7 +190,7 @@ def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
     ]
     parts: list[Table | str] = [
         f"Least a_g [g] that overturns: {comparison_title(found)}",
-        table_of("", columns, _some(found.periods.size)),
+        table_of("", columns, spaced(found.periods.size)),
     ]
     counts = Counter(tuple(together) for together in firsts if together)
     shares = [

@@ -39,117 +39,43 @@ class Parameter(Column[EquivalentBlock]):
         return self.unit if mass else self.unit.removeprefix("kg ")
 
 
+def _parameter(key: str, unit: str, symbol: str, words: str, meaning: str) -> Parameter:
+    attribute = key if key != "lambda" else "lambda_"
+    return Parameter(key, of(attribute), unit, words=words, symbol=symbol, meaning=meaning)
+
+
 PARAMETERS = (
-    Parameter(
-        "p",
-        of("p"),
-        "rad/s",
-        words="frequency parameter: small for large structures",
-        symbol="p",
-        meaning="Frequency parameter. Near φ_cr the rotation grows as exp(p t) with time t. Large structures have a "
-        "small p.",
-    ),
-    Parameter(
-        "phi_cr",
-        of("phi_cr"),
-        "rad",
-        words="critical rotation: unstable equilibrium",
-        symbol="φ_cr",
-        meaning="Critical rotation. The structure is in unstable equilibrium there; beyond it, its weight overturns "
-        "it.",
-    ),
-    Parameter(
-        "lambda",
-        of("lambda_"),
-        "g",
-        words="ground acceleration at uplift",
-        symbol="λ",
-        meaning="Uplift acceleration. A steady ground acceleration above λ times the structure's gravity g causes "
-        "uplift.",
-    ),
-    Parameter(
-        "lambda_lin",
-        of("lambda_lin"),
-        "g",
-        words="uplift acceleration of the linearised mechanism",
-        symbol="λ_lin",
-        meaning="Uplift acceleration of the linearised mechanism. If it differs much from λ, the structure is not "
-        "slender.",
-    ),
-    Parameter(
-        "kappa1",
-        of("kappa1"),
-        "",
-        words="phi/theta that keeps lambda_lin",
-        symbol="κ₁",
-        meaning="Scaling φ = κ₁ θ from the rotation θ of the equivalent block to φ of the structure, chosen to keep "
-        "λ_lin.",
-    ),
-    Parameter(
-        "kappa2",
-        of("kappa2"),
-        "",
-        words="phi/theta that keeps lambda",
-        symbol="κ₂",
-        meaning="Scaling φ = κ₂ θ from the rotation θ of the equivalent block to φ, chosen to keep λ, the true uplift "
-        "acceleration.",
-    ),
-    Parameter(
-        "theta_cr1",
-        of("theta_cr1"),
-        "rad",
-        words="critical rotation of the block, kappa1",
-        symbol="θ_cr,1",
-        meaning="Critical rotation of the equivalent block with κ₁: φ_cr/κ₁.",
-    ),
-    Parameter(
-        "theta_cr2",
-        of("theta_cr2"),
-        "rad",
-        words="critical rotation of the block, kappa2",
-        symbol="θ_cr,2",
-        meaning="Critical rotation of the equivalent block with κ₂: φ_cr/κ₂.",
-    ),
-    Parameter(
-        "eta",
-        of("eta"),
-        "",
-        words="restitution when motion in this direction ends",
-        symbol="η",
-        meaning="Coefficient of restitution: rate of rotation just after an impact that ends motion in this "
-        "direction, over "
-        "the rate just before.",
-    ),
-    Parameter(
-        "v_imp",
-        of("v_imp"),
-        "m/s",
-        words="ground velocity step that just overturns it",
-        symbol="v_imp",
-        meaning="Velocity step of the ground that just overturns the structure from rest, without linearisation.",
-    ),
-    Parameter(
-        "I_eq",
-        of("I_eq"),
-        "kg m2",
-        words="linearised inertia",
-        symbol="I_eq",
-        meaning="Moment of inertia of the mechanism at φ_cr.",
-    ),
-    Parameter(
-        "G_eq",
-        of("G_eq"),
-        "kg m",
-        words="linearised restoring moment over g",
-        symbol="G_eq",
-        meaning="Rate at which the restoring moment over g decreases with rotation at φ_cr.",
-    ),
-    Parameter(
-        "B_eq",
-        of("B_eq"),
-        "kg m",
-        words="linearised drive of the ground",
-        symbol="B_eq",
-        meaning="Moment by which the ground drives the mechanism at φ_cr, over its acceleration.",
-    ),
-)
+    _parameter("p", "rad/s", "p", "frequency parameter: small for large structures",
+               "Frequency parameter. Near φ_cr the rotation grows as exp(p t) with time t. Large structures have a "
+               "small p."),
+    _parameter("phi_cr", "rad", "φ_cr", "critical rotation: unstable equilibrium",
+               "Critical rotation. The structure is in unstable equilibrium there; beyond it, its weight overturns "
+               "it."),
+    _parameter("lambda", "g", "λ", "ground acceleration at uplift",
+               "Uplift acceleration. A steady ground acceleration above λ times the structure's gravity g causes "
+               "uplift."),
+    _parameter("lambda_lin", "g", "λ_lin", "uplift acceleration of the linearised mechanism",
+               "Uplift acceleration of the linearised mechanism. If it differs much from λ, the structure is not "
+               "slender."),
+    _parameter("kappa1", "", "κ₁", "phi/theta that keeps lambda_lin",
+               "Scaling φ = κ₁ θ from the rotation θ of the equivalent block to φ of the structure, chosen to keep "
+               "λ_lin."),
+    _parameter("kappa2", "", "κ₂", "phi/theta that keeps lambda",
+               "Scaling φ = κ₂ θ from the rotation θ of the equivalent block to φ, chosen to keep λ, the true uplift "
+               "acceleration."),
+    _parameter("theta_cr1", "rad", "θ_cr,1", "critical rotation of the block, kappa1",
+               "Critical rotation of the equivalent block with κ₁: φ_cr/κ₁."),
+    _parameter("theta_cr2", "rad", "θ_cr,2", "critical rotation of the block, kappa2",
+               "Critical rotation of the equivalent block with κ₂: φ_cr/κ₂."),
+    _parameter("eta", "", "η", "restitution when motion in this direction ends",
+               "Coefficient of restitution: rate of rotation just after an impact that ends motion in this "
+               "direction, over the rate just before."),
+    _parameter("v_imp", "m/s", "v_imp", "ground velocity step that just overturns it",
+               "Velocity step of the ground that just overturns the structure from rest, without linearisation."),
+    _parameter("I_eq", "kg m2", "I_eq", "linearised inertia",
+               "Moment of inertia of the mechanism at φ_cr."),
+    _parameter("G_eq", "kg m", "G_eq", "linearised restoring moment over g",
+               "Rate at which the restoring moment over g decreases with rotation at φ_cr."),
+    _parameter("B_eq", "kg m", "B_eq", "linearised drive of the ground",
+               "Moment by which the ground drives the mechanism at φ_cr, over its acceleration."),
+)  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from math import isnan
 from typing import Any, TypeVar
@@ -37,33 +37,23 @@ CLOSED: tuple[Column[ClosedForm], ...] = (
     only_shown("  overturns", of("overturns"), YES_NO.__getitem__, words="eta^2 (1 - D0*) >= 1"),
     *map(_condition, CONDITIONS),
 )
+
+
+def _exact(
+    key: str, value: Callable[[ExactResponse], Any], head: str, words: str = "", form: Callable[[Any], str] = number
+) -> Column[ExactResponse]:
+    return Column(key, value, "", head, form, words=words)
+
+
 EXACT: tuple[Column[ExactResponse], ...] = (
-    Column("max_ratio", of("peak_ratio"), "", "exact max ratio", number, words="largest rotation over phi_cr"),
-    Column(
-        "first_excursion", of("first_excursion"), "", "  first excursion", number, words="peak before the first impact"
-    ),
-    Column("first_rebound", of("first_rebound"), "", "  first rebound", number, words="peak after the first impact"),
-    Column("overturns", of("fell"), "", "  overturns", YES_NO.__getitem__),
-    Column(
-        "impacts_before_overturning", lambda exact: impacts_before(exact), "", "  impacts", words="before it overturns"
-    ),
-    Column("uplift", of("uplift_time"), "", "  uplift", number, words="tau = p t from the start of the pulse"),
-    Column(
-        "pulse_end",
-        lambda exact: exact.pulse_end - exact.uplift_time,
-        "",
-        "  end of pulse",
-        number,
-        words="tau from uplift",
-    ),
-    Column(
-        "first_impact",
-        lambda exact: exact.first_impact - exact.uplift_time,
-        "",
-        "  first impact",
-        number,
-        words="tau from uplift",
-    ),
+    _exact("max_ratio", of("peak_ratio"), "exact max ratio", "largest rotation over phi_cr"),
+    _exact("first_excursion", of("first_excursion"), "  first excursion", "peak before the first impact"),
+    _exact("first_rebound", of("first_rebound"), "  first rebound", "peak after the first impact"),
+    _exact("overturns", of("fell"), "  overturns", form=YES_NO.__getitem__),
+    _exact("impacts_before_overturning", lambda exact: impacts_before(exact), "  impacts", "before it overturns", str),
+    _exact("uplift", of("uplift_time"), "  uplift", "tau = p t from the start of the pulse"),
+    _exact("pulse_end", lambda exact: exact.pulse_end - exact.uplift_time, "  end of pulse", "tau from uplift"),
+    _exact("first_impact", lambda exact: exact.first_impact - exact.uplift_time, "  first impact", "tau from uplift"),
     Column("impact_during_pulse", lambda exact: exact.first_impact < exact.pulse_end),
 )
 """Of the exact solution; times count from uplift, but for uplift itself."""

@@ -15,7 +15,7 @@ from rocking_cli.studies.spectrum import Spectrum
 from rocking_cli.studies.under_pulses import Integers, Reals
 from rocking_cli.views import processing
 from rocking_cli.views.column import Column, only_shown, rounded, table_of
-from rocking_cli.views.overturning import FROM_KINEMATICS, NO_JOINTS, numbers
+from rocking_cli.views.overturning import FROM_KINEMATICS, NO_JOINTS, numbers, spaced
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View
 
@@ -193,9 +193,7 @@ def _peak(value: float, least: float = np.nan) -> str:
 def _curve(results: ShownSpectra, each: Spectrum) -> Iterator[Table | str]:
     """Yield the table of a shape, below its heading."""
     structure = each.shape.structure
-    shown = sorted({round(k) for k in np.linspace(0, each.scales.size - 1, min(ROWS, each.scales.size)).tolist()})
-    if each.given is not None and each.given not in shown:
-        shown = sorted([*shown, each.given])
+    shown = sorted({*spaced(each.scales.size, ROWS), *([] if each.given is None else [each.given])})
     side = "" if structure.symmetric else f" ({structure.direction.label})"
     yield (
         f"{structure.name}{side}, {structure.model.name}: uplift at {structure.lambda_:.4g} g, eta = "
