@@ -28,6 +28,7 @@ from rocking_cli.ask.margin import shares as shares
 from rocking_cli.ask.motions import correct as correct
 from rocking_cli.ask.motions import on_floor as on_floor
 from rocking_cli.ask.motions import respond_around as respond_around
+from rocking_cli.ask.motions import respond_each as respond_each
 from rocking_cli.ask.overturning import overturning as overturning
 from rocking_cli.ask.overturning import overturning_curves as overturning_curves
 from rocking_cli.ask.overturning import overturning_map as overturning_map
@@ -36,7 +37,6 @@ from rocking_cli.ask.record import record as record
 from rocking_cli.ask.record import response_spectrum as response_spectrum
 from rocking_cli.ask.report import report as report
 from rocking_cli.ask.respond import respond as respond
-from rocking_cli.ask.respond_each import respond_each as respond_each
 from rocking_cli.ask.results import results as results
 from rocking_cli.ask.score import score as score
 from rocking_cli.ask.selection import select as select

@@ -14,7 +14,7 @@ import rocking_cli as rk
 from rocking_cli.cli.main import main
 from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
-from rocking_cli.io.yaml_edit import with_fields
+from rocking_cli.io.yaml_file import with_fields
 from rocking_cli.structure import Structure
 from rocking_cli.studies.experiments.free_rocking import MechanismSide, ScaledSide, free_rocking
 from rocking_cli.studies.experiments.region import JointRegion, joint_region

@@ -113,12 +113,6 @@ class Motions:
             isinstance(each, Pulse) or (isinstance(each, Scaled) and each.pulse is not None) for each in self.sources
         )
 
-    def one(self, p: float, watch: Watcher = SILENT, *, with_vertical: bool = False) -> Scaled:
-        """Return the single motion, as `gather`. Raises `InputError` if there are several."""
-        if self.count > 1:
-            raise InputError(f"{self.count} motions are given where one is expected: ask for one after the other")
-        return self.gather(p, watch, with_vertical=with_vertical)[0]
-
     def gather(
         self, p: float, watch: Watcher = SILENT, whom: str = "this structure", *, with_vertical: bool = False
     ) -> list[Scaled]:

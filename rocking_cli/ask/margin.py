@@ -14,6 +14,7 @@ from rocking_cli.ask.given import StructureLike, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError
 from rocking_cli.names import OPENING, percent
 from rocking_cli.studies.conclusion import Concluding, worst
 from rocking_cli.studies.neighbours import Neighbourhood
@@ -201,7 +202,10 @@ def shares(
     """
     ready = structure_of(structure, watch, opening)
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
-    given = Motions.of(motion, options).one(ready.growth, watch)
+    motions = Motions.of(motion, options)
+    if motions.count > 1:
+        raise InputError(f"{motions.count} motions are given where one is expected: ask for one after the other")
+    (given,) = motions.gather(ready.growth, watch)
     model = ready.model("nonlinear")
     found = [neighbours_of(model, given.motion.scaled(sign * given.factor), around) for sign in signs_of(polarity)]
     overturned = sum(each.overturned for each in found) / len(found)

@@ -9,10 +9,9 @@ import click
 
 from rocking_cli.cli import complete, options
 from rocking_cli.cli.defaults import from_default
-from rocking_cli.cli.groups import Output, ReadingOptions
+from rocking_cli.cli.groups import Output, ReadingOptions, read_table
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import QuantityKind, range_of
-from rocking_cli.cli.written import read_table
 
 FACTOR = QuantityKind("factor", "", "0.8", "0.8:1.2", 1e-3, 1e3)
 ETA = QuantityKind("restitution", "", "0.8", "0.8:0.99", 1e-3, 1.0)

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from rocking_cli.cli import terminal
+from rocking_cli.cli.options import STANDARD_OUTPUT
 from rocking_cli.cli.watching import OnTerminal
-from rocking_cli.cli.written import write_picture, write_table
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from rocking_cli.ask.answer import Answer
     from rocking_cli.ask.ground_motions import Motion, Motions
+    from rocking_cli.io.spreadsheet import Spreadsheet
     from rocking_cli.io.tables import Columns
     from rocking_cli.processing.listed import Listed
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -120,3 +125,39 @@ class Output:
             write_picture(self.plot, answer.figure())
         terminal.show(answer.view, as_json=self.as_json)
         self.watch.end()
+
+
+def save(path: Path, figure: Figure) -> None:
+    """Write a figure completely or not at all, in the format of the suffix of the path."""
+    from rocking_cli.io.files import write_whole
+    from rocking_cli.plotting import style
+
+    write_whole(path, lambda stream: style.save(figure, stream, format=path.suffix[1:].lower()))
+
+
+def write_picture(path: Path, figure: Figure) -> None:
+    """Write a figure, and report it."""
+    save(path, figure)
+    terminal.note(f"wrote {path}")
+
+
+def write_table(out: Path, blocks: Iterable[Columns]) -> None:
+    """Write a table to a file and report it, or write CSV to standard output and keep everything else off it."""
+    from rocking_cli.io import tables
+
+    if str(out) == STANDARD_OUTPUT:
+        with terminal.results_as_bytes() as stream:
+            tables.write_csv(stream, blocks)
+        return
+    tables.write_table(out, blocks)
+    terminal.note(f"wrote {out}")
+
+
+def read_table(file: str, parse: Callable[[Spreadsheet], T]) -> T | str:
+    """Return what `parse` makes of the table on standard input, or the name of any other file."""
+    if file != STANDARD_OUTPUT:
+        return file
+    from rocking_cli.excitation.records.opening import name_of, original
+    from rocking_cli.io.spreadsheet import parse_sheet
+
+    return parse(parse_sheet(original(file), name_of(file)))

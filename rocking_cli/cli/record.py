@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rocking_cli.cli import options, terminal
-from rocking_cli.cli.groups import Output, ReadingOptions
+from rocking_cli.cli.groups import Output, ReadingOptions, write_picture, write_table
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import FRACTION, PERIOD, range_of
 from rocking_cli.cli.watching import OnTerminal
-from rocking_cli.cli.written import write_picture, write_table
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:

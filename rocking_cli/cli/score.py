@@ -8,9 +8,8 @@ from typing import Any
 import click
 
 from rocking_cli.cli import options, terminal
-from rocking_cli.cli.groups import Output, ReadingOptions
+from rocking_cli.cli.groups import Output, ReadingOptions, read_table
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.written import read_table
 
 NAMED = 20  # tests that cannot be simulated, named one by one
 

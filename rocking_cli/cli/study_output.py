@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rocking_cli.cli import terminal
+from rocking_cli.cli.groups import save, write_table
 from rocking_cli.cli.watching import OnTerminal
-from rocking_cli.cli.written import save, write_table
 from rocking_cli.text import numbered
 
 if TYPE_CHECKING:

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rocking_cli.cli import complete, options, terminal
-from rocking_cli.cli.groups import GroundMotions, Output
+from rocking_cli.cli.groups import GroundMotions, Output, read_table
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.written import read_table
 from rocking_cli.errors import InputError, MechanismError
 
 if TYPE_CHECKING:

@@ -32,11 +32,17 @@ from rocking_cli.studies.verification.results import Verification
 from rocking_cli.text import printable
 from rocking_cli.views import assessment as words
 from rocking_cli.views.contact import contact_columns
-from rocking_cli.views.equivalent_block import EquivalentSide, is_symmetric, kappa_in_words, sentence, sides_of
+from rocking_cli.views.equivalent_block import (
+    PARAMETERS,
+    EquivalentSide,
+    is_symmetric,
+    kappa_in_words,
+    sentence,
+    sides_of,
+)
 from rocking_cli.views.error import ERRORS
 from rocking_cli.views.error import rows as error_rows
 from rocking_cli.views.neighbours import deviations
-from rocking_cli.views.parameters import PARAMETERS
 from rocking_cli.views.response import outcome_table
 from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.sheet.document import Sheet, SheetPart

@@ -92,18 +92,16 @@ def _entry(entries: list[Any], word: str, before: tuple[str, ...], *, grow: bool
     if word in names:
         return names.index(word)
     of = ".".join(before)
+    number = int(word) if word.isdecimal() and len(word) < 10 else MOST
+    if word.isdecimal() and number < len(entries):
+        return number
+    if not grow:
+        raise InputError(Problem(f"{of} has no entry {cut(word)}", hint=_known(word, names)))
     if word.isdecimal():
-        number = int(word) if len(word) < 10 else MOST
-        if number < len(entries):
-            return number
-        if not grow:
-            raise InputError(Problem(f"{of} has no entry {cut(word)}", hint=_known(word, names)))
         if number >= MOST:
             raise InputError(Problem(f"{cut(word)} is not a valid place in a list: at most {MOST - 1}"))
         entries += [HOLE] * (number + 1 - len(entries))
         return number
-    if not grow:
-        raise InputError(Problem(f"{of} has no entry {cut(word)}", hint=_known(word, names)))
     entries.append({"name": word})
     return len(entries) - 1
 

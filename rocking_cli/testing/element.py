@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rocking_cli.core.hung import Element
+from rocking_cli.testing.mechanism import _demand
 
 POINTS = 20_001  # elongations at which force and energy are compared
 ROUNDING = 1e-6  # error of the differences, over the largest value
@@ -34,16 +35,11 @@ def check_law(element: Element, shortest: float, longest: float) -> None:
     """
     e = np.linspace(shortest, longest, POINTS)
     force, energy, slope = element.force(e), element.energy(e), element.slope(e, np.ones(POINTS))
-    _demand(abs(float(element.energy(np.zeros(1))[0])) == 0, element, "its energy is not 0 at rest")
+    _demand(abs(float(element.energy(np.zeros(1))[0])) == 0, f"{element.name}: its energy is not 0 at rest")
     step = e[1] - e[0]
     # Between two points that have no corner between them, whose slopes say what the change must be.
     for value, rate, said in ((energy, force, "its energy is not the integral of its force"),
                               (force, slope, "its slope is not the derivative of its force")):  # fmt: skip
         change, mean = np.diff(value), step / 2 * (rate[1:] + rate[:-1])
         off = np.abs(change - mean) > np.abs(np.diff(rate)) * step + ROUNDING * np.abs(mean).max()
-        _demand(not off.any(), element, f"{said}, at e = {e[int(off.argmax())]:.4g} m")
-
-
-def _demand(holds: bool, element: Element, said: str) -> None:
-    if not holds:
-        raise AssertionError(f"{element.name}: {said}")
+        _demand(not off.any(), f"{element.name}: {said}, at e = {e[int(off.argmax())]:.4g} m")
