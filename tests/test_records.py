@@ -64,13 +64,8 @@ def accelerations(motion: GroundMotion) -> list[float]:
     "rows",
     [
         "0.00,0.1\n0.01,-0.2\n0.02,0.3\n",
-        "0.00, 0.1\n0.01, -0.2\n0.02, 0.3\n",
         "0.00 , 0.1\n0.01 , -0.2\n0.02 , 0.3",
-        "0.00;0.1\n0.01;-0.2\n0.02;0.3\n",
-        "0.00\t0.1\n0.01\t-0.2\n0.02\t0.3\n",
         "0.00 \t 0.1\n0.01\t-0.2\n0.02\t0.3\n",
-        "  0.00   0.1\n  0.01  -0.2\n  0.02   0.3\n",
-        "0.00,0.1\r\n0.01,-0.2\r\n0.02,0.3\r\n",
         "0.00 0.1\r0.01 -0.2\r0.02 0.3\r",
         "\n0.00,0.1\n\n0.01,-0.2\n0.02,0.3\n\n  \n",
         "0.00,0.1,\n0.01,-0.2,\n0.02,0.3,\n,\n",
@@ -201,25 +196,18 @@ def test_spellings(spelling, name):
     ("header", "unit"),
     [
         ("time_s,accel_g", "g"),
-        ("t,acceleration_g", "g"),
-        ("t,acc_g", "g"),
         ('"time","ACCEL_G"', "g"),
         ("t;Acceleration in g", "g"),
         ("t,a_g[g]", "g"),
         ("t,a_g [m/s2]", "m/s2"),
-        ("t,accel_g [m/s2]", "m/s2"),
-        ("t [s],a [m/s2]", "m/s2"),
         ("t [s]  a [m/s^2]", "m/s2"),
         ("Time (sec)\tacc (cm/s^2)", "cm/s2"),
-        ("Time (s), Acceleration (gal)", "gal"),
         ("t,a_g_m/s2", "m/s2"),
         ("t,accel_m_s2", "m/s2"),
-        ("t,acc_mm/s2", "mm/s2"),
         ("t,a\ns,g", "g"),
         ("t,a\n(s),(m/s2)", "m/s2"),
         ("# Acceleration, m/s2", "m/s2"),
         ("% units: cm/s**2\n% processed in 2003", "cm/s2"),
-        ("# unit = g\nt,a", "g"),
         ("#time_s accel_g", "g"),
         ("ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz LP=23.0 Hz", "g"),
         ("# PGA: 3.4 (m/s2)\nt,accel_g", "g"),
@@ -227,10 +215,8 @@ def test_spellings(spelling, name):
         ("Station 5\n\nNorth\nt [s],a [gal]", "gal"),
         ("# units: gal\nt,a [cm/s2]", "cm/s2"),
         ("t,accel_mg", "mg"),
-        ("t,accel [%g]", "%g"),
         ("time,Acceleration (% g)", "%g"),
         ("t;a [m/s²]", "m/s2"),
-        ("t,a_g [cm/s2]", "cm/s2"),
     ],
 )
 def test_unit_from_the_header(write, header, unit):
@@ -245,14 +231,9 @@ def test_unit_from_the_header(write, header, unit):
         "",
         "t,a\n",
         "t,a_g\n",
-        "t,ag\n",
-        "time,Ag\n",
-        "t,acc\n",
-        "t [s],acceleration\n",
         "t,g\n",
         "# PGA = 0.3 g\n",
         "# Peak acceleration (g): 0.34\n",
-        "# 1 g = 9.81 m/s2\n",
         "# gravity acceleration g = 9.81 m/s2\nt,a_g\n",
         "# recorded in g-building 4\n",
         "# Scale Factor 3920(gal)/6182761\n",
@@ -374,25 +355,16 @@ def peer_of(
     ("content", "line", "fragment", "options"),
     [
         ("t,accel_g\n0,1\n0.01,abc\n0.02,3\n", 3, "'abc' is not a number", {}),
-        ("t,accel_g\n0,abc\n0.01,2\n", 2, "'abc' is not a number", {}),
         ("t,accel_g\nO.00,1\n0.01,2\n0.02,2\n", 2, "'O.00' is not a number", {}),
         ("t,accel_g\n0,1\n0.01,2\nend\n", 4, "'end' is not a number", {}),
         ("t,accel_g\n0,1_0\n0.01,2\n", 2, "'1_0' is not a number", {}),
-        ("t,accel_g\n0,0x1\n0.01,2\n", 2, "'0x1' is not a number", {}),
-        ("t,accel_g\n0,1\n0.01,1 2\n", 3, "'1 2' is not a number", {}),
         ("t,accel_g\n0,1\n0.01,NaN\n0.02,3\n", 3, "'NaN' is not a finite number", {}),
-        ("t,accel_g\nnan,1\n0.01,2\n", 2, "'nan' is not a finite number", {}),
         ("t,accel_g\n0,1\n0.01,-inf\n", 3, "'-inf' is not a finite number", {}),
-        ("t,accel_g\n0,1\n0.01,1e999\n", 3, "'1e999' is not a finite number", {}),
         ("t,accel_g\n0,1\n0.01,1e300\n", 3, "'1e300' is not a finite number of sensible size", {}),
         ("t,accel_g\n-1e308,1\n1e308,2\n", 2, "'-1e308' is not a finite number of sensible size", {}),
         ("t,accel_g\n\n0,1\n# c\n0.01\n0.02,3\n", 5, "has 1 column, the rows before it have 2", {}),
         ("t,accel_g\n0,1\n0.01,2,3\n", 3, "has 3 columns, the rows before it have 2", {}),
-        ("t accel_g\n0 1\n0.01 2 3\n", 3, "has 3 columns, the rows before it have 2", {}),
         ("t,accel_g\n0,1\n0.01,,2\n", 3, "a value is missing", {}),
-        ("t;accel_g\n0;1\n;2\n", 3, "a value is missing", {}),
-        ("t,a,b\nO.00,1,2\n0,1,2\n0.01,2,3\n", 2, "'O.00' is not a number", {}),
-        ("t,a,b\n0,1,2\n0.01,2\n", 3, "has 2 columns, the rows before it have 3", {}),
         ("t,accel_g\n0,1\n", 2, "at least two samples", {}),
         ("6 km south of the fault\naccel_g\n1\n2\n", 1, "'km' is not a number", {}),
         ("accel_g\n1\n", 2, "at least two samples", {"dt": 0.01}),
@@ -404,37 +376,24 @@ def peer_of(
         ("0,00;0,1\n0,01;1,2,3\n0,02;0,3\n", 2, "'1.2.3' is not a number", {"units": "g"}),
         ('"0,00","0,1"\n"0,01","0,2"\n', 1, "quotation marks", {"units": "g"}),
         ('"0.00","0.1"\n"0.01","1,234"\n', 2, "has 3 columns", {"units": "g"}),
-        ('"0.00","0.1\n"0.01",""\n', 2, "has 1 column", {"units": "g"}),
         # times
         ("time_ms,accel_g\n0,1\n5,2\n", 1, "'ms'", {}),
         ("t,accel_g\n0,1\n5e-324,2\n", None, "sample interval of", {}),
         ("t,accel_g\n0,1\n# c\n\n0.01,1\n,\n0.02,1\n% c\n0.04,1\n0.05,1\n", 9, "uneven", {}),
-        ("t,a\n0,1\n0.01,1\n0.02,1\n0.04,1\n0.05,1\n", 5, "uneven", {"units": "g"}),
         ("t,a\n0,1\n0.01,1\n0.02,1\n0.021,1\n0.03,1\n0.04,1\n", 5, "uneven", {"units": "g"}),
-        ("t,a\n0,1\n0.01,1\n0.021,1\n0.03,1\n", 4, "uneven", {"units": "g"}),
         ("t,a\n0,1\n0.01,1\n0.02,1\n0.0202,1\n", 5, "uneven", {"units": "g"}),
         ("t,a\n0,1\n0.01,1\n0.01,1\n0.02,1\n", 4, "does not increase: 0.01 s is repeated", {"units": "g"}),
         ("t,a\n0,1\n0.02,1\n0.015,1\n0.03,1\n", 4, "0.015 s comes after 0.02 s", {"units": "g"}),
-        ("t,a\n0.03,1\n0.02,1\n0.01,1\n", 3, "does not increase", {"units": "g"}),
-        ("t,a\n0,1\n0,1\n0,1\n", 3, "is repeated", {"units": "g"}),
         ("accel_g,time_s\n0,0\n1,1\n", 1, "the time is in the second column", {}),
-        ("a [g];t [s]\n0;0\n1;1\n", 1, "the time is in the second column", {}),
         ('"acc (g)",Time\n0,0\n1,1\n', 1, "the time is in the second column", {}),
         # units and quantities
         ("# made up\nt,accel_g\n0,1\n0.5,2\n", 2, "but `units` says m/s2", {"units": "m/s2"}),
-        ("# made up\nt,a [m/s2]\n0,1\n0.5,2\n", 2, "but `units` says g", {"units": "g"}),
         ("# made up\nt,a [cm/s2]\n0,1\n0.5,2\n", 2, "but `units` says mm/s2", {"units": "mm/s2"}),
         ("t,a [furlong/s2]\n0,1\n0.5,2\n", 1, "says 'furlong/s2', which is not a known unit", {}),
-        ("t [s],acceleration [g/10]\n0,1\n0.5,2\n", 1, "says 'g/10', which is not a known unit", {}),
         ("# made up\nTime (sec); acc (kine)\n0;1\n0.5;2\n", 2, "says 'kine', which is not a known unit", {}),
         ("# units: furlong/fortnight^2\nt,a\n0,1\n0.5,2\n", 1, "says 'furlong/fortnight^2', which", {}),
-        ("units = bananas\nt,a\n0,1\n0.5,2\n", 1, "says 'bananas', which is not a known unit", {}),
-        ("t,velocity\n0,1\n0.5,2\n", 1, "velocity or displacement", {"units": "g"}),
         ("t [s],v [m/s]\n0,1\n0.5,2\n", 1, "'m/s'", {}),
         ("# one\nt [s];u (cm)\n0;1\n0.5;2\n", 2, "'cm'", {"units": "g"}),
-        ("t,vel_cm/s\n0,1\n0.5,2\n", 1, "velocity or displacement", {}),
-        ("t,Displacement (mm)\n0,1\n0.5,2\n", 1, "'mm'", {"units": "g"}),
-        ("t,disp\n0,1\n0.5,2\n", 1, "velocity or displacement", {}),
         ("t,acceleration [cm/s]\n0,1\n0.5,2\n", 1, "'cm/s'", {"units": "g"}),
         ("# VELOCITY TIME SERIES IN UNITS OF CM/S\nt,x\n0,1\n0.5,2\n", 1, "'cm/s'", {}),
         ("# accelerations\nt,vel\n0,1\n0.5,2\n", 2, "velocity or displacement", {"units": "g"}),
@@ -442,25 +401,16 @@ def peer_of(
         ("t,accel [counts]\n0,1\n0.5,2\n", 1, "'counts' cannot be read", {"units": "g"}),
         # PEER AT2
         (peer_of("1 2 3\n4 oops 6", 6), 6, "'oops' is not a number", {}),
-        (peer_of("1 2 3\n\n4 NaN 6", 6), 7, "'NaN' is not a finite number", {}),
         (peer_of("1 2 3\n4 ******** 6", 6), 6, "'********' is not a number", {}),
-        (peer_of("1 1E999 3"), 5, "'1E999' is not a finite number", {}),
         (peer_of("1 -1e300 3"), 5, "'-1e300' is not a finite number", {}),
-        (peer_of("1 2 1_0"), 5, "'1_0' is not a number", {}),
         (peer_of("1 2,5 3"), 5, "'2,5' is not a number", {}),
         (peer_of("1 2 3", None), None, "(NPTS)", {}),
         (peer_of("1 2 3", 3, None), 4, "(DT)", {}),
-        (peer_of("1 2 3", None, None), None, "(NPTS)", {}),
         (peer_of("1 2 3", 2), 4, "NPTS = 2", {}),
         (peer_of("1 2 3", 4), 4, "3 values", {}),
-        (peer_of("1 2 3", 0), 4, "NPTS = 0", {}),
-        (peer_of("", 0), 4, "at least two samples", {}),
         (peer_of("1", 1), 4, "at least two samples", {}),
-        (peer_of("1 2 3", dt="0.0"), 4, "positive", {}),
         (peer_of("1 2 3", dt="-.01"), 4, "positive", {}),
-        (peer_of("1 2 3", dt="1E999"), 4, "positive", {}),
         (peer_of("1 2 3", series="VELOCITY TIME SERIES IN UNITS OF CM/S"), 3, "not an acceleration", {}),
-        (peer_of("1 2 3", series="DISPLACEMENT TIME SERIES IN UNITS OF CM"), 3, "not an acceleration", {"units": "g"}),
         # Fortran drops the E of a three-digit exponent; read as two numbers it would be a sample of -102 g.
         (peer_of(".1234-102 .2 .3"), 4, "has 4 values", {}),
         # any file
@@ -514,10 +464,10 @@ def test_rubbish_is_read_or_refused_never_a_traceback(tmp_path_factory, content,
 
 
 @UNTIMED
-@given(st.binary(max_size=200))
-def test_any_bytes_are_read_or_refused(tmp_path_factory, content):
+@given(st.sampled_from([b"", b"\x1f\x8b\x08", b"PK\x03\x04", b"PK\x05\x06", b"\xff\xfe"]), st.binary(max_size=200))
+def test_any_bytes_are_read_or_refused(tmp_path_factory, mark, content):
     path = tmp_path_factory.getbasetemp() / "bytes.txt"
-    path.write_bytes(content)
+    path.write_bytes(mark + content)
     try:
         read_record(path, dt=0.01, units="g")
     except InputError as error:
@@ -553,9 +503,7 @@ def test_peer(write, per_line, newline):
     "header",
     [
         f"{TITLE}{UNITS_OF_G}   3    0.0050    NPTS, DT\n",
-        f"{TITLE}{UNITS_OF_G}   3    .0050 NPTS,DT\n",
         f"{TITLE}{UNITS_OF_G}NPTS=3,DT=5.0E-03\n",
-        f"{TITLE}{UNITS_OF_G}NPTS=     3, DT=   .0050 SEC,\n",
         f"{TITLE}{UNITS_OF_G}npts = 3, dt = .5D-02 sec\n",
         f"{TITLE}{UNITS_OF_G}DT= .0050 SEC\nNPTS= 3\n",
         "Data, older version\n3 points at 0.005 sec in 8F10.5\nThe units are (g)\nNPTS=  3, DT= .00500 SEC\n",
@@ -589,7 +537,6 @@ def test_odd_intervals_of_peer(write, header, per_line, printed, dt):
         ".998E-03 -.25D-02 .1",
         "  .998E-03\n\n  -.25d-02  1D-1\n",
         ".998E-03-.25D-02+.1E+00",
-        "0.998E-03-0.25E-02 0.1",
         "9.98e-4,".rstrip(",") + "\t-2.5e-3\r\n.1\r\n\x1a",
         ".000998-.002500 .1",
     ],
@@ -615,8 +562,6 @@ def test_round_trip_of_values_run_together(tmp_path_factory, values, per_line):
         ("ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz LP=23.0 Hz", "g"),
         ("The units are (g)", "g"),
         ("ACCELERATION TIME SERIES IN UNITS OF CM/SEC/SEC", "cm/s2"),
-        ("ACCELERATION (CM/SEC**2)", "cm/s2"),
-        ("Units: m/s^2", "m/s2"),
         ("ACCELERATION IN GAL", "gal"),
     ],
 )
@@ -662,8 +607,6 @@ def test_text_with_a_peer_header_in_comments_is_text(write):
     ("name", "options", "npts", "dt", "pga", "form"),
     [
         ("Rinaldi228.AT2", {}, 1991, 0.01, 0.874, "PEER AT2"),
-        ("Rinaldi318.AT2", {}, 1991, 0.01, 0.472, "PEER AT2"),
-        ("RinaldiUP.AT2", {}, 1991, 0.01, 0.958, "PEER AT2"),
         ("RSN6_IMPVALL.I_I-ELC180.AT2", {}, 5372, 0.01, 0.281, "PEER AT2"),
         ("RSN77_SFERN_PUL164.AT2", {}, 4172, 0.01, 1.219, "PEER AT2"),
         ("elCentro.AT2", {}, 1559, 0.02, 0.319, "PEER AT2"),
@@ -705,13 +648,6 @@ def test_the_example_is_a_plausible_near_fault_motion(make_accel):
     assert abs(pulse.sum() * motion.dt) < 1e-3  # a pulse leaves no velocity behind
 
 
-def test_the_example_has_unix_newlines():
-    content = (EXAMPLES / "accel.csv").read_bytes()
-    assert content.startswith(b"time_s,accel_g\n0.00,0.000000\n")
-    assert b"\r" not in content
-    assert b"-0.000000" not in content
-
-
 # --- tables of several columns --------------------------------------------------------------------------------------
 
 TABLE = "time_s,ax [g],ay [m/s2],vel (cm/s)\n0.00,0.1,1,9\n0.01,-0.2,-2,9\n0.02,0.3,3,9\n"
@@ -721,10 +657,8 @@ TABLE = "time_s,ax [g],ay [m/s2],vel (cm/s)\n0.00,0.1,1,9\n0.01,-0.2,-2,9\n0.02,
     ("channel", "unit", "values"),
     [
         ("1", "g", [0.1, -0.2, 0.3]),
-        ("ax", "g", [0.1, -0.2, 0.3]),
         ("AX [g]", "g", [0.1, -0.2, 0.3]),
         ("2", "m/s2", [1, -2, 3]),
-        ("ay", "m/s2", [1, -2, 3]),
     ],
 )
 def test_a_column_is_chosen_by_place_or_name(write, channel, unit, values):
@@ -976,17 +910,6 @@ def test_a_hostile_name_in_an_archive_is_shown_escaped(write):
     (found,) = problems(write(zipped(**{"\x1b[31ma": ONE, "b": ONE})))
     assert "\\x1b[31ma" in found.hint
     assert "\x1b" not in str(found)
-
-
-@UNTIMED
-@given(st.binary(max_size=60), st.sampled_from([b"\x1f\x8b\x08", b"PK\x03\x04", b"PK\x05\x06", b"\xff\xfe", b"\0\0"]))
-def test_any_packed_bytes_are_read_or_refused(tmp_path_factory, content, mark):
-    path = tmp_path_factory.getbasetemp() / "packed"
-    path.write_bytes(mark + content)
-    try:
-        read_record(path, dt=0.01, units="g")
-    except InputError as error:
-        assert error.problems
 
 
 # --- standard input -------------------------------------------------------------------------------------------------
