@@ -2,20 +2,20 @@
 
 import json
 import os
+import shutil
 import signal
 import sqlite3
 import subprocess
 import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from scipy.optimize import brentq
 
 from rocking_cli import GroundMotion, equivalent_block, exact_response, load_structure, parse_pulse, respond
-from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity import Reference, parse_measure
@@ -30,6 +30,8 @@ from rocking_cli.studies.fragility.sources import Source
 from rocking_cli.studies.fragility.store import COLUMNS, Store, StoreError
 from rocking_cli.studies.fragility.study import load_study
 from tests.conftest import EXAMPLES, rows_of
+from tests.test_cli import run as command
+from tests.test_cli import run_json
 
 STUDY = f"""\
 structures:
@@ -252,10 +254,8 @@ def test_while_it_runs_others_read_and_do_not_write(long_study, tmp_path):
     process = program("fragility", path, "--store", place, "--jobs", 1)
     try:
         wait_until_some_are_finished(place, process)
-        second = CliRunner().invoke(main, ["fragility", str(path), "--store", str(place)])
-        assert second.exit_code == 2 and "another process is at work" in second.stderr
-        so_far = CliRunner().invoke(main, ["results", str(place), "--json"])
-        assert so_far.exit_code == 5
+        assert "another process is at work" in command("fragility", path, "--store", place, code=2).stderr
+        so_far = command("results", place, "--json", code=5)
         assert 0 < json.loads(so_far.stdout)["finished"] < prepared.plan.total
         assert process.poll() is None
     finally:
@@ -304,6 +304,11 @@ def test_a_scheduler_that_is_not_there_is_said_so(whole, tmp_path, monkeypatch):
 
 
 class TestChanges:
+    @pytest.fixture
+    def place(self, whole, tmp_path):
+        """A copy of the finished store."""
+        return Path(shutil.copy(whole[2], tmp_path / "study.db"))
+
     @pytest.mark.parametrize(
         ("old", "new", "said"),
         [
@@ -315,9 +320,7 @@ class TestChanges:
             ("samples: 4", "samples: 4\nmodel: linear2", "model was nonlinear, is now linear2"),
         ],
     )
-    def test_a_changed_study_is_named(self, whole, tmp_path, old, new, said):
-        place = tmp_path / "study.db"
-        place.write_bytes(whole[2].read_bytes())
+    def test_a_changed_study_is_named(self, whole, tmp_path, place, old, new, said):
         path = write(tmp_path, STUDY.replace("COUNT", "5").replace(old, new))
         with pytest.raises(InputError) as caught:
             carry_out(path, place)
@@ -393,24 +396,17 @@ class TestChanges:
         with pytest.raises(InputError, match=r"the record accel.csv has changed"):
             carry_out(path, tmp_path / "study.db")
 
-    def test_another_version_is_named(self, whole, tmp_path, monkeypatch):
-        place = tmp_path / "study.db"
-        place.write_bytes(whole[2].read_bytes())
+    def test_another_version_is_named(self, whole, tmp_path, place, monkeypatch):
         monkeypatch.setattr("rocking_cli.studies.fragility.campaign.__version__", "9.9")
         with pytest.raises(InputError, match=r"version of rocking-cli was .*, is now 9.9"):
             carry_out(whole[0], place)
 
-    def test_what_is_asked_of_the_runs_may_change(self, whole, tmp_path):
-        place = tmp_path / "study.db"
-        place.write_bytes(whole[2].read_bytes())
+    def test_what_is_asked_of_the_runs_may_change(self, whole, tmp_path, place):
         path = write(tmp_path, STUDY.replace("[uplift, 0.25, overturning]", "[0.5]").replace("COUNT", "5"))
-        result = CliRunner().invoke(main, ["fragility", str(path), "--store", str(place), "--json"])
-        assert result.exit_code == 0
+        result = command("fragility", path, "--store", place, "--json")
         assert {each["limit_state"] for each in json.loads(result.stdout)["curves"]} == {0.5}
 
-    def test_another_order_is_said_in_one_line(self, whole, tmp_path):
-        place = tmp_path / "study.db"
-        place.write_bytes(whole[2].read_bytes())
+    def test_another_order_is_said_in_one_line(self, whole, tmp_path, place):
         first, others = STUDY.split("structures:\n")[1].split("\n", 1)
         second, rest = others.split("records:")
         path = write(tmp_path, f"structures:\n{second}{first}\nrecords:{rest}")
@@ -418,9 +414,7 @@ class TestChanges:
             carry_out(path, place)
         assert all("order of structures" in str(each) for each in caught.value.problems)
 
-    def test_another_mechanics_of_the_same_version_is_named(self, whole, tmp_path, monkeypatch):
-        place = tmp_path / "study.db"
-        place.write_bytes(whole[2].read_bytes())
+    def test_another_mechanics_of_the_same_version_is_named(self, whole, tmp_path, place, monkeypatch):
 
         def other(equivalence, model):
             p, lambda_ = weaker(equivalence, model)
@@ -430,22 +424,17 @@ class TestChanges:
         with pytest.raises(InputError, match=r"p of sample 1 of uncertain was .*, is now"):
             carry_out(whole[0], place)
 
-    def test_restart_keeps_the_old_runs_until_new_ones_can_begin(self, whole, tmp_path, monkeypatch):
+    def test_restart_keeps_the_old_runs_until_new_ones_can_begin(self, whole, tmp_path, place, monkeypatch):
         monkeypatch.setattr(workers, "PATIENCE", 0.3)
-        place = tmp_path / "study.db"
-        place.write_bytes(whole[2].read_bytes())
-        command = ["fragility", str(whole[0]), "--store", str(place), "--restart", "--scheduler", "tcp://127.0.0.1:9"]
-        result = CliRunner().invoke(main, command)
-        assert result.exit_code == 1 and "no scheduler answers" in result.stderr
+        asked = ("fragility", whole[0], "--store", place, "--restart", "--scheduler", "tcp://127.0.0.1:9")
+        assert "no scheduler answers" in command(*asked, code=1).stderr
         assert dump(place) == dump(whole[2])
         assert [each.name for each in tmp_path.iterdir()] == ["study.db"]
 
-    def test_restart_begins_anew(self, whole, tmp_path):
-        place = tmp_path / "study.db"
-        place.write_bytes(whole[2].read_bytes())
+    def test_restart_begins_anew(self, whole, tmp_path, place):
         path = write(tmp_path, STUDY.replace("samples: 4", "samples: 4\nseed: 9"))
-        result = CliRunner().invoke(main, ["fragility", str(path), "--restart", "--json"])
-        assert result.exit_code == 0 and json.loads(result.stdout)["seed"] == 9
+        result = command("fragility", path, "--restart", "--json")
+        assert json.loads(result.stdout)["seed"] == 9
         assert "the store as it was is kept as" in result.stderr
         assert dump(tmp_path / "study.before.db") == dump(whole[2])
 
@@ -457,55 +446,51 @@ class TestBadParts:
         return write(tmp_path, STUDY.replace("method:", "  - bad.csv\nmethod:"))
 
     def test_a_bad_record_is_reported_and_the_others_run(self, with_bad_record, whole, tmp_path):
-        result = CliRunner().invoke(main, ["fragility", str(with_bad_record), "--json"])
-        assert result.exit_code == 5
+        result = command("fragility", with_bad_record, "--json", code=5)
         assert "bad.csv" in result.stderr and ":3" in result.stderr
         found = json.loads(result.stdout)
         assert found["finished"] == found["runs"] == whole[1].plan.total
         assert len(found["left_out"]) == 1 and "bad.csv" in found["left_out"][0]
         # And again when nothing is left to run.
-        assert CliRunner().invoke(main, ["fragility", str(with_bad_record)]).exit_code == 5
-        assert CliRunner().invoke(main, ["results", str(tmp_path / "study.db")]).exit_code == 5
+        command("fragility", with_bad_record, code=5)
+        command("results", tmp_path / "study.db", code=5)
 
     def test_a_record_put_right_is_run(self, with_bad_record, whole, tmp_path):
-        CliRunner().invoke(main, ["fragility", str(with_bad_record)])
+        command("fragility", with_bad_record, code=5)
         (tmp_path / "bad.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
-        result = CliRunner().invoke(main, ["fragility", str(with_bad_record), "--json"])
-        assert result.exit_code == 0 and "bad.csv: could not be used" in result.stderr
+        result = command("fragility", with_bad_record, "--json", code=0)
+        assert "bad.csv: could not be used" in result.stderr
         assert json.loads(result.stdout)["finished"] == 4 * whole[1].plan.total // 3
 
     def test_a_record_without_motion_and_one_that_is_gone(self, tmp_path):
         (tmp_path / "zero.csv").write_text("t,accel_g\n0,0\n0.01,0\n0.02,0\n", encoding="utf-8")
         path = write(tmp_path, STUDY.replace("method:", "  - zero.csv\nmethod:"))
-        result = CliRunner().invoke(main, ["fragility", str(path)])
-        assert result.exit_code == 5 and "zero throughout" in result.stderr
+        assert "zero throughout" in command("fragility", path, code=5).stderr
 
     def test_nothing_that_can_be_used(self, tmp_path):
         (tmp_path / "zero.csv").write_text("t,accel_g\n0,0\n0.01,0\n0.02,0\n", encoding="utf-8")
         path = write(tmp_path, f"structures: [{EXAMPLES / 'block.yaml'}]\nrecords: [zero.csv]\nmethod: cloud\n")
-        result = CliRunner().invoke(main, ["fragility", str(path)])
-        assert result.exit_code == 2 and "no record can be used" in result.stderr
+        assert "no record can be used" in command("fragility", path, code=2).stderr
         assert not (tmp_path / "study.db").exists()
 
     def test_a_structure_too_stocky_for_its_kinematics(self, tmp_path):
         (tmp_path / "stocky.yaml").write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")
         text = STUDY.replace("structures:", "structures:\n  - stocky.yaml")
-        result = CliRunner().invoke(main, ["fragility", str(write(tmp_path, text)), "--json"])
-        assert result.exit_code == 5 and "its kinematics give a restitution of -0.35" in result.stderr
+        result = command("fragility", write(tmp_path, text), "--json", code=5)
+        assert "its kinematics give a restitution of -0.35" in result.stderr
         assert {each["structure"] for each in json.loads(result.stdout)["curves"]} == {"valley bridge", "uncertain"}
         given = STUDY.replace("structures:", "eta: [0.5]\nstructures:\n  - stocky.yaml").replace(
             "restitution", "height"
         )
         path = write(tmp_path, given.replace("low: 0.85, high: 0.95", "low: 2, high: 3"))
-        assert CliRunner().invoke(main, ["fragility", str(path), "--restart"]).exit_code == 0
+        command("fragility", path, "--restart")
 
 
 class TestOtherFiles:
     def test_a_text_is_no_store(self, whole, tmp_path):
         (tmp_path / "notes.db").write_text("nothing here, but longer than a header of a database would be" * 5)
-        for command in (["results"], ["fragility", str(whole[0]), "--store"]):
-            result = CliRunner().invoke(main, [*command, str(tmp_path / "notes.db")])
-            assert result.exit_code == 2 and "not the store of a study" in result.stderr
+        for words in (["results"], ["fragility", whole[0], "--store"]):
+            assert "not the store of a study" in command(*words, tmp_path / "notes.db", code=2).stderr
 
     def test_another_database_is_left_alone(self, whole, tmp_path):
         place = tmp_path / "other.db"
@@ -514,25 +499,21 @@ class TestOtherFiles:
         connection.commit()
         connection.close()
         for more in ([], ["--restart"]):
-            result = CliRunner().invoke(main, ["fragility", str(whole[0]), "--store", str(place), *more])
-            assert result.exit_code == 2 and "another database" in result.stderr
+            assert "another database" in command("fragility", whole[0], "--store", place, *more, code=2).stderr
         assert "precious" in dump(place)[1]
 
     def test_a_store_that_is_not_there_is_not_made(self, tmp_path):
-        result = CliRunner().invoke(main, ["results", str(tmp_path / "none.db")])
-        assert result.exit_code == 2 and "no such store" in result.stderr
+        assert "no such store" in command("results", tmp_path / "none.db", code=2).stderr
         assert not (tmp_path / "none.db").exists()
 
     @pytest.mark.parametrize("name", [".", "..", ""])
     def test_a_folder_is_no_study(self, name):
-        result = CliRunner().invoke(main, ["fragility", name])
-        assert result.exit_code == 2 and "this is a folder" in result.stderr
-        assert "this is a folder" in CliRunner().invoke(main, ["results", "."]).stderr
+        assert "this is a folder" in command("fragility", name, code=2).stderr
+        assert "this is a folder" in command("results", ".", code=2).stderr
 
     def test_a_study_is_not_its_own_store(self, tmp_path):
         write(tmp_path, count=5).rename(tmp_path / "study.db")
-        result = CliRunner().invoke(main, ["fragility", str(tmp_path / "study.db")])
-        assert result.exit_code == 2 and "would overwrite an input file" in result.stderr
+        assert "would overwrite an input file" in command("fragility", tmp_path / "study.db", code=2).stderr
 
 
 def test_a_reader_that_takes_its_time_does_not_stop_the_study(whole, tmp_path, monkeypatch):
@@ -561,8 +542,7 @@ def test_units_hold_few_models(tmp_path, monkeypatch):
 def test_the_rate_is_there_though_other_measures_are_asked_for(tmp_path):
     more = "measures: [PGV]\nhazard: {points: [[0.1, 0.01], [1, 0.0001]]}\nmethod:"
     path = write(tmp_path, STUDY.replace("method:", more), count=5)
-    result = CliRunner().invoke(main, ["fragility", str(path), "--json"])
-    curves = json.loads(result.stdout)["curves"]
+    curves = run_json("fragility", path)["curves"]
     assert {each["measure"] for each in curves} == {"PGV", "PGA"}
     rates = {name: [each["annual_rate"] for each in curves if each["measure"] == name] for name in ("PGA", "PGV")}
     assert any(rates["PGA"]) and not any(rates["PGV"])
@@ -576,13 +556,10 @@ method:"""
 
 def both_as_text_and_json(path):
     """A study's results, and its curves and surfaces as JSON."""
-    text = CliRunner().invoke(main, ["fragility", str(path)])
-    assert text.exit_code == 0, text.stderr
-    place = path.with_suffix(".db")
-    again = CliRunner().invoke(main, ["results", str(place)])
-    assert again.stdout == text.stdout
-    found = json.loads(CliRunner().invoke(main, ["results", str(place), "--json"]).stdout)
-    return text.stdout, found["curves"], found["surfaces"]
+    place, text = path.with_suffix(".db"), command("fragility", path).stdout
+    assert command("results", place).stdout == text
+    found = run_json("results", place)
+    return text, found["curves"], found["surfaces"]
 
 
 def alike(data, factor=1.0):
@@ -679,8 +656,9 @@ def test_few_records_and_what_is_not_tested_are_said_in_words_and_in_json(tmp_pa
 @pytest.mark.rest
 def test_structures_of_like_names_have_a_picture_each(tmp_path):
     text = STUDY.replace("name: uncertain", "name: Valley/bridge")
-    result = CliRunner().invoke(main, ["fragility", str(write(tmp_path, text, 5)), "--plot", "drawn"])
-    assert "wrote 7 plots" in result.stderr  # two of them of quantiles
+    assert (
+        "wrote 7 plots" in command("fragility", write(tmp_path, text, 5), "--plot", "drawn").stderr
+    )  # two of them of quantiles
     assert len({each.name.lower() for each in (tmp_path / "drawn").iterdir()}) == 7
 
 
@@ -749,8 +727,7 @@ def test_a_linear_block_under_one_pulse_shape_overturns_at_a_step(tmp_path):
             "levels: {measure: PGA/(g lambda), least: 0.805, most: 3.005, count: 1101}\nmodel: linear2\n",
             encoding="utf-8",
         )
-        result = CliRunner().invoke(main, ["fragility", str(path), "--json", "--restart"])
-        assert result.exit_code == 0, result.stderr
+        result = command("fragility", path, "--json", "--restart")
         uplift, overturning = json.loads(result.stdout)["curves"]
         assert uplift["kind"] == overturning["kind"] == "step"
         assert list(uplift["median"].values()) == pytest.approx([1.0] * 3, rel=1e-9)  # known without runs
@@ -762,12 +739,11 @@ def test_a_linear_block_under_one_pulse_shape_overturns_at_a_step(tmp_path):
 def test_the_example_runs_with_pictures_and_tables(tmp_path):
     study = EXAMPLES / "study" / "near_fault.yaml"
     where = ["--store", "near.db", "--plot", "drawn"]
-    result = CliRunner().invoke(main, ["fragility", str(study), *where])
-    assert result.exit_code == 0, result.stderr
+    result = command("fragility", study, *where)
     assert "[1/year]" in result.stdout and "annual rate" in result.stdout and "c2" in result.stdout
     assert len(list((tmp_path / "drawn").glob("*.png"))) == 13
     for name in ("runs.csv", "runs.parquet"):
-        assert CliRunner().invoke(main, ["results", "near.db", "--out", name]).exit_code == 0
+        command("results", "near.db", "--out", name)
     from pyarrow import parquet
 
     table = parquet.read_table(tmp_path / "runs.parquet").to_pydict()
@@ -787,8 +763,7 @@ def test_the_example_runs_with_pictures_and_tables(tmp_path):
 @pytest.mark.rest
 def test_incremental_analysis_takes_the_first_exceedance(tmp_path):
     path = write(tmp_path, STUDY.replace("method: stripes", "method: ida"), count=6)
-    result = CliRunner().invoke(main, ["fragility", str(path), "--json", "--plot", "drawn"])
-    assert result.exit_code == 0, result.stderr
+    command("fragility", path, "--json", "--plot", "drawn")
     with Store.reading(tmp_path / "study.db") as kept:
         plan, definition = kept.plan(), load_study(path).definition
         found = tally.count(kept, plan, "uncertain", definition.limit_states, ["PGA/(g lambda)"], ladders=True)
@@ -814,19 +789,17 @@ def test_incremental_analysis_takes_the_first_exceedance(tmp_path):
 
 def test_check_says_what_would_be_run_and_runs_nothing(tmp_path):
     path = write(tmp_path, count=5)
-    result = CliRunner().invoke(main, ["fragility", str(path), "--check", "--json"])
-    assert json.loads(result.stdout)["runs"] == 5 * 3 * 5 * 2
-    assert "150" in CliRunner().invoke(main, ["fragility", str(path), "--check"]).stdout
+    assert run_json("fragility", path, "--check")["runs"] == 5 * 3 * 5 * 2
+    assert "150" in command("fragility", path, "--check").stdout
     assert [each.name for each in tmp_path.iterdir()] == ["study.yaml"]
 
 
 def test_check_counts_what_is_left_out_apart(tmp_path):
     (tmp_path / "still.csv").write_text("0,0\n0.01,0\n0.02,0\n", encoding="utf-8")
     path = write(tmp_path, STUDY.replace("records:", "records:\n  - {file: still.csv, units: g}"), count=5)
-    result = CliRunner().invoke(main, ["fragility", str(path), "--check", "--json"])
-    data = json.loads(result.stdout)
-    assert (data["records"], len(data["left_out"]), data["runs"]) == (3, 1, 150) and result.exit_code == 5
-    words = CliRunner().invoke(main, ["fragility", str(path), "--check"]).stdout.split("\n")
+    data = json.loads(command("fragility", path, "--check", "--json", code=5).stdout)
+    assert (data["records"], len(data["left_out"]), data["runs"]) == (3, 1, 150)
+    words = command("fragility", path, "--check", code=5).stdout.split("\n")
     assert [line.split() for line in words if "records" in line] == [["records", "3"], ["records", "left", "out", "1"]]
 
 
