@@ -18,7 +18,7 @@ import pytest
 # How long an example takes says how busy the machine is, and nothing of what is tested. The suite tries the same
 # examples everywhere, so that a failure says something of the change at hand; `make properties` looks for new ones.
 PROPERTIES = int(os.environ.get("ROCKING_PROPERTIES", 0))
-hypothesis.settings.register_profile("suite", deadline=None, max_examples=50, derandomize=True)
+hypothesis.settings.register_profile("suite", deadline=None, max_examples=30, derandomize=True)
 hypothesis.settings.register_profile("search", deadline=None, max_examples=max(PROPERTIES, 1))
 hypothesis.settings.load_profile("search" if PROPERTIES else "suite")
 

@@ -150,7 +150,7 @@ ANSWERS = {
 }
 
 
-@pytest.mark.every(2)
+@pytest.mark.every(4)
 @pytest.mark.parametrize("name", ANSWERS)
 def test_an_answer_shows_itself(name, tmp_path):
     answer = ANSWERS[name]()

@@ -201,6 +201,7 @@ class Scan:
         return inertia, J, G, B
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize(("beta", "ratio", "n"), [*RINGS, *((b, t, None) for b, t in CONTINUOUS)])
 def test_equivalent_block_is_equation_39(beta, ratio, n):
     ring = arch(beta, ratio, n, radius=3.0)
@@ -263,6 +264,7 @@ def test_a_semicircle_thinner_than_0_1075_is_refused_with_the_least_thickness():
     assert 0 < slightly.uplift(POSITIVE) < 1e-3
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize(("beta", "n"), [(180.0, None), (180.0, 12), (150.0, None), (150.0, 9), (120.0, 40)])
 def test_the_least_thickness_is_that_of_statics(beta, n):
     least = least_by_statics(np.radians(beta), n or MANY)

@@ -74,7 +74,7 @@ def arch_of(r=10.0, t=1.5, beta=157.5, n=7, **more):
     return rk.Arch(radius=r, thickness=t, inclusion_angle_deg=beta, voussoirs=n, **given)
 
 
-@pytest.mark.every(2)
+@pytest.mark.every(4)
 @pytest.mark.parametrize("digits", [None, 3])
 @pytest.mark.parametrize(
     ("beta", "ratio", "n"), [(157.5, 0.15, 7), (120.0, 0.12, 8), (150.0, 0.13, 12), (157.5, 0.2, 9), (90.0, 0.1, 6)]
@@ -223,6 +223,7 @@ def placed(bodies):
     return {name: rectangle(*box) for name, box in bodies.items()}
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("seed", range(10))
 def test_random_piers_by_both_theorems(seed):
     bodies, joints = piers(seed)

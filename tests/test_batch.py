@@ -167,6 +167,7 @@ def test_a_run_takes_the_tables_and_the_samples_of_its_own_structure_and_record(
 # --- order, threads, progress, memory
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize(("threads", "unit"), [(1, 1), (1, 10**6), (2, 7), (5, 64), (None, 256)])
 def test_results_depend_neither_on_threads_nor_on_how_runs_are_dealt_out(monkeypatch, threads, unit):
     every, runs = mixed()

@@ -331,6 +331,7 @@ class TestRespond:
         assert "pip install 'rocking-cli[parquet]'" in text and "record:" not in text
         assert list(tmp_path.iterdir()) == []
 
+    @pytest.mark.every(3)
     @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
     def test_plots_are_written_by_suffix(self, suffix, tmp_path):
         run("respond", FRAME, "--record", ACCEL, "--plot", f"plot.{suffix}")

@@ -64,7 +64,7 @@ def text_of(page):
     return " ".join(unescape(re.sub(r"<[^>]+>", "", page)).split())
 
 
-@pytest.mark.every(2)
+@pytest.mark.every(4)
 @pytest.mark.parametrize("case", FURTHER)
 def test_a_verification_concludes_the_same_everywhere(pillar, tmp_path, case):
     asked = pillar(case)
@@ -368,7 +368,7 @@ def test_a_printed_ratio_shows_on_which_side_of_one_it_is(ratio):
     assert (printed < 1) == (ratio < 1) and printed == pytest.approx(ratio, rel=5e-3)
 
 
-@pytest.mark.every(3)
+@pytest.mark.every(8)
 @pytest.mark.parametrize(
     ("pulse", "expected"),
     [("sine:0.1g:0.5s", "does_not_uplift"), ("sine:0.5g:0.4s", "rocks"), ("sine:2g:1s", "overturns")],
@@ -442,7 +442,7 @@ def test_a_row_of_a_survey_has_the_outcome_that_the_structure_has_alone(tmp_path
         assert row["outcome"] == alone.conclusion.concluded.value
 
 
-@pytest.mark.every(8)
+@pytest.mark.every(16)
 @pytest.mark.parametrize("pulse", ["sine:0.15g:0.5s", "sine:0.5g:0.7s"])
 @pytest.mark.parametrize("file", YAML_FILES, ids=lambda file: file.stem)
 def test_every_surface_of_a_response_has_one_conclusion(file, pulse):

@@ -91,7 +91,7 @@ def test_a_character_lost_from_a_real_record_is_seldom_silent(path, tmp_path):
     assert found["refused"] + found["doubted"] > found.total() / 2
 
 
-@pytest.mark.every(3)
+@pytest.mark.every(6)
 @BY_MADE
 def test_a_character_lost_from_a_made_file_is_seldom_silent(name, tmp_path):
     content = MADE_UP[name](SMOOTH)
@@ -216,7 +216,7 @@ def test_a_made_file_that_an_editor_has_saved_is_read(name, editor, tmp_path):
     _same_after_saving(MADE_UP[name](SMOOTH), Kind({"channel": "1"}, 1), editor, tmp_path)
 
 
-@pytest.mark.every(5)
+@pytest.mark.every(10)
 @BY_EDITOR
 @BY_REAL
 def test_a_real_record_that_an_editor_has_saved_is_read(path, editor, tmp_path):

@@ -347,6 +347,7 @@ class TestContract:
 
 
 class TestFigure:
+    @pytest.mark.every(3)
     @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
     def test_every_example_has_a_panel_for_rest_and_each_direction_to_scale(self, path):
         structure = loaded(path)
@@ -386,7 +387,7 @@ class TestFigure:
         assert rows["left"] == [[first, second], [across]]
         assert [each.symbol for each in inside] == ["d"]
 
-    @pytest.mark.every(5)
+    @pytest.mark.every(9)
     @pytest.mark.parametrize("structure", SHAPES, ids=str)
     def test_words_neither_meet_nor_leave_the_picture(self, structure):
         figure = draw_structure(picture(SHAPES[structure]()), "a title")

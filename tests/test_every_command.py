@@ -249,7 +249,7 @@ def test_every_command_is_walked_or_follows_no_history():
     assert names(HISTORIES) | WITHOUT == set(COMMANDS) and not names(HISTORIES) & WITHOUT
 
 
-@pytest.mark.every(2)
+@pytest.mark.every(4)
 @pytest.mark.usefixtures("hostile")
 @pytest.mark.parametrize("line", [*HISTORIES, *WITHOUT_HISTORY, *AS_TEXT])
 def test_an_unknown_outcome_is_no_pass_and_names_harm_nothing(line, monkeypatch):
@@ -343,7 +343,7 @@ def examples(tmp_path_factory):
     return made
 
 
-@pytest.mark.every(2)
+@pytest.mark.every(4)
 @pytest.mark.parametrize("command", asked())
 def test_the_keys_are_those_held(command, examples, monkeypatch):
     monkeypatch.chdir(examples)

@@ -215,6 +215,7 @@ class TestCompletion:
         ran = subprocess.run(program, env=environment, capture_output=True, text=True, check=True)
         return {line.partition(",")[2] for line in ran.stdout.splitlines()}, ran
 
+    @pytest.mark.every(4)
     @pytest.mark.parametrize(
         ("words", "found"),
         [

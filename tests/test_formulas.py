@@ -220,6 +220,7 @@ SITES = {
 }
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("language", ["en", "it"])
 @pytest.mark.parametrize("site", SITES)
 def test_a_new_limit_state_is_a_rule_and_its_fields(with_one_more, site, language):

@@ -103,6 +103,7 @@ CASES = {
 }
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("case", CASES)
 def test_impacts_and_peaks_are_those_of_an_independent_integration(case):
     name, dt, samples, release = CASES[case]

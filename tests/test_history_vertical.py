@@ -126,7 +126,7 @@ CASES = {
 }
 
 
-@pytest.mark.every(3)
+@pytest.mark.every(6)
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize(
     ("name", "model"),
@@ -296,6 +296,7 @@ def outward_and_slow(model, side):
 
 @every_model
 @every_side
+@pytest.mark.every(2)
 def test_overturning_is_not_certain_while_the_ground_may_still_take_the_weight_away(model, side):
     # The brake turns it back as soon as its weight falls to a fifth; without that it overturns.
     p = blocks("block").positive.p

@@ -221,7 +221,7 @@ VALLEY = AsymmetricFrame(
 )
 
 
-@pytest.mark.every(3)
+@pytest.mark.every(6)
 @pytest.mark.parametrize(
     "structure", [VALLEY, TALL, wall_of(0.1), wall_of(0.5), arch_of(1.5, 150.0), arch_of(3.0, 100.0)]
 )

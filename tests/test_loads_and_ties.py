@@ -235,7 +235,7 @@ def agree(history, expected):
         assert abs(found[2]) == pytest.approx(abs(first.before), rel=1e-6)
 
 
-@pytest.mark.every(6)
+@pytest.mark.every(12)
 @signed
 def test_from_a_tilt_it_moves_as_the_second_program_says(mechanism, kind, side):
     structure, tilt = both(mechanism, kind), ON[mechanism][-1]
@@ -248,7 +248,7 @@ def test_from_a_tilt_it_moves_as_the_second_program_says(mechanism, kind, side):
         assert (history.peak_negative if side > 0 else history.peak_positive) == pytest.approx(max(back), rel=1e-6)
 
 
-@pytest.mark.every(6)
+@pytest.mark.every(12)
 @pairs
 def test_shaken_it_moves_as_the_second_program_says(mechanism, kind):
     """With a vertical component, which changes the weight and no tie."""

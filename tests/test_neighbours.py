@@ -112,7 +112,7 @@ class TestDraws:
 LIFTED = replace(ACCEL, vertical=GroundMotion("up", 0.02, 4.0 * np.sin(np.arange(500) * 0.7)))
 
 
-@pytest.mark.every(3)
+@pytest.mark.every(6)
 @pytest.mark.parametrize("motion", [ACCEL, LIFTED], ids=["level", "vertical"])
 @pytest.mark.parametrize("mechanism", [BLOCK, FRAME], ids=["block", "frame"])
 @pytest.mark.parametrize("scale", [0.6, 0.9])

@@ -18,7 +18,7 @@ def baseline(name):
     return Image.open(FOLDER / f"{name}.png").convert("L")
 
 
-@pytest.mark.every(2)
+@pytest.mark.every(4)
 @pytest.mark.parametrize("name", FIGURES)
 def test_it_looks_as_it_did(name):
     found = render(FIGURES[name]())

@@ -88,6 +88,7 @@ class TestWhatWasPutIn:
 class TestInvariance:
     MOTION = read_record(EXAMPLES / "accel.csv")
 
+    @pytest.mark.every(3)
     def test_of_scale(self, shape, criterion):
         # A power of two leaves the digits as they are. Any other factor rounds them, and a maximum is flat: what is
         # captured stays to the last digits, where it lies to the square root of that only.
@@ -100,6 +101,7 @@ class TestInvariance:
         assert other.pulse.amplitude == pytest.approx(1e-3 * one.pulse.amplitude, rel=1e-6)
         assert (other.sign, other.start) == (-one.sign, pytest.approx(one.start, abs=1e-6))
 
+    @pytest.mark.every(3)
     def test_of_time(self, shape, criterion):
         before = replace(self.MOTION, acceleration=np.concatenate([np.zeros(237), self.MOTION.acceleration]))
         one, other = (fit_pulse(motion, shape, criterion) for motion in (self.MOTION, before))
@@ -107,11 +109,13 @@ class TestInvariance:
         assert other.pulse.period == pytest.approx(one.pulse.period, rel=2e-4)
         assert other.captured == pytest.approx(one.captured, abs=1e-7)
 
+    @pytest.mark.every(3)
     def test_of_the_unit_of_time(self, shape, criterion):
         one, other = (fit_pulse(replace(self.MOTION, dt=dt), shape, criterion) for dt in (0.01, 0.08))
         assert other.start == pytest.approx(8 * one.start, abs=1e-4)
         assert other.pulse.period == pytest.approx(8 * one.pulse.period, rel=1e-4)
 
+    @pytest.mark.every(3)
     def test_no_neighbour_captures_more(self, shape, criterion):
         """By Scipy's simplex over all parameters of the definition, amplitude and phase included."""
         fit = fit_pulse(self.MOTION, shape, criterion)

@@ -95,7 +95,7 @@ def peak_by_formula(pulse: Pulse) -> float:
                     return peak
 
 
-@pytest.mark.every(3)
+@pytest.mark.every(6)
 @pytest.mark.parametrize("omega", [3.0, 8.0])
 @pytest.mark.parametrize("shape", SHAPES)
 def test_the_peak_of_a_history_is_that_under_the_formula(shape, omega):

@@ -194,6 +194,7 @@ def test_the_picture_shows_the_quantiles_and_the_shares():
     assert {(0.2, 1.0), (0.3, 0.6), (0.4, 0.0)} <= low_of_fallen
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("some", [SOME[:1], SOME[:2], SOME[1:2], SOME[3:]])
 def test_a_picture_of_little_is_drawn_too(some):
     figure = draw_quantiles(Quantiles("a", "PGV", False, some), "PGV [m/s]")

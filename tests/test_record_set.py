@@ -76,6 +76,7 @@ def by_brute_force(found: Candidates, wanted: SetRequirements) -> tuple[float, f
     return *best, sets
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("policy", POLICIES)
 @pytest.mark.parametrize(
     ("seed", "rough"),

@@ -417,7 +417,7 @@ def test_check_takes_a_file(tmp_path):
     assert "FILE requires --check" in run("mechanisms", "wall", file, code=2).stderr
 
 
-@pytest.mark.every(3)
+@pytest.mark.every(6)
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_check_passes_every_built_in_mechanism(name):
     assert run_json("mechanisms", "--check", name)["passed"]

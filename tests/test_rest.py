@@ -203,7 +203,7 @@ def test_a_frame_on_smooth_feet_slides_as_a_whole():
     assert found.check.largest_joint == "the ground and the feet"
 
 
-@pytest.mark.every(3)
+@pytest.mark.every(6)
 @pytest.mark.parametrize("file", YAML_FILES, ids=lambda file: file.stem)
 def test_where_the_hinge_is_the_weakest_nothing_opens_before_it_does(file):
     """Of every example, by two ways: the work of rocking, and the forces at rest."""

@@ -64,7 +64,7 @@ COUNTED = ("neighbours", "openings")
 
 
 class TestEachCheck:
-    @pytest.mark.every(2)
+    @pytest.mark.every(4)
     @pytest.mark.parametrize("name", CHECKS)
     def test_it_passes_far_below_its_limit(self, name):
         found = checked(name, quick=False)
@@ -225,6 +225,7 @@ class TestEachCheck:
         found = checked("threads")
         assert found.passed is False and found.found == 2 * place.UNIT
 
+    @pytest.mark.every(3)
     @pytest.mark.parametrize("name", SETS)
     def test_kernels_fail_if_one_value_of_a_set_differs(self, monkeypatch, name):
         python = ways.in_python

@@ -477,7 +477,7 @@ class Recomputed:
         return level * (high + (1 - high) * min((T - TE) / (TF - TE), 1))
 
 
-@pytest.mark.every(2)
+@pytest.mark.every(4)
 @pytest.mark.parametrize("name", CASES)
 def test_every_step_gives_its_result_and_follows_from_those_above_it(name):
     items = items_of_case(name)

@@ -219,6 +219,7 @@ def test_a_store_is_no_pipe(sound, tmp_path):
     assert place.is_fifo() and names(tmp_path) == ["pipe.db"]
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("place_in_header", [16, 18, 19, 21, 47, 59])
 def test_restart_puts_a_store_with_a_damaged_header_aside(sound, place, place_in_header):
     content = bytearray(place.read_bytes())

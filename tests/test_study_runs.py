@@ -124,6 +124,7 @@ def test_the_view_says_in_words_what_the_numbers_stand_for(whole):
 
 
 class TestSameResults:
+    @pytest.mark.every(2)
     @pytest.mark.parametrize("size", [1, 7, 64, 1000])
     def test_whatever_the_units(self, whole, tmp_path, monkeypatch, size):
         monkeypatch.setattr("rocking_cli.studies.fragility.campaign.unit_size", lambda runs, workers: size)

@@ -140,6 +140,7 @@ def test_a_plugin_that_fails_is_not_judged():
     assert doubtful_size(Broken(width=1e4, height=1e4)) is None
 
 
+@pytest.mark.every(4)
 @pytest.mark.usefixtures("small_maps")
 @pytest.mark.parametrize("command", ["equiv", "draw", "error", "respond", "spectrum", "report", "overturning", "pulse"])
 def test_every_command_warns_of_millimetres(command, tmp_path):

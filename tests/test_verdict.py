@@ -165,13 +165,14 @@ MOTIONS = [
 ]
 
 
-@pytest.mark.every(3)
+@pytest.mark.every(6)
 @pytest.mark.parametrize("motion", MOTIONS, ids=lambda words: "-".join(words[1:]).rpartition("/")[2])
 @pytest.mark.parametrize("structure", STRUCTURES)
 def test_every_sentence_is_that_of_its_own_numbers(structure, motion, tmp_path):
     check(STRUCTURES[structure], motion, tmp_path, 1 if structure == "closed-arch" else 0.005)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("scale", ["0.5", "1"])
 @pytest.mark.parametrize("structure", ["valley", "frame", "arch"])
 def test_under_a_real_record_too(structure, scale, tmp_path):

@@ -368,6 +368,7 @@ class TestWhatMayChangeNothing:
         assert found.chain.alpha0 == pytest.approx(found.lambda_, rel=1e-9)
         assert abs(found.exact.acceleration(found.d0)) < 1e-7 * found.a0
 
+    @pytest.mark.every(4)
     @pytest.mark.parametrize(
         "mechanism",
         [

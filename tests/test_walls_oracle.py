@@ -35,6 +35,7 @@ def tendon(n0: float, ea: float) -> Block:
 # Section 1.
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize(
     ("n0", "ea", "uplift", "phi_cr", "p", "kappa1", "time", "rate"),
     [
