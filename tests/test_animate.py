@@ -198,7 +198,6 @@ class TestCommand:
                 ["--out", "a.gif", "--pulse", "sine:0.4g:1s", "--record", "x"],
                 "Give either --record FILE or --pulse PULSE.",
             ),
-            (["--out", "a.gif", "--pulse", "sine:0.4g:1s", "--dt", "0.01"], "describes a record"),
             (["--out", "a.mp4", "--pulse", "sine:0.4g:1s"], "does not end in .gif or .html"),
             (["--out", "a.gif", "--pulse", "sine:0.4g:1s", "--fps", "60"], "between 1 and 50"),
             (["--out", "a.gif", "--pulse", "sine:0.4g:1s", "--speed", "0.001"], "frames is too long (at most 3,000)"),

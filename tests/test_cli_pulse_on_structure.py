@@ -147,21 +147,15 @@ def test_sampling_is_refined_until_it_changes_nothing(block):
     ("arguments", "words"),
     [
         ((), "--a and --omega are missing"),
-        (("--a", 2), "--omega is missing"),
         (("--a", 2, "--omega", 3, "--ag", "0.4g"), "--a is for the dimensionless block, --ag for a structure"),
         (("--ag", "0.4g", "--period", 1, "--eta", 0.9), "eta is `restitution` in its file"),
         (("--ag", "0.6", "--period", 0.8), "'0.6' has no unit: give one of g, m/s2"),
         (("--ag=-0.6g", "--period", 0.8), "--polarity -1 reverses the pulse"),
-        (("--ag", "0.6g"), "--period is missing"),
         (("--polarity", "-1"), "--ag is missing for a pulse on a structure such as 0.6 g"),
-        (("--ag", "0.6g", "--period", 0), "'0' is not positive"),
-        (("--ag", "0.6g", "--period", "1kg"), "1kg is a mass, not a time"),
         (("--ag", "0.6g", "--period", 1, "--shape", "sin"), "did you mean sine?"),
         (("--ag", "0.6g", "--period", 1, "--shape", "sine:3"), "expected sine:AMPLITUDE:PERIOD"),
         (("--a", 2, "--omega", 3, "--shape", "ricker"), "for other shapes, give a structure, --ag and --period"),
         (("--a", 2, "--omega", -3), "-3 is not a positive number"),
-        (("--a", 2, "--omega", 3, "--eta", 1.2), "1.2 is not in the range"),
-        (("nowhere.yaml", "--ag", "0.6g", "--period", 1), "nowhere.yaml: no such file"),
     ],
 )
 def test_wrong_input_is_refused_with_the_way_out(arguments, words):

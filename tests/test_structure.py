@@ -51,7 +51,6 @@ WRONG = {
     "unknown key": (BLOCK + "heigth: 2\n", 4, 1, "heigth", "did you mean height?"),
     "field missing": ("mechanism: block\nwidth: 1\n", 1, 1, "height", "is missing: height [m]"),
     "text for a number": ("mechanism: block\nwidth: wide\nheight: 4\n", 2, 8, "width", "must be a number in m, got the text 'wide'"),
-    "quoted number": ("mechanism: block\nwidth: '1'\nheight: 4\n", 2, 8, "width", "must be a number"),
     "decimal comma": ("mechanism: block\nwidth: 0,7\nheight: 4\n", 2, 8, "width", "write a decimal point"),
     "unknown unit": ("mechanism: block\nwidth: 700 mmm\nheight: 4\n", 2, 8, "width", "did you mean mm?"),
     "unit of another kind": ("mechanism: block\nwidth: 700 kg\nheight: 4\n", 2, 8, "width", "700 kg is a mass, not a length"),
@@ -59,25 +58,18 @@ WRONG = {
         "mechanism: symmetric_frame\ncolumn_width: 1\ncolumn_height: 5\nmass_ratio: 1 kg\n", 4, 13, "mass_ratio",
         "must be a number, got the text '1 kg'",
     ),
-    "unit in a list": (
-        "mechanism: rigid_body\npolygon: [[0, 0], [1, 0 kg], [1, 3]]\n", 2, 23, "polygon[2][2]", "a mass, not a length",
-    ),
     "weight for a density": (
         "mechanism: asymmetric_frame\ncolumn_width: 1\nleft_height: 5\nright_height: 6\nspacing: 4\nbeam_depth: 1\n"
         "density: 18 kN/m3\ndepth: 1\n", 7, 10, "density", "divided by 9.80665 m/s2 it is 1835.49 kg/m3",
     ),
-    "decimal comma and unit": ("mechanism: block\nwidth: 0,7 m\nheight: 4\n", 2, 8, "width", "write a decimal point"),
     "mapping for a number": ("mechanism: block\nwidth: {a: 1}\nheight: 4\n", 2, 8, "width", "got a mapping"),
     "whole but beyond all numbers": (
         f"mechanism: block\nwidth: {'9' * 400}\nheight: 4\n", 2, 8, "width", "outside the range of floating-point numbers",
     ),
     "merge key": (BLOCK + "<<: {name: x}\n", 4, 1, "<<", "write the fields out"),
-    "list that is not closed": (BLOCK + "name: [1,\n  2\n", 4, 7, None, "not YAML"),
     "list that is not closed in time": (BLOCK + "name: [1\ngravity: 9\n", 5, 8, None, "it begins in line 4"),
     "empty name": (BLOCK + "name: ' '\n", 4, 7, "name", "is empty"),
     "control character in a name": (BLOCK + 'name: "a\\e[31m"\n', 4, 7, "name", r"got 'a\x1b[31m'"),
-    "turned direction in a name": (BLOCK + 'name: "a\\u202eb"\n', 4, 7, "name", r"got 'a\u202eb'"),
-    "two lines in a name": (BLOCK + 'name: "a\\nb"\n', 4, 7, "name", "in one line"),
     "feet at different heights": (
         "mechanism: rigid_body\npolygon: [[0, 0], [1, 0.001], [0.8, 3], [0, 3]]\n", 2, 10, "polygon",
         "the next is 0.001 m higher",
@@ -85,34 +77,24 @@ WRONG = {
     "mechanism misspelt": ("mechansim: block\nwidth: 1\n", 1, 1, "mechanism", "did you mean mechanism instead of mechansim?"),
     "truth for a number": ("mechanism: block\nwidth: true\nheight: 4\n", 2, 8, "width", "got true"),
     "nothing for a number": ("mechanism: block\nwidth:\nheight: 4\n", 2, 7, "width", "got nothing"),
-    "list for a number": ("mechanism: block\nwidth: [1]\nheight: 4\n", 2, 8, "width", "got a list"),
     "tiny width": ("mechanism: block\nwidth: 1e-300\nheight: 4\n", 2, 8, "width", "must be at least 1e-06 m, got 1e-300"),
-    "tiny density": (BLOCK + "density: 1e-7\n", 4, 10, "density", "must be at least 1e-06 kg/m3, got 1e-07"),
     "zero": ("mechanism: block\nwidth: 0\nheight: 4\n", 2, 8, "width", "must be more than 0 m, got 0"),
-    "negative": ("mechanism: block\nwidth: 1\nheight: -4\n", 3, 9, "height", "must be more than 0 m, got -4"),
     "infinite": ("mechanism: block\nwidth: .inf\nheight: 4\n", 2, 8, "width", "finite"),
-    "overflowing": ("mechanism: block\nwidth: 1e999\nheight: 4\n", 2, 8, "width", "finite"),
     "not a number": ("mechanism: block\nwidth: .nan\nheight: 4\n", 2, 8, "width", "finite"),
     "beyond any structure": ("mechanism: block\nwidth: 1e9\nheight: 4\n", 2, 8, "width", "at most 1e+06 m"),
     "given twice": (BLOCK + "width: 2\n", 4, 1, "width", "given twice, first in line 2"),
     "not YAML": ("mechanism: [block\nwidth: 1\n", 2, 6, None, "not YAML"),
-    "a tab": ("mechanism: block\n\twidth: 1\n", 2, 1, None, "not YAML"),
     "two documents": (BLOCK + "---\n" + BLOCK, 4, 1, None, "not YAML"),
     "a list": ("- 1\n", 1, 1, None, "field: value"),
     "foreign tag": ("mechanism: block\nwidth: !!python/object:os.abort 1\nheight: 4\n", 2, 8, None, "unknown tag"),
     "nested forever": ("&a [*a]\n", 1, 1, None, "nested too deep"),
     "eta above 1": (BLOCK + "restitution: 1.1\n", 4, 14, "restitution", "must be at most 1, got 1.1"),
-    "eta of 0": (BLOCK + "restitution: 0\n", 4, 14, "restitution", "must be more than 0, got 0"),
-    "eta in words": (BLOCK + "restitution: high\n", 4, 14, "restitution", "must be a number"),
     "half a restitution": (
         BLOCK + "restitution:\n  positive_to_negative: 0.9\n", 5, 3, "restitution.negative_to_positive", "is missing",
     ),
     "eta of one impact": (
         BLOCK + "restitution: {positive_to_negative: 0.9, negative_to_positive: 3}\n", 4, 64,
         "restitution.negative_to_positive", "at most 1",
-    ),
-    "deviation below 0": (
-        BLOCK + "uncertainty: {slenderness: -0.05}\n", 4, 28, "uncertainty.slenderness", "must be at least 0, got -0.05",
     ),
     "deviation of everything": (
         BLOCK + "uncertainty:\n  restitution: 1\n", 5, 16, "uncertainty.restitution", "must be less than 1, got 1",
@@ -123,11 +105,6 @@ WRONG = {
     "deviation alone": (BLOCK + "uncertainty: 0.05\n", 4, 14, "uncertainty", "got"),
     "an option of the analysis": (BLOCK + "opening: 0.005\n", 4, 10, "opening", "give `opening` to the analysis"),
     "number for a name": (BLOCK + "name: 12\n", 4, 7, "name", "must be text"),
-    "gravity": (BLOCK + "gravity: -9.81\n", 4, 10, "gravity", "must be more than 0 m/s2"),
-    "half a column": (
-        "mechanism: symmetric_frame\ncolumn_width: 1\ncolumn_height: 5\nmass_ratio: 1\ncolumns: 2.5\n", 5, 10, "columns",
-        "whole number",
-    ),
     "kind of cone": ("mechanism: cone\nbase_radius: 1\nheight: 5\nkind: full\n", 4, 7, "kind", "shell, solid or hollow"),
     "hollow of what": ("mechanism: cone\nbase_radius: 1\nheight: 5\nkind: hollow\n", 1, 1, "inner_ratio", "needs inner_ratio"),
     "inner of a shell": (
@@ -156,18 +133,11 @@ WRONG = {
         "mechanism: rigid_body\nR: 1\npolygon: [[0, 0], [1, 0], [1, 3]]\n", 3, 10, "polygon", "describe the body in one of the two ways",
     ),
     "inverted polygon": ("mechanism: rigid_body\npolygon: [[0, 3], [1, 3], [0.5, 0]]\n", 2, 10, "polygon", "one corner"),
-    "falling polygon": (
-        "mechanism: rigid_body\npolygon: [[0, 0], [1, 0], [5, 3], [4, 3]]\n", 2, 10, "polygon", "cannot stand",
-    ),
     "crossing polygon": (
         "mechanism: rigid_body\npolygon: [[0, 0], [1, 3], [1, 0], [0, 3]]\n", 2, 10, "polygon", "sides cross",
     ),
     "thin polygon": (
         "mechanism: rigid_body\npolygon: [[0, 0], [1, 0], [1, 1e-12], [0, 1e-12]]\n", 2, 10, "polygon", "same point",
-    ),
-    "flat polygon": ("mechanism: rigid_body\npolygon: [[0, 0], [1, 0], [2, 0]]\n", 2, 10, "polygon", "enclose nothing"),
-    "doubled corner": (
-        "mechanism: rigid_body\npolygon: [[0, 0], [1, 0], [1, 0], [0, 3]]\n", 2, 10, "polygon", "same point",
     ),
     "corner of one number": ("mechanism: rigid_body\npolygon: [[0, 0], [1, 0], [1]]\n", 2, 27, "polygon[3]", "at least 2"),
     "lands on another side": (

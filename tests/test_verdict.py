@@ -48,7 +48,6 @@ LOW = {"uplift_error": -0.33}
     [
         ({"nonlinear": peak(0.0), "linear2": peak(0.0)}, "linear2 agrees: it does not uplift either", "Disregard"),
         ({"nonlinear": peak(0.0), "linear1": peak(0.3)}, "linear1 disagrees: it rocks to 0.3", " agrees"),
-        ({"nonlinear": peak(0.4), "linear1": peak(0.41)}, "rocks to 0.4 of its critical rotation", "Disr"),
         ({"nonlinear": peak(0.4), "linear1": peak(0.45)}, "a first estimate: its peak is 13 % higher", "Disr"),
         ({"nonlinear": peak(0.4), "linear1": peak(0.6)}, "Disregard linear1 here: its peak is 50 % higher", "close"),
         ({"nonlinear": peak(0.4), "linear1": peak(0.4, **LOW)}, "uplift acceleration is 33 % too low; here", "agrees"),
@@ -59,7 +58,6 @@ LOW = {"uplift_error": -0.33}
         ({"nonlinear": fell(UP)}, "The structure overturns clockwise.", "linear"),
         ({"nonlinear": fell(UP), "linear1": fell(DOWN)}, "a first estimate: it overturns the other way", "agrees"),
         ({"nonlinear": fell(UP), "linear1": fell(UP, 2.4)}, "linear1 agrees: it overturns too, 0.4 s later", "trust"),
-        ({"nonlinear": fell(UP), "linear1": fell(UP, 4.0)}, "a first estimate: it overturns too, 2 s later", " agrees"),
         ({"nonlinear": peak(0.9), "linear2": fell(UP)}, "disagrees: it overturns clockwise. Do not trust", "close"),
         # What overturns by kappa1 alone, its uplift a third too low, is not near to overturning for that.
         ({"nonlinear": peak(0.01), "linear1": fell(UP, **LOW), "linear2": peak(0.01)},

@@ -33,19 +33,14 @@ WRONG = [
     # text, line, field, what is said
     (GOOD.replace("1.35", "0.9"), 1, "FC", "must be at least 1, got 0.9"),
     (GOOD.replace("FC: 1.35\n", ""), 1, "FC", "is missing: confidence factor"),
-    (GOOD.replace("S: 1.2\n", ""), 1, "S", "is missing: factor of soil and topography"),
     (GOOD.replace("TC: 0.4", "TC: 2.5"), 4, "TC", "is above T_D = 4 a_g/g + 1.6 = 2.4 s: got 2.5 s"),
     (GOOD + "floor: {z: 4, H: 3, T1: 0.4, xi1: 0.1, n: 3}\n", 6, "floor.z", "is above the roof"),
-    (GOOD + "floor: {z: 2, H: 3, T1: 0.4, xi1: 5, n: 3}\n", 6, "floor.xi1", "must be at most 0.5, got 5"),
     (GOOD + "floor: {z: 2, H: 3, T1: 0.4, xi1: 0.1, n: 3, SLD: {T1: 0.3}}\n", 6, "floor.SLD.xi1", "is missing"),
     (GOOD + "soil: F\n", 6, "soil", "must be A, B, C, D or E"),
     (GOOD + "spectrum: [[0, 1], [1, 1]]\n", 6, "spectrum", "cannot be combined with ag"),
     (GOOD + "VN: 50\n", 6, "VN", "requires `hazard`, the table of return periods"),
-    (GOOD + "SLC: {ag: 0.2}\n", 6, "SLC.F0", "is missing"),
-    (GOOD + "ground: 3\n", 6, "ground", "is not a field of the site"),
     (GOOD + "code: EC9\n", 6, "code", "there is no code 'EC9'"),
     (SPECTRUM.replace("[0.4, 0.6]", "[0, 0.6]"), 4, "spectrum[2]", "has two ordinates at 0 s"),
-    (SPECTRUM.replace("[9, 0.01]", "[0.3, 0.6]"), 5, "spectrum[3]", "steps back from 0.4 s to 0.3 s"),
     (SPECTRUM.replace("[0, 0.24]", "[0.1, 0.24]"), 3, "spectrum[1]", "the first ordinate must be at T = 0"),
     (SPECTRUM.replace("[9, 0.01]", "[9, 0]"), 5, "spectrum[3]", "has no positive acceleration at 9 s"),
     (TABLE.replace("[475", "[20"), 5, "hazard[2]", "return periods must increase, got 20 after 30 years"),
@@ -58,7 +53,6 @@ WRONG = [
         "cannot be combined with T0",
     ),
     (GOOD + "element: {kind: fixed, L: 1, t: 0.3, w: 18000, E: 1.2e+9}\n", 6, "element.kind", "cantilever or spanning"),
-    (GOOD + "element: {kind: spanning, L: 1, t: 0.3, w: 18000}\n", 6, "element.E", "is missing"),
     ("", None, None, "the file is empty"),
 ]
 
