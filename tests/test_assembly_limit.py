@@ -219,16 +219,6 @@ def test_blocks_that_overlap_are_named():
         contacts([rectangle("twin", 0, 0, 1, 1), rectangle("twin", 2, 0, 3, 1)], FLOOR)
 
 
-def test_friction_is_given_by_pairs_in_either_order():
-    blocks = [rectangle("one", 0, 0, 1, 4), rectangle("other", 1, 0, 2, 4)]
-    found = contacts(blocks, FLOOR, friction=0.6, per_pair={("other", "one"): 0.0, ("ground", "one"): None})
-    assert {(c.a, c.b): c.friction for c in found} == {
-        ("one", "other"): 0.0, ("ground", "one"): None, ("ground", "other"): 0.6,
-    }  # fmt: skip
-    with pytest.raises(ContactFault, match="'one' and 'roof' have no joint"):
-        contacts(blocks, FLOOR, per_pair={("one", "roof"): 0.0})
-
-
 @pytest.mark.parametrize("shaken", [False, True])
 def test_an_arch_drawn_to_millimetres_keeps_its_joints(shaken):
     rng = np.random.default_rng(1)
@@ -365,13 +355,6 @@ def test_two_equal_towers_apart_are_two_mechanisms(shift):
     assert {each.moves for each in found.several} == {("one",), ("other",)}
 
 
-def test_three_equal_towers_are_three_mechanisms():
-    towers = [rectangle(f"t{k}", 1.7 * k, 0, 1.7 * k + 1, 4) for k in range(3)]
-    found = solved(towers)
-    assert [each.moves for each in found.several] == [("t0",), ("t1",), ("t2",)]
-    assert np.array_equal(found.velocity, found.several[0].velocity)
-
-
 def test_a_vertex_that_is_degenerate_is_still_one_mechanism():
     # A column of ten equal blocks: above the foot all joints are far from opening; below a beam, more forces than
     # equations.
@@ -434,18 +417,6 @@ def test_the_friction_that_oppenheims_arch_needs():
     assert solved(blocks, ground, friction=need.needed).multiplier == approx(found.multiplier, rel=1e-9)
     assert solved(blocks, ground, friction=need.needed - 1e-3).multiplier < found.multiplier * (1 - 1e-6)
     assert round(solved(blocks, ground, friction=0.35).multiplier, 3) == 0.207
-
-
-def test_an_arch_that_slides_says_where():
-    blocks, joints, found = oppenheim(0.35)
-    made = linkage(blocks, joints, (), found)
-    assert made.slides
-    for k in made.slides:
-        # Associated flow: a joint that slides opens at both ends by at least mu of it.
-        assert found.opening[k].min() >= 0.35 * abs(found.sliding[k]) - 1e-9
-    assert found.kinematic == approx(found.multiplier, rel=1e-9)
-    with pytest.raises(ValueError, match="slides"):
-        remaining(blocks, joints, (), made.states)
 
 
 def test_the_line_of_thrust_of_the_arch():
@@ -526,17 +497,6 @@ def test_the_unit_of_the_live_forces_decides_nothing(unit):
         collapse(tower, contacts(tower, FLOOR), live=0 * live)
 
 
-def test_a_block_that_is_lifted_by_glue_at_its_foot_is_named():
-    blocks = [rectangle("left", 0, 0, 1, 4), rectangle("right", 1, 0, 2, 4)]
-    joints = contacts(blocks, FLOOR, per_pair={("left", "right"): 0.8})
-    found = collapse(blocks, joints)
-    made = linkage(blocks, joints, (), found)
-    foot = next(k for k, c in enumerate(joints) if c.b == "left")
-    assert 0.25 <= found.multiplier <= 0.5
-    if foot in made.lifted:
-        assert foot in friction(found).glued
-
-
 @pytest.mark.parametrize("k", [0.5, 1.0])
 def test_a_wall_held_at_its_top_has_the_weakest_hinge_of_its_formula(k):
     """lambda h/t = 2 (1 + rho (1 + k xi/(1 - xi)))/xi at the courses' joints: 9 at 2/3 for k = 1/2, rho = 1."""
@@ -578,16 +538,6 @@ def test_three_groups_about_one_point_are_two_hinges():
                    [0, 1.0]])))  # fmt: skip
     assert pair.groups == (("a", "b"), ("c",))
     assert len(pair.hinges) == 1
-
-
-def test_a_resting_block_is_ground_to_what_moves_on_it():
-    stack = [rectangle("low", -2, 0, 2, 1), rectangle("top", 0, 1, 1, 5)]
-    joints = contacts(stack, FLOOR)
-    made = linkage(stack, joints, (), collapse(stack, joints))
-    assert made.groups == (("top",),)
-    assert made.rest == ("low", "ground")
-    assert [(h.one, h.other, h.point) for h in made.hinges] == [(None, 0, 1 + 1j)]
-    assert made.states[0 if joints[0].a == "low" else 1] is Opening.END
 
 
 def test_what_leads_is_on_the_ground_and_turns_the_right_way():

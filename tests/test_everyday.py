@@ -311,22 +311,10 @@ class TestStandardStreams:
         run("overturning", BLOCK, "--points", "6", "--out", "-")
         assert run("equiv", BLOCK).stdout
 
-    def test_the_runs_of_a_study_go_there_too(self):
-        Path("block.yaml").write_text(run("new", "block").stdout, encoding="utf-8")
-        Path("study.yaml").write_text(run("new", "study").stdout, encoding="utf-8")
-        run("fragility", "study.yaml")
-        run("results", "study.db", "--out", "runs.csv")
-        assert run("results", "study.db", "--out", "-").stdout_bytes == Path("runs.csv").read_bytes()
-
     def test_several_motions_have_several_tables_and_a_picture_is_none(self):
         several = ("respond", BLOCK, "--pulse", "sine:0.5g:1s", "--pulse", "sine:0.4g:1s", "--out", "-")
         assert "--out - works for a single motion only" in run(*several, code=2).stderr
         assert "does not end in .html" in run("report", BLOCK, "-o", "-", code=2).stderr
-
-    @pytest.mark.parametrize("command", [("equiv",), ("error",), ("draw",), ("respond", "--release", "0.3")])
-    def test_a_structure_comes_from_standard_input(self, command):
-        given = Path(BLOCK).read_text(encoding="utf-8")
-        assert piped(*command, "-", "--json", given=given).stdout == run(*command, BLOCK, "--json").stdout
 
     def test_a_report_holds_what_came_from_there(self):
         there = json.loads(piped("report", "-", "--json", given=Path(BLOCK).read_bytes()).stdout)["structure"]
@@ -345,11 +333,3 @@ class TestStandardStreams:
         said = piped(*both, given=Path(BLOCK).read_text(encoding="utf-8"), code=2).stderr
         assert "can be read once only, and something else has been read from it" in said
         assert "larger than 10 MB" in piped("equiv", "-", given="#" * 10_000_001, code=2).stderr
-
-    def test_a_record_is_read_by_defaults_from_there_too(self, monkeypatch):
-        monkeypatch.setenv("ROCKING_UNITS", "m/s2")
-        monkeypatch.setenv("ROCKING_DT", "0.02")
-        bare = "\n".join(f"{k % 7 - 3}.5" for k in range(50))
-        assert json.loads(piped("record", "-", "--json", given=bare).stdout)["dt"] == 0.02
-        own = Path(ACCEL).read_text(encoding="utf-8")
-        assert json.loads(piped("record", "-", "--json", given=own).stdout)["dt"] == 0.01

@@ -267,10 +267,6 @@ class TestVerify:
         assert "onset of rocking" in said and "A demonstration." in said
         assert not [word for word in ("SLV", "FC", "zeta", "a_g", "NTC", "None") if word in said]
 
-    def test_it_fits_into_a_narrow_terminal(self, demo, monkeypatch):
-        monkeypatch.setenv("COLUMNS", "40")
-        assert max(map(len, run("verify", "block.yaml", *demo).stdout.splitlines())) <= 40
-
     def test_a_structure_that_does_not_pass_says_so(self, demo):
         Path("thin.yaml").write_text("mechanism: block\nwidth: 0.28\nheight: 2.8\n", encoding="utf-8")
         assert "Both directions: fails. Overturning governs" in run("verify", "thin.yaml", *demo).stdout
@@ -278,9 +274,7 @@ class TestVerify:
         assert each["passes"] is False and each["ratio"] == pytest.approx(0.15 * G / 2.0)
 
     def test_directions_that_differ_are_compared(self, demo):
-        text = "mechanism: asymmetric_frame\n"
         Path("frame.yaml").write_text((EXAMPLES / "frame.yaml").read_text(encoding="utf-8"), encoding="utf-8")
-        assert text in Path("frame.yaml").read_text(encoding="utf-8")
         sides = run_json("equiv", "frame.yaml")["directions"]
         found = run_json("verify", "frame.yaml", *demo)
         ratios = {side: each["ratio"] for side, each in found["directions"].items()}
@@ -347,12 +341,6 @@ class TestOtherCommands:
         )
         assert [each["name"] for each in found["rows"]] == ["thin", "middle", "wide"]
         assert "0.7355" in run("survey", "t.csv", *demo).stdout
-
-    def test_of_a_survey_with_a_bad_row_the_others_are_ranked(self, demo):
-        Path("t.csv").write_text("mechanism,name,width,height\nblock,a,0.7,2.8\nblock,b,-1,2.8\n", encoding="utf-8")
-        result = some("survey", "t.csv", *demo, "--json")
-        found = json.loads(result.stdout)
-        assert [each["name"] for each in found["rows"]] == ["a"] and found["bad"][0]["line"] == 3
 
     def test_structures_without_a_ratio_come_last(self, demo):
         rows = "mechanism,name,width,height\nblock,slender,0.28,2.8\nblock,stout,0.7,2.8\n"
