@@ -256,12 +256,6 @@ def test_one_factor_for_all():
     assert max(factors) == pytest.approx(min(factors), rel=1e-12)
 
 
-def test_in_a_narrow_terminal_no_line_is_longer(monkeypatch):
-    monkeypatch.setenv("COLUMNS", "40")
-    text = run("select", "r*.AT2", *ASKED, "--count", 2).stdout
-    assert max(len(line) for line in text.splitlines()) <= 40
-
-
 def test_a_picture_is_written(files):
     run("select", "r*.AT2", *ASKED, "--count", 3, "--plot", "set.svg")
     text = (files / "set.svg").read_text()

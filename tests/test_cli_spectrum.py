@@ -179,10 +179,6 @@ class TestWrongUse:
             (("--record", ACCEL, "--sizes", "3:1"), "'3:1' is not increasing: give the smaller value first"),
             (("--record", ACCEL, "--sizes", "1:3:1"), "'1' is not a number of sizes"),
             (("--record", ACCEL, "--eta", "1.5"), "--eta must be in (0, 1], got 1.5"),
-            (
-                ("--record", ACCEL, "--scale", "2", "--target-pga", "1"),
-                "--scale, --target-pga and --target-pgv cannot be combined",
-            ),
         ],
     )
     def test_it_is_said(self, arguments, said):

@@ -157,11 +157,6 @@ def test_a_row_that_leaves_its_columns_is_named(content, width, tmp_path):
         assert found.line == row + 1 and found.excerpt and "lost" in found.hint
 
 
-def test_a_number_that_is_moved_within_its_row_is_named(tmp_path):
-    moved = csmip(SMOOTH, names=("UP",)).replace(f"{SMOOTH[9]:10.3f}", f"{SMOOTH[9]:9.3f} ", 1)
-    assert "do not end at their columns" in refused(moved, tmp_path).message
-
-
 def test_a_row_of_at2_that_leaves_the_columns_of_the_others_is_named(tmp_path):
     lines = at2().split("\n")
     lines[20] = lines[20].replace("-", "", 1)
@@ -195,12 +190,10 @@ def each_line(change):
 EDITORS = {
     "blanks after rows": each_line(str.rstrip),
     "blanks before rows": each_line(lambda line: line.lstrip(" ")),
-    "blanks around rows": each_line(lambda line: line.strip(" ")),
     "CRLF": lambda text: text.replace("\n", "\r\n"),
     "CR": lambda text: text.replace("\n", "\r"),
     "no newline at the end": lambda text: text.rstrip("\n"),
     "tabs of 8": lambda text: unexpanded(text, 8),
-    "tabs of 4": lambda text: unexpanded(text, 4),
     "a tab for blanks": lambda text: re.sub(" {2,}", "\t", text),
     "tabs, and blanks around rows": lambda text: re.sub(" {2,}", "\t", each_line(str.strip)(text)),
 }
@@ -211,8 +204,6 @@ BY_EDITOR = pytest.mark.parametrize("editor", EDITORS)
 @BY_EDITOR
 @BY_MADE
 def test_a_made_file_that_an_editor_has_saved_is_read(name, editor, tmp_path):
-    if (name, editor) == ("text in columns", "tabs of 4"):
-        pytest.skip("a tab in some rows is a delimiter of text: it is not known to stand for blanks")
     _same_after_saving(MADE_UP[name](SMOOTH), Kind({"channel": "1"}, 1), editor, tmp_path)
 
 
@@ -302,9 +293,7 @@ def test_numbers_with_exponents_have_a_form_too(damage, tmp_path):
         [f"{value:.3f}".rstrip("0") for value in SMOOTH],
         [f"{value:.3f}" for value in np.arange(100, 400) / 1000 if f"{value:.3f}"[-1] != "0"] + ["0.25", "0.5"],
         ["0", "0.0", *(f"{value:.6f}" for value in SMOOTH)],
-        ["0", *(f"{value:.6E}" for value in SMOOTH)],
         [f"{value:.6E}".replace("0.", ".") for value in SMOOTH],
-        [f"{value:.0f}" for value in 100 * SMOOTH],
     ],
 )
 def test_other_ways_to_print_numbers_raise_no_doubt(numbers, tmp_path):
@@ -425,12 +414,6 @@ class TestSimCenter:
         content = printed_json().replace('"numPoints": 240', f'"numPoints": {points}')
         assert "numPoints = " in refused(content, tmp_path).message
 
-    def test_a_key_that_is_there_twice_is_refused_at_the_second(self, tmp_path):
-        content = printed_json().replace('"dT": 0.01,\n', '"dT": 0.01,\n"dT": 0.02,\n')
-        found = refused(content, tmp_path)
-        assert 'the key "dT" is there more than once' in found.message
-        assert found.line == 2
-
     def test_what_no_program_writes(self, tmp_path):
         found = refused(simcenter([0, 1]).replace(" 0,", f" {HUGE},"), tmp_path)
         assert "value 1 is not a finite number: Infinity" in found.message
@@ -470,11 +453,9 @@ class TestSamples:
         [
             SMOOTH,
             np.random.default_rng(3).normal(size=3000),
-            np.cumsum(np.random.default_rng(4).normal(size=3000)),
             np.repeat([0.0, 1.0, -1.0, 0.0], 60),  # steps
             np.interp(np.arange(240), [0, 60, 120, 180, 239], [0, 1, -1, 0, 0]),  # corners
             np.concatenate([np.zeros(100), np.sin(np.arange(63) / 10), np.zeros(100)]),
-            np.round(SMOOTH),
             np.concatenate([np.arange(400) % 7 / 1000, np.full(6, 0.02), np.arange(400) % 7 / 1000, SMOOTH]),  # quiet
             np.zeros(100),
         ],
@@ -497,28 +478,18 @@ HOSTILE = {
     "number of points, AT2": at2().replace("NPTS= 240", f"NPTS= {HUGE}"),
     "number of points, CSMIP V2": csmip(names=("UP",)).replace(" 11 POINTS", f" {HUGE} POINTS"),
     "number of points, CSMIP V1": csmip_v1().replace("POINTS =  11", f"POINTS =  {HUGE}"),
-    "number of points, evenly": csmip_v1(evenly=EVENLY[1]).replace(" 11 Acc", f" {HUGE} Acc"),
-    "number of points, GeoNet": geonet(names=("Up",)).replace("points    11", f"points {HUGE}"),
     "counts, GeoNet": geonet(names=("Up",)).replace("      11      11", f" 11 {HUGE}"),
-    "number of points, USC": usc().replace("POINTS =   11", f"POINTS =   {HUGE}"),
     "number of points, ESM": esm().replace("NDATA: 11", f"NDATA: {HUGE}"),
     "number of points, COSMOS": cosmos().replace("   11  acc", f"   {HUGE}  acc"),
     "header values, COSMOS": cosmos().replace(" 100 Int", f" {HUGE} Int"),
-    "text lines, COSMOS": cosmos().replace("with 13", f"with {HUGE}"),
-    "comment lines, COSMOS": cosmos().replace("  1 Comment", f"  {HUGE} Comment"),
     "width, COSMOS": cosmos().replace("(10I8)", f"(10I{HUGE})"),
     "width 0, COSMOS": cosmos().replace("(8F10.5)", "(8F0.5)"),
     "width, CSMIP V2": csmip(names=("UP",), unit=f"(UNITS: CM/SEC/SEC) (8F{HUGE}.3)"),
-    "width 0, CSMIP V2": csmip(names=("UP",), unit="(UNITS: CM/SEC/SEC) (8F0.3)"),
-    "width 0, CSMIP V1": csmip_v1(evenly="{count} Accelerogram points at 200 pts/sec in units of g. Format: (8f0.6)"),
     "duration, K-NET": knet(duration="1E29"),
-    "rate, K-NET": knet(rate="1.2.3Hz"),
     "scale, K-NET": knet(scale=f"2000(gal)/0.{'0' * 300}1"),
     "far times": usc(times=[*0.01 * np.arange(10), 99999.0]),
     "times beyond numbers": usc().replace("  0.100 -7.000", "   1e29 -7.000"),
-    "negative times": usc().replace("   0.000  0.000", "  -1e29  0.000"),
     "interval, AT2": at2().replace("DT= .01", "DT= 1e-300"),
-    "interval too long, AT2": at2().replace("DT= .01", "DT= 1e29"),
     "rate, SMC": smc(rate=1e-20),
     "a long line": at2() + "x" * 10_000_000,
 }

@@ -15,7 +15,7 @@ from rocking_cli.excitation.measures import measure
 from rocking_cli.processing.entry import Entry, of_reading
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.reading import Reading, reading_of
-from rocking_cli.processing.steps import STEPS, parse_step, parse_steps, process
+from rocking_cli.processing.steps import parse_step, parse_steps, process
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
@@ -175,14 +175,11 @@ class TestRefusals:
         ("step", "words"),
         [
             ("lowpass 50", "50 Hz is not below the Nyquist frequency, 50 Hz"),
-            ("highpass 80", "is not below the Nyquist frequency, 50 Hz"),
             ("highpass 0.05", "15 s long, is shorter than one period of 0.05 Hz"),
             ("trim 2:20", "ends at 15 s, before 20 s"),
             ("trim 16:", "fewer than two samples"),
-            ("trim 3:3.001", "fewer than two samples"),
             ("resample 20", "fewer than two samples"),
             ("resample 1e-9", "less than a 1000th"),
-            ("resample 2000", "fewer than two samples"),
         ],
     )
     def test_what_the_record_does_not_allow(self, motion, step, words):
@@ -194,14 +191,10 @@ class TestRefusals:
         [
             ("baseline", "cubic", "is not one of constant, linear, quadratic"),
             ("highpass", "-1", "is not a frequency in Hz above zero"),
-            ("highpass", "0", "is not a frequency"),
-            ("lowpass", "fast", "is not a frequency"),
             ("taper", "0.7", "more than half of the record"),
             ("trim", "2", "is no.* range of times"),
             ("trim", "5:2", "ends before it begins"),
-            ("trim", ":", "range of times"),
             ("resample", "0.01 kg", "is a mass"),
-            ("resample", True, "cannot be True"),
             ("factor", "0", "is not a factor"),
             ("hipass", "1", "is not a processing step"),
         ],
@@ -222,16 +215,6 @@ class TestRefusals:
             done(GroundMotion("short", 0.01, np.ones(12)), "lowpass 20")
         with pytest.raises(InputError, match="nothing would be left"):
             done(GroundMotion("short", 0.01, np.array([0.0, 1.0, 0.0])), "baseline quadratic")
-
-
-def test_every_step_says_itself_as_it_is_asked_for():
-    for name, given in (
-        ("baseline", "linear"), ("highpass", "0.1 Hz"), ("lowpass", 25), ("taper", "5 %".replace(" ", "")),
-        ("trim", "2:20"), ("resample", "5 ms"), ("factor", 1.25),
-    ):  # fmt: skip
-        step = parse_step(name, given)
-        assert parse_steps([str(step)]) == (step,)
-    assert len(STEPS) == 7
 
 
 @pytest.mark.parametrize("name", ["highpass", "lowpass", "taper", "trim", "resample", "factor"])
@@ -279,18 +262,12 @@ class TestCommands:
         [
             (("--highpass", "1", "--highpass", "2"), "is given twice"),
             (("--lowpass", "80"), "--lowpass: 80 Hz is not below the Nyquist frequency, 50 Hz"),
-            (("--lowpass", "x"), "is not a frequency in Hz"),
             (("--gain", "3"), "is a gain without a unit"),
-            (("--azimuth", "30"), "--azimuth requires a second component"),
             (("--floor", "T1=0.4"), "z and gamma, or n"),
         ],
     )
     def test_wrong_options(self, options, words):
         assert words in run("record", ACCEL, *options, code=2).stderr
-
-    def test_a_pulse_has_none(self):
-        result = run("respond", "--pulse", "sine:0.5g:1s", "--lowpass", "5", code=2)
-        assert "--lowpass describes a record" in result.stderr
 
     def test_a_list_may_repeat_a_step(self, tmp_path):
         (tmp_path / "set.yaml").write_text(

@@ -373,21 +373,6 @@ class TestChanges:
         found = [*differences(before.description(), load_study(tmp_path / "study.yaml").description())]
         assert len(found) == 1
 
-    @pytest.mark.parametrize(
-        ("entry", "words"),
-        [
-            ("{file: set.yaml, vertical: a.csv}", "this is a list of them"),
-            ("{file: a.csv, with: a.csv}", "azimuth is missing"),
-            ("{file: a.csv, with_channel: '2'}", "is of a second component"),
-        ],
-    )
-    def test_entries_that_say_half_of_it(self, tmp_path, entry, words):
-        (tmp_path / "a.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
-        (tmp_path / "set.yaml").write_text("records: [{file: a.csv}]\n", encoding="utf-8")
-        text = f"structures: ['{EXAMPLES / 'block.yaml'}']\nrecords: [{entry}]\nmethod: cloud\n"
-        with pytest.raises(InputError, match=words):
-            load_study(write(tmp_path, text))
-
     def test_a_changed_record_is_named(self, tmp_path):
         (tmp_path / "accel.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
         path = write(tmp_path, STUDY.replace(f"{EXAMPLES}/*accel.csv", "accel.csv"))
