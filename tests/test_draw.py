@@ -23,14 +23,12 @@ from mechanisms.rigid_body import RigidBody
 from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
 from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, Sketch, box, rotation, three_digits
-from rocking_cli.errors import MechanismError
 from rocking_cli.plotting import dimensions, style
 from rocking_cli.plotting.labels import Labels, mathematics
 from rocking_cli.plotting.panels import Panel
 from rocking_cli.plotting.structure import colour, draw_structure
 from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.picture import ASSUMED, NODES, picture
-from rocking_cli.testing import MechanismContract
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
@@ -184,14 +182,6 @@ class TestPicture:
         found = [(pin.part, round(pin.point.real, 9)) for pin in shown.pins]
         assert found == [(0, 0.2), (1, 0.2), (0, -0.2), (1, -0.2)]
 
-    def test_a_plugin_that_fails_is_called_by_its_name(self):
-        class Odd(Bare):
-            def sketch(self):
-                raise KeyError("lost")
-
-        with pytest.raises(MechanismError, match="the mechanism bare failed in sketch: KeyError: 'lost'"):
-            picture(Odd())
-
 
 class TestWhatIsMeasured:
     """The numbers on a picture come from its points: they are the fields of the file, or the paper's formulas."""
@@ -243,10 +233,6 @@ class TestWhatIsMeasured:
             centroid = np.exp(1j * middles).mean() * 2 / 3 * (outer**3 - inner**3) / (outer**2 - inner**2)
             assert values[f"r_{link}"] == pytest.approx(abs(centroid - one))
             assert values[f"ψ_{link}"] == pytest.approx(abs(np.angle((centroid - one) / (other - one))))
-
-    def test_the_texts_have_the_numbers(self):
-        assert Length("2b", 1j, 0.7 + 1j).text == "2b = 0.7 m"
-        assert Angle("α", 0j, 1j, 1 + 1j).text == "α = 45°"
 
     @pytest.mark.parametrize(
         ("value", "text"),
@@ -311,39 +297,6 @@ class TestLineOfThrust:
             for hinge in arch.hinges(line.direction):
                 assert np.abs(z - hinge).min() < 1e-6
             assert f"{arch.uplift(line.direction):.3g} g" in line.name
-
-    def test_its_multiplier_is_the_uplift_of_the_mechanism(self):
-        state = thrust(Ring(ARCH.thickness / ARCH.radius, np.radians(157.5)), ARCH.hinge_angles)
-        assert state[3] == pytest.approx(ARCH.uplift(Direction.POSITIVE), rel=1e-9)
-
-
-class TestContract:
-    def broken(self, **changes):
-        class Broken(Block):
-            def sketch(self):
-                sketch = super().sketch()
-                return Sketch(**{**vars(sketch), **changes})
-
-        return Broken(width=1.0, height=4.0)
-
-    def test_it_catches_outlines_that_are_not_the_bodies(self):
-        check = MechanismContract().test_outlines_are_those_of_the_bodies
-        check(self.broken())
-        for outlines in (
-            {"other": [[0, 1, 1j]]},
-            {"block": [[0, 1]]},
-            {"block": [[0, 1, 1 + 3.9j, 3.9j]]},
-            {"block": [[-0.45, 0.45, 0.45 + 4j, -0.45 + 4j]]},
-        ):
-            with pytest.raises(AssertionError):
-                check(self.broken(outlines=outlines))
-
-    def test_it_catches_hinges_that_part(self):
-        check = MechanismContract().test_hinges_hold_together
-        check(self.broken())
-        for hinge in (Hinge("O", 0.49 + 0j, ("block",)), Hinge("O", 0.5 + 0j, ("other",))):
-            with pytest.raises(AssertionError):
-                check(self.broken(hinges={Direction.POSITIVE: [hinge]}))
 
 
 class TestFigure:

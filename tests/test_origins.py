@@ -25,13 +25,11 @@ def of(tmp_path, text: str, **options) -> Origin:
     ("line", "event", "station"),
     [
         ("Made Up-01, 1/17/1994, Some Receiving Sta, 228", "Made Up-01", "Some Receiving Sta"),
-        ("Made Up, 10/18/1989, Town, Main Street, UP", "Made Up", "Town, Main Street"),
         ("MADE UP 10/15/79 2319, SOME ARRAY 4, 140 (CDMG STATION 955)", "MADE UP 10/15/79 2319", "SOME ARRAY 4"),
         ("Made \x9b31mUp, 1/17/1994, \u202eSta\tion, 228", "Made 31mUp", "Sta ion"),
         ("Made Up, 1/17/1994, -, 228", "Made Up", None),
         ("Unknown, 1/17/1994, -999, 228", None, None),
         ("Made Up, Some Station, 228", None, None),  # no date: which is which is not guessed
-        ("Points are listed, 8 across, in a row, of the file", None, None),
         ("", None, None),
     ],
 )
@@ -155,15 +153,11 @@ def test_seismologists_formats(tmp_path, form):
     ("given", "magnitude", "distance"),
     [
         ("6.5", 6.5, 6.5),
-        ("0", None, 0.0),
         (-999.0, None, None),
         (float("nan"), None, None),
-        ("1e3", None, None),
         ("11", None, 11.0),
-        ("30000", None, None),
         ("9" * 400, None, None),
         (None, None, None),
-        ([], None, None),
     ],
 )
 def test_numbers_that_make_no_sense_are_left_out(given, magnitude, distance):

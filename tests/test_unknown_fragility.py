@@ -139,17 +139,6 @@ def test_exceedances_are_counted_twice(whole, limit):
         assert 0 < surely.sum() < maybe.sum()
 
 
-def test_what_is_counted_does_not_depend_on_how_it_is_read(whole, monkeypatch):
-    once = counted(whole, ladders=True)
-    monkeypatch.setattr(store, "READ", 5)
-    piecewise = counted(whole, ladders=True)
-    assert piecewise.unknown == once.unknown
-    for one, other in ((once, piecewise), (once.lower, piecewise.lower)):
-        for limit in LIMITS:
-            np.testing.assert_array_equal(one.exceeding[limit], other.exceeding[limit])
-            np.testing.assert_array_equal(one.ladders.first[limit], other.ladders.first[limit])
-
-
 def test_what_is_known_of_a_run_is_known_of_the_side_on_which_it_was_seen():
     # Of unknown outcome, with a bound of 0.5 of the critical rotations .2 and .1; which side it is of tell the peaks.
     peaks = np.array([[0.15, 0.02], [0.04, 0.06], [0.15, 0.06], [0.15, 0.06]])

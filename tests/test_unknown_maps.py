@@ -314,11 +314,6 @@ class TestPulses:
         assert best["peak_lower_bound"] <= best["peak_ratio"] and "has slid by" in best["known_to_reason"]
         assert data["linear2"]["over_nonlinear"] is None and data["linear2"]["unknown"] is False
 
-    def test_words_of_a_pulse(self):
-        said = run("pulse", FILE, "--ag", "0.9g", "--period", 0.6).stdout
-        assert "The outcome is unknown after 0.468 s: then" in said and "have no joints" in said
-        assert "All checked joints bear" in run("pulse", FILE, "--ag", "0.4g", "--period", 0.6).stdout
-
     def test_sampling_is_not_refined_beyond_what_is_known(self):
         found = sampled_history(Structure(PORTAL), "nonlinear", parse_pulse("sine:0.9g:0.6s"))
         assert found.history.unknown and found.converged and found.per_period == 2 * COARSEST
@@ -345,13 +340,6 @@ class TestFilm:
         assert all(max(each["x"]) <= until for each in ratio_chart(histories)["series"])
         linear = {name: run for name, run in histories.items() if name != "nonlinear"}
         assert all(max(each["x"]) > until for each in ratio_chart(linear)["series"])
-
-    def test_json(self, tmp_path):
-        shaken = ("--record", ACCEL, "--scale", 2, "--out", tmp_path / "a.html", "--neighbours", 0)
-        data = json.loads(run("animate", FILE, *shaken, "--json").stdout)
-        assert data["outcome"] == "unknown" and data["unknown"] and data["end"] <= data["known_to"]
-        several = run("animate", FILE, *shaken, "--record", EXAMPLES / "accel_transverse.csv").stdout
-        assert "unknown after 3.499 s, as the joint between" in several
 
 
 class TestHistory:
