@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -333,16 +334,25 @@ class TestRespond:
         assert words in run("respond", FRAME, "--record", ACCEL, option, value, code=2).stderr
         assert list(tmp_path.iterdir()) == []
 
-    def test_an_output_never_replaces_an_input(self, tmp_path):
-        record, structure = tmp_path / "record.csv", tmp_path / "block.csv"
-        record.write_bytes((EXAMPLES / "accel.csv").read_bytes())
-        structure.write_bytes((EXAMPLES / "block.yaml").read_bytes())
-        for out in (record, structure):
-            text = run("respond", structure, "--record", record, "--out", out, code=2).stderr
-            assert "would overwrite an input file" in text
-        assert record.read_bytes() == (EXAMPLES / "accel.csv").read_bytes()
-        both = ("--out", "same.csv", "--plot", "same.png")
-        run("respond", EXAMPLES / "block.yaml", "--record", record, *both)
+    @pytest.mark.parametrize(
+        ("command", "suffix"),
+        [
+            (("respond", "--record", ACCEL, "--out"), "csv"),
+            (("equivalent", FRAME, "--ag", "1g", "--period", "1", "--out"), "csv"),
+            (("draw", "--plot"), "png"),
+            (("report", "--out"), "html"),
+            (("verify", "--site", EXAMPLES / "verify" / "site.yaml", "--sheet"), "html"),
+        ],
+    )
+    def test_an_output_never_replaces_an_input(self, command, suffix, tmp_path):
+        structure, text = tmp_path / f"block.{suffix}", (EXAMPLES / "block.yaml").read_bytes()
+        structure.write_bytes(text)
+        said = run(command[0], structure, *command[1:], structure, code=2).stderr
+        assert "would overwrite an input file" in said and structure.read_bytes() == text
+        record = tmp_path / "record.csv"
+        record.write_bytes(Path(ACCEL).read_bytes())
+        if command[0] == "respond":
+            assert "would overwrite" in run(command[0], "--record", record, "--out", record, code=2).stderr
 
     def test_a_release_drawn_without_a_tail_warns_of_nothing(self):
         result = run("respond", "--release", "0.5", "--tail", "0", "--plot", "short.png")

@@ -9,7 +9,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.record_csv import write_record_csv
 from rocking_cli.io.tables import write_csv
 from tests.conftest import EXAMPLES
-from tests.test_cli import run, run_json
+from tests.test_cli import run
 
 ACCEL, BLOCK = str(EXAMPLES / "accel.csv"), str(EXAMPLES / "block.yaml")
 PULSE = "sine:0.4g:1s"
@@ -19,7 +19,6 @@ PULSE = "sine:0.4g:1s"
     ("options", "said"),
     [
         (("--record", ACCEL, "--target-pgv", "1e9"), "PGV = 1e+09 m/s scaled by 1.54"),
-        (("--record", ACCEL, "--target-pga", "1e300"), "PGA = 1e+300 g"),
         (("--record", ACCEL, "--scale", "1e9"), "PGA = 5.5e+08 g"),
         (("--record", ACCEL, "--scale=-1e308"), "at most 1000 g and 10000 m/s"),
         (("--pulse", "sine:2000g:1s"), "PGA = 2000 g"),
@@ -41,14 +40,11 @@ def test_a_motion_that_is_none_is_refused_everywhere(command, options, said):
     "arguments",
     [
         ("overturning", BLOCK, "--period", "1e-300:1e300"),
-        ("overturning", BLOCK, "--period", "0.2:1e7"),
-        ("overturning", "--omega", "1e-300:1e300"),
         ("overturning", "--a", "1:1e300"),
         ("overturning", BLOCK, "--ag", "0.1g:1e300g"),
         ("spectrum", BLOCK, "--pulse", PULSE, "--sizes", "1e-300:1e300"),
         ("spectrum", BLOCK, "--pulse", PULSE, "--jobs", "100000000"),
         ("equivalent", BLOCK, BLOCK, "--ag", "1e300g", "--period", "1"),
-        ("equivalent", BLOCK, BLOCK, "--ag", "1g", "--period", "1e300"),
     ],
 )
 def test_ranges_have_bounds(arguments):
@@ -60,12 +56,6 @@ def test_ranges_have_bounds(arguments):
 def test_a_film_has_a_speed_that_can_be_watched(file, speed):
     result = run("animate", BLOCK, "--pulse", PULSE, "--out", file, "--speed", speed, code=2)
     assert result.stdout == "" and "--speed: " in result.stderr and "is not between 0.001 and 1000" in result.stderr
-
-
-def test_the_finest_tolerance_is_reached():
-    asked = ("respond", BLOCK, "--record", ACCEL, "--neighbours", "0", "--rtol")
-    finest, usual = (run_json(*asked, rtol)["responses"]["nonlinear"]["peak_ratio"] for rtol in ("1e-14", "1e-9"))
-    assert finest == pytest.approx(usual, rel=1e-8)
 
 
 def test_a_pulse_too_short_to_be_shown_is_no_question_of_dt():

@@ -73,13 +73,10 @@ class TestInPlaceOfARecord:
         [
             (["--pulse", SINE, "--record", ACCEL], "--record and --pulse cannot be combined"),
             (["--pulse", "sin:1g:1s"], "did you mean sine?"),
-            (["--pulse", "sine:1:1s"], "no unit of amplitude"),
             (["--pulse", "sine:1g"], "expected sine:AMPLITUDE:PERIOD, such as sine:0.6g:0.8s"),
-            (["--pulse", SINE, "--units", "g"], "describes a record"),
             (["--pulse", SINE, "--channel", "1"], "describes a record"),
             (["--pulse", SINE, "--vertical-dt", "1"], "give --vertical"),
             (["--release", "0.5", "--scale", "2"], "or --pulse"),
-            ([], "--pulse"),
         ],
     )
     def test_what_does_not_fit_is_refused(self, options, words):

@@ -159,7 +159,6 @@ class TestRespond:
                 "--record and --pulse cannot be combined: choose one",
             ),
             (("--record", "r/east.csv", "r/north.csv"), "use a quoted pattern: --record '*.csv'"),
-            (("--record", "r/east.csv", "r/north.csv", "r/west.csv"), "use a quoted pattern: --record '*.csv'"),
             ((BLOCK, BLOCK, "--record", "r/east.csv"), "takes one structure, but 2 are given"),
         ],
     )

@@ -445,10 +445,6 @@ class TestCommand:
         assert "at most 6." in run("draw", "--at", "7", code=2).stderr
         assert "above 0" in run("draw", "--at", "-0.5", code=2).stderr
 
-    def test_it_does_not_write_over_its_input(self, tmp_path):
-        (tmp_path / "odd.png").write_text("mechanism: block\nwidth: 1\nheight: 4\n", encoding="utf-8")
-        assert "would overwrite" in run("draw", "odd.png", code=2).stderr
-
 
 @pytest.mark.parametrize(
     "given", [{"lines": [(0j, 1j)]}, {"lengths": [("b", 0j, 1j)]}, {"angles": [1]}, {"notes": "abc"}]

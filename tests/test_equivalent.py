@@ -217,11 +217,6 @@ class TestCommand:
         assert complaint in " ".join(text.split())
         assert list(tmp_path.iterdir()) == []
 
-    def test_no_output_overwrites_a_structure(self, tmp_path):
-        copy = tmp_path / "block.csv"
-        copy.write_text("mechanism: block\nwidth: 1\nheight: 4\n", encoding="utf-8")
-        assert "overwrite" in run(copy, WALL, "--ag", "1g", "--period", 1, "--out", copy, code=2).stderr
-
 
 def test_the_picture_has_the_pulses_above_and_the_responses_below():
     wall = parse_structure("mechanism: wall\nheight: 1\nthickness: 0.2\n", "w", "w")

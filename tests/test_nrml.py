@@ -223,11 +223,6 @@ def test_the_command_refuses_places_and_says_when_nothing_is_left(store, tmp_pat
     assert "pedestal, over PGA/(g lambda)" in found.stdout
 
 
-def test_two_outputs_cannot_be_one_file(store, tmp_path):
-    out = tmp_path / "a.csv"
-    assert "cannot be the same file" in command("results", store, "--out", out, "--curves", out).stderr
-
-
 @pytest.mark.parametrize("ending", ["csv", "parquet"])
 def test_curves_as_a_table(store, tmp_path, ending):
     out = tmp_path / f"curves.{ending}"

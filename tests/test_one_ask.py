@@ -164,17 +164,6 @@ def test_an_option_of_a_record_that_is_wrong_is_named(option, said):
     assert said in str(refused.value)
 
 
-def test_all_azimuths_are_asked_in_python_as_on_the_command_line():
-    pair = {"other": EXAMPLES / "accel_transverse.csv", "azimuth": "all", "scale": 2}
-    found = rk.respond(EXAMPLES / "block.yaml", EXAMPLES / "accel.csv", models="linear1", **pair)
-    typed = ("--with", pair["other"], "--azimuth", "all", "--scale", 2, "--model", "linear1")
-    shown = run_json("respond", EXAMPLES / "block.yaml", "--record", EXAMPLES / "accel.csv", *typed)
-    assert shown["pga"] == found.pga.tolist()
-    assert shown["responses"]["linear1"]["said"] == found.view.data["responses"]["linear1"]["said"]
-    with pytest.raises(rk.InputError, match="`tail` cannot be combined with `azimuth` all"):
-        rk.respond(EXAMPLES / "block.yaml", EXAMPLES / "accel.csv", tail=2, **pair)
-
-
 def test_of_a_trace_or_a_table_an_option_without_effect_is_refused(monkeypatch):
     block, trace = EXAMPLES / "calibrate" / "block.yaml", EXAMPLES / "calibrate" / "trace.csv"
     for given in ({"highpass": 0.1}, {"neighbours": 40}, {"points": 9}, {"slenderness": (0.8, 1.2)}, {"floor": FLOOR}):

@@ -280,12 +280,6 @@ class TestCommand:
         assert said in run("report", *FEW, BLOCK, *arguments, code=2).stderr
         assert list(tmp_path.iterdir()) == []
 
-    def test_an_input_is_not_written_over(self, tmp_path):
-        record = tmp_path / "r.html"
-        record.write_bytes(ACCEL.read_bytes())
-        assert "overwrite" in run("report", *FEW, BLOCK, "--record", record, "-o", record, code=2).stderr
-        assert record.read_bytes() == ACCEL.read_bytes()
-
 
 @pytest.mark.rest
 def test_a_structure_is_made_ready_once(monkeypatch, tmp_path):

@@ -5,7 +5,6 @@ import pickle
 import re
 import shutil
 import sys
-from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -16,12 +15,10 @@ import pytest
 from click.testing import CliRunner
 
 import rocking_cli as rk
-from rocking_cli.ask.watcher import Watcher
 from rocking_cli.cli.main import main
-from rocking_cli.dynamics import batch, exact_batch, kernels, shipped, ways
+from rocking_cli.dynamics import kernels, shipped, ways
 from rocking_cli.dynamics.calling import SETS
 from rocking_cli.dynamics.exact import closed_form
-from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.excitation.records import record_units
 from rocking_cli.excitation.records.registry import Readers
 from rocking_cli.studies import selfcheck as run
@@ -216,15 +213,6 @@ class TestEachCheck:
         found = checked("threads")
         assert found.passed is False and found.found == 1
 
-    @pytest.mark.parametrize("place", [batch, exact_batch])
-    def test_threads_fail_if_the_last_part_is_dropped(self, monkeypatch, place):
-        def dropped(work, count, size, *more):
-            in_parts(work, count - size if count > size else count, size, *more)
-
-        monkeypatch.setattr(place, "in_parts", dropped)
-        found = checked("threads")
-        assert found.passed is False and found.found == 2 * place.UNIT
-
     @pytest.mark.every(3)
     @pytest.mark.parametrize("name", SETS)
     def test_kernels_fail_if_one_value_of_a_set_differs(self, monkeypatch, name):
@@ -323,11 +311,6 @@ class TestCommand:
         assert [each["passed"] for each in found["checks"]] == [True, None, False]
         assert [each["why"] for each in found["checks"]] == [None, "there is none", "MemoryError"]
 
-    def test_a_traceback_is_shown_with_debug(self, monkeypatch):
-        few(monkeypatch, one=ValueError("no such thing"))
-        done = CliRunner().invoke(main, ["--debug", "selfcheck"])
-        assert done.exit_code == 4 and "Traceback" in done.stderr
-
     def test_quick_runs_all_checks(self):
         done = asked("--quick", "--json")
         found = json.loads(done.stdout)
@@ -386,17 +369,6 @@ class TestAnswer:
         checks = tuple(Check(name, "", "", 0.0, lambda quick: 1 / 0) for name in ("one", "two"))
         found = view(run.run_checks(checks, quick=True, progress=lambda count, failed: None, began=monotonic()))
         assert "one, two failed: ZeroDivisionError: division by zero." in found.parts
-
-    def test_the_watcher_is_told(self, monkeypatch):
-        few(monkeypatch, one=1e-12, two=1.0)
-        told = []
-
-        class Watching(Watcher):
-            def progress(self, total, what, *, done=0, failed=0):
-                return nullcontext(lambda count, failed=0: told.append((total, what, count, failed)))
-
-        rk.selfcheck(watch=Watching())
-        assert told == [(2, "checks", 1, 0), (2, "checks", 1, 1)]
 
 
 class TestComparing:

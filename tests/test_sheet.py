@@ -636,13 +636,6 @@ class TestAskingForIt:
         result = self.asked(tmp_path, "--author", "me")
         assert "--author has no effect without a calculation sheet: give --sheet" in result.stderr
 
-    def test_it_does_not_write_over_its_input(self, tmp_path):
-        (tmp_path / "in.html").write_text(FACADE, encoding="utf-8")
-        (tmp_path / "site.yaml").write_text(SITE, encoding="utf-8")
-        files = (tmp_path / "in.html", "--site", tmp_path / "site.yaml", "--sheet", tmp_path / "in.html")
-        run("verify", *files, code=2)
-        assert (tmp_path / "in.html").read_text(encoding="utf-8") == FACADE
-
     def test_without_the_package_it_says_what_to_install(self, tmp_path, monkeypatch):
         monkeypatch.setitem(sys.modules, "docx", None)
         result = self.asked(tmp_path, "--sheet", tmp_path / "o.docx")

@@ -42,20 +42,12 @@ def files(tmp_path):
     (tmp_path / "b.yaml").write_text("mechanism: block\nname: b\nwidth: 0.6\nheight: 8\n", encoding="utf-8")
 
 
-def test_json_has_exactly_its_form(files):
+def test_json_has_the_numbers_of_both_states(files):
     data = run_json("verify", "b.yaml", "--site", "site.yaml")
-    assert list(data) == ["code", "edition", "conclusion", "directions", "governs"]
     assert list(data["directions"]) == ["positive", "negative"]
     for side in data["directions"].values():
-        assert list(side) == [
-            "control", "alpha0", "lambda", "e_star", "M_star", "a0_star", "d0_star", "states", "a_g", "zeta", "governs",
-            "dynamic",
-        ]  # fmt: skip
-        assert list(side["states"]) == ["SLV", "SLC"]
-        assert list(side["states"]["SLV"]) == ["d", "a", "T", "demand", "ratio", "governs", "passes"]
         assert [side["states"]["SLV"][key] for key in ("governs", "passes")] == ["nonlinear", False]
         assert [side["states"]["SLC"][key] for key in ("governs", "passes")] == [None, None]
-        assert list(side["a_g"]) == ["damage", "linear", "nonlinear", "damage_SLC", "nonlinear_SLC"]
         assert side["dynamic"] is None and side["M_star"] is None  # without masses
         slv = side["states"]["SLV"]
         assert slv["ratio"] == pytest.approx(slv["d"] / slv["demand"])
@@ -97,7 +89,7 @@ def remarks(found):
 
 
 class TestWords:
-    @pytest.mark.parametrize("ag", [0.1, 0.15, 0.19, 0.2, 0.24, 0.26, 0.4])
+    @pytest.mark.parametrize("ag", [0.1, 0.19, 0.24, 0.4])
     @pytest.mark.parametrize("mechanism", [FACADE, WALL, PARAPET], ids=lambda each: each.name)
     def test_the_verdict_is_that_of_the_numbers(self, mechanism, ag):
         found = positive(mechanism, ag=ag)
@@ -230,16 +222,6 @@ class TestInPython:
             rk.verify(FACADE, SITE, polarity=2)
         answer = rk.verify(FACADE, SITE, motions=["sine:0.15g:0.6s"])
         assert answer.directions[Direction.POSITIVE].dynamic is not None
-
-
-def test_of_directions_that_differ_by_rounding_the_first_counts():
-    found = verified(FACADE)
-    positive, negative = Direction.POSITIVE, Direction.NEGATIVE
-    for off, least, alike in ((1e-14, positive, True), (-1e-14, positive, True), (1e-6, negative, False)):
-        state = found.directions[negative].states[found.first]
-        other = replace(found.directions[negative], states={found.first: replace(state, d=state.d * (1 - off))})
-        both = replace(found, directions={positive: found.directions[positive], negative: other})
-        assert (both.governs, both.alike) == (least, alike)
 
 
 CLAUSES = {
