@@ -141,7 +141,6 @@ def test_a_file_is_read_from_the_folder_of_the_structure(sign, tmp_path):
         ("0, 0\n0.1, 0.2\n0.3, 0\n", "line 1: the curve has the ratio 0 at zero displacement"),
         ("0, 0.2\n0.1, 0.1\n", "line 2: the curve ends at the ratio 0.1: continue to zero"),
         ("0, 0.2\n0.1, -0.1\n0.2, 0\n", "line 3: the curve does not decrease at its end"),
-        ("0, 0.2\n0.1, high\n", "line 2 is not two numbers"),
         ("0;0,2\n0,1;0\n", "line 1 has 3 numbers, not two: displacement and ratio; write a decimal point"),
         ("0, 0.2\n0.1, nan\n", "line 2: the curve must be finite numbers"),
     ],
@@ -165,9 +164,7 @@ NUMBERS = TEXT.replace("file: c.csv", "points: [[0, 0.2], [0.5, 0]]")
     [
         (TEXT.replace("file: c.csv\n", ""), (1, 1), "points", "is missing: give the points of the curve, or a file"),
         (NUMBERS + "file: c.csv\n", (7, 7), "file", "cannot be combined with points"),
-        (NUMBERS.replace("[0.5, 0]", "[0, 0]"), (2, 20), "points[2]", "has two ratios at 0 m"),
         (NUMBERS.replace("[0.5, 0]", "[0.5, 0, 1]"), (2, 20), "points[2]", "must be two numbers"),
-        (NUMBERS + "negative_points: [[0, 0.2], [0.5, 0.1]]\n", (7, 29), "negative_points[2]", "ends at the ratio 0.1"),
         (NUMBERS.replace("2780", "2000"), (6, 10), "inertia", "at least m h_c^2 (1 + r(0)^2) = 2038.4 kg m2"),
         (NUMBERS.replace("height: 2\n", "height: 0.3\n"), (3, 17), "control_height", "beyond a quarter turn"),
         (NUMBERS + "loads: [{name: a, mass: 1, at: [0, 1]}]\n", (7, 8), "loads", "all that acts on the structure is"),

@@ -105,12 +105,10 @@ def test_every_kind_of_picture_is_in_the_gallery(made):
     [
         ("peak 0.48125 rad", "peak    0.48127 rad", True),  # the last digits, and so the width of a column
         ("once in 1,747 years", "once in 1,750\nyears", True),
-        ("p = 0.00039", "p = 0.00040", True),
         ("+0.0 %", "-0.1 %", True),  # of a value that is zero but for rounding
         ("peak 0.48 rad", "peak 0.51 rad", False),
         ("peak 0.48 rad", "peak 0.48 deg", False),
         ("prefer kappa2", "prefer kappa1", False),
-        ("3 records", "4 records", False),
         ("below 1e-10", "below 1e-9", False),
     ],
 )

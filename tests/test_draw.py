@@ -18,7 +18,6 @@ from mechanisms.arch import Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from mechanisms.cone import Cone
-from mechanisms.point_mass import PointMass
 from mechanisms.rigid_body import RigidBody
 from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
@@ -41,11 +40,6 @@ SHAPES = {
     **{path.stem: partial(loaded, path) for path in FILES},
     "slender block": partial(Block, width=0.1, height=10.0),
     "flat block": partial(Block, width=10.0, height=0.3),
-    "slender wall": partial(Wall, thickness=0.1, height=10.0),
-    "flat wall": partial(Wall, thickness=1.0, height=0.9),
-    "slender point": partial(PointMass, base_width=0.1, height=10.0),
-    "flat point": partial(PointMass, base_width=10.0, height=0.3),
-    "slender cone": partial(Cone, base_radius=0.1, height=10.0),
     "flat cone": partial(Cone, base_radius=5.0, height=2.0),
     "slender portico": partial(SymmetricFrame, column_width=0.1, column_height=10.0, mass_ratio=2.0),
     "flat portico": partial(SymmetricFrame, column_width=5.0, column_height=0.5, mass_ratio=2.0, columns=9),

@@ -89,12 +89,9 @@ class TestDefaults:
         ("text", "words"),
         [
             ("neighbors = 2", "rocking.toml: neighbors: this option cannot have a default did you mean neigh"),
-            ("out = 'a.csv'", "rocking.toml: out: this option cannot have a default"),
             ("model = 'linear1'", "rocking.toml: model: this option cannot have a default its meaning differs between"),
             ("[repsond]\ntail = 2", "rocking.toml: [repsond]: repsond is not a command did you mean respond?"),
-            ("[respond]\ntial = 2", "rocking.toml: [respond] tial: this option cannot have a default"),
             ("[respond]\njobs = 2", "rocking.toml: [respond] jobs: `rocking respond` has no option --jobs"),
-            ("tail = '2h'", "rocking.toml: tail: 'h' is not a unit of time"),
             ("tail = true", "rocking.toml: tail: the value is neither a text nor a number"),
             ("[respond]\nmodel = ['linear3']", "rocking.toml: [respond] model: linear3 is not a model: choose from"),
             ("[respond\n", "rocking.toml: not valid TOML: "),
@@ -220,12 +217,10 @@ class TestCompletion:
         ("words", "found"),
         [
             (("resp",), {"respond"}),
-            (("mechanisms", "a"), {"arch", "assembly", "asymmetric_frame"}),
             (("new", "s"), {"site", "spanning_wall", "statue", "study", "symmetric_frame"}),
             (("pulse", "--shape", "ric"), {"ricker", "ricker_antisymmetric"}),
             (("respond", "--pulse", "s"), {"sine:"}),
             (("respond", "--model", "linear1,"), {"linear1,nonlinear", "linear1,linear2"}),
-            (("spectrum", "--model", "l"), {"linear1", "linear2"}),
             (("completion", ""), {"bash", "zsh", "fish"}),
         ],
     )

@@ -76,10 +76,7 @@ class TestNames:
         [
             ("my block", "such as my_block"),
             ("../x", "such as x"),
-            ("LeaningPier", "such as leaningpier"),
-            ("1wall_1_", "such as wall_1"),
             ("🙂", "such as capped_block"),
-            ("", "such as capped_block"),
             ("a\x1b[31m\nb", r"'a\x1b[31m\nb' cannot be"),
             ("a" * (LONGEST + 1), f"at most {LONGEST} of a-z"),
             ("yes", "not read as text"),
@@ -87,7 +84,6 @@ class TestNames:
             ("cli", "rocking_cli already means something else"),
             ("ties", "`rocking mechanisms ties` shows something else"),
             ("body", "Body already means something else"),
-            ("test_contract", "TestContract already means something else"),
             *((name, "prints something else") for name in (STUDY, SITE, *STARTERS)),
         ],
     )

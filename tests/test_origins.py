@@ -172,8 +172,6 @@ def test_a_name_of_any_length_is_cut():
     ("name", "channel", "expected"),
     [
         ("Rinaldi228.AT2", None, ("Northridge-01", "Rinaldi Receiving Sta", None, None)),
-        ("SimCenter_Rinaldi.json", None, ("Northridge-01", "Rinaldi Receiving Sta", None, None)),
-        ("elCentro.AT2", None, NOT_SAID),
         ("formats/0111a.smc", None, ("Loma Prieta, CA 1989-10-18 00:04", "San Francisco, 1295 Shafter, F", 7.1, 89.0)),
         ("formats/AOM0011801241951.EW", None, ("2018/01/24 19:51:00", "AOM001", 6.2, None)),
         ("formats/20180212_211557_WPWS_20.V2A", "2", ("2018 February 12 21:15:54 UT", "WPWS", 4.17, 13.0)),
