@@ -52,9 +52,11 @@ def write(folder: Path, seed: int = 0, name: str = "study", levels: int = 12) ->
     return path
 
 
-def command(*arguments: object) -> Any:
-    """The outcome of a command in this process."""
-    return CliRunner().invoke(main, [str(each) for each in arguments])
+def command(*arguments: object, code: int | None = None) -> Any:
+    """The outcome of a command in this process, which must have this exit code if one is given."""
+    result = CliRunner().invoke(main, [str(each) for each in arguments])
+    assert code in (None, result.exit_code), result.output
+    return result
 
 
 def shown(text: str) -> dict[str, Any]:

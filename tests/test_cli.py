@@ -355,8 +355,7 @@ class TestRespond:
             assert "would overwrite" in run(command[0], "--record", record, "--out", record, code=2).stderr
 
     def test_a_release_drawn_without_a_tail_warns_of_nothing(self):
-        result = run("respond", "--release", "0.5", "--tail", "0", "--plot", "short.png")
-        assert "Warning" not in result.stderr
+        assert "Warning" not in run("respond", "--release", "0.5", "--tail", "0", "--plot", "short.png").stderr
 
     def test_options_of_a_record_need_one(self):
         for option in (

@@ -196,8 +196,7 @@ def test_nothing_that_can_be_used_is_wrong_input():
 
 
 def test_the_target_is_no_record():
-    told = run("select", "*.AT2", "code.csv", *ASKED, "--count", 2).stderr
-    assert "code.csv is the target" in told
+    assert "code.csv is the target" in run("select", "*.AT2", "code.csv", *ASKED, "--count", 2).stderr
     assert "no records to choose from" in run("select", "code.csv", *ASKED, "--count", 2, code=2).stderr
 
 
@@ -232,16 +231,14 @@ def test_two_records_of_one_name_are_two(files):
     ],
 )  # fmt: skip
 def test_wrong_input_is_pointed_at(words, message):
-    said = run("select", "r*.AT2", *ASKED, *words, code=2).stderr
-    assert message in " ".join(said.split())
+    assert message in " ".join(run("select", "r*.AT2", *ASKED, *words, code=2).stderr.split())
 
 
 def test_what_the_target_leaves_open_is_said(files):
     (files / "code.csv").write_text(TARGET.partition("\n")[2])
     assert "does not name a unit" in run("select", "r*.AT2", *ASKED, "--count", 2).stderr
     (files / "code.csv").write_text("T,Sa\n0.1,30\n3,20\n")
-    told = run("select", "r*.AT2", *ASKED, "--count", 2, "--factors", "0.1:1000").stderr
-    assert "reaches 30 g" in told
+    assert "reaches 30 g" in run("select", "r*.AT2", *ASKED, "--count", 2, "--factors", "0.1:1000").stderr
 
 
 def test_a_band_that_samples_do_not_reach_is_said():

@@ -205,8 +205,7 @@ class TestCommand:
         ],
     )
     def test_wrong_input_is_told_and_nothing_is_written(self, arguments, complaint, tmp_path):
-        text = run(*arguments, "--plot", "left.png", "--out", "left.csv", code=2).stderr
-        assert complaint in " ".join(text.split())
+        assert complaint in " ".join(run(*arguments, "--plot", "left.png", "--out", "left.csv", code=2).stderr.split())
         assert list(tmp_path.iterdir()) == []
 
 

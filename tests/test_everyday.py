@@ -39,8 +39,7 @@ class TestSwitchesOfTheProgram:
 
     @pytest.mark.parametrize("wrong", [("equiv", "none.yaml"), ("equiv", "--none"), ("respond", BLOCK)])
     def test_debug_shows_the_traceback_of_any_error(self, wrong, monkeypatch):
-        plain = run(*wrong, code=2).stderr
-        assert "Traceback" not in plain
+        assert "Traceback" not in run(*wrong, code=2).stderr
         asked = self.debugged("--debug", *wrong)
         assert asked.exit_code == 2 and "Traceback" in asked.stderr and asked.stdout == ""
         monkeypatch.setenv("ROCKING_DEBUG", "1")

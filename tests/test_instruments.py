@@ -125,8 +125,7 @@ class TestDerivatives:
         assert "no such file" in run("record", tmp_path / "none.txt", "--gain", "2g/V", code=2).stderr
 
     def test_the_command_says_what_differences_leave(self, moved):
-        said = run("record", moved, "--from", "displacement").stderr
-        assert f"half of what is at {0.44295 / DT:.3g} Hz" in said
+        assert f"half of what is at {0.44295 / DT:.3g} Hz" in run("record", moved, "--from", "displacement").stderr
 
     def test_a_format_of_accelerations_has_no_other(self, tmp_path):
         file = tmp_path / "x.json"

@@ -335,8 +335,7 @@ def test_a_structure_without_a_critical_rotation_is_refused_by_name(tmp_path):
     file = tmp_path / "thin.yaml"
     text = "mechanism: arch\nname: paper arch\nradius: 10\nthickness: 0.3\ninclusion_angle_deg: 180\n"
     file.write_text(text, encoding="utf-8")
-    result = run("error", file, code=2)
-    assert "thin" in result.stderr
+    assert "thin" in run("error", file, code=2).stderr
 
 
 def test_the_preferred_kappa_is_the_boldest_line_and_what_is_not_drawn_is_said():

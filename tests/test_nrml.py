@@ -196,8 +196,7 @@ def test_curves_that_cross_are_said_and_others_are_not():
 @pytest.fixture(scope="module")
 def store(tmp_path_factory):
     place = tmp_path_factory.mktemp("nrml") / "pedestal.db"
-    found = command("fragility", EXAMPLES / "study" / "pedestal.yaml", "--store", place)
-    assert found.exit_code == 0
+    command("fragility", EXAMPLES / "study" / "pedestal.yaml", "--store", place, code=0)
     return place
 
 
@@ -261,8 +260,7 @@ def test_a_curve_that_is_not_there_is_named_and_a_table_of_none_has_its_heading(
     study = tmp_path / "study.yaml"
     text = (EXAMPLES / "study" / "pedestal.yaml").read_text(encoding="utf-8").replace("../", f"{EXAMPLES}/")
     study.write_text(re.sub("limit_states:.*", "limit_states: [30.0]", text), encoding="utf-8")
-    found = command("fragility", study)
-    assert found.exit_code == 0
+    command("fragility", study, code=0)
     found = command("results", study.with_suffix(".db"), "--curves", "-")
     # A run overturned exceeds every limit: the curve is that of overturning.
     assert found.exit_code == 0 and found.stdout.splitlines()[1].startswith("pedestal,30.0,PGA,g,lognormal")

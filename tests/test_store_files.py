@@ -45,8 +45,7 @@ def test_restart_leaves_files_of_others_alone(sound, place):
     for each in theirs:
         each.write_text("precious", encoding="utf-8")
     old = place.read_bytes()
-    result = command("fragility", sound.study, "--store", place, "--restart")
-    assert result.exit_code == 0
+    result = command("fragility", sound.study, "--store", place, "--restart", code=0)
     assert f"the store as it was is kept as {place.with_name('study.before-2.db')}" in result.stderr
     assert all(each.read_text(encoding="utf-8") == "precious" for each in theirs)
     assert place.with_name("study.before-2.db").read_bytes() == old
@@ -75,8 +74,7 @@ def test_ended_before_the_first_run_it_has_said_where_the_old_store_is(sound, pl
     assert result.exit_code == 130
     aside = place.with_name("study.before.db")
     assert str(aside) in result.stderr and aside.read_bytes() == old
-    again = command("fragility", sound.study, "--store", place, "--json")
-    assert shown(again.stdout) == sound.shown
+    assert shown(command("fragility", sound.study, "--store", place, "--json").stdout) == sound.shown
     assert names(place.parent) == ["study.before.db", "study.db"]
 
 
@@ -92,8 +90,7 @@ def test_the_old_store_is_kept_where_the_new_one_cannot_be_made(sound, place, mo
         result = command("fragility", sound.study, "--store", place, "--restart")
     assert result.exit_code == 1 and "full" in result.stderr and str(aside) in result.stderr
     assert aside.read_bytes() == old
-    again = command("fragility", sound.study, "--store", place, "--json")
-    assert shown(again.stdout) == sound.shown
+    assert shown(command("fragility", sound.study, "--store", place, "--json").stdout) == sound.shown
 
 
 @pytest.mark.parametrize("version", [0, 6, 99])
@@ -213,8 +210,7 @@ def test_a_store_is_no_pipe(sound, tmp_path):
     place = tmp_path / "pipe.db"
     os.mkfifo(place)
     for more in ([], ["--restart"]):
-        result = command("fragility", sound.study, "--store", place, *more)
-        assert result.exit_code == 2 and "this is a device or a pipe" in result.stderr
+        assert "this is a device or a pipe" in command("fragility", sound.study, "--store", place, *more, code=2).stderr
     assert "this is a device or a pipe" in command("results", place).stderr
     assert place.is_fifo() and names(tmp_path) == ["pipe.db"]
 
@@ -225,8 +221,7 @@ def test_restart_puts_a_store_with_a_damaged_header_aside(sound, place, place_in
     content = bytearray(place.read_bytes())
     content[place_in_header] = 99
     place.write_bytes(content)
-    refused = command("fragility", sound.study, "--store", place)
-    assert refused.exit_code in (1, 2) and place.read_bytes() == content
+    assert command("fragility", sound.study, "--store", place).exit_code in (1, 2) and place.read_bytes() == content
     result = command("fragility", sound.study, "--store", place, "--restart", "--json")
     assert result.exit_code == 0 and shown(result.stdout) == sound.shown
     assert place.with_name("study.before.db").read_bytes() == content
@@ -239,8 +234,7 @@ def test_a_page_that_lost_its_runs_is_not_written_to(sound, place):
     content[leaf + 4] -= 5
     place.write_bytes(content)
     assert shown(command("results", place, "--json").stdout)["finished"] == 235
-    result = command("fragility", sound.study, "--store", place)
-    assert result.exit_code == 2 and "235 of 240 runs are whole" in result.stderr
+    assert "235 of 240 runs are whole" in command("fragility", sound.study, "--store", place, code=2).stderr
     assert place.read_bytes() == content
 
 
@@ -252,8 +246,7 @@ def test_a_damaged_name_of_a_column_is_a_damaged_store(sound, place, column):
         if at:
             content[at + 1] = 0xFF
     place.write_bytes(content)
-    result = command("results", place)
-    assert result.exit_code == 2 and f"{place}: the store is damaged" in result.stderr
+    assert f"{place}: the store is damaged" in command("results", place, code=2).stderr
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows moves no file that is open")

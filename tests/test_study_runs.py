@@ -256,8 +256,7 @@ def test_while_it_runs_others_read_and_do_not_write(long_study, tmp_path):
     try:
         wait_until_some_are_finished(place, process)
         assert "another process is at work" in command("fragility", path, "--store", place, code=2).stderr
-        so_far = command("results", place, "--json", code=5)
-        assert 0 < json.loads(so_far.stdout)["finished"] < prepared.plan.total
+        assert 0 < json.loads(command("results", place, "--json", code=5).stdout)["finished"] < prepared.plan.total
         assert process.poll() is None
     finally:
         process.kill()

@@ -422,8 +422,7 @@ class TestFiles:
     def test_a_picture_and_inputs_that_are_not_written_over(self):
         run("survey", table(TestSpreadsheets.COMMAS), "--record", ACCEL, "--plot", "p.svg")
         assert "overturns" in Path("p.svg").read_text(encoding="utf-8") or Path("p.svg").stat().st_size > 1000
-        said = run("survey", "t.csv", "--out", "t.csv", code=2).stderr
-        assert "would overwrite" in said
+        assert "would overwrite" in run("survey", "t.csv", "--out", "t.csv", code=2).stderr
 
 
 class TestPython:
