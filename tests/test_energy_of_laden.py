@@ -71,7 +71,7 @@ def missing(structure, rtol):
 
 
 @pytest.mark.every(3)
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(laden())
 def test_from_a_tilt_to_the_impact_no_energy_is_lost(structure):
     if structure is not None and structure.uplift(Direction.POSITIVE) > 1e-3:
@@ -80,7 +80,7 @@ def test_from_a_tilt_to_the_impact_no_energy_is_lost(structure):
 
 
 @pytest.mark.rest
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(laden(), st.floats(-6.0, 6.0), st.floats(2.0, 12.0), st.booleans())
 def test_what_the_ground_puts_in_less_what_impacts_lose_is_stored(structure, strength, pace, both_ways):
     """Over a motion with a vertical component: dE = -(u B s + v G) dphi, B and G of the bodies and loads."""

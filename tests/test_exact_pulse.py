@@ -479,7 +479,7 @@ def test_an_impact_hands_the_rate_and_not_its_scale_to_the_other_direction():
 PULSES = st.tuples(st.sampled_from(list(SHAPE)), st.floats(0.7, 8), st.floats(0.4, 10))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(PULSES, st.floats(0.5, 2), st.floats(0.3, 3), st.floats(0.3, 3), st.floats(0.3, 1))
 def test_a_structure_seen_from_behind_moves_the_other_way(pulse, p, phi_cr, kappa, eta):
     equivalence = lopsided(p, phi_cr, kappa, eta)
@@ -496,7 +496,7 @@ def test_a_structure_seen_from_behind_moves_the_other_way(pulse, p, phi_cr, kapp
     assert known(mirrored.overturning_time) == known(got.overturning_time)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(PULSES, st.floats(0.3, 1))
 def test_what_follows_a_pulse_is_within_reason(pulse, eta):
     one = equivalent_block(replaced(BLOCK, restitution=eta)).positive

@@ -389,7 +389,7 @@ def level_with_both_outcomes(random):
 class TestUnits:
     """A measure times a constant is the same measure: whatever the constant, and however it is rounded."""
 
-    @pytest.mark.parametrize("c", [1e-3, 0.1, 1.0, 3.7, 1e3, 1e6])
+    @pytest.mark.parametrize("c", [1e-3, 3.7, 1e6])
     @pytest.mark.parametrize(
         "made",
         [
@@ -531,7 +531,7 @@ class TestWords:
     @pytest.mark.every(2)
     def test_of_the_measure_that_serves_alone(self):
         random, seen = np.random.default_rng(58), 0
-        for _ in range(400):
+        for _ in range(200):
             record = np.repeat(np.arange(9), 6)
             x1, x2 = np.exp(random.normal(size=(2, 54)))
             exceeded = np.log(x1) + 0.4 * np.log(x2) > random.normal(size=54) + random.normal(size=9)[record]
