@@ -137,6 +137,7 @@ class TestMechanisms:
         text = run("mechanisms").stdout
         assert all(name in text for name in Registry())
 
+    @pytest.mark.every(3)
     @pytest.mark.parametrize("name", list(Registry()))
     def test_one_shows_every_field(self, name):
         data = run_json("mechanisms", name)
@@ -146,6 +147,7 @@ class TestMechanisms:
         shown = "".join(run("mechanisms", name).stdout.split())
         assert all(field in shown for field in fields)
 
+    @pytest.mark.every(3)
     @pytest.mark.parametrize("name", list(Registry()))
     def test_new_prints_a_file_that_works(self, name, tmp_path):
         file = tmp_path / "new.yaml"

@@ -80,7 +80,7 @@ BY_REAL = pytest.mark.parametrize("path", REAL, ids=lambda path: path.name)
 # --- one character lost ---------------------------------------------------------------------------------------------
 
 
-@pytest.mark.every(5)
+@pytest.mark.every(12)
 @BY_REAL
 def test_a_character_lost_from_a_real_record_is_seldom_silent(path, tmp_path):
     if not path.is_file():

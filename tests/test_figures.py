@@ -61,7 +61,7 @@ def test_figure_11_errors_of_the_free_period_are_small_and_grow_for_less_slender
     assert worst == sorted(worst) and worst[0] < 0.21
 
 
-@pytest.mark.every(3)
+@pytest.mark.every(4)
 @pytest.mark.parametrize("number", [7, 11, 12, 13])
 def test_a_curve_is_whole_or_the_caption_says_where_it_is_cut(made, number):
     paper = made.FIGURES[number]()

@@ -62,7 +62,7 @@ def share(mechanism, motion, factor, polarities, around=AROUND):
     )
 
 
-@pytest.mark.every(2)
+@pytest.mark.every(4)
 @pytest.mark.parametrize("polarities", [(-1,), (1, -1)])
 @pytest.mark.parametrize(
     ("mechanism", "pulse"), [(BLOCK, "sine:0.8g:0.5s"), (FRAME, "sine:0.3g:3s")], ids=["block", "frame"]

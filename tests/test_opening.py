@@ -482,7 +482,7 @@ def test_a_plugin_of_several_bodies_that_names_no_contacts_is_not_checked():
     assert found.check is None and isnan(found.opening) and not found.unknown
 
 
-@pytest.mark.every(2)
+@pytest.mark.every(4)
 @pytest.mark.parametrize(
     ("name", "factor"), [("masonry/portal.yaml", 1.5), ("masonry/portal.yaml", 2.0), ("assembly.yaml", 1.5)]
 )

@@ -369,6 +369,7 @@ class TestCommand:
         text = run("overturning", "--compare", "one.yaml", "two.yaml", "--points", 4, "--model", "linear2").stdout
         assert "(one.yaml)" in text and "(two.yaml)" in text
 
+    @pytest.mark.every(2)
     @pytest.mark.parametrize("arguments", [["--a", "0.2:0.9"], [FILES[0], "--ag", "0.01g:0.02g"]])
     def test_a_map_of_pulses_too_weak_to_lift_is_a_result(self, arguments, tmp_path):
         arguments = ["overturning", *arguments, "--points", 8, "--plot", "map.png", "--out", "map.csv"]

@@ -351,7 +351,7 @@ class TestPluginsThatGoWrong:
         assert "this file does not work as it is" in run.stderr
         assert "Fill in" not in rocking(odd_plugin, "new", "odd").stdout
 
-    @pytest.mark.every(3)
+    @pytest.mark.every(5)
     @pytest.mark.parametrize(
         ("name", "failing", "said"),
         [

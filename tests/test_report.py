@@ -91,7 +91,7 @@ class TestContent:
         assert ground[np.abs(ground).argmax()] == pytest.approx(record[np.abs(record).argmax()], rel=1e-4)
         assert np.sign(pulse[np.abs(pulse).argmax()]) == np.sign(record[np.abs(record).argmax()])
 
-    @pytest.mark.every(3)
+    @pytest.mark.every(6)
     @pytest.mark.parametrize(
         ("structure", "pulse", "said"),
         [

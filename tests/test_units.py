@@ -98,6 +98,7 @@ def test_mechanisms_lists_the_units_that_are_taken():
         assert ", ".join(units_of(unit)) in " ".join(found.split())
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("name", Registry())
 def test_a_starting_file_in_millimetres_is_the_same_structure(name):
     text = template(Registry()[name])

@@ -163,7 +163,7 @@ MOTIONS = [
 ]
 
 
-@pytest.mark.every(6)
+@pytest.mark.every(12)
 @pytest.mark.parametrize("motion", MOTIONS, ids=lambda words: "-".join(words[1:]).rpartition("/")[2])
 @pytest.mark.parametrize("structure", STRUCTURES)
 def test_every_sentence_is_that_of_its_own_numbers(structure, motion, tmp_path):

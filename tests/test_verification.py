@@ -493,7 +493,7 @@ class TestDemand:
 
 
 class TestMethods:
-    @pytest.mark.every(3)
+    @pytest.mark.every(6)
     @pytest.mark.parametrize("site", [{}, {"floor": FLOOR}, {"soil": "A"}, {"T0": 0.2}, {"floor": FLOOR, "T0": 0.35}])
     @pytest.mark.parametrize("mechanism", [FACADE, rk.Wall(thickness=0.3, height=3.0), FRAME])
     def test_at_its_capacity_the_demand_is_met(self, site, mechanism):
