@@ -13,8 +13,7 @@ from mechanisms._linkage_sides import Connection, LinkageSide
 from mechanisms._shapes import Shape
 from rocking_cli.core import Direction, Reals, Vertex, geometry_error, quantity
 from rocking_cli.core.fields import Described, Name
-from rocking_cli.core.kinematics import Points
-from rocking_cli.core.polygons import area_of, distance, inside
+from rocking_cli.core.kinematics import Points, area_of, distance, inside
 
 SCAN = 24  # places of a crack that are tried first; half as many of each of two cracks
 EDGE = 1e-6  # least distance of a crack from the ends of its line, over its length

@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rocking_cli.core import Outline
-from rocking_cli.core.kinematics import Points
-from rocking_cli.core.polygons import area_of
+from rocking_cli.core.kinematics import Points, area_of
 
 NEAR = 1e-6  # distance from a side that counts as on the side, over the size of both bodies
 PARALLEL = 1e-3  # sine of the largest angle between two sides in contact

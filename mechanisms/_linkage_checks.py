@@ -11,7 +11,7 @@ from mechanisms._linkage_sides import PlacedSide
 from mechanisms._polygons import size_of
 from mechanisms._shapes import Member
 from rocking_cli.core import Direction, Outline, Pin, RigidMotion
-from rocking_cli.core.polygons import distance, inside
+from rocking_cli.core.kinematics import distance, inside
 
 BESIDE = 1e-2  # largest distance of a joint from its body, over width plus height of the body
 CLOSES = 1e-9  # closing rates of faces that count as zero, over the fastest velocity

@@ -12,8 +12,7 @@ from pydantic import Field, model_validator
 from mechanisms._polygons import fault_of, gap, lies_within, overlap, pierced, size_of
 from rocking_cli.core import Body, Outline, Vertex, annular_sector, geometry_error, polygon, quantity
 from rocking_cli.core.fields import Described
-from rocking_cli.core.kinematics import Points
-from rocking_cli.core.polygons import area_of, distance, inside
+from rocking_cli.core.kinematics import Points, area_of, distance, inside
 
 TOUCH = 1e-3  # largest distance of parts that touch, over the size of the body
 EXACT = 1e-6  # overlap of parts by rounding, over the size of the body

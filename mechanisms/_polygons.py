@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Reals
-from rocking_cli.core.kinematics import Points
-from rocking_cli.core.polygons import area_of, distance, inside, squared
+from rocking_cli.core.kinematics import Points, area_of, distance, inside, squared
 
 SAME = 1e-9  # distance of points that are one, over the size of the polygon
 MANY = 256  # boxes of one batch

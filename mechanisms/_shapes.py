@@ -14,7 +14,7 @@ from mechanisms._plates import BodyPart, plates, united
 from mechanisms._polygons import fault_of
 from rocking_cli.core import Body, Outline, Vertex, disc, geometry_error, point, polygon, quantity
 from rocking_cli.core.fields import Described
-from rocking_cli.core.polygons import area_of
+from rocking_cli.core.kinematics import area_of
 
 SHAPES = ("polygon", "parts", "disc", "masses")
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from functools import cached_property
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property, wraps
 from math import isclose, isfinite, nan
-from typing import Annotated, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self, TypeVar
 
 import numpy as np
 from pydantic import ConfigDict, Field, model_validator
 
 from mechanisms import _assembly as analysis
 from mechanisms._linked_bodies import LinkedBodies
-from mechanisms._per_direction import per_direction
 from mechanisms._polygons import fault_of
 from mechanisms._shapes import Member, Shape
 from rocking_cli.core import (
@@ -39,7 +38,7 @@ from rocking_cli.core import (
 from rocking_cli.core.contacts import MASONRY
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.fields import Described, Name
-from rocking_cli.core.loading import Going, loading
+from rocking_cli.core.reactions import Going, loading
 from rocking_cli.errors import MechanismError, StructureError
 from rocking_cli.text import in_short
 
@@ -53,6 +52,26 @@ NAMED = 3  # such blocks that are named, at most
 LEADS = 1e-8  # rotation rates that count as zero, over the fastest one
 
 Coefficient = Annotated[float, Field(ge=0, le=10)]
+
+T = TypeVar("T")
+KEPT = "kept for each direction"
+
+
+def per_direction(method: Callable[[Any, Direction], T]) -> Callable[[Any, Direction], T]:
+    """Decorate a method of a mechanism so that its result for each direction is kept, as by `cached_property`."""
+
+    @wraps(method)
+    def answer(self: Any, direction: Direction) -> T:
+        kept = self.__dict__.setdefault(KEPT, {})
+        key = method.__name__, direction
+        if key not in kept:
+            kept[key] = method(self, direction)
+        found: T = kept[key]
+        return found
+
+    return answer
+
+
 EXAMPLE_BLOCKS = {
     "left": {"polygon": [[0.0, 0.0], [0.8, 0.0], [0.8, 3.0], [0.0, 3.0]]},
     "right": {"polygon": [[3.2, 0.0], [4.0, 0.0], [4.0, 3.0], [3.2, 3.0]]},

@@ -10,7 +10,7 @@ from typing import ClassVar, Literal, Self
 
 from pydantic import model_validator
 
-from mechanisms._slider_crank import slider_crank, slider_crank_limit
+from mechanisms.wall import slider_crank, slider_crank_limit
 from rocking_cli.core import (
     Attached,
     Body,

@@ -78,7 +78,6 @@ from rocking_cli.excitation.pulse_fit import fit_pulse as fit_pulse
 from rocking_cli.excitation.pulses import Pulse as Pulse
 from rocking_cli.excitation.pulses import parse_pulse as parse_pulse
 from rocking_cli.excitation.records import read_record as read_record
-from rocking_cli.processing.components import turned as turned
 from rocking_cli.processing.floor import Floor as Floor
 from rocking_cli.processing.intensity import Measure as Measure
 from rocking_cli.processing.intensity import MotionMeasure as MotionMeasure
@@ -86,6 +85,7 @@ from rocking_cli.processing.intensity import RelativeMeasure as RelativeMeasure
 from rocking_cli.processing.intensity import RunMeasure as RunMeasure
 from rocking_cli.processing.intensity import parse_measure as parse_measure
 from rocking_cli.processing.oscillator import ResponseSpectrum as ResponseSpectrum
+from rocking_cli.processing.reading import turned as turned
 from rocking_cli.structure import build_models as build_models
 from rocking_cli.structure_file import load_structure as load_structure
 

@@ -14,8 +14,8 @@ from pydantic import ValidationError
 
 from rocking_cli.core import Equivalence, Mechanism, NoEquivalentBlock, Statics, both_statics, equivalent_block
 from rocking_cli.core.advice import uplift_error
+from rocking_cli.core.equivalence import STRAIGHT
 from rocking_cli.core.hung.element import Question
-from rocking_cli.core.statics import STRAIGHT
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY

@@ -19,8 +19,7 @@ import numpy as np
 from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
-from rocking_cli.studies.fragility.store import COLUMNS, Store
-from rocking_cli.studies.fragility.store_file import MARK
+from rocking_cli.studies.fragility.store import COLUMNS, MARK, Store
 from tests.conftest import EXAMPLES
 
 STUDY = f"""\

@@ -7,9 +7,8 @@ import pytest
 from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
 
-from mechanisms._capacity import MonotoneCubic
 from mechanisms.block import Block
-from mechanisms.curve import Curve
+from mechanisms.curve import Curve, MonotoneCubic
 from rocking_cli.core import Direction, NoEquivalentBlock, equivalent_block
 from rocking_cli.errors import InputError, StructureError
 from rocking_cli.structure import Structure

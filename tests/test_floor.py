@@ -11,8 +11,8 @@ from scipy.integrate import solve_ivp
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_record
-from rocking_cli.processing.components import turned
 from rocking_cli.processing.floor import Floor
+from rocking_cli.processing.reading import turned
 from rocking_cli.studies.azimuths import all_around, sectors
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json

@@ -19,8 +19,7 @@ from rocking_cli.excitation.pulses import COARSE
 from rocking_cli.plotting.overturning import draw_comparison, draw_map
 from rocking_cli.structure import Structure, build_models
 from rocking_cli.structure_file import load_structure
-from rocking_cli.studies.boundaries import boundaries
-from rocking_cli.studies.overturning import SCAN, Region, compare, overturning_map
+from rocking_cli.studies.overturning import SCAN, Region, boundaries, compare, overturning_map
 from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape, pulsed_model, weakest
 from tests.conftest import EXAMPLES, rows_of
 from tests.following import respond

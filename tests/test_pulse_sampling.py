@@ -16,7 +16,7 @@ from rocking_cli.dynamics.history import follow
 from rocking_cli.excitation.pulses import COARSE, Pulse, parse_pulse
 from rocking_cli.excitation.pulses.base import FINE
 from rocking_cli.structure import Structure
-from rocking_cli.studies.sampled_pulse import sampled_history
+from rocking_cli.studies.pulse_on_structure import sampled_history
 from rocking_cli.studies.under_pulses import parse_shape
 from tests.following import build_model
 

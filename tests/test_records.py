@@ -18,7 +18,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records.record_units import canonical
-from rocking_cli.excitation.records.times import on_grid
+from rocking_cli.excitation.records.text import on_grid
 from tests.conftest import NEEDS_RECORDS, record
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"

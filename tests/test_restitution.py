@@ -22,7 +22,7 @@ from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.core.given import DirectionalRestitution
-from rocking_cli.core.restitution import why_none
+from rocking_cli.core.mechanism import why_none
 from rocking_cli.errors import InputError
 from tests.reference_mechanics import cross, link_rates, polygon_moments, sector_moments
 from tests.test_cli import run, run_json

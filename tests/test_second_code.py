@@ -16,7 +16,7 @@ import rocking_cli as rk
 from rocking_cli.core import quantity
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.studies.verification import Code, Formula, Method, Number, Site, Verified, governing
-from rocking_cli.studies.verification.installed import Codes, codes
+from rocking_cli.studies.verification.code import Codes, codes
 from rocking_cli.testing import CodeContract
 from rocking_cli.views.sheet.build import SheetOfCode
 from rocking_cli.views.verification import Showing

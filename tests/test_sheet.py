@@ -27,7 +27,7 @@ from rocking_cli.io.yaml_file import parse
 from rocking_cli.structure_file import parse_structure
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.studies.verification.check import site_in
-from rocking_cli.studies.verification.control import control_at
+from rocking_cli.studies.verification.results import control_at
 from rocking_cli.views.sheet.document import Steps
 from rocking_cli.views.sheet.language import texts_of
 from rocking_cli.views.verdict import SENSE

@@ -9,9 +9,8 @@ from contextlib import closing
 import pytest
 
 from rocking_cli.errors import InputError
-from rocking_cli.studies.fragility import store_file
-from rocking_cli.studies.fragility.store import Store
-from rocking_cli.studies.fragility.store_file import in_words, open_locked, put_aside, this_process
+from rocking_cli.studies.fragility import store
+from rocking_cli.studies.fragility.store import Store, in_words, open_locked, put_aside, this_process
 from tests.stores import Sound, command, shown
 
 
@@ -160,7 +159,7 @@ def test_a_store_that_is_replaced_while_it_is_opened_is_left_for_the_new_one(
     sound, place, monkeypatch, options, is_at_work
 ):
     """Another process restarts the study between the look at the file and its lock: the one locked has moved."""
-    open_store, opened = store_file.open_store, []
+    open_store, opened = store.open_store, []
 
     def open_and_lose(path):
         connection = open_store(path)
@@ -173,7 +172,7 @@ def test_a_store_that_is_replaced_while_it_is_opened_is_left_for_the_new_one(
                 opened[-1].execute("BEGIN IMMEDIATE")
         return connection
 
-    monkeypatch.setattr(store_file, "open_store", open_and_lose)
+    monkeypatch.setattr(store, "open_store", open_and_lose)
     result = command("fragility", sound.study, "--store", place, "--json", *options)
     for each in opened:
         each.close()

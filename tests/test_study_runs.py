@@ -20,7 +20,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity import Reference, parse_measure
 from rocking_cli.processing.reading import Reading
-from rocking_cli.studies.fragility import assess, curves, sources, store, store_file, tally, work_units, workers
+from rocking_cli.studies.fragility import assess, curves, sources, store, tally, work_units, workers
 from rocking_cli.studies.fragility.campaign import differences, prepare, run
 from rocking_cli.studies.fragility.definition import RecordEntry
 from rocking_cli.studies.fragility.intensity import ALWAYS
@@ -502,7 +502,7 @@ class TestOtherFiles:
 
 
 def test_a_reader_that_takes_its_time_does_not_stop_the_study(whole, tmp_path, monkeypatch):
-    monkeypatch.setattr(store_file, "WAITING", 0.2)
+    monkeypatch.setattr(store, "WAITING", 0.2)
     monkeypatch.setattr(store, "PATIENCE", 0.0)
     place = tmp_path / "study.db"
     with Store.writing(place) as kept, workers.threads(1) as hands:

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.studies.contact import Contacts
-from rocking_cli.studies.fragility import store_file, tally, work_units
+from rocking_cli.studies.fragility import store, tally, work_units
 from rocking_cli.studies.fragility.campaign import prepare
 from rocking_cli.studies.fragility.store import COLUMNS, Store
 from rocking_cli.studies.fragility.study import load_study
@@ -166,7 +166,7 @@ def test_all_else_is_as_without_it(whole, tmp_path):
     said = "\n".join(dump(tmp_path / "without.db"))
     assert "slide_time" not in said and "sliding" not in said.replace(str(EXAMPLES), "")
     versions = [version_of(place) for place in (whole[2], tmp_path / "without.db")]
-    assert versions == [store_file.VERSION] * 2
+    assert versions == [store.VERSION] * 2
 
 
 def test_a_unit_can_be_sent_elsewhere(whole, tmp_path):

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import rocking_cli as rk
-from rocking_cli.dynamics.processes import in_processes
+from rocking_cli.dynamics.parallel import in_processes
 from rocking_cli.errors import InputError, Refused
 from rocking_cli.io.dotted import HOLE, closed, put, words
 from rocking_cli.io.spreadsheet import parse_sheet

@@ -30,7 +30,7 @@ from rocking_cli.studies.equivalent_pulses import equivalent
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.overturning import FALLS, Comparison, Region, compare, overturning_map
 from rocking_cli.studies.picture import picture
-from rocking_cli.studies.sampled_pulse import COARSEST, _alike, sampled_history
+from rocking_cli.studies.pulse_on_structure import COARSEST, _alike, sampled_history
 from rocking_cli.studies.spectrum import Spectrum, _worst, blocks_of, shape_of, spectra
 from rocking_cli.studies.under_pulses import outcomes, parse_shape, pulsed_model
 from rocking_cli.views import spectrum as spectrum_views

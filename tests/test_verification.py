@@ -10,18 +10,17 @@ from hypothesis import strategies as st
 
 import rocking_cli as rk
 from mechanisms.block import Block
-from rocking_cli.codes.italian import demand, site_hazard
+from rocking_cli.codes.italian import demand, ground
 from rocking_cli.codes.italian.capacity import ExactCurve, root
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum, TableSpectrum
-from rocking_cli.codes.italian.ground import SiteGround
-from rocking_cli.codes.italian.site_hazard import Hazard
-from rocking_cli.codes.italian.ties import pulls
+from rocking_cli.codes.italian.displaced import pulls
+from rocking_cli.codes.italian.ground import Hazard, SiteGround
 from rocking_cli.core import Direction, box
 from rocking_cli.core.coefficients import coefficients
 from rocking_cli.errors import InputError
-from rocking_cli.studies.verification.control import Control, control_at
-from rocking_cli.studies.verification.installed import codes
+from rocking_cli.studies.verification.code import codes
+from rocking_cli.studies.verification.results import Control, control_at
 
 G = 9.80665
 WEIGHT = 18000 / G  # of masonry, as a density
@@ -536,11 +535,11 @@ class TestMethods:
     def test_the_linear_method_is_q_times_the_onset_at_damage(self):
         """By hand on soil C, whose S differs: q a0*/(S g) with S of SLD, against the a_g of SLV."""
         found = verified(FACADE, **AT_HAZARD, q=2.5)
-        ag, F0, _ = Hazard(TABLE, "C", "T1").parameters(site_hazard.return_period(50.0, "SLD"))
+        ag, F0, _ = Hazard(TABLE, "C", "T1").parameters(ground.return_period(50.0, "SLD"))
         assert 1.7 - 0.6 * F0 * ag > 1.5  # S of SLD is the largest of soil C, that of SLV less
         linear, a0 = found.methods["linear"], 0.075 * G / 1.35
         assert linear.a_g == pytest.approx(2.5 * a0 / (1.5 * G), rel=1e-9)
-        asked, F0, _ = Hazard(TABLE, "C", "T1").parameters(site_hazard.return_period(50.0, "SLV"))
+        asked, F0, _ = Hazard(TABLE, "C", "T1").parameters(ground.return_period(50.0, "SLV"))
         S = 1.7 - 0.6 * F0 * asked
         assert S < 1.45 and linear.demand == pytest.approx(asked, rel=1e-12)
         # As a return period: that whose a_g it is.
@@ -597,7 +596,7 @@ AT_HAZARD = {**dict.fromkeys(("ag", "F0", "TC", "S")), "hazard": TABLE, "VN": 50
 class TestHazard:
     @pytest.mark.parametrize(("state", "years"), [("SLO", 30.107), ("SLD", 50.289), ("SLV", 474.561), ("SLC", 974.786)])
     def test_return_periods(self, state, years):
-        assert site_hazard.return_period(50.0, state) == pytest.approx(years, abs=6e-4)
+        assert ground.return_period(50.0, state) == pytest.approx(years, abs=6e-4)
 
     def test_between_the_rows_each_is_straight_on_logarithms(self):
         found = Hazard(TABLE, "A", "T1").parameters(200.0)
@@ -611,14 +610,14 @@ class TestHazard:
          ("D", 0.8, 1.2), ("D", 1.4, 0.9), ("D", 0.2, 1.8), ("E", 0.6, 1.34), ("E", 0.1, 1.6), ("E", 1.2, 1.0)],
     )  # fmt: skip
     def test_soils(self, soil, x, S_S):
-        assert site_hazard.soil_factor(soil, 2.5, x / 2.5) == pytest.approx(S_S)
+        assert ground.soil_factor(soil, 2.5, x / 2.5) == pytest.approx(S_S)
 
     @pytest.mark.parametrize(
         ("soil", "C_C"), [("A", 1.0), ("B", 1.10 * 0.3**-0.2), ("C", 1.05 * 0.3**-0.33), ("D", 1.25 * 0.3**-0.5),
                           ("E", 1.15 * 0.3**-0.4)],
     )  # fmt: skip
     def test_corners(self, soil, C_C):
-        assert site_hazard.corner_factor(soil, 0.3) == pytest.approx(C_C)
+        assert ground.corner_factor(soil, 0.3) == pytest.approx(C_C)
 
     def test_the_return_period_of_a_capacity_is_that_whose_demand_meets_it(self):
         found = verified(FACADE, **AT_HAZARD)
@@ -629,7 +628,7 @@ class TestHazard:
         damage = found.methods["damage"]
         assert damage.return_period == 30.0 and damage.beyond and damage.zeta < 1
         # By a_g, F0 and T_C stay those of the limit state's own return period.
-        own = Hazard(TABLE, "C", "T1").spectrum(site_hazard.return_period(50.0, "SLV"))
+        own = Hazard(TABLE, "C", "T1").spectrum(ground.return_period(50.0, "SLV"))
         assert nonlinear.demand == own.ag
         wanted = own.with_ag(nonlinear.a_g).displacement(found.states["SLV"].T, 0.08)
         assert wanted == pytest.approx(0.12, rel=1e-9)

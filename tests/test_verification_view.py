@@ -10,7 +10,7 @@ from rocking_cli.codes.italian.remarks import differences
 from rocking_cli.codes.italian.sheet.steps import TERMINAL
 from rocking_cli.codes.italian.sheet.summary import verdicts
 from rocking_cli.core import Direction
-from rocking_cli.studies.verification.installed import codes
+from rocking_cli.studies.verification.code import codes
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.verification import standing, view
 from rocking_cli.views.view import Table

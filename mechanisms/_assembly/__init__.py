@@ -7,17 +7,17 @@ the weakest mechanism, `friction` the coefficient of friction that it requires, 
 
 from mechanisms._assembly.blocks import AssemblyBlock as AssemblyBlock
 from mechanisms._assembly.blocks import AssemblyContact as AssemblyContact
+from mechanisms._assembly.blocks import AssemblyFault as AssemblyFault
+from mechanisms._assembly.blocks import ContactFault as ContactFault
+from mechanisms._assembly.blocks import DoesNotStand as DoesNotStand
+from mechanisms._assembly.blocks import NoAnswer as NoAnswer
+from mechanisms._assembly.blocks import NothingMoves as NothingMoves
 from mechanisms._assembly.contacts import contacts as contacts
 from mechanisms._assembly.displaced import STEPS as STEPS
 from mechanisms._assembly.displaced import Admissible as Admissible
 from mechanisms._assembly.displaced import DisplacedAssembly as DisplacedAssembly
 from mechanisms._assembly.displaced import first_violation as first_violation
 from mechanisms._assembly.displaced import remaining as remaining
-from mechanisms._assembly.faults import AssemblyFault as AssemblyFault
-from mechanisms._assembly.faults import ContactFault as ContactFault
-from mechanisms._assembly.faults import DoesNotStand as DoesNotStand
-from mechanisms._assembly.faults import NoAnswer as NoAnswer
-from mechanisms._assembly.faults import NothingMoves as NothingMoves
 from mechanisms._assembly.friction import MOST as MOST
 from mechanisms._assembly.friction import Friction as Friction
 from mechanisms._assembly.friction import friction as friction
@@ -29,9 +29,9 @@ from mechanisms._assembly.limit import collapse as collapse
 from mechanisms._assembly.mechanism import AssemblyHinge as AssemblyHinge
 from mechanisms._assembly.mechanism import AssemblyLinkage as AssemblyLinkage
 from mechanisms._assembly.mechanism import Opening as Opening
+from mechanisms._assembly.mechanism import Passage as Passage
+from mechanisms._assembly.mechanism import Thrust as Thrust
 from mechanisms._assembly.mechanism import leading as leading
 from mechanisms._assembly.mechanism import linkage as linkage
+from mechanisms._assembly.mechanism import thrust as thrust
 from mechanisms._assembly.rays import Bearings as Bearings
-from mechanisms._assembly.thrust import Passage as Passage
-from mechanisms._assembly.thrust import Thrust as Thrust
-from mechanisms._assembly.thrust import thrust as thrust

@@ -12,12 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
-from mechanisms._assembly.faults import ContactFault, listed
+from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, ContactFault, listed
 from mechanisms._polygons import nearby, overlap, size_of, thickness_of
 from rocking_cli.core import Reals
-from rocking_cli.core.kinematics import Points
-from rocking_cli.core.polygons import distance, inside
+from rocking_cli.core.kinematics import Points, distance, inside
 
 GAP = 2e-3  # largest gap of a joint over width plus height of the smaller block: 2 mm for 0.5 m x 0.5 m
 PARALLEL = 0.05  # sine of the largest angle between two edges in contact

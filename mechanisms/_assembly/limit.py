@@ -14,13 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
+from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, DoesNotStand, NoAnswer, NothingMoves, listed
 from mechanisms._assembly.confined import Undilated, undilated
-from mechanisms._assembly.faults import DoesNotStand, NoAnswer, NothingMoves, listed
 from mechanisms._assembly.problem import NOTHING, STRONGEST, AssemblyProblem
 from mechanisms._assembly.rays import moving
-from mechanisms._assembly.smallest import smallest
-from mechanisms._assembly.unique import kept_rays, mechanisms_of, velocity_space
+from mechanisms._assembly.unique import kept_rays, mechanisms_of, smallest, velocity_space
 from rocking_cli.core import Direction, Guide, Reals
 
 NOISE = 1e-11  # rates that count as zero, over the fastest velocity

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
-from mechanisms._assembly.faults import NothingMoves
-from mechanisms._assembly.programme import least
+from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, NothingMoves
+from mechanisms._assembly.programme import beside, least, unit_columns
 from mechanisms._assembly.rays import Bearings, Frame, Rays, moving, scaled
-from mechanisms._assembly.sparse import beside, unit_columns
 from rocking_cli.core import Direction, Guide, Reals
 
 STRONGEST = 1e4  # largest multiplier: beyond, nothing moves

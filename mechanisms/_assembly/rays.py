@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
-from mechanisms._assembly.sparse import Sparse, from_entries
+from mechanisms._assembly.programme import Sparse, from_entries
 from rocking_cli.core import Guide, Reals
 from rocking_cli.core.kinematics import Points
 

@@ -4,18 +4,36 @@ A vertex of the linear programme always has one degree of freedom. Rays that can
 greatest multiplier keep their contact in every mechanism of that multiplier, and each other ray opens in some mechanism
 (strict complementarity). The velocities that keep these contacts are a vector space; if its dimension is one, the
 mechanism is unique.
+
+Kept joints make blocks rigid: they move as one, so that only a few parts are left.
+
+Two parts are joined if the kept rates between them allow no relative motion. This is repeated until no more parts can
+be joined; parts joined to the ground are at rest. A part that three others hold as a triangle is not detected: joining
+fewer parts than possible costs time, but is never wrong.
+
+A linear programme may find many mechanisms with the same multiplier that are one and the same collapse: a few blocks
+move, and others may or may not move with them. The blocks that need not move are idle. Mechanisms count as the same
+motion under three conditions: a set of blocks moves in proportion in all of them; these blocks can also move alone; and
+every other block is idle. A block is idle if the forces do no work on it, or if it can only turn with one of the moving
+blocks, about the same point. The smallest mechanism moves only the blocks that are not idle, and its hinges are also
+hinges of the larger ones.
+
+Two equal towers side by side are a counter-example: either can overturn alone, at the same multiplier. So is a stack
+that can turn about its own foot or about that of its plinth, at the same multiplier.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from mechanisms._assembly.faults import NoAnswer
-from mechanisms._assembly.programme import least
+from mechanisms._assembly.blocks import NoAnswer
+from mechanisms._assembly.problem import NOTHING, AssemblyProblem
+from mechanisms._assembly.programme import Sparse, beside, components, from_blocks, from_entries, least
 from mechanisms._assembly.rays import Bools, Frame, Indices, Rays
-from mechanisms._assembly.rigid import rigid_parts
-from mechanisms._assembly.sparse import Sparse, beside, components
 from rocking_cli.core import Reals
+from rocking_cli.core.kinematics import Points
 
 OPENS = 1e-7  # rate from which a ray opens, over the fastest rate
 CARRIES = 1e-9  # force from which a ray carries, over the weight
@@ -168,3 +186,232 @@ def _extremes(opening: Reals, space: Reals) -> list[Reals]:
 
 def _clean(field: Reals) -> Reals:
     return np.where(np.abs(field) > CLEAN * np.abs(field).max(), field, 0.0)
+
+
+ACROSS = 1e-3  # least sine of the angle between two different directions
+APART = 1e-9  # least distance of two different lines of action, over the size of the assembly
+
+
+@dataclass(frozen=True, eq=False)
+class RigidParts:
+    """Blocks joined to rigid parts.
+
+    Parameters
+    ----------
+    of : ndarray of int, shape (blocks,)
+        Part of each block; -1 for blocks at rest.
+    count : int
+        Number of parts that are not at rest.
+    basis : sparse array, shape (3 blocks, 3 count)
+        Velocities of the blocks by those of the parts.
+    between : ndarray of bool
+        Rows that are rates between two parts; all other rates are zero.
+    """
+
+    of: Indices
+    count: int
+    basis: Sparse
+    between: Bools
+
+
+def rigid_parts(rates: Sparse, frame: Frame) -> RigidParts:
+    """Join the blocks that move as one if all of the given rates are zero.
+
+    Parameters
+    ----------
+    rates : sparse array, shape (rows, 3 blocks)
+        Rates between two blocks each, or a block and the ground.
+    frame : Frame
+        The blocks.
+    """
+    ground = len(frame.names)
+    one, other, wrench = _wrenches(rates, ground)
+    place = np.array([*frame.centroids, 0j], np.complex128) / frame.size
+    part = np.arange(ground + 1)
+    while True:
+        low, high = np.sort([part[one], part[other]], axis=0)
+        open_ = low != high
+        if not open_.any():
+            break
+        pairs, number = np.unique(np.array([low[open_], high[open_]]), axis=1, return_inverse=True)
+        held = _holds(number.ravel(), pairs.shape[1], wrench[open_], place[one[open_]])
+        if not held.any():
+            break
+        part = components(pairs[0, held], pairs[1, held], ground + 1)[part]
+    return _parts(part, place, part[one] != part[other])
+
+
+def _wrenches(rates: Sparse, ground: int) -> tuple[Indices, Indices, Reals]:
+    """Return the two bodies of each row, and the direction and moment of its unit force about the first's centroid."""
+    entries = rates.tocoo()
+    block, component = np.divmod(entries.col, 3)
+    one = np.full(rates.shape[0], -1)
+    np.maximum.at(one, entries.row, block)
+    lowest = np.full(rates.shape[0], ground)
+    np.minimum.at(lowest, entries.row, block)
+    other = np.where(lowest == one, ground, lowest)
+    wrench = np.zeros((rates.shape[0], 3))
+    of_one = block == one[entries.row]
+    wrench[entries.row[of_one], component[of_one]] = entries.data[of_one]
+    return np.where(one < 0, ground, one), other, wrench  # a row without entries is of the ground alone
+
+
+def _holds(number: Indices, count: int, wrench: Reals, place: Points) -> Bools:
+    """Return for each pair of parts whether the rows between them prevent every relative motion, including rotation."""
+    first = np.zeros(count, np.intp)
+    first[number[::-1]] = np.arange(len(number))[::-1]
+    arm = place - place[first[number]]  # moments about one point for each pair, near its joints
+
+    def dot(one: Reals, two: Reals) -> Reals:
+        return np.asarray(np.bincount(number, one * two, count), np.float64)
+
+    def without(one: Reals, two: Reals) -> Reals:
+        """Return the component of a column orthogonal to another, pair by pair."""
+        square = dot(two, two)
+        return one - (dot(one, two) / np.where(square > 0, square, 1.0))[number] * two
+
+    x, y, moment = wrench.T
+    moment = moment + arm.real * y - arm.imag * x
+    swap = (dot(x, x) < dot(y, y))[number]
+    main, minor = np.where(swap, y, x), np.where(swap, x, y)
+    minor = without(minor, main)
+    for _ in range(2):  # once more, for what rounding left
+        moment = without(without(moment, main), minor)
+    length = np.sqrt(dot(main, main))
+    return (np.sqrt(dot(minor, minor)) > ACROSS * length) & (np.sqrt(dot(moment, moment)) > APART * length)
+
+
+def _parts(label: Indices, place: Points, between: Bools) -> RigidParts:
+    """Return the parts, numbered in the order of their first blocks, with their velocities."""
+    label, ground = label[:-1], label[-1]
+    moves = np.flatnonzero(label != ground)
+    _, first, number = np.unique(label[moves], return_index=True, return_inverse=True)
+    rank = np.argsort(np.argsort(first))
+    of = np.full(len(label), -1)
+    of[moves] = rank[number]
+    about = place[moves[np.sort(first)]]
+    arm = place[moves] - about[of[moves]]
+    rows, columns = 3 * moves, 3 * of[moves]
+    ones = np.ones(len(moves))
+    basis = from_entries(
+        np.concatenate([rows, rows, rows + 1, rows + 1, rows + 2]),
+        np.concatenate([columns, columns + 2, columns + 1, columns + 2, columns + 2]),
+        np.concatenate([ones, -arm.imag, ones, arm.real, ones]),
+        (3 * len(label), 3 * len(about)),
+    )
+    return RigidParts(of, len(about), basis, between)
+
+
+SAME = 1e-6  # relative difference of equal velocities
+DIMENSIONS = 30  # dimensions of the space of velocities up to which one motion is searched
+
+
+def smallest(problem: AssemblyProblem, rays: Rays, kept: Bools, space: Reals) -> tuple[Reals, tuple[str, ...]] | None:
+    """Return the mechanism that moves the fewest blocks, and the idle blocks.
+
+    Parameters
+    ----------
+    problem : AssemblyProblem
+        The assembly.
+    rays : Rays
+        Forces that its joints can exert.
+    kept : ndarray of bool
+        The rays that no mechanism opens.
+    space : ndarray, shape (3 blocks, dimensions)
+        Columns that span the velocities of all mechanisms of the multiplier: those that open none of the kept rays.
+
+    Returns
+    -------
+    (ndarray, tuple of str) or None
+        The velocities of all blocks, zero for idle blocks, and the names of the idle blocks. None if the mechanisms are
+        not the same motion, or `space` has fewer than 2 or more than 30 dimensions.
+    """
+    if not 2 <= space.shape[1] <= DIMENSIONS:
+        return None
+    space = np.linalg.qr(space)[0]
+    by_block = space.reshape(-1, 3, space.shape[1])
+    ways, sizes, shares = np.linalg.svd(by_block, full_matrices=False)
+    able = sizes[:, 0] > NOTHING
+    works = able & _does_work(problem, by_block)
+    if not works.any() or (sizes[works, 1] > SAME * sizes[works, 0]).any():
+        return None  # a block that can move in two ways
+    share = shares[:, 0]  # how much of its one way a block moves, by coordinates of the space
+    opening = rays.rates[~kept] @ space
+    for k in _candidates(share, np.flatnonzero(works)):
+        alike = works & (np.abs(share @ share[k]) > 1 - SAME**2)
+        others = _candidates(share, np.flatnonzero(works & ~alike))
+        if any(_reaches(opening, share[k], sign * share[j]) for j in others for sign in (1, -1)):
+            continue  # others move without these
+        field = _least_motion(opening, space, by_block, able, share[k])
+        if field is None:
+            continue
+        moves = np.abs(field.reshape(-1, 3)).max(axis=1) > SAME * np.abs(field).max()
+        if (moves & works & ~alike).any() or not all(
+            _turns_with(problem, field, moves & works, j, ways[j, :, 0])
+            for j in np.flatnonzero(works & ~alike).tolist()
+        ):
+            return None
+        names = problem.frame.names
+        return np.where(np.repeat(moves, 3), field, 0.0), tuple(names[j] for j in np.flatnonzero(able & ~moves))
+    return None
+
+
+def _does_work(problem: AssemblyProblem, by_block: Reals) -> Bools:
+    """Return on which blocks the forces do work, in any of the velocities."""
+    work = [np.abs(np.einsum("bi,bid->bd", each.reshape(-1, 3), by_block)).max(axis=1)
+            for each in (problem.dead, problem.live)]  # fmt: skip
+    return np.asarray(np.maximum(*work) > NOTHING * np.abs(by_block).max(axis=(1, 2)))
+
+
+def _candidates(share: Reals, blocks: Indices) -> list[int]:
+    """Return one block of each set of blocks that move in proportion, the largest set first."""
+    found: dict[int, int] = {}
+    for j in blocks.tolist():
+        same = next((k for k in found if abs(share[k] @ share[j]) > 1 - SAME**2), j)
+        found[same] = found.get(same, 0) + 1
+    return sorted(found, key=lambda k: (-found[k], k))
+
+
+def _reaches(opening: Reals, still: Reals, moves: Reals) -> bool:
+    """Return whether some velocity closes no ray, keeps one set of blocks at rest and moves another."""
+    n, d = opening.shape
+    equal = from_blocks([[opening, -np.eye(n)], [still[None, :], None]])
+    found = least(
+        np.append(-moves, np.zeros(n)), equal, np.zeros(n + 1),
+        np.append(np.full(d, -1.0), np.zeros(n)), np.append(np.ones(d), np.full(n, np.inf)),
+    )  # fmt: skip
+    return found is not None and -found.value > SAME
+
+
+def _least_motion(opening: Reals, space: Reals, by_block: Reals, able: Bools, share: Reals) -> Reals | None:
+    """Return velocities in which one set of blocks moves and the sum of all absolute velocities is least.
+
+    None if this set cannot move.
+    """
+    rows = space[np.repeat(able, 3)]
+    (n, d), m = opening.shape, len(rows)
+    for sign in (1.0, -1.0):
+        equal = from_blocks(
+            [[opening, -np.eye(n), None, None], [rows, None, -np.eye(m), np.eye(m)], [share[None, :], None, None, None]]
+        )
+        found = least(
+            np.concatenate([np.zeros(d + n), np.ones(2 * m)]), equal, np.append(np.zeros(n + m), sign),
+            np.concatenate([np.full(d, -np.inf), np.zeros(n + 2 * m)]), np.full(d + n + 2 * m, np.inf),
+        )  # fmt: skip
+        if found is not None:
+            return np.asarray(space @ found.x[:d])
+    return None
+
+
+def _turns_with(problem: AssemblyProblem, field: Reals, moves: Bools, block: int, way: Reals) -> bool:
+    """Return whether the only motion of a block is to move as a part of some moving block."""
+    place = np.array(problem.frame.centroids) / problem.frame.size
+    for k in np.flatnonzero(moves):
+        vx, vy, turn = field[3 * k : 3 * k + 3]
+        if abs(turn) <= SAME * np.abs(field).max():
+            continue  # what slides has no point about which to turn: it is another joint that slides
+        arm = place[block] - place[k]
+        along = np.array([vx - turn * arm.imag, vy + turn * arm.real, turn])
+        if np.linalg.norm(along - way * (along @ way)) <= SAME * np.linalg.norm(along):
+            return True
+    return False

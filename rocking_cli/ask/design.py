@@ -11,7 +11,7 @@ from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
 from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.core.size import doubtful_size
+from rocking_cli.core.mechanism import doubtful_size
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.names import OPENING
 from rocking_cli.structure import Structure

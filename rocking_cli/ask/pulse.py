@@ -140,8 +140,7 @@ def _on_block(a: float | None, omega: float | None, eta: float, shape: str) -> M
 
 def _answers(structure: Structure, given: Any, polarity: int, watch: Watcher) -> dict[str, Answer]:
     """Return the responses of the models; warn of those that do not converge with the sampling."""
-    from rocking_cli.studies.pulse_on_structure import answers
-    from rocking_cli.studies.sampled_pulse import SampledHistory
+    from rocking_cli.studies.pulse_on_structure import SampledHistory, answers
 
     found = answers(structure, given, polarity)
     for name, run in found.items():

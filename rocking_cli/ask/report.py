@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from rocking_cli.processing.scaled import Scaled
     from rocking_cli.structure import Structure
     from rocking_cli.studies.assessment import Assessment, TitleBlock
-    from rocking_cli.studies.verification.motions import Histories
-    from rocking_cli.studies.verification.site_file import SiteFile
+    from rocking_cli.studies.verification.code import SiteFile
+    from rocking_cli.studies.verification.results import Histories
 
 
 @takes_numbers
@@ -116,7 +116,7 @@ def report(
     from rocking_cli.io.files import check_writable, write_whole
     from rocking_cli.studies.assessment import gather, steps
     from rocking_cli.studies.verification.check import refuse
-    from rocking_cli.studies.verification.motions import Histories
+    from rocking_cli.studies.verification.results import Histories
     from rocking_cli.views.assessment import view
     from rocking_cli.views.sheet.build import sheet_of
 

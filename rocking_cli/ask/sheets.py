@@ -17,8 +17,8 @@ from rocking_cli.io.json_text import json_text
 from rocking_cli.processing.scaled import Scaled
 from rocking_cli.structure import Structure
 from rocking_cli.studies.assessment import File, TitleBlock, file_of_motion, versions
+from rocking_cli.studies.verification.code import SiteFile
 from rocking_cli.studies.verification.results import Verification
-from rocking_cli.studies.verification.site_file import SiteFile
 from rocking_cli.views.sheet.build import SheetSources, sheet, sheet_of
 from rocking_cli.views.sheet.document import Sheet
 from rocking_cli.views.sheet.language import Language

@@ -134,7 +134,7 @@ def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
 
 def _processes(rows: int, shaken: bool) -> int | None:
     """Return the number of processes that share the work; None if threads are as fast."""
-    from rocking_cli.dynamics.processes import MOST
+    from rocking_cli.dynamics.parallel import MOST
 
     count = min(os.cpu_count() or 1, MOST)
     if count < 2 or rows < (LONG_SHAKEN if shaken else LONG):

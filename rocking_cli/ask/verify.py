@@ -103,8 +103,7 @@ def verify(
     """
     from rocking_cli.studies.verification.check import refuse, with_histories
     from rocking_cli.studies.verification.check import verify as study
-    from rocking_cli.studies.verification.control import control_at
-    from rocking_cli.studies.verification.motions import Histories
+    from rocking_cli.studies.verification.results import Histories, control_at
     from rocking_cli.views.verification import table, view
 
     signs, given, known = signs_of(polarity), Motions.of(motions, options), site_of(site)

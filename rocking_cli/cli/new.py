@@ -124,8 +124,7 @@ def _print_site(asked: str | None, *, as_json: bool) -> None:
     from rocking_cli.io.yaml_file import parse
     from rocking_cli.plugins.errors import blame
     from rocking_cli.studies.verification.check import site_in
-    from rocking_cli.studies.verification.installed import codes
-    from rocking_cli.studies.verification.site_file import HINT, USUAL
+    from rocking_cli.studies.verification.code import HINT, USUAL, codes
     from rocking_cli.views.template import starter
 
     key = USUAL if asked is None else asked

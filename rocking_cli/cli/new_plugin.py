@@ -137,7 +137,7 @@ def check_name(name: str, kind: PluginKind, printed: Collection[str]) -> None:
 
     from rocking_cli.cli.mechanisms import PARTS
     from rocking_cli.core.registry import Registry
-    from rocking_cli.studies.verification.installed import Codes
+    from rocking_cli.studies.verification.code import Codes
 
     if not NAME.fullmatch(name) or len(name) > LONGEST:
         guess = re.sub(r"[^a-z0-9]+", "_", name.lower()).lstrip("_0123456789")[:LONGEST].rstrip("_") or kind.example

@@ -1,5 +1,8 @@
 """Mechanics of rigid bodies: positions of the bodies of a mechanism, equation of motion, equivalent block."""
 
+from rocking_cli.core.answers import CollapseHinge as CollapseHinge
+from rocking_cli.core.answers import CollapseMechanism as CollapseMechanism
+from rocking_cli.core.answers import Extra as Extra
 from rocking_cli.core.bodies import Body as Body
 from rocking_cli.core.bodies import annular_sector as annular_sector
 from rocking_cli.core.bodies import box as box
@@ -12,9 +15,11 @@ from rocking_cli.core.contacts import of_joints as of_joints
 from rocking_cli.core.equivalence import Equivalence as Equivalence
 from rocking_cli.core.equivalence import EquivalentBlock as EquivalentBlock
 from rocking_cli.core.equivalence import NoEquivalentBlock as NoEquivalentBlock
+from rocking_cli.core.equivalence import Statics as Statics
 from rocking_cli.core.equivalence import both_statics as both_statics
 from rocking_cli.core.equivalence import equivalent_block as equivalent_block
 from rocking_cli.core.equivalence import one_block as one_block
+from rocking_cli.core.equivalence import statics as statics
 from rocking_cli.core.fields import Vertex as Vertex
 from rocking_cli.core.fields import geometry_error as geometry_error
 from rocking_cli.core.fields import length as length
@@ -34,9 +39,6 @@ from rocking_cli.core.linkage import NoMotion as NoMotion
 from rocking_cli.core.loops import Guide as Guide
 from rocking_cli.core.loops import Pin as Pin
 from rocking_cli.core.mechanism import Mechanism as Mechanism
-from rocking_cli.core.results import CollapseHinge as CollapseHinge
-from rocking_cli.core.results import CollapseMechanism as CollapseMechanism
-from rocking_cli.core.results import Extra as Extra
 from rocking_cli.core.sketch import Angle as Angle
 from rocking_cli.core.sketch import Forces as Forces
 from rocking_cli.core.sketch import Hinge as Hinge
@@ -47,5 +49,3 @@ from rocking_cli.core.sketch import Sketch as Sketch
 from rocking_cli.core.sketch import disc as disc
 from rocking_cli.core.sketch import rectangle as rectangle
 from rocking_cli.core.sketch import three_digits as three_digits
-from rocking_cli.core.statics import Statics as Statics
-from rocking_cli.core.statics import statics as statics

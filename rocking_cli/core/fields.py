@@ -70,7 +70,7 @@ def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any
 def length(description: str, *, symbol: str = "", example: Any = None, **bounds: Any) -> Any:
     """Declare a field in metres: positive, and at most a million, so that nothing overflows.
 
-    Values in metres that were meant as millimetres are not found here: see `rocking_cli.core.size`.
+    Values in metres that were meant as millimetres are not found here: see `rocking_cli.core.mechanism`.
     """
     return quantity(description, unit="m", symbol=symbol, example=example, gt=0, le=1e6, **bounds)
 

@@ -2,14 +2,16 @@
 
 Points of the plane are complex numbers x + iy, x to the right, y up [m]. Rotations psi of a body are
 anticlockwise [rad], so a structure that rocks in the positive (clockwise) direction turns by -phi.
-A prime is a derivative with respect to phi.
+A prime is a derivative with respect to phi. Corners of a polygon are in order around it, the last joined to the first.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -153,3 +155,96 @@ def _angle(ratio: Points) -> Reals:
 
 def _cross(u: Points | np.complex128, v: Points | np.complex128) -> Reals:
     return np.asarray((np.conj(u) * v).imag)
+
+
+def area_of(corners: Sequence[complex] | Points) -> float:
+    """Return the area of a polygon [m2], negative if its corners are clockwise."""
+    z = np.asarray(corners) - corners[0]
+    return float((z.conj() * np.roll(z, -1)).imag.sum() / 2)
+
+
+def distance(points: Points, z: Points) -> Reals:
+    """Return the distances of points from the sides of a polygon [m]."""
+    side = np.roll(z, -1) - z
+    away = points[:, None] - z
+    along = np.clip((away * side.conj()).real / squared(side), 0.0, 1.0)
+    return np.asarray(np.abs(away - along * side).min(axis=1))
+
+
+def inside(points: Points, z: Points) -> NDArray[np.bool_]:
+    """Return whether points are inside a polygon; for points on a side, either result is possible."""
+    w = np.roll(z, -1)
+    y = points.imag[:, None]
+    spans = (z.imag > y) != (w.imag > y)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crossing = z.real + (y - z.imag) / (w - z).imag * (w - z).real
+    return np.asarray(np.count_nonzero(spans & (points.real[:, None] < crossing), axis=1) % 2 == 1)
+
+
+def squared(side: Points) -> Reals:
+    """Return the squared lengths of sides, with 1 for sides so short that the square vanishes."""
+    found = np.abs(side) ** 2
+    return np.where(found == 0, 1.0, found)
+
+
+Integers = NDArray[np.intp]
+GROUND = -1
+
+
+class VelocityTerm(NamedTuple):
+    """Contribution of one piece to a velocity: its number, and the factors of its x, y and rotation, shape (n, 3)."""
+
+    piece: int
+    factors: Reals
+
+
+@dataclass(frozen=True, eq=False)
+class Rates:
+    """Rows of velocities, each a linear function of the velocities of at most two pieces, at several rotations.
+
+    Parameters
+    ----------
+    count : int
+        Number of pieces.
+    pieces : ndarray of int, shape (rows, 2)
+        Numbers of the two pieces of each row, -1 for the ground.
+    factors : ndarray, shape (n, rows, 2, 3)
+        Factors of the velocities in x, y and rotation of both pieces; zero for the ground.
+    """
+
+    count: int
+    pieces: Integers
+    factors: Reals
+
+    @classmethod
+    def of(cls, rows: Sequence[Sequence[VelocityTerm]], count: int, rotations: int) -> Rates:
+        """Make rates from rows of contributions of at most two pieces each."""
+        pieces = np.full((len(rows), 2), GROUND, np.intp)
+        factors = np.zeros((rotations, len(rows), 2, 3))
+        for k, shares in enumerate(rows):
+            for side, share in enumerate(shares):
+                pieces[k, side] = share.piece
+                factors[:, k, side] += share.factors  # 0 + -0 is 0
+        return cls(count, pieces, factors)
+
+    def dense(self) -> Reals:
+        """Return the factors of all rows as one matrix per rotation, shape (n, rows, 3 count)."""
+        n, rows = self.factors.shape[:2]
+        found = np.zeros((n, rows, self.count + 1, 3))
+        for side in (0, 1):
+            found[:, np.arange(rows), self.pieces[:, side]] += self.factors[:, :, side]
+        return found[:, :, :-1].reshape(n, rows, 3 * self.count)  # the last is the ground
+
+    def at(self, velocity: Reals) -> Reals:
+        """Return the velocities of all rows, shape (n, rows), from those of the pieces, shape (n, 3 count)."""
+        moved = velocity.reshape(len(velocity), self.count, 3)
+        moved = np.concatenate([moved, np.zeros_like(moved[:, :1])], axis=1)  # the ground
+        return np.asarray((self.factors * moved[:, self.pieces]).sum(axis=(2, 3)))
+
+    def rotations(self, chosen: Integers | Sequence[int]) -> Rates:
+        """Return the rates at a selection of the rotations."""
+        return Rates(self.count, self.pieces, self.factors[chosen])
+
+    def rows(self, chosen: Integers | NDArray[np.bool_]) -> Rates:
+        """Return the rates of a selection of the rows."""
+        return Rates(self.count, self.pieces[chosen], self.factors[:, chosen])

@@ -1,9 +1,14 @@
-"""Base class of all mechanism plugins: what follows from a mechanism, with the loads and ties attached to it."""
+"""Base class of all mechanism plugins: what follows from a mechanism, with the loads and ties attached to it.
+
+The fields of a structure are checked against one another here; each check raises `RefusedFields` with the field at
+fault.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from itertools import pairwise
 from math import nan, sqrt
 from typing import Any, final
 
@@ -11,11 +16,11 @@ import numpy as np
 from pydantic import ValidationError
 
 from rocking_cli.core import equilibrium
-from rocking_cli.core.answers import Jointed, Kinematics
-from rocking_cli.core.checks import check
+from rocking_cli.core.answers import Extra, Jointed, Kinematics
+from rocking_cli.core.bodies import Body
 from rocking_cli.core.coefficients import Coefficients, coefficients
-from rocking_cli.core.given import DirectionalRestitution
-from rocking_cli.core.hung.attached import Attached, Follow
+from rocking_cli.core.given import KINEMATIC, NEEDS_A_SIDE, DirectionalRestitution, Strength
+from rocking_cli.core.hung.attached import Attached, Follow, PointMass
 from rocking_cli.core.hung.attachments import (
     Carrier,
     Loc,
@@ -26,11 +31,10 @@ from rocking_cli.core.hung.attachments import (
     followed,
     interlocked,
 )
+from rocking_cli.core.hung.element import Element, Stretched
+from rocking_cli.core.hung.elements import NAME as INTERLOCK
 from rocking_cli.core.hung.everything import Hung
-from rocking_cli.core.hung.interlock import NAME as INTERLOCK
-from rocking_cli.core.kinematics import Direction, Reals
-from rocking_cli.core.restitution import kinematic_restitution
-from rocking_cli.core.results import Extra
+from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.sketch import Outline
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plugins.errors import failed, guard
@@ -268,3 +272,225 @@ def _rotations(phi: Any) -> Reals:
 def _is_final(member: object) -> bool:
     """Return whether a method or a property of a class is marked as final."""
     return any(getattr(getattr(member, key, member), "__final__", False) for key in ("fget", "func", "__func__"))
+
+
+ROUNDING = 1e-9  # by which a restitution may exceed its bound, which the kinematic one of equal sides reaches
+LOOKED_AT = 129  # rotations at which it is checked whether a tie stretches
+STRETCHED = 1e-9  # elongation that counts, over the length of the path of a tie, or over 1 m if it is shorter
+NO_MASSES = "the structure has no masses: give density and depth, or its mass"
+
+
+def check(mechanism: Mechanism) -> None:
+    """Refuse a structure whose fields do not fit together."""
+    if mechanism.mass is not None and mechanism.density is not None:
+        raise RefusedFields((), "mass", "give mass, or density and depth: one of them")
+    check_crushed(mechanism)
+    check_one_sided(mechanism)
+    mechanism.total_mass()  # refuses a density without a volume
+    check_strength(mechanism)
+    if mechanism.is_laden and not mechanism.has_mass:
+        key = "loads" if mechanism.loads else "ties" if mechanism.ties else "interlock"
+        raise RefusedFields((), key, NO_MASSES)
+    check_restitution(mechanism)
+    if mechanism.is_laden:
+        check_stretched(mechanism)
+        check_stands(mechanism)
+
+
+def check_crushed(mechanism: Mechanism) -> None:
+    """Refuse `crushing` if it moves no joint, or moves joints so far that nothing stands."""
+    if mechanism.crushing is None:
+        return
+    moved = mechanism.moved_inwards
+    if not moved:
+        reason = "its pivots cannot be moved in this version, only those of single bodies and of walls: leave it out"
+        raise RefusedFields((), "crushing", reason)
+    for direction in mechanism.directions:
+        if not mechanism.coefficients(np.zeros(1), direction).restoring(mechanism.gravity)[0] > 0:
+            far = max(moved[direction].values())
+            reason = f"the structure cannot stand on what is left: a pivot moves inwards by {far:.4g} m"
+            raise RefusedFields((), "crushing", reason)
+
+
+def check_one_sided(mechanism: Mechanism) -> None:
+    """Check that `one_sided`, `rebound` and `restitution` fit together.
+
+    A structure that rocks to both sides has no rebound, and one that rocks to one side only has a rebound and no
+    restitution. The rebound may be `kinematic` only if it follows from the shape.
+    """
+    if mechanism.one_sided is None and mechanism.rebound is not None:
+        raise RefusedFields((), "rebound", NEEDS_A_SIDE)
+    if mechanism.one_sided is not None and mechanism.restitution is not None:
+        raise RefusedFields((), "restitution", "cannot be combined with `one_sided`: give `rebound` instead")
+    asked = "rebound" in mechanism.model_fields_set and mechanism.rebound is None
+    if mechanism.one_sided is not None and asked and mechanism.rebound_from_impacts() is None:
+        why = "only for a plain rectangle does it follow from the shape; give a number in [0, 1)"
+        raise RefusedFields((), "rebound", f"cannot be {KINEMATIC}: {why}")
+
+
+def check_strength(mechanism: Mechanism) -> None:
+    """Refuse a contact strength if the structure has no masses or no depth."""
+    if not isinstance(mechanism.strength, Strength):  # None, or a field of a plugin of that name
+        return
+    if not mechanism.has_mass:
+        raise RefusedFields((), "strength", NO_MASSES)
+    if mechanism.depth is None:
+        raise RefusedFields((), "depth", "is missing: the contacts are as long as the structure is deep")
+
+
+def check_restitution(mechanism: Mechanism) -> None:
+    """Refuse a restitution with which an impact would add energy."""
+    given = mechanism.restitution
+    for direction in Direction if given is not None else ():
+        own, most = mechanism.eta(direction), mechanism.greatest_restitution(direction)
+        if own > most * (1 + ROUNDING):
+            reason = f"must be at most {most:.6g}, got {own:g}: a larger value would add energy at an impact"
+            if isinstance(given, DirectionalRestitution):
+                field = "positive_to_negative" if direction > 0 else "negative_to_positive"
+                raise RefusedFields(("restitution",), field, reason)
+            raise RefusedFields((), "restitution", reason)
+
+
+def check_stretched(mechanism: Mechanism) -> None:
+    """Refuse ties that no motion stretches, or none in the one sense in which they can act."""
+    for loc, tie in mechanism.hung.placed:
+        parts = tie.stretched if isinstance(tie, Element) else ()
+        if parts and not any(stretches(mechanism, part, side) for part in parts for side in mechanism.directions):
+            sense = f" in {parts[0].only}" if parts[0].only else ""
+            reason = f"nothing stretches {tie.name!r}{sense}: no motion of the structure changes its length"
+            raise RefusedFields(loc, "name", reason)
+
+
+def stretches(mechanism: Mechanism, tie: Stretched, direction: Direction) -> bool:
+    """Return whether the motion in a direction stretches a tie, in the sense in which it can act."""
+    grid = np.linspace(0.0, mechanism.limit(direction), LOOKED_AT)[:-1]
+    e, _, _ = tie.elongation(mechanism.followed(grid, direction))
+    long = max(1.0, *(abs(b.at - a.at) for a, b in pairwise(tie.spots)))
+    return bool(((np.abs(e) > STRETCHED * long) & (tie.only is None or tie.force(e) != 0)).any())
+
+
+def check_stands(mechanism: Mechanism) -> None:
+    """Refuse loads and ties under which the structure does not stand, if it stands without them."""
+    bodies, g, rest = mechanism.bodies(), mechanism.gravity, np.zeros(1)
+    weight = g * (sum(body.mass for body in mechanism.weighed()) + mechanism.hung.carried)
+    if mechanism.hung.lifting >= weight:
+        reason = f"forces lift it by {mechanism.hung.lifting:.4g} N, more than all of its weight, {weight:.4g} N"
+        raise RefusedFields((), "loads", reason)
+    for direction in mechanism.directions:
+        bare = coefficients(rest, direction, bodies, mechanism.motion(rest, direction))
+        moment = g * mechanism.coefficients(rest, direction).restoring(g)[0]
+        if bare.G[0] > 0 and not moment > 0:
+            raise RefusedFields(
+                (),
+                "loads" if mechanism.loads else "ties",
+                f"the structure cannot stand under them: at rest they turn it in the {direction.label} direction "
+                f"with {-moment:.4g} N m more than its weight holds",
+            )
+
+
+def kinematic_restitution(
+    bodies: Sequence[Body],
+    before: Sequence[RigidMotion],
+    after: Sequence[RigidMotion],
+    loads: Sequence[PointMass] = (),
+) -> float:
+    """Return eta, the ratio of the rotation rates after and before an impact.
+
+    The velocity before the impact is projected on the mechanism that follows, in the mass inner product: eta =
+    -<t_before, t_after> / <t_after, t_after> with t the velocity fields at rest. For a block this is Housner's 1 -
+    (3/2) sin^2(alpha). This is an idealisation: measured values lie on either side of it. A value of zero or less means
+    that the new mechanism cannot start as assumed.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        Bodies that are rigid in both mechanisms.
+    before, after : sequence of RigidMotion
+        Motions of the bodies in the two directions; the first entry of each is at rest (phi = 0).
+    loads : sequence of PointMass
+        Masses on these bodies, whose shares enter the inner product; a tie or a force is no part of it.
+
+    Returns
+    -------
+    float
+        eta; it does not depend on the scale of the masses.
+    """
+    mixed = own = 0.0
+    for body, old, new in zip(bodies, before, after, strict=True):
+        u, v = old.carry(body.centroid)[1][0], new.carry(body.centroid)[1][0]
+        mixed += body.mass * (u.conjugate() * v).real + body.inertia * old.dpsi[0] * new.dpsi[0]
+        own += body.mass * abs(v) ** 2 + body.inertia * new.dpsi[0] ** 2
+    by_name = {body.name: pair for body, pair in zip(bodies, zip(before, after, strict=True), strict=True)}
+    for load in loads:
+        old, new = by_name[load.spot.body or ""]
+        u, v = (complex(motion.carry(load.spot.at)[1][0]) for motion in (old, new))
+        mixed += load.product(u, v)
+        own += load.product(v, v)
+    return float(-mixed / own)
+
+
+def why_none(eta: float) -> str:
+    """Return in words why the kinematics give no valid restitution, from the sign of the one that they give.
+
+    Parameters
+    ----------
+    eta : float
+        Restitution from kinematics, not positive.
+    """
+    product = "zero" if eta == 0 else "positive"
+    return (
+        f"the mass inner product of its motions before and after, <t+, t->, is {product}, so that no rocking the other "
+        "way follows the impact"
+    )
+
+
+SMALLEST, LARGEST = 0.01, 100.0  # m: what lies beyond is rarely meant
+
+
+def extent(mechanism: Mechanism) -> float:
+    """Return the largest length of a structure [m]: of the box around its bodies, or from a pivot to a centroid.
+
+    Only the bodies and their motion are used, so that it works for any mechanism.
+    """
+    bodies = mechanism.bodies()
+    z = np.array([point for body in bodies for point in (body.centroid, *body.outline)])
+    moved = [motion.carry(body.centroid)[1][0] for body, motion in zip(
+        bodies, mechanism.motion(np.zeros(1), Direction.POSITIVE), strict=True)]  # fmt: skip
+    return float(max(abs(complex(np.ptp(z.real), np.ptp(z.imag))), *np.abs(moved)))
+
+
+def doubtful_size(mechanism: Mechanism) -> str | None:
+    """Return what is unusual about the size of a structure, a sentence without a full stop; None if nothing is.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Any structure. If its plugin fails here, the size is not judged.
+    """
+    try:
+        with np.errstate(all="ignore"):
+            size = extent(mechanism)
+    except Exception:  # a plugin may fail in any way; whoever uses it next says so
+        return None
+    if SMALLEST <= size <= LARGEST or not np.isfinite(size):
+        return None
+    odd = []
+    for key, info in type(mechanism).model_fields.items():
+        extra, value = info.json_schema_extra, getattr(mechanism, key)
+        if not isinstance(extra, dict) or extra.get("unit") != "m" or not isinstance(value, float | list):
+            continue
+        length = value if isinstance(value, float) else float(np.ptp(value, axis=0).max())
+        says = f"{key} {'is' if isinstance(value, float) else 'spans'} {length:g} m"
+        if size > LARGEST and length > LARGEST:
+            odd.append((says, f"{length:g} mm"))
+        elif size < SMALLEST and 0 < length < SMALLEST:
+            odd.append((says, f"{1000 * length:g} m"))
+    if not odd:
+        return f"it is {size:.3g} m large: are the units right?"
+    return f"{', '.join(says for says, _ in odd)}: did you mean {' and '.join(meant for _, meant in odd)}?"
+
+
+def doubts(mechanism: Mechanism) -> list[str]:
+    """Return what is unusual about the size of a structure or the places of its loads, as sentences."""
+    size = doubtful_size(mechanism)
+    return [*([size] if size is not None else []), *mechanism.far_off()]

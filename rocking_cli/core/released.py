@@ -17,9 +17,8 @@ import numpy as np
 
 from rocking_cli.core.contacts import Contact, Piece
 from rocking_cli.core.hung.attached import Path, PointMass, Spot
-from rocking_cli.core.kinematics import Direction, Points, Reals, RigidMotion, rotation
+from rocking_cli.core.kinematics import Direction, Integers, Points, Rates, Reals, RigidMotion, VelocityTerm, rotation
 from rocking_cli.core.mechanism import Mechanism
-from rocking_cli.core.rates import Integers, Rates, VelocityTerm
 
 SINGULAR = 1e-9  # 1/largest entry of the inverse of the rates over the size: below, forces are not determined
 AT_ONCE = 1_000_000  # entries of the matrices that are inverted at once: 8 MB of each

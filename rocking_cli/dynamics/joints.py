@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.core import Mechanism
+from rocking_cli.core.equivalence import Statics
 from rocking_cli.core.given import Strength
 from rocking_cli.core.released import ONE, PUSH, RATE, WEIGHT, Pieces, Released, Undetermined, impulses, released
-from rocking_cli.core.statics import Statics
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.modes import modes
 from rocking_cli.dynamics.resting import EarlyMechanism, Rest, resting

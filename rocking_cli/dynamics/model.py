@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, both_statics
 from rocking_cli.core.advice import uplift_error
+from rocking_cli.core.equivalence import Statics
 from rocking_cli.core.given import Uncertainty
-from rocking_cli.core.restitution import why_none
-from rocking_cli.core.statics import Statics
+from rocking_cli.core.mechanism import why_none
 from rocking_cli.dynamics.joints import JointTables, joints_of
 from rocking_cli.dynamics.kernels import (
     COLUMNS,

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.contacts import Contact
-from rocking_cli.core.rates import GROUND, Rates
+from rocking_cli.core.kinematics import GROUND, Rates
 from rocking_cli.core.released import ONE, PUSH, RATE, Pieces, Released
 
 if TYPE_CHECKING:

@@ -1,10 +1,19 @@
-"""Work in threads, which run in parallel because kernels release the interpreter lock."""
+"""Work in threads, which run in parallel because kernels release the interpreter lock, or else in processes."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor, as_completed
+import signal
+import sys
+import threading
+import warnings
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context, parent_process
+from typing import Any
+
+from rocking_cli.errors import Refused
 
 
 def in_parts(
@@ -42,3 +51,66 @@ def in_parts(
         except BaseException:  # an interrupt: what has not begun is not begun
             pool.shutdown(cancel_futures=True)
             raise
+
+
+MOST = 8  # processes: each has the program in memory, some 200 MB
+
+_work: Callable[[int, int], Any] | None = None
+
+
+def in_processes(work: Callable[[int, int], Any], count: int, size: int, processes: int) -> Iterator[tuple[int, Any]]:
+    """Do many tasks of one kind in processes, several tasks in each part.
+
+    Parameters
+    ----------
+    work : callable
+        Function (first, stop) that does the tasks from `first` to before `stop` and returns their result. It is sent to
+        every process once.
+    count : int
+        Number of tasks.
+    size : int
+        Largest number of tasks in a part.
+    processes : int
+        Number of processes.
+
+    Yields
+    ------
+    (int, object)
+        The first task of a part that is done, and the result of this part.
+
+    Raises
+    ------
+    Refused
+        If the system ended a process.
+    """
+    # Whatever threads and locks there are here, a process begins without them.
+    pool = ProcessPoolExecutor(processes, get_context("spawn"), _begin, (work,))
+    try:
+        parts = {pool.submit(_part, first, min(first + size, count)): first for first in range(0, count, size)}
+        for part in as_completed(parts):
+            yield parts.pop(part), part.result()
+    except BrokenProcessPool:
+        raise Refused("the system ended a process of this work: is there enough memory?") from None
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _begin(work: Callable[[int, int], Any]) -> None:
+    """Prepare a process before its first part of the work."""
+    global _work
+    _work = work
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the one that began it ends it
+    sys.stdout = sys.stderr  # plugins print
+    warnings.simplefilter("ignore")  # issued once, where the work was requested
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    if (parent := parent_process()) is not None:
+        parent.join()
+        os._exit(1)
+
+
+def _part(first: int, stop: int) -> Any:
+    assert _work is not None
+    return _work(first, stop)

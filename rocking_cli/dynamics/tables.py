@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.core import Direction, Mechanism, both_statics
 from rocking_cli.core.coefficients import check_continuous
-from rocking_cli.core.statics import Statics
+from rocking_cli.core.equivalence import Statics
 
 Reals = NDArray[np.float64]
 Bools = NDArray[np.bool_]

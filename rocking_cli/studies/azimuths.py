@@ -14,7 +14,7 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.processing.components import turned
+from rocking_cli.processing.reading import turned
 from rocking_cli.structure import Structure
 
 Reals = NDArray[np.float64]

@@ -18,7 +18,7 @@ from rocking_cli.excitation.pulses import PulseShapes
 from rocking_cli.excitation.records.registry import Readers
 from rocking_cli.plugins.registry import Plugins
 from rocking_cli.processing.intensity import IntensityMeasures
-from rocking_cli.studies.verification.installed import Codes
+from rocking_cli.studies.verification.code import Codes
 
 OURS = "rocking-cli"
 WITHOUT = ("dev", "docs", "bench", "release")

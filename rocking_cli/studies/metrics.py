@@ -15,9 +15,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import LeftOut
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 from rocking_cli.studies.verification.check import verify
-from rocking_cli.studies.verification.code import Number
-from rocking_cli.studies.verification.installed import codes
-from rocking_cli.studies.verification.site_file import SiteFile
+from rocking_cli.studies.verification.code import Number, SiteFile, codes
 from rocking_cli.text import cut, did_you_mean
 
 

@@ -11,19 +11,18 @@ from typing import Protocol
 import numpy as np
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.size import doubts
+from rocking_cli.core.mechanism import doubts
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcomes
-from rocking_cli.dynamics.parallel import in_parts
-from rocking_cli.dynamics.processes import in_processes
+from rocking_cli.dynamics.parallel import in_parts, in_processes
 from rocking_cli.errors import InputError, Problem, RockingError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.names import OPENING
 from rocking_cli.structure import Structure, check_opening
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.studies.verification.check import of_each, verify
-from rocking_cli.studies.verification.site_file import SiteFile
+from rocking_cli.studies.verification.code import SiteFile
 
 PART = 8  # structures that a thread has in memory at a time: the tables of each are one megabyte, at most ten
 

@@ -22,10 +22,8 @@ from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import parse
 from rocking_cli.structure import Structure
 from rocking_cli.studies.verification.check import site_in, verify
-from rocking_cli.studies.verification.code import Code
-from rocking_cli.studies.verification.installed import codes
+from rocking_cli.studies.verification.code import Code, SiteFile, codes
 from rocking_cli.studies.verification.results import CLOSE, Verification, Verified
-from rocking_cli.studies.verification.site_file import SiteFile
 from rocking_cli.testing.mechanism import _demand
 from rocking_cli.views.template import starter
 from rocking_cli.views.verification import showing, table, view

@@ -44,7 +44,7 @@ from rocking_cli.core.coefficients import jump
 from rocking_cli.core.contract import Verdict as Verdict
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.hung.attached import Spot
-from rocking_cli.core.polygons import area_of, distance
+from rocking_cli.core.kinematics import area_of, distance
 from rocking_cli.core.reactions import reactions
 from rocking_cli.core.registry import conformance
 from rocking_cli.core.released import Pieces, Undetermined, released

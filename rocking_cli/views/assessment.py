@@ -10,7 +10,7 @@ from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade
 from rocking_cli.core.equivalence import AGREEMENT
-from rocking_cli.core.size import doubts as doubts_about_size
+from rocking_cli.core.mechanism import doubts as doubts_about_size
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import disagree
 from rocking_cli.excitation.base import STANDARD_GRAVITY

@@ -6,7 +6,7 @@ from math import isclose
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.equivalence import AGREEMENT
-from rocking_cli.core.restitution import why_none
+from rocking_cli.core.mechanism import why_none
 from rocking_cli.dynamics.resting import early_failures
 from rocking_cli.names import digits_apart
 

@@ -18,8 +18,7 @@ from rocking_cli.names import percent
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluding
 from rocking_cli.studies.contact import Contacts
-from rocking_cli.studies.pulse_on_structure import KAPPAS, Answer, outcome, scaled
-from rocking_cli.studies.sampled_pulse import SampledHistory
+from rocking_cli.studies.pulse_on_structure import KAPPAS, Answer, SampledHistory, outcome, scaled
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
 from rocking_cli.views.conclusion import conclusion_data
 from rocking_cli.views.pulse import (

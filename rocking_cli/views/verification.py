@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 from rocking_cli.core import Direction
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.plugins.errors import guard
-from rocking_cli.studies.verification.installed import codes
+from rocking_cli.studies.verification.code import codes
 from rocking_cli.studies.verification.results import Verification, Verified
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.cautions import cautions_of

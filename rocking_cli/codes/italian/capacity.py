@@ -13,10 +13,10 @@ from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.core import Mechanism
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.hung.attached import Spot
-from rocking_cli.core.hung.interlock import NAME as INTERLOCK
+from rocking_cli.core.hung.elements import NAME as INTERLOCK
 from rocking_cli.core.kinematics import Reals
 from rocking_cli.errors import InputError, Problem, StructureError
-from rocking_cli.studies.verification.control import Control
+from rocking_cli.studies.verification.results import Control
 
 STEPS = 256  # to the end of a curve, between which it is held to be a function
 HALVINGS = 200

@@ -20,7 +20,7 @@ from rocking_cli.engines import follow
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
-from rocking_cli.studies.verification.motions import Histories, where_it_stands
+from rocking_cli.studies.verification.results import Histories, where_it_stands
 from rocking_cli.text import did_you_mean
 
 RECORDS = 7  # that the code wants before the mean may be used

@@ -14,16 +14,15 @@ from rocking_cli.codes.italian import clauses, remarks
 from rocking_cli.codes.italian.capacity import CapacityCurve, ExactCurve, StraightCurve, with_elastic_branch
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import DAMPING, DemandSpectrum
+from rocking_cli.codes.italian.displaced import elastic, lasting
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerification, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import DAMAGE, FIRST, LINEAR, NONLINEAR, OF_STATE, RULES, Rule
 from rocking_cli.codes.italian.sheet.steps import workings_of_direction, workings_of_site
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
-from rocking_cli.codes.italian.ties import elastic, lasting
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.studies.conclusion import LeftOut
-from rocking_cli.studies.verification.control import Control
-from rocking_cli.studies.verification.results import Remark
+from rocking_cli.studies.verification.results import Control, Remark
 from rocking_cli.studies.verification.working import Later
 
 KEY, NAME = "NTC2018", "Italian code"

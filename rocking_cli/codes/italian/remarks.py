@@ -8,11 +8,10 @@ from math import isclose
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum
-from rocking_cli.codes.italian.ground import SiteGround
+from rocking_cli.codes.italian.displaced import STRETCHED, WIDE, carried, elastic, furthest, pulls
+from rocking_cli.codes.italian.ground import LONGEST, SHORTEST, SiteGround, return_period
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import DAMAGE, FURTHER, LINEAR, NONLINEAR, RULES, STATES
-from rocking_cli.codes.italian.site_hazard import LONGEST, SHORTEST, return_period
-from rocking_cli.codes.italian.ties import STRETCHED, WIDE, carried, elastic, furthest, pulls
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import digits_apart
 from rocking_cli.studies.verification.results import Remark

@@ -6,12 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.codes.italian import formulas as F
+from rocking_cli.codes.italian.displaced import pulls
 from rocking_cli.codes.italian.remarks import differences
 from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, ItalianVerified, LimitState
 from rocking_cli.codes.italian.sheet import dynamic
 from rocking_cli.codes.italian.sheet.steps import TERMINAL, ties
 from rocking_cli.codes.italian.sheet.summary import methods, verdicts
-from rocking_cli.codes.italian.ties import pulls
 from rocking_cli.studies.verification.working import in_plain
 from rocking_cli.views.column import Column, frame_of, of
 from rocking_cli.views.conclusion import headline

@@ -12,11 +12,9 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.fields import geometry_error
 from rocking_cli.core.hung.attached import Attached, Follow, Path, Spot
-from rocking_cli.core.hung.interlock import Interlock
-from rocking_cli.core.hung.loads import Load
+from rocking_cli.core.hung.elements import Interlock, Load
 from rocking_cli.core.hung.ties import Tie
-from rocking_cli.core.kinematics import Points, RigidMotion
-from rocking_cli.core.polygons import distance, inside
+from rocking_cli.core.kinematics import Points, RigidMotion, distance, inside
 from rocking_cli.core.sketch import Outline
 from rocking_cli.text import did_you_mean
 

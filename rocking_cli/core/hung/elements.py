@@ -1,15 +1,17 @@
-"""The elements of structure files: a constant force, an elastic tie, and a bed of springs along a face."""
+"""Elements of structure files: constant forces, masses, elastic ties, beds of springs, friction of crossing walls."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
+from pydantic import Field, model_validator
 
 from rocking_cli.core.coefficients import Coefficients
-from rocking_cli.core.hung.attached import Follow, Push, Spot
+from rocking_cli.core.fields import Described, Name, Vertex, geometry_error, length, point, quantity
+from rocking_cli.core.hung.attached import Follow, PointMass, Push, Spot
 from rocking_cli.core.hung.element import Element, Stretched, dot
 from rocking_cli.core.kinematics import Direction, Reals
 
@@ -218,3 +220,122 @@ class SpringBed(Element):
     def forces(self, direction: Direction, follow: Follow) -> Sequence[Push]:
         """Return the forces of the springs of the bed [N]."""
         return [push for spring in self.stretched for push in spring.forces(direction, follow)]
+
+
+NAME = "interlock"
+SHARE = 0.4  # share of the sliding force of all courses that the code counts, for blocks laid with care
+ARM = 1 / 3  # height of the resultant friction of courses under their own weight, over the height
+
+
+class Interlock(Described):
+    """Friction between the courses of a facade and of its crossing walls [Circolare 7/2019, C8.7.1.2].
+
+    F = 0.4 n (n + 1) (h_b/l) mu l^2 t_s w of each crossing wall, at a third of the height above the foot: constant,
+    against the motion in either direction, and without inertia. The load on the crossing walls is neglected, and so is
+    the separation of blocks that have slid by their overlap: a time history is not valid beyond that.
+    """
+
+    courses: int = quantity("number of courses in the height", symbol="n", example=40, ge=1, le=10_000)
+    overlap: float = quantity("length by which blocks overlap", unit="m", symbol="l", example=0.2, gt=0, le=3)
+    thickness: float = quantity("thickness of a crossing wall", unit="m", symbol="t_s", example=0.5, gt=0, le=20)
+    friction: float = quantity("coefficient of friction", symbol="mu", example=0.577, default=0.577, gt=0, le=2)
+    walls: int = quantity("number of crossing walls", example=2, default=1, ge=1, le=100)
+    height: float = length("height of the courses above the foot", symbol="h", example=8.0)
+    density: float | None = quantity(
+        "density of the crossing walls; if omitted, that of the structure", unit="kg/m3", default=None, gt=0, le=1e6
+    )
+    body: Name | None = Field(
+        None, description="the body they hold, by its name in the picture; optional for a single body"
+    )
+
+    def force(self, density: float, gravity: float) -> float:
+        """Return the friction force of one crossing wall [N].
+
+        Parameters
+        ----------
+        density : float
+            Density of the crossing walls [kg/m3].
+        gravity : float
+            Gravitational acceleration [m/s2].
+
+        Examples
+        --------
+        >>> walls = Interlock(courses=40, overlap=0.2, thickness=0.5, walls=2, height=8.0)
+        >>> round(walls.force(18000 / 9.80665, 9.80665))
+        136264
+        """
+        n, course = self.courses, self.height / self.courses
+        weight = density * gravity  # w, per volume
+        return SHARE * n * (n + 1) * (course / self.overlap) * self.friction * self.overlap**2 * self.thickness * weight
+
+    def attached(self, foot: Spot, density: float, gravity: float) -> ConstantForce:
+        """Return the friction of all crossing walls as one force on the body whose foot is at a point."""
+        spot = Spot(foot.body, foot.at + 1j * ARM * self.height)
+        return ConstantForce(NAME, spot, complex(-self.walls * self.force(density, gravity)), friction=True)
+
+
+Share = Annotated[float, Field(ge=0, le=1)]
+Newtons = Annotated[float, Field(ge=-1e12, le=1e12)]
+FLOORS: dict[str, dict[str, float]] = {
+    "borne": {"vertical": 1 / 3, "weight": 1 / 2},
+    "sliding": {"horizontal": 0.0, "vertical": 1 / 3, "weight": 1 / 2},
+    "dragged": {"horizontal": 1.0, "vertical": 1 / 3, "weight": 1 / 2},
+}
+"""Shares of a floor that is borne at its far end too: it turns about that end, and slides here or is dragged along."""
+
+
+class Load(Described):
+    """A mass or a constant force at a point of a body.
+
+    A mass counts by three shares, each 1 by default: in the horizontal inertia, in the vertical inertia and as weight.
+    A force has no inertia.
+    """
+
+    name: Name = Field(description="what to call it")
+    mass: float | None = quantity("its mass", unit="kg", example=1000.0, default=None, gt=0, le=1e12)
+    force: Annotated[list[Newtons], Field(min_length=2, max_length=2)] | None = quantity(
+        "a constant force [Fx, Fy], to the right and up", unit="N", example=[0.0, -1000.0], default=None
+    )
+    at: Vertex = point("where it acts")
+    body: Name | None = Field(
+        None, description="the body it acts on, by its name in the picture; optional for a single body"
+    )
+    horizontal: Share | None = Field(None, description="share of the mass that moves sideways with the body")
+    vertical: Share | None = Field(None, description="share that moves up with it")
+    weight: Share | None = Field(None, description="share of the weight that the body carries")
+    floor: Literal["borne", "sliding", "dragged"] | None = Field(
+        None,
+        description="sets the shares for a floor that is also supported at its far end; `mass` is then that of the "
+        "whole floor",
+    )
+    seat: float | None = quantity(
+        "bearing length of the supported member, such as a beam; its support is lost when it is displaced sideways by "
+        "this length", unit="m",
+        default=None, gt=0, le=100,
+    )  # fmt: skip
+    each: bool = Field(False, description="whether each of several bodies that move alike has one")
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        if (self.mass is None) == (self.force is None):
+            raise geometry_error("mass", "give either `mass` or `force`")
+        shares = [key for key in ("horizontal", "vertical", "weight") if getattr(self, key) is not None]
+        if self.force is not None and (shares or self.floor is not None):
+            raise geometry_error(shares[0] if shares else "floor", "a force has no mass to share")
+        if self.force is not None and self.seat is not None:
+            raise geometry_error("seat", "a force has no seat: it is of a mass")
+        if self.floor is not None:
+            for key in shares:
+                if key in FLOORS[self.floor]:
+                    raise geometry_error(key, f"is already set by floor: {self.floor}; give one of the two")
+        return self
+
+    def attached(self, body: str, count: float) -> PointMass | ConstantForce:
+        """Return `count` such loads as one term of the equation of motion."""
+        spot = Spot(body, complex(*self.at))
+        if self.force is not None:
+            return ConstantForce(self.name, spot, count * complex(*self.force))
+        assert self.mass is not None
+        shares = {"horizontal": self.horizontal, "vertical": self.vertical, "weight": self.weight}
+        given = {key: value for key, value in shares.items() if value is not None}
+        return PointMass(self.name, spot, count * self.mass, **{**FLOORS.get(self.floor or "", {}), **given})

@@ -13,8 +13,7 @@ from rocking_cli.excitation.base import Doubt, GroundMotion, Origin
 from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
 from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.excitation.records.origins import magnitude, origin
-from rocking_cli.excitation.records.stated import peak_doubts
+from rocking_cli.excitation.records.origins import magnitude, origin, peak_doubts
 from rocking_cli.excitation.records.text import numbers_in
 from rocking_cli.patterns import regex
 

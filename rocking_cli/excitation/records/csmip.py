@@ -8,8 +8,7 @@ import re
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import csmip_v1, layout
-from rocking_cli.excitation.records.origins import of_csmip
-from rocking_cli.excitation.records.stated import peak_doubts
+from rocking_cli.excitation.records.origins import of_csmip, peak_doubts
 from rocking_cli.patterns import regex
 
 TITLE = "CSMIP V2"

@@ -10,8 +10,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
 from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.excitation.records.origins import of_csmip
-from rocking_cli.excitation.records.stated import length_doubts
+from rocking_cli.excitation.records.origins import length_doubts, of_csmip
 from rocking_cli.patterns import regex
 
 TITLE = "CSMIP V1"

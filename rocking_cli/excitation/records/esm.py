@@ -8,8 +8,7 @@ from collections.abc import Mapping
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.excitation.records import layout
-from rocking_cli.excitation.records.origins import origin
-from rocking_cli.excitation.records.stated import length_doubts, peak_doubts
+from rocking_cli.excitation.records.origins import length_doubts, origin, peak_doubts
 from rocking_cli.patterns import regex
 
 TITLE = "ESM ASCII"

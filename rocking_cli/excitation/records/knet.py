@@ -8,7 +8,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
-from rocking_cli.excitation.records.stated import peak_doubts
+from rocking_cli.excitation.records.origins import peak_doubts
 from rocking_cli.excitation.records.text import sensible
 from rocking_cli.patterns import regex
 

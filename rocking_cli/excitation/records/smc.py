@@ -8,8 +8,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.header_fields import Field, RecordHead, read_head
-from rocking_cli.excitation.records.origins import origin
-from rocking_cli.excitation.records.stated import peak_doubts
+from rocking_cli.excitation.records.origins import origin, peak_doubts
 from rocking_cli.patterns import regex
 
 TITLE = "USGS SMC"

@@ -11,8 +11,8 @@ from typing import Any
 
 from rocking_cli import __version__
 from rocking_cli.core import Mechanism, NoEquivalentBlock, both_statics, equivalent_block
+from rocking_cli.core.mechanism import why_none
 from rocking_cli.core.registry import Registry
-from rocking_cli.core.restitution import why_none
 from rocking_cli.dynamics.model import NO_REBOUND, check_elements
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.processing.intensity import all_measures, parse_measure

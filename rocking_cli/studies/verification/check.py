@@ -15,12 +15,8 @@ from rocking_cli.plugins.errors import blame
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import LeftOut
 from rocking_cli.studies.file_part import problems_of
-from rocking_cli.studies.verification.code import Code
-from rocking_cli.studies.verification.control import Control
-from rocking_cli.studies.verification.installed import codes
-from rocking_cli.studies.verification.motions import Histories
-from rocking_cli.studies.verification.results import Verification, Verified
-from rocking_cli.studies.verification.site_file import HINT, USUAL, SiteFile
+from rocking_cli.studies.verification.code import HINT, USUAL, Code, SiteFile, codes
+from rocking_cli.studies.verification.results import Control, Histories, Verification, Verified
 from rocking_cli.text import did_you_mean
 
 

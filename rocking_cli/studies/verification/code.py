@@ -1,19 +1,25 @@
-"""The interface of a code of practice: a class derived from `Code`, found through an entry point."""
+"""The interface of a code of practice: a site file, and a class derived from `Code`, found through an entry point."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import EntryPoint
 from typing import Any, ClassVar
 
+from pydantic import Field
+
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.plugins.errors import failed, guard
+from rocking_cli.core.fields import Name
+from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.io.yaml_file import Document
+from rocking_cli.plugins.errors import blame, failed, guard
+from rocking_cli.plugins.registry import Plugins, origin
 from rocking_cli.structure import Structure
-from rocking_cli.studies.verification.control import Control
-from rocking_cli.studies.verification.motions import Histories
-from rocking_cli.studies.verification.results import Verification, Verified
-from rocking_cli.studies.verification.site_file import Site
+from rocking_cli.studies.file_part import Part
+from rocking_cli.studies.verification.results import Control, Histories, Verification, Verified
 
 ANSWERS = ("verify", "with_histories", "of_each", "showing", "sheet")
 """The methods in which a code answers: whatever fails there is an error of the plugin."""
@@ -120,3 +126,79 @@ class Code(ABC):
     def sheet(self) -> Any:
         """Return its calculation sheet, a `rocking_cli.views.sheet.build.SheetOfCode`; None if it has none."""
         return None
+
+
+HINT = "`rocking new site` prints one to start from"
+USUAL = "NTC2018"
+"""The code of a site file that names none."""
+
+
+class Site(Part):
+    """Fields of a site file for every code; a code adds its own."""
+
+    code: str = Field(USUAL, description="the code to verify by")
+    name: Name | None = Field(None, description="what to call the site")
+
+
+@dataclass(frozen=True)
+class SiteFile:
+    """A site, and the file with the lines on which its values stand.
+
+    Parameters
+    ----------
+    site : Site
+        The site.
+    document : Document
+        The file.
+    """
+
+    site: Site
+    document: Document
+
+    def placed(self, error: InputError) -> InputError:
+        """Return an error with its problems; those of fields of the site get their place in the file."""
+        return InputError(*(self._placed(each) for each in error.problems))
+
+    def _placed(self, problem: Problem) -> Problem:
+        place = tuple((problem.field or "").split("."))
+        if problem.file is not None or place not in self.document.values:
+            return problem
+        return self.document.at(place, problem.message, problem.hint)
+
+
+class Codes(Plugins[Code]):
+    """Installed codes, by their names in site files. Listing names loads nothing; looking one up loads it.
+
+    Raises
+    ------
+    InputError
+        On looking up an unknown name.
+    MechanismError
+        On looking up a plugin that cannot be loaded, is not a code, or has a name that two packages claim.
+    """
+
+    group = "rocking.codes"
+    kind = "code"
+
+    @staticmethod
+    def accept(loaded: object, point: EntryPoint) -> Code:
+        """Return an instance of a loaded class if it is a complete code of its name. Raises `MechanismError` if not."""
+        if not (isinstance(loaded, type) and issubclass(loaded, Code)) or loaded.__abstractmethods__:
+            raise MechanismError(f"{origin(point)} is not a code: it must derive from Code and be complete")
+        texts = [getattr(loaded, key, None) for key in ("name", "edition")]
+        if getattr(loaded, "key", None) != point.name or not all(isinstance(each, str) for each in texts):
+            raise MechanismError(f"{origin(point)} is not a code: it needs key = {point.name!r}, a name and an edition")
+        fields = getattr(loaded, "site", None)
+        if not (isinstance(fields, type) and issubclass(fields, Site)):
+            raise MechanismError(f"{origin(point)} is not a code: its site must be a class derived from Site")
+        numbers = getattr(loaded, "numbers", None)
+        if not (isinstance(numbers, Mapping) and all(isinstance(each, Number) for each in numbers.values())):
+            raise MechanismError(f"{origin(point)} is not a code: its numbers must be a mapping of str to Number")
+        with blame(f"{origin(point)} cannot be made", loaded.__module__):
+            return loaded()
+
+
+@cache
+def codes() -> Codes:
+    """Return the installed codes."""
+    return Codes()

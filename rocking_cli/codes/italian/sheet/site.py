@@ -7,20 +7,20 @@ from math import log
 
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.demand import DAMPING, FloorSpectrum, GroundSpectrum
-from rocking_cli.codes.italian.ground import SiteGround
-from rocking_cli.codes.italian.rules import FIRST, FURTHER, RULES, STATES
-from rocking_cli.codes.italian.sheet import spectra
-from rocking_cli.codes.italian.site_hazard import (
+from rocking_cli.codes.italian.ground import (
     LONGEST,
     PROBABILITY,
     SHORTEST,
     SOILS,
     TOPOGRAPHY,
     Hazard,
+    SiteGround,
     corner_factor,
     return_period,
     soil_factor,
 )
+from rocking_cli.codes.italian.rules import FIRST, FURTHER, RULES, STATES
+from rocking_cli.codes.italian.sheet import spectra
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.studies.verification.working import Working
 from rocking_cli.views.sheet.document import Item, Sentence, SheetPart, Steps

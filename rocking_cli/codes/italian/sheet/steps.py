@@ -10,7 +10,7 @@ import numpy as np
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.capacity import ExactCurve, StraightCurve
 from rocking_cli.codes.italian.demand import DAMPING, DemandSpectrum, FloorSpectrum, GroundSpectrum
-from rocking_cli.codes.italian.displaced import DisplacedChain
+from rocking_cli.codes.italian.displaced import DisplacedChain, pulls
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import DAMAGE, FIRST, LINEAR, NONLINEAR, OF_STATE, RULES, Rule
@@ -18,7 +18,6 @@ from rocking_cli.codes.italian.sheet import chain as chains
 from rocking_cli.codes.italian.sheet import site, spectra
 from rocking_cli.codes.italian.sheet.chain import Scale
 from rocking_cli.codes.italian.sheet.site import hazard_at, is_close
-from rocking_cli.codes.italian.ties import pulls
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.studies.verification.working import Formula, Working
 from rocking_cli.views.sheet.document import Item, Sentence, SheetPart, Steps, workings
