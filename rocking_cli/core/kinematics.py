@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Reals = NDArray[np.float64]
-Points = NDArray[np.complex128]
+from rocking_cli.arrays import Points as Points
+from rocking_cli.arrays import Reals as Reals
 
 
 class Direction(IntEnum):

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools
 from rocking_cli.core.kinematics import Points, Reals
 
 
@@ -249,7 +249,7 @@ class Loops:
         ddq = ((1j * ddpsi - dpsi**2) * e) @ self._A.T + ddu @ self._u.T
         return Places(q, dq, ddq)
 
-    def moving(self, ways: Reals) -> NDArray[np.bool_]:
+    def moving(self, ways: Reals) -> Bools:
         """Return which links move in any of the given directions of motion from rest, shape (links,)."""
         still = np.zeros_like(ways)
         psi, _ = self._parts(ways)

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking_cli.arrays import Integers, Reals
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.deck import MOST_IMPACTS, lay_out, read_marks, run_deck
 from rocking_cli.dynamics.history import RTOL, check_rtol, out_of_step
@@ -18,8 +19,6 @@ from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 
-Reals = NDArray[np.float64]
-Integers = NDArray[np.int64]
 # Impacts after the record: one ends the motion under way, two a free excursion to either side; later ones only weaken.
 DECISIVE = 3
 ROUNDING = 1e-9  # by which an eta may exceed its bound: the kinematic one of two equal sides reaches it

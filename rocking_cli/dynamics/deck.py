@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.arrays import Integers, Reals
 from rocking_cli.dynamics import kernels, ways
 from rocking_cli.dynamics.calling import HISTORIES, TIED
 from rocking_cli.dynamics.joints import laid_out
@@ -19,8 +20,6 @@ from rocking_cli.excitation.base import GroundMotion
 if TYPE_CHECKING:
     from rocking_cli.dynamics.outcome import Outcomes
 
-Reals = NDArray[np.float64]
-Integers = NDArray[np.int64]
 Number = TypeVar("Number", np.float64, np.int64)
 
 NOTHING, NO_IMPACTS = np.empty(0), np.empty((0, 3))

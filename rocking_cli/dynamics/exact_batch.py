@@ -6,8 +6,9 @@ from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction, Equivalence
 from rocking_cli.dynamics import pulse_motion, ways
 from rocking_cli.dynamics.calling import PULSES
@@ -98,7 +99,7 @@ def exact_many(
     )
 
 
-def _sizes(amplitudes: ArrayLike, periods: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _sizes(amplitudes: ArrayLike, periods: ArrayLike) -> tuple[Reals, Reals]:
     try:
         a, t = np.broadcast_arrays(*(np.atleast_1d(np.asarray(x, dtype=np.float64)) for x in (amplitudes, periods)))
     except ValueError:

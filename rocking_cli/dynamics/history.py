@@ -8,8 +8,8 @@ from functools import partial
 from math import ceil
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Reals
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, lay_out, read_marks, run_deck
 from rocking_cli.dynamics.joints import JointCheck, check_of
@@ -19,7 +19,6 @@ from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import GroundMotion
 
-Reals = NDArray[np.float64]
 FINEST_RTOL = 1e-14  # below it rounding refuses steps
 RTOL = 1e-9  # local error of a step, of the lower order of the pair: peaks are then right to 1e-11
 TAIL = 10.0  # s of motion kept after the record
@@ -191,7 +190,7 @@ def out_of_step(
     rtol: float,
     most_impacts: int,
     threads: int | None = None,
-) -> NDArray[np.bool_]:
+) -> Bools:
     """Return for each run whether a column alone ends otherwise than the structure after a first impact, shape (n,).
 
     From the first impact of three or more columns under one beam, statics does not determine which of them carries it.

@@ -11,8 +11,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Integers, Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.core.equivalence import Statics
 from rocking_cli.core.given import Strength
@@ -24,8 +24,6 @@ from rocking_cli.dynamics.tables import DirectionTable
 from rocking_cli.names import OPENING
 from rocking_cli.text import in_short
 
-Reals = NDArray[np.float64]
-Integers = NDArray[np.int64]
 TO_CRITICAL = 32  # cells of the forces from rest to phi_cr
 COARSE = 40  # cells where joints are redundant, whose modes take longer to find
 MOST_CELLS = 128

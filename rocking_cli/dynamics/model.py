@@ -8,8 +8,8 @@ from math import isnan, nan, sqrt
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Integers, Reals
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, both_statics
 from rocking_cli.core.advice import uplift_error
 from rocking_cli.core.equivalence import Statics
@@ -35,8 +35,6 @@ from rocking_cli.dynamics.tables import DirectionTable, tabulate
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING
 
-Reals = NDArray[np.float64]
-Integers = NDArray[np.int64]
 ModelName = Literal["nonlinear", "linear1", "linear2"]
 MODELS: tuple[ModelName, ...] = ("nonlinear", "linear1", "linear2")
 

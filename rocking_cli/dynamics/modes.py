@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Points, Reals
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.contacts import Contact
 from rocking_cli.core.kinematics import GROUND, Rates
@@ -25,9 +26,6 @@ from rocking_cli.core.released import ONE, PUSH, RATE, Pieces, Released
 if TYPE_CHECKING:
     from scipy.sparse import csr_array as Sparse
 
-Reals = NDArray[np.float64]
-Points = NDArray[np.complex128]
-Bools = NDArray[np.bool_]
 Integers = NDArray[np.intp]
 NODES = 5  # rotations up to phi_cr at which edges are sought
 WAYS = 8  # directions in which the set is first looked at; between corners it is then refined

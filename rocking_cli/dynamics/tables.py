@@ -11,15 +11,12 @@ from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.core import Direction, Mechanism, both_statics
 from rocking_cli.core.coefficients import check_continuous
 from rocking_cli.core.equivalence import Statics
 
-Reals = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Integers = NDArray[np.int64]
 TO_CRITICAL = 512  # cells from rest to phi_cr: coefficients are then right to 1e-12, those of short links to 1e-10
 FEWEST, MOST = 2048, 16384  # cells from rest to the kinematic limit
 FINEST = 65536  # cells to have a corner of the force next to rest at a node

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.units import KINDS
 
@@ -110,7 +111,7 @@ class GroundMotion:
 
     name: str
     dt: float
-    acceleration: NDArray[np.float64]
+    acceleration: Reals
     unit: str = "m/s2"
     format: str = ARRAY
     vertical: GroundMotion | None = None
@@ -151,18 +152,18 @@ class GroundMotion:
         return (self.npts - 1) * self.dt
 
     @property
-    def time(self) -> NDArray[np.float64]:
+    def time(self) -> Reals:
         """Times of the samples [s]."""
         return np.arange(self.npts, dtype=np.float64) * self.dt
 
     @property
-    def velocity(self) -> NDArray[np.float64]:
+    def velocity(self) -> Reals:
         """Ground velocity at the samples [m/s], starting from zero, exact for linear interpolation."""
         a = self.acceleration
         return from_zero(self.dt * (a[:-1] + a[1:]) / 2)
 
     @property
-    def displacement(self) -> NDArray[np.float64]:
+    def displacement(self) -> Reals:
         """Ground displacement at the samples [m], starting from zero, exact for linear interpolation."""
         a, v, dt = self.acceleration, self.velocity, self.dt
         return from_zero(dt * (v[:-1] + dt * (2 * a[:-1] + a[1:]) / 6))
@@ -242,7 +243,7 @@ def _own(values: ArrayLike, kind: type[np.generic]) -> NDArray[Any]:
     return copied
 
 
-def from_zero(steps: NDArray[np.float64]) -> NDArray[np.float64]:
+def from_zero(steps: Reals) -> Reals:
     """Return the running sums of steps, with zero before the first step."""
     total = np.zeros(steps.size + 1)
     np.cumsum(steps, out=total[1:])

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 from math import isfinite, pi
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Reals
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion, from_zero
 
-Reals = NDArray[np.float64]
 SIGNIFICANT = (0.05, 0.95)  # of the Arias intensity: where the significant duration begins and ends
 
 
@@ -136,7 +135,7 @@ def _peak_displacement(motion: GroundMotion, v: Reals, u: Reals) -> float:
     return float(max(np.abs(u).max(), np.abs(between).max(initial=0.0)))
 
 
-def _changes_sign(values: Reals) -> NDArray[np.bool_]:
+def _changes_sign(values: Reals) -> Bools:
     """Return for each sampling interval whether the values at its ends have opposite signs."""
     signs = np.sign(values)
     return signs[:-1] * signs[1:] < 0

@@ -15,14 +15,13 @@ from math import ceil, floor, hypot, log
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses.base import Pulse
 from rocking_cli.excitation.pulses.shapes import MavroeidisPapageorgiou, Ricker, Sine
 
-Reals = NDArray[np.float64]
 Criterion = Literal["acceleration", "velocity"]
 
 CRITERIA: tuple[Criterion, ...] = ("acceleration", "velocity")

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from rocking_cli.arrays import Reals
 from rocking_cli.plotting import style
 from rocking_cli.studies.experiments.region import DROP, JointRegion
-from rocking_cli.studies.experiments.trace_fit import GAP, Reals, TraceFit
+from rocking_cli.studies.experiments.trace_fit import GAP, TraceFit
 
 
 def draw_trace(found: TraceFit, name: str) -> Figure:

@@ -16,10 +16,10 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from rocking_cli import names
+from rocking_cli.arrays import Reals
 from rocking_cli.names import FEWEST
 from rocking_cli.plotting import style
 from rocking_cli.studies.spectrum import Spectrum
-from rocking_cli.studies.under_pulses import Reals
 
 NAME = 40  # characters of a structure's name in the legend
 SHORT = 8.0  # ratio of the ends of an axis up to which it has more ticks

@@ -16,10 +16,10 @@ from math import ceil, inf, isfinite, pi, sqrt
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 
-Reals = NDArray[np.float64]
 PER_PERIOD = 24  # samples: between them a cubic is within 1e-5 of the peak
 FINEST = 64  # parts of an interval: an oscillator this much faster than the record follows it
 MOST = 50_000_000  # samples of a motion that is made finer: some gigabytes

@@ -12,14 +12,13 @@ from math import floor, inf
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.text import did_you_mean, exact
 from rocking_cli.units import UnitError, number_of
 
-Reals = NDArray[np.float64]
 ORDER = 4
 DEGREES = {"constant": 0, "linear": 1, "quadratic": 2}
 

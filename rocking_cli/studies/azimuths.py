@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Reals
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import RTOL
 from rocking_cli.dynamics.model import ModelName
@@ -17,7 +17,6 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.reading import turned
 from rocking_cli.structure import Structure
 
-Reals = NDArray[np.float64]
 STEP = 2  # degrees
 
 
@@ -102,7 +101,7 @@ def all_around(
     return AzimuthResponses((pair[0].name, pair[1].name), scale, azimuths, pga, outcomes, checked)
 
 
-def sectors(azimuths: Reals, flags: NDArray[np.bool_]) -> list[tuple[float, float]]:
+def sectors(azimuths: Reals, flags: Bools) -> list[tuple[float, float]]:
     """Return the first and the last azimuth [deg] of each run of consecutive flagged azimuths on the circle."""
     if flags.all():
         return [(float(azimuths[0]), float(azimuths[-1]))]

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.contacts import MASONRY, Contact
 from rocking_cli.core.given import Strength
@@ -22,7 +23,6 @@ from rocking_cli.core.released import Undetermined, released
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
 
-Reals = NDArray[np.float64]
 Places = NDArray[np.intp]
 BEARS = 0.01  # of N as rocking starts: with less a joint bears nothing that friction could be asked of
 IDLE = 1e-9  # of the largest force as rocking starts: a joint with less, such as of a beam without mass, bears nothing
@@ -376,7 +376,7 @@ class _States(NamedTuple):
     phi: Reals  # in it [rad]
     rate: Reals  # [rad/s]
     ground: NDArray[np.complex128]  # u_g'' + i v_g'' [m/s2]
-    rocks: NDArray[np.bool_]
+    rocks: Bools
 
 
 def _samples(mechanism: Mechanism, history: History, motion: GroundMotion | None) -> _States:

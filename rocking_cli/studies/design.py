@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from math import inf, isfinite, isnan, nan
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Reals
 from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
 from rocking_cli.names import percent
 from rocking_cli.structure import Structure
@@ -20,7 +20,6 @@ from rocking_cli.studies.neighbours import Neighbours
 from rocking_cli.text import cut
 from rocking_cli.units import UnitError, read, split
 
-Reals = NDArray[np.float64]
 OPERATORS: dict[str, Callable[[float, float], bool]] = {
     "<=": operator.le, ">=": operator.ge, "<": operator.lt, ">": operator.gt,
 }  # fmt: skip
@@ -202,7 +201,7 @@ class Design:
         return bool(self.met.all())
 
     @property
-    def met(self) -> NDArray[np.bool_]:
+    def met(self) -> Bools:
         """Whether the requirement is met at each value of the scan."""
         return np.array([self.aim.holds(each) for each in self.metric.tolist()])
 

@@ -8,9 +8,9 @@ from math import nan, pi
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rocking_cli import engines
+from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
 from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import History, follow
@@ -22,7 +22,6 @@ from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.structure import Structure
 from rocking_cli.studies.under_pulses import check_eta, uplift, weakest
 
-Reals = NDArray[np.float64]
 AFTER = 12.0  # p t shown after the pulse
 MOST_PERIODS = 1000  # of the pulse shown at most: a pulse far shorter than the motion
 

@@ -8,14 +8,13 @@ from math import isnan
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.picture import Picture, box_around
 
-Reals = NDArray[np.float64]
 BEFORE, AFTER = 1.0, 1.5  # s shown before the first uplift and after the motion has ended
 VIEWS = 25  # rotations at which the box around the motion is found
 

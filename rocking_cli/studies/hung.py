@@ -7,14 +7,13 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Points, Reals
 from rocking_cli.core import Direction, Mechanism, three_digits
 from rocking_cli.core.hung.attached import PointMass
 from rocking_cli.core.hung.element import TOGETHER, Element, Stretched
 from rocking_cli.core.hung.elements import ConstantForce, SpringBed
 
-Points = NDArray[np.complex128]
 Copies = Mapping[str, Sequence[tuple[int, complex]]]
 """Of each body: its place among the parts, and how far from the body it is [m], of each part that it is drawn as."""
 BED = 8  # springs that a bed is drawn as
@@ -107,7 +106,7 @@ class Strand:
         """The ends of the tie that are on the ground."""
         return [end for piece in self.pieces for end in (piece.start, piece.end) if end.part is None]
 
-    def slack(self, mechanism: Mechanism, phi: NDArray[np.float64], direction: Direction) -> NDArray[np.bool_]:
+    def slack(self, mechanism: Mechanism, phi: Reals, direction: Direction) -> Bools:
         """Mask of the rotations at which the tie is slack, shape (n,)."""
         if not isinstance(self.thing, Stretched) or self.only is None:
             return np.zeros(phi.shape, bool)

@@ -12,14 +12,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock, Mechanism, equivalent_block
 from rocking_cli.core.advice import Grade, grade, preferred_kappa
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.structure import Structure
 
-Reals = NDArray[np.float64]
 PRECISION = 1e-10  # relative change at which doubling the nodes stops
 FEWEST, MOST = 16, 512  # nodes along the motion
 INNER = 20  # nodes of the energy between two rotations

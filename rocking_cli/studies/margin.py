@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.dynamics.model import Model
 from rocking_cli.engines import respond
 from rocking_cli.errors import InputError, Problem
@@ -21,8 +21,6 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import LEAST_SHARE, Conclusion, NeighbourShare
 from rocking_cli.studies.neighbours import Draws, Neighbourhood, follow, least_uplift
 from rocking_cli.studies.response import concluded
-
-Reals = NDArray[np.float64]
 
 LEVELS = (LEAST_SHARE, 0.5, 0.9)
 SAME = 1e-9  # relative difference of factors that are one

@@ -10,6 +10,7 @@ from math import isnan, nan
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.hung.attached import PointMass, Spot
 from rocking_cli.core.hung.element import Element, Stretched
@@ -17,7 +18,6 @@ from rocking_cli.core.hung.elements import NAME as INTERLOCK
 from rocking_cli.core.hung.elements import ConstantForce
 from rocking_cli.dynamics.history import History
 
-Reals = NDArray[np.float64]
 BETWEEN = 257  # rotations from rest to a peak at which the largest values on the way are looked for
 ROUNDING = 1e-13  # of how far a point is from the origin: a displacement that is none
 LEVEL = 1e-9  # of the height of a structure: corners that are so much lower are as high

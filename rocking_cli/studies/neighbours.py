@@ -11,8 +11,8 @@ from statistics import NormalDist
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import RTOL
@@ -21,8 +21,6 @@ from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError, Problem, SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import peaks_over
-
-Reals = NDArray[np.float64]
 
 FRACTILES = (0.16, 0.50, 0.84)
 AGREEMENT = 0.9  # share that must end as the history itself, else its answer is sensitive

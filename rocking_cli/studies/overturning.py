@@ -12,14 +12,14 @@ from itertools import count
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rocking_cli import names
+from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
-from rocking_cli.studies.under_pulses import Integers, Progress, PulsedModel, Reals, outcomes
+from rocking_cli.studies.under_pulses import Progress, PulsedModel, outcomes
 
 SCAN = 200  # amplitudes tried at a time: overturning has islands below larger amplitudes that do not overturn
 NEAREST = 1e-3  # a - 1 of the first of them
@@ -233,21 +233,21 @@ class Comparison:
     top: float
 
     @property
-    def doubtful(self) -> NDArray[np.bool_]:
+    def doubtful(self) -> Bools:
         """Whether outcomes are unknown between `possible` and `least`, so that `least` is not certain, shape (k, n)."""
-        doubtful: NDArray[np.bool_] = np.isfinite(self.possible) & ~(self.possible >= self.least)
+        doubtful: Bools = np.isfinite(self.possible) & ~(self.possible >= self.least)
         return doubtful
 
     @property
-    def firsts(self) -> NDArray[np.bool_]:
+    def firsts(self) -> Bools:
         """Whether a structure is known to overturn first at a period, shape (k, n); several if they are equal."""
         least, possible = (np.where(np.isnan(each), np.inf, each) for each in (self.least, self.possible))
         lowest = [np.delete(possible, k, axis=0).min(axis=0, initial=np.inf) for k in range(len(least))]
-        first: NDArray[np.bool_] = np.isfinite(least) & (least <= np.array(lowest) * (1 + TIE))
+        first: Bools = np.isfinite(least) & (least <= np.array(lowest) * (1 + TIE))
         return first
 
     @property
-    def undecided(self) -> NDArray[np.bool_]:
+    def undecided(self) -> Bools:
         """Whether it is unknown which structure overturns first at a period, or whether any does, shape (n,)."""
         may, known = np.isfinite(self.possible), self.firsts
         return np.array([each.any() and not sure.any() for each, sure in zip(may.T, known.T, strict=True)], np.bool_)
@@ -312,11 +312,11 @@ def _least(
     return (1 + least) * structure.unit, (1 + possible) * structure.unit
 
 
-def _overturns(found: Outcomes) -> NDArray[np.bool_]:
+def _overturns(found: Outcomes) -> Bools:
     return found.fell
 
 
-def _may_overturn(found: Outcomes) -> NDArray[np.bool_]:
+def _may_overturn(found: Outcomes) -> Bools:
     return found.fell | found.unknown
 
 
@@ -330,7 +330,7 @@ class _OverturningSearch:
     polarities: Sequence[int]
     progress: Progress | None
 
-    def least(self, beyond: Reals, high: Reals, counts: Callable[[Outcomes], NDArray[np.bool_]]) -> Reals:
+    def least(self, beyond: Reals, high: Reals, counts: Callable[[Outcomes], Bools]) -> Reals:
         """Return for each period the least a - 1 whose outcome the function `counts` accepts; NaN if there is none.
 
         The search goes up to `beyond`; `high` is an a - 1 that is known to be accepted, equal to `beyond`, or NaN.

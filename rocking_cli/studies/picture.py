@@ -12,8 +12,8 @@ from itertools import combinations, pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Points, Reals
 from rocking_cli.core import (
     Angle,
     Body,
@@ -33,8 +33,6 @@ from rocking_cli.errors import RockingError, StructureError
 from rocking_cli.plugins.errors import plugin_error
 from rocking_cli.studies.hung import Carried, End, Strand, carried, strands, walls
 
-Reals = NDArray[np.float64]
-Points = NDArray[np.complex128]
 NODES = 60  # of a table of positions in either direction: straight lines between them are right to 1e-4 of the size
 FURTHEST = 0.999  # of the kinematic limit, at which a linkage has no derivatives
 SAME = 1e-6  # of the size: points that are nearer are one
@@ -283,7 +281,7 @@ class Picture:
 
         return carry
 
-    def _slack(self, rotation: Reals) -> list[NDArray[np.bool_]]:
+    def _slack(self, rotation: Reals) -> list[Bools]:
         """Return for each tie a mask of the signed rotations at which it is slack, shape (n,)."""
         rows = []
         for tie in self.ties:

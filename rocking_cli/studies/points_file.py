@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.records.text import numbers_in
 from rocking_cli.io.files import read_bytes
 
-Reals = NDArray[np.float64]
 LARGEST = 10_000_000  # bytes of a file
 LISTED = 5  # problems of a file
 

@@ -14,11 +14,11 @@ from math import ceil, isfinite, log
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.oscillator import DAMPING, response_spectrum
 from rocking_cli.studies import subsets
-from rocking_cli.studies.points_file import Reals
 from rocking_cli.studies.target_spectrum import TargetSpectrum
 
 WITHIN = (0.9, 1.3)  # NTC 2018, 3.2.3.6; EN 1998-1:2004, 3.2.3.1.2(4)c, has the lower one alone
@@ -163,12 +163,12 @@ class RecordSet:
         return self.mean / self.candidates.target
 
     @property
-    def too_low(self) -> NDArray[np.bool_]:
+    def too_low(self) -> Bools:
         """Mask of the periods at which the mean is below the lower limit by more than rounding, shape (n,)."""
         return self.ratio < self.wanted.within[0] * (1 - subsets.SAME)
 
     @property
-    def too_high(self) -> NDArray[np.bool_]:
+    def too_high(self) -> Bools:
         """Mask of the periods at which the mean is above the upper limit by more than rounding, shape (n,)."""
         return self.ratio > self.wanted.within[1] * (1 + subsets.SAME)
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from math import cos, exp, inf, isclose, log, nan, pi, sin
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import ValidationError
 
+from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.core import (
     Direction,
     Equivalence,
@@ -27,7 +27,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.io.field_problems import of_arguments
 from rocking_cli.names import FEWEST, OPENING
 from rocking_cli.structure import Structure, with_restitution
-from rocking_cli.studies.under_pulses import Integers, Progress, PulsedModel, Reals, parse_shape, pulsed_model, uplift
+from rocking_cli.studies.under_pulses import Progress, PulsedModel, parse_shape, pulsed_model, uplift
 
 SAME = 1e-9  # relative difference below which a size is that of the structure as given
 AROUND = 10.0  # scale up to which, and one over which down to, a structure is shown
@@ -168,7 +168,7 @@ class Spectrum:
     lower_bound: Reals | float = nan
 
     @property
-    def unknown(self) -> NDArray[np.bool_]:
+    def unknown(self) -> Bools:
         """Mask of unknown outcomes, shape (m, n)."""
         return np.broadcast_to(~np.isnan(self.lower_bound), self.peak_ratio.shape)
 
@@ -234,7 +234,7 @@ class Spectrum:
         found = fractile(self.peak_ratio, q)
         return found if q == 0.5 else np.where(self.followed < FEWEST, np.nan, found)
 
-    def fractile_overturns(self, q: float) -> NDArray[np.bool_]:
+    def fractile_overturns(self, q: float) -> Bools:
         """Return whether the q-fractile overturns even if no unknown outcome does, shape (n,)."""
         return np.isinf(fractile(np.where(self.unknown, self.lower_bound, self.peak_ratio), q))
 

@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Reals = NDArray[np.float64]
+from rocking_cli.arrays import Reals
+
 Integers = NDArray[np.intp]
 MOST_TRIED = 200_000  # sets
 MOST_MEMBERS = 3_000_000  # of all these sets together

@@ -10,10 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records.record_units import CHOICES, UNITS, canonical, header_units
-from rocking_cli.studies.points_file import Reals, read_points, separator_in
+from rocking_cli.studies.points_file import read_points, separator_in
 
 COLUMNS = "a line has two columns with a comma between: period [s], Sa [g]"
 ODD = 10.0  # g; no code asks for more

@@ -8,8 +8,8 @@ from functools import partial
 from math import isclose, pi
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core import Direction, Equivalence, EquivalentBlock
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.exact_batch import exact_many
@@ -19,8 +19,6 @@ from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.pulses import COARSE, Pulse, parse_pulse
 from rocking_cli.structure import Structure
 
-Reals = NDArray[np.float64]
-Integers = NDArray[np.int64]
 Progress = Callable[[int], None]
 TIE = 1e-9  # relative difference of amplitudes below which both directions lift alike
 
@@ -254,7 +252,7 @@ def _by_histories(
     return found
 
 
-def _check(structure: PulsedModel, failed: NDArray[np.bool_], periods: Reals, amplitudes: Reals) -> None:
+def _check(structure: PulsedModel, failed: Bools, periods: Reals, amplitudes: Reals) -> None:
     if failed.any():
         k = int(failed.argmax())
         raise SolverError(

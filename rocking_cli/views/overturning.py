@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from rocking_cli.arrays import Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import OVERTURNS, UNKNOWN, percent
 from rocking_cli.studies.overturning import FALLS, Comparison, OverturningMap, Region
-from rocking_cli.studies.under_pulses import PulsedModel, Reals
+from rocking_cli.studies.under_pulses import PulsedModel
 from rocking_cli.views.column import only_shown, rounded, table_of
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View, number

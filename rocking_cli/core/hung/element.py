@@ -15,8 +15,8 @@ from itertools import pairwise
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.attached import Follow, Push, Spot
 from rocking_cli.core.kinematics import Direction, Points, Reals
@@ -203,7 +203,7 @@ def _apart(one: Spot, other: Spot) -> float:
     return 0.0 if rest <= TOGETHER * (1 + abs(one.at)) else rest
 
 
-def _met(d: Points, dd: Points, rest: float) -> NDArray[np.bool_]:
+def _met(d: Points, dd: Points, rest: float) -> Bools:
     """Return a mask of the rotations at which two points that coincide at rest are still very close together.
 
     At these rotations, their distance is taken as its derivative times phi.

@@ -8,13 +8,12 @@ from math import isfinite
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.plugins.errors import failed, guard
 
-Reals = NDArray[np.float64]
 FINE = 4000  # samples to a period of a history alone: its peak is right to 1e-6 of itself from 1.01 times uplift on
 COARSE = 400  # those of them that it keeps, and those of many histories at once: 1e-4 near uplift, 1e-7 elsewhere
 DIGITS = 17  # that tell any two numbers apart

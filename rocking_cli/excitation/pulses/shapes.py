@@ -9,8 +9,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError
-from rocking_cli.excitation.pulses.base import Pulse, Reals, Segment
+from rocking_cli.excitation.pulses.base import Pulse, Segment
 
 
 class Sine(Pulse):

@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.records.record_units import header_units, is_unit, other_quantity
 from rocking_cli.excitation.records.sensor import Wanted, plural, quantity_of
@@ -102,10 +102,10 @@ def labels(lines: Sequence[tuple[int, str]], delimiter: str | None, columns: int
 
 def choose(
     file: str,
-    table: NDArray[np.float64],
+    table: Reals,
     names: Sequence[Label],
     asked: str | None,
-    increases: Callable[[NDArray[np.float64]], bool],
+    increases: Callable[[Reals], bool],
     wanted: Wanted,
 ) -> Choice:
     """Return the requested column, or the only one with values of the requested quantity.
@@ -181,9 +181,7 @@ def _ways(line: str, delimiter: str | None) -> Iterator[list[str]]:
         yield line.split(mark)
 
 
-def _times(
-    table: NDArray[np.float64], names: Sequence[Label], increases: Callable[[NDArray[np.float64]], bool]
-) -> list[int]:
+def _times(table: Reals, names: Sequence[Label], increases: Callable[[Reals], bool]) -> list[int]:
     """Return the columns whose name is a time, or else the first if it increases evenly, and repetitions of it."""
     called = [k for k, label in enumerate(names) if label.is_time]
     found = [k for k in called if (np.diff(table[k]) > 0).all()]
@@ -194,7 +192,7 @@ def _times(
 
 def _place(
     file: str,
-    table: NDArray[np.float64],
+    table: Reals,
     names: Sequence[Label],
     times: Sequence[int],
     values: Sequence[int],
@@ -250,9 +248,7 @@ def _units(label: str, wanted: Wanted) -> set[str]:
     return {unit for unit in _BRACKETED.findall(label) if quantity_of(unit) == wanted.quantity}
 
 
-def _listed(
-    table: NDArray[np.float64], names: Sequence[Label], times: Sequence[int], values: Sequence[int], wanted: Wanted
-) -> str:
+def _listed(table: Reals, names: Sequence[Label], times: Sequence[int], values: Sequence[int], wanted: Wanted) -> str:
     """Return text that lists the columns that may be meant, with number, name, unit and peak, and the other columns."""
     out = []
     for place, k in enumerate(values, start=1):

@@ -6,8 +6,8 @@ import re
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import Doubt, GroundMotion, Origin
 from rocking_cli.excitation.records import layout
@@ -55,7 +55,7 @@ class _Headers:
     """Content of the headers of a channel: name, real numbers and their first line, first data line, and origin."""
 
     name: str
-    reals: NDArray[np.float64]
+    reals: Reals
     reals_line: int
     data: int
     origin: Origin
@@ -161,7 +161,7 @@ def _history(
     ), end
 
 
-def _peak(headers: _Headers, values: NDArray[np.float64], dt: float, unit: str) -> tuple[Doubt, ...]:
+def _peak(headers: _Headers, values: Reals, dt: float, unit: str) -> tuple[Doubt, ...]:
     """Return a doubt if the largest value differs from that in the header."""
     if headers.reals.size < _PEAK_TIME or headers.reals[_PEAK - 1] == _UNSET:
         return ()

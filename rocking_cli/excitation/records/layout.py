@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, NOT_SAID, STANDARD_GRAVITY, Doubt, GroundMotion, Origin
 from rocking_cli.excitation.records.lines import Lines
@@ -90,7 +91,7 @@ class Channel:
 
     name: str
     dt: float
-    acceleration: NDArray[np.float64]
+    acceleration: Reals
     unit: str
     dt_line: int | None = None
     flaw: Problem | None = None
@@ -112,7 +113,7 @@ class Numbers(NamedTuple):
         Doubts about how the numbers are printed.
     """
 
-    values: NDArray[np.float64]
+    values: Reals
     end: int
     remarks: tuple[Doubt, ...]
 
@@ -269,9 +270,7 @@ def old_unit(file: str, line_number: int, spelling: str, units: str | None) -> s
     return TENTH_OF_G
 
 
-def straight_lines(
-    file: str, pairs: NDArray[np.float64], where: str
-) -> tuple[float, NDArray[np.float64], NDArray[np.intp]]:
+def straight_lines(file: str, pairs: Reals, where: str) -> tuple[float, Reals, NDArray[np.intp]]:
     """Interpolate a digitised film, with uneven times, to a constant interval that includes all of its times.
 
     Times are in whole milliseconds, so that such an interval exists and the interpolation is exact: the motion has more
@@ -384,7 +383,7 @@ def choose(
     )
 
 
-def in_si(values: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
+def in_si(values: Reals, unit: str) -> Reals:
     """Return accelerations [m/s2] from values in one of `UNITS`, or in tenths of g."""
     return values * (UNITS["g"] / 10 if unit == TENTH_OF_G else UNITS[unit])
 

@@ -10,8 +10,8 @@ import re
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.excitation.base import NOT_SAID, Doubt, Origin
 from rocking_cli.patterns import regex
 from rocking_cli.text import seen
@@ -108,7 +108,7 @@ _PRINTED = 1e-4  # of a value: some print the peak with more digits in the heade
 
 
 def peak_doubts(
-    values: NDArray[np.float64], dt: float, unit: str, line: int, peak: str, time: str | None = None
+    values: Reals, dt: float, unit: str, line: int, peak: str, time: str | None = None
 ) -> tuple[Doubt, ...]:
     """Return a doubt if the largest value, or its time, differs from that stated in the header.
 

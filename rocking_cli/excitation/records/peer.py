@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import NOT_SAID, GroundMotion
 from rocking_cli.excitation.records.layout import lines_of, whole_number
@@ -111,7 +111,7 @@ def _header(file: str, lines: Sequence[str]) -> _PeerHeader:
     return _PeerHeader(count, interval, npts[1], dt[1], data)
 
 
-def _page_values(file: str, first: int, page: Sequence[str]) -> NDArray[np.float64]:
+def _page_values(file: str, first: int, page: Sequence[str]) -> Reals:
     """Return the values of the lines from index `first` on; line by line only if there is an error."""
     body = "\n".join(filter(_plain, page))
     if "_" not in body:  # float() would take 1_000

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Origin
 from rocking_cli.excitation.records.layout import Channel
@@ -100,7 +101,7 @@ def velocity_code(file: str, code: str, wanted: Wanted) -> Problem | None:
     return Problem(message, file, hint=hint)
 
 
-def _flaw(file: str, name: str, values: NDArray[np.float64], unit: tuple[str, float], *, whole: bool) -> Problem | None:
+def _flaw(file: str, name: str, values: Reals, unit: tuple[str, float], *, whole: bool) -> Problem | None:
     """Return the problem of samples that are not numbers, or are counts of a digitiser; None if there is none."""
     who = f"channel {name}" if name else "the file"
     if not values.size:

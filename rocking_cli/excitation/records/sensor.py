@@ -9,8 +9,8 @@ from math import isclose, isfinite
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import of_samples
@@ -243,7 +243,7 @@ def in_words(quantity: Quantity, dt: float) -> str:
     return f"differentiated {twice}by central differences, which leave half of what is at {half:.3g} Hz"
 
 
-def _resolution(smallest: float, found: NDArray[np.float64], dt: float, quantity: Quantity) -> tuple[Doubt, ...]:
+def _resolution(smallest: float, found: Reals, dt: float, quantity: Quantity) -> tuple[Doubt, ...]:
     """Return a doubt if one step of the last digit, differentiated, is a large part of the peak acceleration."""
     power, unit = (2, "m") if quantity == "displacement" else (1, "m/s")
     noise = smallest / dt**power

@@ -11,8 +11,8 @@ from itertools import islice
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
 from rocking_cli.excitation.record_csv import DONE
@@ -123,7 +123,7 @@ def read(
     return GroundMotion(name, dt, values * size, unit, "text", remarks=remarks)
 
 
-def usable(values: NDArray[np.float64]) -> bool:
+def usable(values: Reals) -> bool:
     """Return whether all values are finite, and not too large for arithmetic."""
     return bool((np.abs(values) < _HUGE).all())
 
@@ -259,7 +259,7 @@ def _refuse_other_times(file: str, names: Sequence[Label], lines: Sequence[int])
 
 def _table(
     file: str, lines: Lines, start: int, delimiter: str | None, names: Sequence[Label], *, commas: bool
-) -> NDArray[np.float64]:
+) -> Reals:
     """Return all columns as rows of an array, by numpy's parser, or the slower one for a page that numpy refuses."""
     columns, rows = len(names), len(lines) - start
     if rows > MOST_SAMPLES or rows * columns > MOST_NUMBERS:  # before memory is reserved
@@ -283,7 +283,7 @@ def _table(
     return table[:, :filled]
 
 
-def _quick_table(lines: Sequence[str], delimiter: str | None, columns: int) -> NDArray[np.float64] | None:
+def _quick_table(lines: Sequence[str], delimiter: str | None, columns: int) -> Reals | None:
     """Parse lines with numpy; None if it cannot parse a line, or a value is not usable."""
     if not any(line.strip() for line in lines):  # numpy warns of that
         return np.empty((0, columns))
@@ -294,9 +294,7 @@ def _quick_table(lines: Sequence[str], delimiter: str | None, columns: int) -> N
     return table if table.shape[1] == columns and usable(table) else None
 
 
-def _careful_table(
-    file: str, first: int, lines: Sequence[str], delimiter: str | None, names: Sequence[Label]
-) -> NDArray[np.float64]:
+def _careful_table(file: str, first: int, lines: Sequence[str], delimiter: str | None, names: Sequence[Label]) -> Reals:
     """Parse lines from index `first` on one by one, to report errors or accept numbers such as 1D-3."""
     values: list[float] = []
     columns = len(names)
@@ -380,7 +378,7 @@ class UnevenTimeError(Exception):
         self.message, self.hint, self.row = message, hint, row
 
 
-def even_interval(time: NDArray[np.float64]) -> float:
+def even_interval(time: Reals) -> float:
     """Return the interval of evenly spaced times.
 
     Parameters
@@ -411,7 +409,7 @@ def even_interval(time: NDArray[np.float64]) -> float:
         raise UnevenTimeError(f"the times give a sample interval of {dt:g} s", hint, None)
     usual = np.median(steps)
 
-    def odd(rounding: NDArray[np.float64]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    def odd(rounding: Reals) -> tuple[Bools, Bools]:
         # Rounding moves each time by up to half its last digit: a step, or a time against the ends, by a whole one.
         # The steps find a missing sample where it is; the distances find steps that grow bit by bit.
         of_times = of_steps = np.maximum(0.01 * dt, 1.001 * rounding)
@@ -438,7 +436,7 @@ def even_interval(time: NDArray[np.float64]) -> float:
     raise UnevenTimeError(message, hint, row)
 
 
-def is_even(time: NDArray[np.float64]) -> bool:
+def is_even(time: Reals) -> bool:
     """Return whether a column may be one of even times."""
     try:
         even_interval(time)
@@ -447,7 +445,7 @@ def is_even(time: NDArray[np.float64]) -> bool:
     return True
 
 
-def increasing(time: NDArray[np.float64]) -> bool:
+def increasing(time: Reals) -> bool:
     """Return whether a column may be one of uneven times."""
     return bool((np.diff(time) > 0).all())
 
@@ -458,7 +456,7 @@ def _as_written(value: float) -> float:
     return written if abs(written - value) <= 2 * np.spacing(value) else value
 
 
-def on_grid(time: NDArray[np.float64], values: NDArray[np.float64]) -> tuple[float, NDArray[np.float64], Doubt] | None:
+def on_grid(time: Reals, values: Reals) -> tuple[float, Reals, Doubt] | None:
     """Interpolate values from uneven times linearly to even times.
 
     Parameters
@@ -497,7 +495,7 @@ def on_grid(time: NDArray[np.float64], values: NDArray[np.float64]) -> tuple[flo
     return dt, np.interp(even, time, values), Doubt("uneven", off, text)
 
 
-def _of_decimals(time: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
+def _of_decimals(time: Reals, dt: float) -> Reals:
     """Return the resolution of times [s] with few decimals, less than a tenth of `dt`; 0 if they have more decimals."""
     decimals = math.floor(-math.log10(dt / 10) + 1e-9) + 1
     resolution = 10.0**-decimals
@@ -505,7 +503,7 @@ def _of_decimals(time: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
     return np.array(resolution if rounded else 0.0)
 
 
-def _of_digits(time: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
+def _of_digits(time: Reals, dt: float) -> Reals:
     """Return the resolution of each time [s] if all have the same number of digits, as printed by %g.
 
     These times have fewer decimals the larger they are. Their resolution may be up to half of `dt`, as the first times,
@@ -522,5 +520,5 @@ def _of_digits(time: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
     return np.zeros(time.size)
 
 
-def _multiples(time: NDArray[np.float64], resolution: NDArray[np.float64] | float) -> NDArray[np.bool_]:
+def _multiples(time: Reals, resolution: Reals | float) -> Bools:
     return np.abs(time - resolution * np.round(time / resolution)) < 1e-6 * np.asarray(resolution)

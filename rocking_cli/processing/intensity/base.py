@@ -8,15 +8,11 @@ from dataclasses import MISSING, Field, dataclass, fields
 from math import nan
 from typing import Any, ClassVar
 
-import numpy as np
-from numpy.typing import NDArray
-
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.plugins.errors import blame, failed, guard
 from rocking_cli.units import UnitError, number_of
-
-Reals = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,15 +9,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import measure, time_of_share
 from rocking_cli.processing.intensity.base import MotionMeasure, Reference, RelativeMeasure, RunMeasure
 from rocking_cli.processing.oscillator import DAMPING, check_oscillator, response_spectrum
 
-Reals = NDArray[np.float64]
 SLOWEST, FASTEST = 0.25, 20.0  # Hz: between these frequencies the mean period is taken
 STEP = 0.05  # Hz between them, at most
 HOUSNER = (0.1, 2.5)  # s: between these periods his intensity is taken

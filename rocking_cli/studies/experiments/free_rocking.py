@@ -12,12 +12,10 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from rocking_cli.arrays import Integers, Reals
 from rocking_cli.core import Direction, Mechanism
-
-Reals = NDArray[np.float64]
 
 PIECES = 400  # of the spline of energy and inertia over the rotation
 KNOTS = 16  # of a quarter cycle
@@ -231,7 +229,7 @@ def _quarter(side: RockingSide, peaks: Reals, knots: int) -> tuple[Reals, Reals]
 
 
 def _joined(
-    first: Direction, which: NDArray[np.int64], kinds: list[Direction], peaks: Reals, spans: Reals, rates: Reals
+    first: Direction, which: Integers, kinds: list[Direction], peaks: Reals, spans: Reals, rates: Reals
 ) -> FreeRocking:
     """Join the quarters of all half-cycles to one motion."""
     quarter = spans[:, -1]

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Reals
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
@@ -16,8 +16,6 @@ from rocking_cli.studies.experiments.score import in_time
 from rocking_cli.studies.experiments.scores import surprise
 from rocking_cli.studies.experiments.table import ObservedTest
 from rocking_cli.studies.neighbours import Draws, Neighbourhood, follow
-
-Reals = NDArray[np.float64]
 
 INSIDE = 0.9  # of the joint region, by the likelihood ratio
 DROP = -float(np.log(1 - INSIDE))  # of the log-likelihood at its edge: half a chi-square of two degrees of freedom
@@ -58,7 +56,7 @@ class JointRegion:
         return float(self.slenderness[i]), float(self.restitution[k])
 
     @property
-    def inside(self) -> NDArray[np.bool_]:
+    def inside(self) -> Bools:
         """Which points of the grid are in the joint region of 90 %, shape (n, m)."""
         return np.asarray(self.likelihood >= self.likelihood.max() - DROP)
 

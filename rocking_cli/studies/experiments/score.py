@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rocking_cli.arrays import Reals
 from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError, Problem, RockingError
@@ -21,7 +22,6 @@ from rocking_cli.studies.experiments.scores import (
     BINS,
     CalibrationBin,
     ClusterDraws,
-    Reals,
     RuleScore,
     ScoreEstimate,
     base_rates,

@@ -7,12 +7,9 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.studies.fragility.fit import Counts, fit_outcomes
-
-Reals = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 SEED = 1963
 DRAWS = 2000
@@ -104,7 +101,7 @@ class ClusterDraws:
         drawn = np.random.default_rng(SEED).integers(self.count, size=(DRAWS, self.count))
         return np.stack([np.bincount(row, minlength=self.count) for row in drawn]).astype(np.float64)
 
-    def mean(self, values: Reals, inside: NDArray[np.bool_] | None = None) -> ScoreEstimate:
+    def mean(self, values: Reals, inside: Bools | None = None) -> ScoreEstimate:
         """Return the mean of a value of each test, of those `inside` only, with its interval."""
         kept = np.isfinite(values) if inside is None else inside & np.isfinite(values)
         if not kept.any():
@@ -281,7 +278,7 @@ def _design(x: Reals) -> Reals:
     return np.column_stack([np.ones(x.size), x])
 
 
-def _apart(clusters: Sequence[str], halves: Sequence[str]) -> Iterator[tuple[NDArray[np.bool_], NDArray[np.bool_]]]:
+def _apart(clusters: Sequence[str], halves: Sequence[str]) -> Iterator[tuple[Bools, Bools]]:
     """Yield masks of tests, and of the others that a rule for them may learn from: of other halves, or clusters."""
     names, parts = np.array(clusters, dtype=object), np.array(halves, dtype=object)
     for cluster, half in dict.fromkeys(zip(clusters, halves, strict=True)):

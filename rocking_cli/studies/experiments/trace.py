@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Spreadsheet, read_sheet, unit_in
 from rocking_cli.text import cut, one_line
 from rocking_cli.units import UnitError, read, units_of
-
-Reals = NDArray[np.float64]
 
 TIMES, ANGLES = ("time", "t"), ("angle", "rotation", "theta", "phi", "tilt")
 SHOWN = 20  # wrong cells of a file that are named

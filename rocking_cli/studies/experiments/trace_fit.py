@@ -13,9 +13,9 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.model import MEASURED
 from rocking_cli.errors import InputError
@@ -29,8 +29,6 @@ from rocking_cli.studies.experiments.free_rocking import (
     quarter_cycles,
 )
 from rocking_cli.studies.experiments.trace import Trace
-
-Reals = NDArray[np.float64]
 
 LEAST_IMPACTS = 3
 MOST_IMPACTS = 15  # that have a restitution of their own: later ones are too small to say anything of it

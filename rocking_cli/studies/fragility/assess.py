@@ -9,6 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.studies.fragility.curves import (
     FragilityCurve,
@@ -19,7 +20,6 @@ from rocking_cli.studies.fragility.curves import (
     fit_surface,
 )
 from rocking_cli.studies.fragility.definition import LAMBDA, UPLIFT, Definition, Limit, implies
-from rocking_cli.studies.fragility.fit import Bools, Integers, Reals
 from rocking_cli.studies.fragility.hazard_curve import HazardCurve, Rate, annual_rate
 from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.studies.fragility.plan import Plan

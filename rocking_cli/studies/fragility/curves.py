@@ -8,14 +8,12 @@ from typing import Literal
 
 import numpy as np
 
+from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.studies.fragility.fit import (
-    Bools,
     Counts,
     Estimate,
     Fit,
-    Integers,
     Link,
-    Reals,
     fit_brackets,
     fit_outcomes,
     separable,

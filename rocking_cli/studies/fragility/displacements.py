@@ -10,11 +10,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.units import UnitError, kind_of, read, split
 
-Reals = NDArray[np.float64]
 FACT = "displacements"  # the name under which a store keeps the rotations
 UNIT = "mm"  # in which limits are written
 DIGITS = 10

@@ -6,16 +6,15 @@ from collections.abc import Callable, Iterator
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
+from rocking_cli.arrays import Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.errors import Problem, RockingError
 from rocking_cli.io.yaml_file import Document, Place
 from rocking_cli.studies.file_part import Part, Sound
 from rocking_cli.units import UnitError, read, split
 
-Reals = NDArray[np.float64]
 Positive = Annotated[float, Field(gt=0)]
 LEAST = 2.0**-54  # a random number may be zero, where a normal distribution has no quantile
 

@@ -11,11 +11,9 @@ from itertools import pairwise
 from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-Reals = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Integers = NDArray[np.int64]
+from rocking_cli.arrays import Bools, Integers, Reals
+
 Link = Literal["probit", "logit"]
 
 FARTHEST = 30.0  # of eta: probabilities beyond are 0 or 1, and their ratios are still numbers

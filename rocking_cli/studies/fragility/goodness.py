@@ -6,18 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking_cli.studies.fragility.fit import (
-    FARTHEST,
-    Brackets,
-    Counts,
-    Fit,
-    Integers,
-    Reals,
-    cumulative,
-    density,
-    standardised,
-    totals,
-)
+from rocking_cli.arrays import Integers, Reals
+from rocking_cli.studies.fragility.fit import FARTHEST, Brackets, Counts, Fit, cumulative, density, standardised, totals
 from rocking_cli.studies.fragility.observed import Observations
 
 LEAST = 2.0 - 1e-6  # records expected on either side in a group, or in a cell: two less rounding are two

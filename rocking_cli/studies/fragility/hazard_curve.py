@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from rocking_cli.arrays import Reals
 from rocking_cli.studies.fragility.curves import FragilityCurve
-from rocking_cli.studies.fragility.fit import Reals
 from rocking_cli.studies.fragility.observed import SAME
 from rocking_cli.studies.points_file import read_points
 

@@ -7,17 +7,15 @@ from dataclasses import replace
 from math import nan
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core import Mechanism, NoEquivalentBlock, equivalent_block
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.processing.intensity import Measure, RunMeasure, parse_measure
 from rocking_cli.processing.intensity.base import Reference
 from rocking_cli.studies.fragility.intensity import PGA, PGV, SCALE
-from rocking_cli.studies.fragility.plan import Plan, Reals, weaker_block
+from rocking_cli.studies.fragility.plan import Plan, weaker_block
 from rocking_cli.studies.fragility.sources import KeptMotions
-
-Bools = NDArray[np.bool_]
 
 V_IMP = "v_imp"
 ORIGIN = ("magnitude", "distance")

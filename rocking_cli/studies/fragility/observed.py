@@ -7,7 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from rocking_cli.studies.fragility.fit import Bools, Counts, Integers, Reals, totals
+from rocking_cli.arrays import Bools, Integers, Reals
+from rocking_cli.studies.fragility.fit import Counts, totals
 
 SAME = 1e-9  # relative difference of intensities that are one: rounding is far below it, shaking far above
 A_STRIPE = 5  # records at one intensity, on average, from which on intensities are looked at one by one

@@ -8,8 +8,8 @@ from math import nan, prod
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.core import Equivalence, EquivalentBlock
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.processing.intensity import Reference, parse_measure
@@ -18,8 +18,6 @@ from rocking_cli.studies.fragility.observed import SAME
 from rocking_cli.studies.fragility.sources import Record
 from rocking_cli.studies.under_pulses import uplift
 
-Reals = NDArray[np.float64]
-Integers = NDArray[np.int64]
 EVERY = -1
 
 
@@ -75,7 +73,7 @@ class Sets:
         """Whether the records have different weights."""
         return bool(np.ptp(self.weight) > SAME * self.weight.max()) if self.weight.size else False
 
-    def there(self, record: int, levels: int) -> NDArray[np.bool_]:
+    def there(self, record: int, levels: int) -> Bools:
         """Return a mask of the levels at which a record is run."""
         return np.ones(levels, dtype=bool) if self.level[record] == EVERY else np.arange(levels) == self.level[record]
 

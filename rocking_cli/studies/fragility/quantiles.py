@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli import names
+from rocking_cli.arrays import Integers, Reals
 from rocking_cli.studies.fragility.definition import Definition
 from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.tally import UNSEEN, Tally, endings_of, samples_of
 
-Reals = NDArray[np.float64]
 SHARES = (0.16, 0.5, 0.84)
 FEWEST = (names.FEWEST, names.FEWEST_OF_MEDIAN, names.FEWEST)
 """Records from which on each quantile is told."""
@@ -141,7 +141,7 @@ def quantiles(store: Store, plan: Plan, structure: str, measures: Sequence[str])
         ])  # fmt: skip
 
 
-def _group(peaks: Reals, record: NDArray[np.int64], x: Reals, mean: float, records: int) -> Group:
+def _group(peaks: Reals, record: Integers, x: Reals, mean: float, records: int) -> Group:
     ranked = np.sort(peaks[~np.isnan(peaks)])
     rocks = (peaks > 0) & (peaks < UNSEEN)
     rocking = np.sort(peaks[rocks])

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from math import nan, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Integers, Reals
 from rocking_cli.processing.intensity import RunMeasure, all_measures, parse_measure
 from rocking_cli.studies.fragility.assess import Fragility, counted, curves
 from rocking_cli.studies.fragility.definition import Definition, Limit
@@ -22,8 +22,6 @@ from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.store import STANDS, Store
 from rocking_cli.studies.fragility.tally import samples_of
 
-Reals = NDArray[np.float64]
-Integers = NDArray[np.int64]
 TREND = 0.05  # p-value below which residuals have a trend
 OF_MOTION = ("Tm", "D5-95")
 """What residuals are tested against if not all records state magnitude and distance."""

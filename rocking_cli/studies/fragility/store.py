@@ -22,17 +22,14 @@ from typing import Any
 from zlib import crc32
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.errors import InputError, Problem, Refused
 from rocking_cli.io.json_text import json_text
 from rocking_cli.studies.fragility.definition import SLIDING
 from rocking_cli.studies.fragility.plan import Measured, Plan, Trial, Value, described
 from rocking_cli.studies.fragility.sources import Record
 from rocking_cli.studies.fragility.workers import GOES_ON
-
-Reals = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 PATIENCE = 1.0  # s between transactions: what is finished in between is run again after a crash
 READ = 100_000  # runs read at a time
@@ -163,22 +160,22 @@ class Endings:
     outcome: Integers
     peak_ratio: Reals
     peaks: Reals
-    uplifts: NDArray[np.bool_]
-    slides: NDArray[np.bool_]
+    uplifts: Bools
+    slides: Bools
     lower_bound: Reals
-    checked: NDArray[np.bool_]
+    checked: Bools
 
     @property
-    def overturned(self) -> NDArray[np.bool_]:
+    def overturned(self) -> Bools:
         """Whether each run is known to overturn."""
         return np.asarray(np.abs(self.outcome) == 1)
 
     @property
-    def unknown(self) -> NDArray[np.bool_]:
+    def unknown(self) -> Bools:
         """Whether the outcome of each run is unknown."""
         return np.asarray(self.outcome == UNKNOWN)
 
-    def select(self, which: NDArray[np.bool_]) -> Endings:
+    def select(self, which: Bools) -> Endings:
         """Return the runs that a mask selects."""
         return Endings(*(getattr(self, each.name)[which] for each in fields(self)))
 

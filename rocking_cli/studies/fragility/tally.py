@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.studies.fragility.definition import OVERTURNING, SLIDING, UPLIFT, Limit
 from rocking_cli.studies.fragility.displacements import kept
-from rocking_cli.studies.fragility.fit import Bools, Integers, Reals
 from rocking_cli.studies.fragility.intensity import of_the_motion, proportional
 from rocking_cli.studies.fragility.observed import SAME
 from rocking_cli.studies.fragility.plan import Plan

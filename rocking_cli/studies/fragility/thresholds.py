@@ -7,8 +7,8 @@ from math import isclose
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction, Mechanism, both_statics, equivalent_block
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -20,7 +20,6 @@ from rocking_cli.studies.fragility.study import Sample, Study
 from rocking_cli.studies.movements import is_held, top
 from rocking_cli.studies.under_pulses import uplift
 
-Reals = NDArray[np.float64]
 Pair = tuple[float | None, float | None]
 """Values in the positive and the negative direction; None where a structure never gets there."""
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from math import ceil, isnan
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import follow
@@ -23,8 +23,6 @@ from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.sources import KeptMotions
 from rocking_cli.studies.fragility.store import FAILED, UNKNOWN, RunRows
 from rocking_cli.studies.fragility.study import Sample
-
-Integers = NDArray[np.int64]
 
 SMALLEST, LARGEST = 64, 4096  # runs of a unit: some 10 ms to 1 s of work, against 1 to 10 ms for handing it out
 CHECKED = 256  # of a unit whose runs are checked for sliding: each takes some ms
@@ -64,7 +62,7 @@ def carry_out(unit: WorkUnit) -> RunRows:
         slides, lost = _slide_times(unit, found)
         found = replace(found, failed=found.failed | lost)
 
-    def known(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def known(values: Reals) -> Reals:
         return np.where(found.failed, np.nan, values)
 
     outcome = np.where(found.unknown, UNKNOWN, found.fell_to)
@@ -85,7 +83,7 @@ def carry_out(unit: WorkUnit) -> RunRows:
     )
 
 
-def _slide_times(unit: WorkUnit, found: Outcomes) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+def _slide_times(unit: WorkUnit, found: Outcomes) -> tuple[Reals, Bools]:
     """Simulate runs again with samples; return when each first slides [s], and which have no complete history."""
     runs = unit.runs
     times, lost = np.full(len(runs), np.nan), np.zeros(len(runs), dtype=bool)

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import batch, exact_batch, ways
 from rocking_cli.dynamics.batch import Runs, respond_many
@@ -36,7 +37,6 @@ from rocking_cli.studies import neighbours as near
 from rocking_cli.studies.selfcheck import NotRun
 from rocking_cli.units import KINDS, read
 
-Reals = NDArray[np.float64]
 GRAVITY = 9.80665  # m/s2, written here as all that the checks expect
 MOTIONS = tuple(
     GroundMotion(f"motion {k}", dt, np.array(samples, dtype=np.float64))
@@ -174,10 +174,10 @@ def _pulses(eta: float, omegas: tuple[float, ...]) -> float:
     equivalence = of.structure.with_eta(eta).equivalence
     unit, periods = GRAVITY * tan(of.alpha), 2 * pi / (of.p * omega)
 
-    def computed(a: Reals) -> NDArray[np.bool_]:
+    def computed(a: Reals) -> Bools:
         return exact_many(equivalence, Sine(1.0, 1.0), a * unit, periods, kappa=2, gravity=GRAVITY, threads=1).fell
 
-    def in_closed_form(a: Reals) -> NDArray[np.bool_]:
+    def in_closed_form(a: Reals) -> Bools:
         return np.array([overturns(*each, eta) is True for each in zip(a.tolist(), omega.tolist(), strict=True)])
 
     expected = _threshold(in_closed_form, low, high, begins)
@@ -209,7 +209,7 @@ def _brackets(omega: float, eta: float) -> list[tuple[float, float, float, bool]
     ]
 
 
-def _threshold(overturns: Callable[[Reals], NDArray[np.bool_]], low: Reals, high: Reals, begins: Reals) -> Reals:
+def _threshold(overturns: Callable[[Reals], Bools], low: Reals, high: Reals, begins: Reals) -> Reals:
     """Bisect amplitudes between a low and a high one, of which the high one overturns where overturning begins."""
     for _ in range(HALVINGS):
         middle = (low + high) / 2

@@ -1,0 +1,10 @@
+"""Types of arrays, by what their entries are."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Reals = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+Points = NDArray[np.complex128]
+"""Of the plane, as complex numbers x + iy [m]."""
