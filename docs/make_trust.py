@@ -30,8 +30,7 @@ from rocking_cli.dynamics.model import Model
 from rocking_cli.plotting import style
 from rocking_cli.plotting.score import draw_reliability
 from rocking_cli.structure import Structure
-from rocking_cli.studies.experiments.score import Scored, score_tests, scored
-from rocking_cli.studies.experiments.scores import DRAWS, CalibrationBin, ScoreEstimate
+from rocking_cli.studies.experiments.score import DRAWS, CalibrationBin, Scored, ScoreEstimate, score_tests, scored
 from rocking_cli.studies.experiments.table import read_tests
 from rocking_cli.studies.neighbours import Draws, Neighbourhood
 

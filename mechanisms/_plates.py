@@ -105,12 +105,12 @@ def _check_joined(z: Sequence[Points], names: Sequence[int], touch: float) -> No
         joined, left = joined | near, left - near
 
 
-def united(name: str, pieces: Sequence[tuple[int, Body]], outline: Outline = ()) -> Body:
+def united(name: str, pieces: Sequence[tuple[int, Body]]) -> Body:
     """Return one body as the sum of pieces, of which those of sign -1 are subtracted."""
     mass = sum(sign * piece.mass for sign, piece in pieces)
     centroid = sum(sign * piece.mass * piece.centroid for sign, piece in pieces) / mass
     inertia = sum(sign * (piece.inertia + piece.mass * abs(piece.centroid - centroid) ** 2) for sign, piece in pieces)
-    return Body(name, mass, max(inertia, 0.0), centroid, outline)
+    return Body(name, mass, max(inertia, 0.0), centroid)
 
 
 @dataclass(frozen=True)

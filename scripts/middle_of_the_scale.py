@@ -33,7 +33,7 @@ from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import KINEMATIC, SLENDERNESS, Model
 from rocking_cli.structure import Structure
 from rocking_cli.studies import neighbours
-from rocking_cli.studies.experiments.scores import ClusterDraws, ScoreEstimate, surprise
+from rocking_cli.studies.experiments.score import ClusterDraws, ScoreEstimate, surprise
 from rocking_cli.studies.neighbours import Neighbourhood, follow
 from rocking_cli.views.neighbours import deviations
 

@@ -11,7 +11,7 @@ from rocking_cli import load_structure, respond
 from rocking_cli.core import Direction
 from rocking_cli.studies.fragility import thresholds
 from rocking_cli.studies.fragility.campaign import prepare
-from rocking_cli.studies.fragility.displacements import FACT, is_quantity, kept, metres, spelt
+from rocking_cli.studies.fragility.quantities import FACT, is_quantity, kept, metres, spelt
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
 from rocking_cli.studies.fragility.tally import count, exceeds

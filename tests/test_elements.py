@@ -13,8 +13,7 @@ from scipy.integrate import quad, solve_ivp
 import rocking_cli as rk
 from rocking_cli.core import Direction, Spot, length
 from rocking_cli.core.coefficients import Coefficients
-from rocking_cli.core.hung.element import NO_ANSWER, Element
-from rocking_cli.core.hung.elements import ConstantForce, Spring, SpringBed
+from rocking_cli.core.hung.element import NO_ANSWER, ConstantForce, Element, Spring, SpringBed
 from rocking_cli.core.hung.ties import Laws, Tie, laws
 from rocking_cli.errors import MechanismError
 from rocking_cli.plugins import registry

@@ -6,7 +6,7 @@ import pytest
 
 import rocking_cli as rk
 from rocking_cli.core import Spot
-from rocking_cli.core.hung.elements import Spring
+from rocking_cli.core.hung.element import Spring
 from tests.following import build_model
 from tests.test_cli import run, some
 

@@ -12,8 +12,7 @@ import rocking_cli as rk
 from rocking_cli.errors import InputError
 from rocking_cli.plotting.score import draw_reliability
 from rocking_cli.studies.experiments import score as score_study
-from rocking_cli.studies.experiments.score import Stated, scored
-from rocking_cli.studies.experiments.scores import distance_from_uniform, fitted_shares
+from rocking_cli.studies.experiments.score import Stated, distance_from_uniform, fitted_shares, scored
 from rocking_cli.studies.experiments.table import ObservedTest, parse_columns, read_tests
 from rocking_cli.studies.neighbours import Neighbourhood, follow
 from rocking_cli.views.score import view

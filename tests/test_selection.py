@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from rocking_cli.errors import InputError
-from rocking_cli.excitation.selection import select
+from rocking_cli.excitation.records.opening import select
 
 
 @pytest.fixture

@@ -23,9 +23,9 @@ from rocking_cli.processing.reading import Reading
 from rocking_cli.studies.fragility import assess, curves, sources, store, tally, work_units, workers
 from rocking_cli.studies.fragility.campaign import differences, prepare, run
 from rocking_cli.studies.fragility.definition import RecordEntry
-from rocking_cli.studies.fragility.intensity import ALWAYS
 from rocking_cli.studies.fragility.observed import few_records
 from rocking_cli.studies.fragility.plan import Trial, weaker
+from rocking_cli.studies.fragility.quantities import ALWAYS
 from rocking_cli.studies.fragility.sources import Source
 from rocking_cli.studies.fragility.store import COLUMNS, Store, StoreError
 from rocking_cli.studies.fragility.study import load_study

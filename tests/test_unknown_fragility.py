@@ -19,9 +19,9 @@ from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.fragility import assess, quantiles, store, tally
 from rocking_cli.studies.fragility.assess import Fragility
 from rocking_cli.studies.fragility.curves import fit_curve
-from rocking_cli.studies.fragility.displacements import kept
 from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.studies.fragility.quantiles import all_quantiles
+from rocking_cli.studies.fragility.quantities import kept
 from rocking_cli.studies.fragility.ranking import rank
 from rocking_cli.studies.fragility.store import UNKNOWN, Endings, Store
 from rocking_cli.studies.fragility.study import load_study

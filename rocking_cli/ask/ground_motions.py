@@ -16,8 +16,7 @@ from rocking_cli.excitation.doubts import coarse_for, doubts
 from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
 from rocking_cli.excitation.records import read_record
-from rocking_cli.excitation.records.opening import allow_again
-from rocking_cli.excitation.selection import select
+from rocking_cli.excitation.records.opening import allow_again, select
 from rocking_cli.processing.listed import Listed, is_list
 from rocking_cli.processing.reading import Reading, reading_of
 from rocking_cli.processing.reading_options import SCALING

@@ -227,7 +227,7 @@ def _whole(parts: Iterable[Columns]) -> Columns:
 
 def _figure(definition: Definition, curves: list[Fragility]) -> Figure:
     from rocking_cli.plotting.fragility import LabelledCurve, draw_curves
-    from rocking_cli.studies.fragility.intensity import label
+    from rocking_cli.studies.fragility.quantities import label
     from rocking_cli.views.fragility import limit_name
 
     measure = definition.fitted_measures[0]

@@ -53,7 +53,7 @@ def _draw_all(folder: Path, answer: StudyAnswer) -> None:
     from rocking_cli.plotting.fragility import LabelledCurve, draw_curves, draw_surface
     from rocking_cli.plotting.quantiles import draw_quantiles
     from rocking_cli.plotting.ranking import draw_ranking
-    from rocking_cli.studies.fragility.intensity import label
+    from rocking_cli.studies.fragility.quantities import label
     from rocking_cli.views.fragility import limit_name
 
     definition, curves = answer.definition, answer.result
@@ -95,7 +95,7 @@ def _increments(answer: StudyAnswer, structure: str) -> Figure:
 
     from rocking_cli.plotting.fragility import draw_ida
     from rocking_cli.studies.fragility.definition import SCALE
-    from rocking_cli.studies.fragility.intensity import label
+    from rocking_cli.studies.fragility.quantities import label
     from rocking_cli.studies.fragility.store import Store
     from rocking_cli.studies.fragility.tally import peaks
 

@@ -11,7 +11,7 @@ from pydantic import Field, SerializeAsAny, ValidationError, model_validator
 
 from rocking_cli.core.fields import Described, Name, geometry_error, length, quantity
 from rocking_cli.core.hung.attachments import RefusedFields
-from rocking_cli.core.hung.elements import Interlock, Load
+from rocking_cli.core.hung.element import Interlock, Load
 from rocking_cli.core.hung.ties import Tie
 from rocking_cli.core.kinematics import Direction
 from rocking_cli.errors import FieldError

@@ -31,8 +31,8 @@ from rocking_cli.core.hung.attachments import (
     followed,
     interlocked,
 )
+from rocking_cli.core.hung.element import NAME as INTERLOCK
 from rocking_cli.core.hung.element import Element, Stretched
-from rocking_cli.core.hung.elements import NAME as INTERLOCK
 from rocking_cli.core.hung.everything import Hung
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.core.sketch import Outline

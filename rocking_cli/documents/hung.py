@@ -7,8 +7,7 @@ from math import isnan
 from typing import NamedTuple
 
 from rocking_cli.core.hung.attached import PointMass, Spot
-from rocking_cli.core.hung.element import Element, Stretched
-from rocking_cli.core.hung.elements import ConstantForce, SpringBed
+from rocking_cli.core.hung.element import ConstantForce, Element, SpringBed, Stretched
 from rocking_cli.studies.assessment import Assessment, MotionResult
 from rocking_cli.studies.movements import Movements, Watched, largest
 

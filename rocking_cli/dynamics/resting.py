@@ -16,7 +16,7 @@ import numpy as np
 from rocking_cli.core.contacts import Contact
 from rocking_cli.core.equivalence import AGREEMENT
 from rocking_cli.core.hung.attached import PointMass
-from rocking_cli.core.hung.elements import ConstantForce
+from rocking_cli.core.hung.element import ConstantForce
 from rocking_cli.core.kinematics import Direction, Reals
 from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.core.released import ONE, PUSH, Pieces, Released, Undetermined, inverted, released

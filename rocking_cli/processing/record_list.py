@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.selection import select
+from rocking_cli.excitation.records.opening import select
 from rocking_cli.io.field_problems import problems
 from rocking_cli.io.yaml_file import parse, read_text
 from rocking_cli.processing.entry import Entry

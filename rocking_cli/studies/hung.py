@@ -11,8 +11,7 @@ import numpy as np
 from rocking_cli.arrays import Bools, Points, Reals
 from rocking_cli.core import Direction, Mechanism, three_digits
 from rocking_cli.core.hung.attached import PointMass
-from rocking_cli.core.hung.element import TOGETHER, Element, Stretched
-from rocking_cli.core.hung.elements import ConstantForce, SpringBed
+from rocking_cli.core.hung.element import TOGETHER, ConstantForce, Element, SpringBed, Stretched
 
 Copies = Mapping[str, Sequence[tuple[int, complex]]]
 """Of each body: its place among the parts, and how far from the body it is [m], of each part that it is drawn as."""

@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.hung.attached import PointMass, Spot
-from rocking_cli.core.hung.element import Element, Stretched
-from rocking_cli.core.hung.elements import NAME as INTERLOCK
-from rocking_cli.core.hung.elements import ConstantForce
+from rocking_cli.core.hung.element import NAME as INTERLOCK
+from rocking_cli.core.hung.element import ConstantForce, Element, Stretched
 from rocking_cli.dynamics.history import History
 
 BETWEEN = 257  # rotations from rest to a peak at which the largest values on the way are looked for

@@ -191,7 +191,6 @@ def neighbours(
     release: float | None = None,
     release_is_angle: bool = False,
     rtol: float = RTOL,
-    threads: int | None = None,
 ) -> Neighbours:
     """Simulate the neighbours of a motion.
 
@@ -207,7 +206,7 @@ def neighbours(
         Start at rest, tilted by this fraction of the critical rotation.
     release_is_angle : bool
         Whether the tilt is given as an angle, which stays the same if the slenderness varies.
-    rtol, threads
+    rtol
         See `respond_many`.
 
     Raises
@@ -232,7 +231,7 @@ def neighbours(
     tilts = None
     if release is not None:
         tilts = release / np.where(all_draws.slender > 0, all_draws.slender, 1.0) if release_is_angle else release
-    found = follow(model, motion, all_draws, release=tilts, rtol=rtol, threads=threads)
+    found = follow(model, motion, all_draws, release=tilts, rtol=rtol)
     outcome = np.where(found.unknown, 2, found.fell)
     peaks = np.where(outcome[1:] > 0, np.inf, found.peak_ratio[1:])
     # A value that was reached, never one between two: half of infinity is no rotation.

@@ -98,8 +98,6 @@ class StructureTable(Sequence["TableRow"]):
         The table.
     folder : Path
         Folder of the files that the table names.
-    registry : Registry, optional
-        Mechanisms to use; by default all that are installed.
 
     Raises
     ------
@@ -107,9 +105,9 @@ class StructureTable(Sequence["TableRow"]):
         If a heading is not a field of any mechanism in the rows.
     """
 
-    def __init__(self, sheet: Spreadsheet, folder: Path, registry: Registry | None = None) -> None:
+    def __init__(self, sheet: Spreadsheet, folder: Path) -> None:
         self.sheet, self.folder = sheet, folder
-        self.registry = registry if registry is not None else _Kept()
+        self.registry = _Kept()
         self._bases: dict[str, dict[str, Any] | InputError] = {}
         self.columns = self._columns()
         self._special = {column.path[0]: column.place for column in self.columns if len(column.path) == 1}

@@ -30,7 +30,7 @@ def check_law(element: Element, shortest: float, longest: float) -> None:
     Examples
     --------
     >>> from rocking_cli.core import Spot
-    >>> from rocking_cli.core.hung.elements import Spring
+    >>> from rocking_cli.core.hung.element import Spring
     >>> check_law(Spring("bar", (Spot(None, 0j), Spot("block", 3j)), 1e6, 2e4, only="tension"), -0.05, 0.05)
     """
     e = np.linspace(shortest, longest, POINTS)

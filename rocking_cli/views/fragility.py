@@ -12,8 +12,7 @@ import numpy as np
 
 from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.studies.fragility.definition import LAMBDA
-from rocking_cli.studies.fragility.displacements import kept, metres
-from rocking_cli.studies.fragility.intensity import label
+from rocking_cli.studies.fragility.quantities import kept, label, metres
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.view import Table, View, number
 

@@ -12,8 +12,8 @@ from rocking_cli import names
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.studies.fragility.assess import Fragility
 from rocking_cli.studies.fragility.curves import FragilityCurve
-from rocking_cli.studies.fragility.intensity import ALWAYS, label
 from rocking_cli.studies.fragility.plan import Plan
+from rocking_cli.studies.fragility.quantities import ALWAYS, label
 from rocking_cli.studies.fragility.store import FAILED, SLIDE, STANDS, UNKNOWN, RunRows, Store
 
 POINTS = 101  # of a curve

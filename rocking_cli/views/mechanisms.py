@@ -12,7 +12,7 @@ from pydantic_core import PydanticUndefined
 from rocking_cli.core import Mechanism
 from rocking_cli.core.contract import Verdict
 from rocking_cli.core.given import Crushing, Strength, Uncertainty
-from rocking_cli.core.hung.elements import Interlock, Load
+from rocking_cli.core.hung.element import Interlock, Load
 from rocking_cli.core.hung.ties import Face, Place, Tie
 from rocking_cli.units import units_of
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of

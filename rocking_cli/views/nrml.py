@@ -22,7 +22,7 @@ from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.studies.fragility.assess import Fragility
 from rocking_cli.studies.fragility.curves import REJECTED, WIDEST
 from rocking_cli.studies.fragility.definition import OVERTURNING, SLIDING, UPLIFT, Limit
-from rocking_cli.studies.fragility.displacements import metres
+from rocking_cli.studies.fragility.quantities import metres
 from rocking_cli.text import one_line
 
 LONGEST = 60  # characters of a name

@@ -9,8 +9,8 @@ from typing import Any
 from rocking_cli.names import OVERTURNS, UNKNOWN, percent
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.studies.fragility.assess import UnknownRuns
-from rocking_cli.studies.fragility.intensity import label
 from rocking_cli.studies.fragility.quantiles import FEWEST, SHARES, Group, Quantiles
+from rocking_cli.studies.fragility.quantities import label
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.view import ABSENT, Table, View, number
 

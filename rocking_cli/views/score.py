@@ -11,15 +11,17 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import percent
 from rocking_cli.studies.experiments.score import (
     BASE_RATE,
+    DRAWS,
     FITTED_PGV,
     TOOL,
     VELOCITY,
     WEST,
     WITH_UNKNOWN,
+    CalibrationBin,
     Scored,
+    ScoreEstimate,
     Stated,
 )
-from rocking_cli.studies.experiments.scores import DRAWS, CalibrationBin, ScoreEstimate
 from rocking_cli.text import one_line
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, rounded, table_of
 from rocking_cli.views.neighbours import deviations

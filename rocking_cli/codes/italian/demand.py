@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, pi, sqrt
-from typing import Protocol
 
 import numpy as np
 
@@ -30,32 +29,6 @@ FALL_BELOW, FALL_ABOVE = 1.6, 1.2  # exponents of either side
 def correction(damping: float) -> float:
     """Return the damping correction eta = sqrt(10/(5 + xi)), at least 0.55, for a damping ratio xi/100 [NTC 3.2.4]."""
     return max(sqrt(10 / (5 + 100 * damping)), 0.55)
-
-
-class DemandSpectrum(Protocol):
-    """Elastic response spectrum at the support of an oscillator, on the ground or on a floor."""
-
-    @property
-    def ag(self) -> float:
-        """Ground acceleration on rock [g]."""
-        ...
-
-    @property
-    def peak(self) -> float:
-        """Peak acceleration of the support [m/s2]: a_g S on the ground, S_Z on a floor."""
-        ...
-
-    def with_ag(self, ag: float) -> DemandSpectrum:
-        """Return the spectrum for another ground acceleration [g], with the same F0 and T_C; T_D follows from a_g."""
-        ...
-
-    def acceleration(self, period: float, damping: float) -> float:
-        """Return the spectral acceleration S_e at a period [s] and a damping ratio [m/s2]."""
-        ...
-
-    def displacement(self, period: float, damping: float) -> float:
-        """Return the spectral displacement S_De at a period [s] and a damping ratio [m]."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -313,6 +286,10 @@ class FloorSpectrum:
         if period > ABOVE * self.T1:
             found.append(self.acceleration(self.T1, damping) * (ABOVE * self.T1 / (2 * pi)) ** 2)
         return found
+
+
+DemandSpectrum = GroundSpectrum | TableSpectrum | FloorSpectrum
+"""Elastic response spectrum at the support of an oscillator, on the ground or on a floor."""
 
 
 def ordinates(spectrum: DemandSpectrum, periods: Reals, damping: float) -> Reals:

@@ -13,7 +13,7 @@ from rocking_cli.codes.italian.chain import Chain, ChainBlock
 from rocking_cli.core import Mechanism
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.attached import Follow, Spot
-from rocking_cli.core.hung.elements import ConstantForce, Spring
+from rocking_cli.core.hung.element import ConstantForce, Spring
 from rocking_cli.core.hung.ties import Tie
 
 TURNS = 1e-9  # rad per rad: what turns less goes straight on

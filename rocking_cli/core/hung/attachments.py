@@ -12,7 +12,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.fields import geometry_error
 from rocking_cli.core.hung.attached import Attached, Follow, Path, Spot
-from rocking_cli.core.hung.elements import Interlock, Load
+from rocking_cli.core.hung.element import Interlock, Load
 from rocking_cli.core.hung.ties import Tie
 from rocking_cli.core.kinematics import Points, RigidMotion, distance, inside
 from rocking_cli.core.sketch import Outline

@@ -3,7 +3,8 @@
     Q = N e',   Q' = N'(e) e'^2 + N e'',   U = the integral of N de
 
 A law gives `force`, `slope` and `energy`. Each element states whether it has a memory, whether it resists by its rate,
-and whether its law is piecewise linear; from this follows which questions have an answer for the structure.
+and whether its law is piecewise linear; from this follows which questions have an answer for the structure. Those of
+structure files are constant forces, elastic ties, beds of springs and the friction of crossing walls.
 """
 
 from __future__ import annotations
@@ -12,13 +13,15 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass
 from itertools import pairwise
-from typing import Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
+from pydantic import Field, model_validator
 
 from rocking_cli.arrays import Bools
 from rocking_cli.core.coefficients import Coefficients
-from rocking_cli.core.hung.attached import Follow, Push, Spot
+from rocking_cli.core.fields import Described, Name, Vertex, geometry_error, length, point, quantity
+from rocking_cli.core.hung.attached import Follow, PointMass, Push, Spot
 from rocking_cli.core.kinematics import Direction, Points, Reals
 from rocking_cli.plugins.errors import failed, guard
 
@@ -209,3 +212,328 @@ def _met(d: Points, dd: Points, rest: float) -> Bools:
     At these rotations, their distance is taken as its derivative times phi.
     """
     return np.abs(d) <= NEAR * np.abs(dd) if rest == 0.0 else np.zeros(d.shape, bool)
+
+
+@dataclass(frozen=True)
+class ConstantForce(Element):
+    """A force of constant size and direction, such as the thrust of a vault; or friction, which opposes the motion.
+
+    Its elongation is the displacement of its point against the force.
+
+    Parameters
+    ----------
+    name : str
+        Name of the force.
+    spot : Spot
+        Point at which it acts.
+    thrust : complex
+        Fx + i Fy [N]; for friction, its value while the mechanism rocks in the positive direction.
+    friction : bool
+        Whether the horizontal component reverses with the direction of rocking.
+    """
+
+    name: str
+    spot: Spot
+    thrust: complex
+    friction: bool = False
+
+    @property
+    def words(self) -> str:
+        """Description of the force by its two components, or as friction."""
+        if self.friction:
+            at = f"at y = {self.spot.at.imag:.4g} m"
+            return f"a constant friction of {abs(self.thrust) / 1000:.4g} kN against the motion {at}"
+        return f"a force of {self.thrust.real / 1000:.4g} kN to the right and {self.thrust.imag / 1000:.4g} kN up"
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the point and the two components of the force [N]."""
+        kind = "friction" if self.friction else "force"
+        return {"kind": kind, **self.spot.as_dict(), "force": [self.thrust.real, self.thrust.imag]}
+
+    def in_direction(self, direction: Direction) -> complex:
+        """Return the force Fx + i Fy while the mechanism rocks in a direction [N]."""
+        return complex(direction * self.thrust.real, self.thrust.imag) if self.friction else self.thrust
+
+    def force(self, e: Reals) -> Reals:
+        """Return the size of the force [N], shape (n,)."""
+        return np.full(e.shape, abs(self.thrust))
+
+    def slope(self, e: Reals, going: Reals) -> Reals:
+        """Return zeros: the force is constant."""
+        return np.zeros(e.shape)
+
+    def energy(self, e: Reals) -> Reals:
+        """Return the work done against the force [J]."""
+        return abs(self.thrust) * e
+
+    def elongation(self, follow: Follow, direction: Direction = Direction.POSITIVE) -> tuple[Reals, Reals, Reals]:
+        """Return the displacement of the point against the force [m] and its derivatives; zeros for no force."""
+        z, dz, ddz = follow(self.spot)
+        way = self.in_direction(direction) / (abs(self.thrust) or 1.0)
+        return -dot(way, z - self.spot.at), -dot(way, dz), -dot(way, ddz)
+
+    def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
+        """Add the moment -F.r' to Q."""
+        z, dz, ddz = follow(self.spot)
+        force = self.in_direction(direction)
+        total.Q[:] -= dot(force, dz)
+        total.dQ[:] -= dot(force, ddz)
+        total.U[:] -= dot(force, z - self.spot.at)
+
+    def forces(self, direction: Direction, follow: Follow) -> Sequence[Push]:
+        """Return the force itself, at its point."""
+        return (Push(self.spot, np.full(follow(self.spot).z.shape, self.in_direction(direction))),)
+
+
+@dataclass(frozen=True)
+class Spring(Stretched):
+    """An elastic tie along a path of points: N = N0 + k e, in tension only, in compression only, or both.
+
+    Parameters
+    ----------
+    name, spots, count, only
+        See `Stretched`.
+    stiffness, prestress : float
+        Stiffness k [N/m], and force N0 at rest [N], tension positive.
+    """
+
+    stiffness: float
+    prestress: float = 0.0
+
+    @property
+    def words(self) -> str:
+        """Description of the stiffness, of the force at rest and of the sense in which the tie acts."""
+        sense = f", {self.only} only" if self.only else ""
+        force = f", {self.prestress / 1000:.4g} kN at rest" if self.prestress else ""
+        many = f"{self.count:g} ties, each" if self.count != 1 else "a tie of"
+        return f"{many} {self.stiffness / 1000:.4g} kN/m{force}{sense}"
+
+    @property
+    def at_rest(self) -> tuple[float, float]:
+        """Prestress [N] and stiffness [N/m], also if the tie is slack at rest."""
+        return self.prestress, self.stiffness
+
+    def force(self, e: Reals) -> Reals:
+        """Return the force N of one tie at elongations `e` [N]."""
+        n = self.slack_at(e)
+        if self.only == "tension":
+            return np.maximum(n, 0.0)
+        return np.minimum(n, 0.0) if self.only == "compression" else n
+
+    def slope(self, e: Reals, going: Reals) -> Reals:
+        """Return the stiffness dN/de at elongations `e` [N/m]: k if the tie acts, 0 if it is slack.
+
+        At the elongation at which the tie goes slack or taut, it acts if `going` (e') has the sign that stretches it
+        further.
+        """
+        if self.only is None:
+            return np.full(e.shape, self.stiffness)
+        sense = -1.0 if self.only == "compression" else 1.0
+        acts = (self.force(e) != 0) | ((self.slack_at(e) == 0) & (sense * going > 0))
+        return np.where(acts, self.stiffness, 0.0)
+
+    def energy(self, e: Reals) -> Reals:
+        """Return the integral of N from rest [J]; a slack tie stores no more energy."""
+        if self.only is not None and self.stiffness > 0:
+            with np.errstate(over="ignore"):
+                slack = -np.float64(self.prestress) / self.stiffness  # the elongation at which it goes slack
+            e = np.maximum(e, slack) if self.only == "tension" else np.minimum(e, slack)
+        return self.prestress * e + self.stiffness * e**2 / 2
+
+    def slack_at(self, e: Reals) -> Reals:
+        """Return N0 + k e [N], the force of a tie that acts in both senses."""
+        return self.prestress + self.stiffness * e
+
+
+@dataclass(frozen=True)
+class SpringBed(Element):
+    """Springs distributed along a face of a body, from each point of the face to its place at rest: k ds each.
+
+    Two springs at the Gauss points of the face have exactly the same moment, as the squared distance is quadratic along
+    the face of a rigid body. Force and elongation of the bed are its resultant and the opening at mid-face.
+
+    Parameters
+    ----------
+    name : str
+        Name of the bed.
+    start, end : Spot
+        Ends of the face, on the same body.
+    modulus : float
+        Stiffness per length of the face [N/m per metre].
+    count : float
+        Number of identical beds.
+    """
+
+    name: str
+    start: Spot
+    end: Spot
+    modulus: float
+    count: float = 1.0
+
+    @property
+    def words(self) -> str:
+        """Description of the bed by its modulus."""
+        return f"springs of {self.modulus / 1000:.4g} kN/m per metre of its face"
+
+    @property
+    def stiffness(self) -> float:
+        """Stiffness of one bed if all of its face opens by the same amount [N/m]."""
+        return self.modulus * abs(self.end.at - self.start.at)
+
+    @property
+    def stretched(self) -> Sequence[Spring]:
+        """The two springs, at the Gauss points, that act as the bed does."""
+        middle, half = (self.start.at + self.end.at) / 2, (self.end.at - self.start.at) / 2
+        each = self.modulus * abs(half) * self.count
+        places = (middle - half / np.sqrt(3), middle + half / np.sqrt(3))
+        return [Spring(self.name, (Spot(None, at), Spot(self.start.body, at)), each) for at in places]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the face and the modulus of the bed."""
+        return {"kind": "bed", "path": [self.start.as_dict(), self.end.as_dict()], "modulus": self.modulus}
+
+    def force(self, e: Reals) -> Reals:
+        """Return the resultant of one bed whose mid-face has opened by `e` [N]."""
+        return self.stiffness * e
+
+    def slope(self, e: Reals, going: Reals) -> Reals:
+        """Return the stiffness of one bed [N/m], shape (n,)."""
+        return np.full(e.shape, self.stiffness)
+
+    def energy(self, e: Reals) -> Reals:
+        """Return the energy of one bed if all of its face has opened by `e` [J]."""
+        return self.stiffness * e**2 / 2
+
+    def elongation(self, follow: Follow, direction: Direction = Direction.POSITIVE) -> tuple[Reals, Reals, Reals]:
+        """Return the opening at mid-face [m] and its first two derivatives in phi."""
+        at = (self.start.at + self.end.at) / 2
+        middle = Spring(self.name, (Spot(None, at), Spot(self.start.body, at)), self.stiffness)
+        return middle.elongation(follow, direction)
+
+    def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
+        """Add the moment of the bed to Q."""
+        for spring in self.stretched:
+            spring.act(total, direction, follow)
+
+    def forces(self, direction: Direction, follow: Follow) -> Sequence[Push]:
+        """Return the forces of the springs of the bed [N]."""
+        return [push for spring in self.stretched for push in spring.forces(direction, follow)]
+
+
+NAME = "interlock"
+SHARE = 0.4  # share of the sliding force of all courses that the code counts, for blocks laid with care
+ARM = 1 / 3  # height of the resultant friction of courses under their own weight, over the height
+
+
+class Interlock(Described):
+    """Friction between the courses of a facade and of its crossing walls [Circolare 7/2019, C8.7.1.2].
+
+    F = 0.4 n (n + 1) (h_b/l) mu l^2 t_s w of each crossing wall, at a third of the height above the foot: constant,
+    against the motion in either direction, and without inertia. The load on the crossing walls is neglected, and so is
+    the separation of blocks that have slid by their overlap: a time history is not valid beyond that.
+    """
+
+    courses: int = quantity("number of courses in the height", symbol="n", example=40, ge=1, le=10_000)
+    overlap: float = quantity("length by which blocks overlap", unit="m", symbol="l", example=0.2, gt=0, le=3)
+    thickness: float = quantity("thickness of a crossing wall", unit="m", symbol="t_s", example=0.5, gt=0, le=20)
+    friction: float = quantity("coefficient of friction", symbol="mu", example=0.577, default=0.577, gt=0, le=2)
+    walls: int = quantity("number of crossing walls", example=2, default=1, ge=1, le=100)
+    height: float = length("height of the courses above the foot", symbol="h", example=8.0)
+    density: float | None = quantity(
+        "density of the crossing walls; if omitted, that of the structure", unit="kg/m3", default=None, gt=0, le=1e6
+    )
+    body: Name | None = Field(
+        None, description="the body they hold, by its name in the picture; optional for a single body"
+    )
+
+    def force(self, density: float, gravity: float) -> float:
+        """Return the friction force of one crossing wall [N].
+
+        Parameters
+        ----------
+        density : float
+            Density of the crossing walls [kg/m3].
+        gravity : float
+            Gravitational acceleration [m/s2].
+
+        Examples
+        --------
+        >>> walls = Interlock(courses=40, overlap=0.2, thickness=0.5, walls=2, height=8.0)
+        >>> round(walls.force(18000 / 9.80665, 9.80665))
+        136264
+        """
+        n, course = self.courses, self.height / self.courses
+        weight = density * gravity  # w, per volume
+        return SHARE * n * (n + 1) * (course / self.overlap) * self.friction * self.overlap**2 * self.thickness * weight
+
+    def attached(self, foot: Spot, density: float, gravity: float) -> ConstantForce:
+        """Return the friction of all crossing walls as one force on the body whose foot is at a point."""
+        spot = Spot(foot.body, foot.at + 1j * ARM * self.height)
+        return ConstantForce(NAME, spot, complex(-self.walls * self.force(density, gravity)), friction=True)
+
+
+Share = Annotated[float, Field(ge=0, le=1)]
+Newtons = Annotated[float, Field(ge=-1e12, le=1e12)]
+FLOORS: dict[str, dict[str, float]] = {
+    "borne": {"vertical": 1 / 3, "weight": 1 / 2},
+    "sliding": {"horizontal": 0.0, "vertical": 1 / 3, "weight": 1 / 2},
+    "dragged": {"horizontal": 1.0, "vertical": 1 / 3, "weight": 1 / 2},
+}
+"""Shares of a floor that is borne at its far end too: it turns about that end, and slides here or is dragged along."""
+
+
+class Load(Described):
+    """A mass or a constant force at a point of a body.
+
+    A mass counts by three shares, each 1 by default: in the horizontal inertia, in the vertical inertia and as weight.
+    A force has no inertia.
+    """
+
+    name: Name = Field(description="what to call it")
+    mass: float | None = quantity("its mass", unit="kg", example=1000.0, default=None, gt=0, le=1e12)
+    force: Annotated[list[Newtons], Field(min_length=2, max_length=2)] | None = quantity(
+        "a constant force [Fx, Fy], to the right and up", unit="N", example=[0.0, -1000.0], default=None
+    )
+    at: Vertex = point("where it acts")
+    body: Name | None = Field(
+        None, description="the body it acts on, by its name in the picture; optional for a single body"
+    )
+    horizontal: Share | None = Field(None, description="share of the mass that moves sideways with the body")
+    vertical: Share | None = Field(None, description="share that moves up with it")
+    weight: Share | None = Field(None, description="share of the weight that the body carries")
+    floor: Literal["borne", "sliding", "dragged"] | None = Field(
+        None,
+        description="sets the shares for a floor that is also supported at its far end; `mass` is then that of the "
+        "whole floor",
+    )
+    seat: float | None = quantity(
+        "bearing length of the supported member, such as a beam; its support is lost when it is displaced sideways by "
+        "this length", unit="m",
+        default=None, gt=0, le=100,
+    )  # fmt: skip
+    each: bool = Field(False, description="whether each of several bodies that move alike has one")
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Self:
+        if (self.mass is None) == (self.force is None):
+            raise geometry_error("mass", "give either `mass` or `force`")
+        shares = [key for key in ("horizontal", "vertical", "weight") if getattr(self, key) is not None]
+        if self.force is not None and (shares or self.floor is not None):
+            raise geometry_error(shares[0] if shares else "floor", "a force has no mass to share")
+        if self.force is not None and self.seat is not None:
+            raise geometry_error("seat", "a force has no seat: it is of a mass")
+        if self.floor is not None:
+            for key in shares:
+                if key in FLOORS[self.floor]:
+                    raise geometry_error(key, f"is already set by floor: {self.floor}; give one of the two")
+        return self
+
+    def attached(self, body: str, count: float) -> PointMass | ConstantForce:
+        """Return `count` such loads as one term of the equation of motion."""
+        spot = Spot(body, complex(*self.at))
+        if self.force is not None:
+            return ConstantForce(self.name, spot, count * complex(*self.force))
+        assert self.mass is not None
+        shares = {"horizontal": self.horizontal, "vertical": self.vertical, "weight": self.weight}
+        given = {key: value for key, value in shares.items() if value is not None}
+        return PointMass(self.name, spot, count * self.mass, **{**FLOORS.get(self.floor or "", {}), **given})

@@ -11,8 +11,7 @@ import numpy as np
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.core.hung.attached import Attached, Follow, PointMass
 from rocking_cli.core.hung.attachments import Loc
-from rocking_cli.core.hung.element import NO_ANSWER, Element, Question, Stretched
-from rocking_cli.core.hung.elements import ConstantForce
+from rocking_cli.core.hung.element import NO_ANSWER, ConstantForce, Element, Question, Stretched
 from rocking_cli.core.kinematics import Direction, Reals
 from rocking_cli.errors import InputError, Problem
 

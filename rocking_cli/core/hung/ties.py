@@ -12,8 +12,7 @@ from pydantic import ConfigDict, Field, ModelWrapValidatorHandler, model_validat
 
 from rocking_cli.core.fields import Described, Name, Vertex, geometry_error, point, quantity
 from rocking_cli.core.hung.attached import Spot
-from rocking_cli.core.hung.element import Element
-from rocking_cli.core.hung.elements import Spring, SpringBed
+from rocking_cli.core.hung.element import Element, Spring, SpringBed
 from rocking_cli.errors import MechanismError
 from rocking_cli.plugins.registry import Plugins, origin
 from rocking_cli.text import did_you_mean

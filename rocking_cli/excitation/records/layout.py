@@ -329,11 +329,11 @@ def column_width(file: str, line_number: int, line: str, token: str) -> int:
     return whole_number(file, line_number, line, token, "width of the columns", most=_WIDEST)
 
 
-def number(file: str, line_number: int, line: str, token: str, what: str, *, least: float = 0.0) -> float:
-    """Return a number of the header, which must be larger than `least`; `what` is its name in messages."""
+def number(file: str, line_number: int, line: str, token: str, what: str) -> float:
+    """Return a number of the header, which must be positive; `what` is its name in messages."""
     (value,) = numbers_in(file, line_number, line, [token])
-    if not value > least:
-        message = f"the {what} must be more than {least:g}, this is {token.strip()}"
+    if not value > 0:
+        message = f"the {what} must be more than 0, this is {token.strip()}"
         raise InputError(Problem(message, file=file, line=line_number, excerpt=line.strip()[:100]))
     return value
 

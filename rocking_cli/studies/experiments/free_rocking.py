@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -23,23 +22,6 @@ COARSE = 2  # to see how many half-cycles are needed
 LEAST = 2e-3  # of the rate of the first impact: the structure is at rest when that of another is smaller
 MOST = 1000  # half-cycles
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
-
-
-class RockingSide(Protocol):
-    """One direction of rocking: energy and inertia over the rotation, and the rotation up to which they are known."""
-
-    @property
-    def end(self) -> float:
-        """Largest rotation [rad]."""
-        ...
-
-    def lift(self, phi: Reals) -> Reals:
-        """Return the potential energy over the rotation [rad], in any unit, divided by the rotation."""
-        ...
-
-    def inertia(self, phi: Reals) -> Reals:
-        """Return the inertia I of the kinetic energy I phi.^2 / 2, in the unit of the energy times s^2."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +85,10 @@ class ScaledSide:
     def inertia(self, phi: Reals) -> Reals:
         """Return the inertia."""
         return self.side.inertia(phi / self.alpha) / self.p**2
+
+
+RockingSide = MechanismSide | ScaledSide
+"""One direction of rocking: energy and inertia over the rotation, and the rotation up to which they are known."""
 
 
 @dataclass(frozen=True, eq=False)

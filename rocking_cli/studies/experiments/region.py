@@ -12,8 +12,7 @@ from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
-from rocking_cli.studies.experiments.score import in_time
-from rocking_cli.studies.experiments.scores import surprise
+from rocking_cli.studies.experiments.score import in_time, surprise
 from rocking_cli.studies.experiments.table import ObservedTest
 from rocking_cli.studies.neighbours import Draws, Neighbourhood, follow
 

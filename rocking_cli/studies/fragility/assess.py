@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TypeVar
 
@@ -57,10 +57,14 @@ class UnknownRuns:
         return None if self.unknown is None else self.unknown / self.runs
 
 
+@dataclass(frozen=True, eq=False)
 class _FittedTwice:
     """A fit in which undecided runs count as exceeding, with a second fit in which they count as not exceeding."""
 
-    unknown: int | None
+    structure: str
+    limit: Limit
+    left_out: int = field(default=0, kw_only=True)
+    unknown: int | None = field(default=0, kw_only=True)
 
     @property
     def total(self) -> int:
@@ -103,14 +107,10 @@ class Fragility(_FittedTwice):
         The fit in which undecided runs count as not exceeding; None if there are none.
     """
 
-    structure: str
-    limit: Limit
     measure: str
     seen: Observations
     curve: FragilityCurve
     rate: Rate | None
-    left_out: int = 0
-    unknown: int | None = 0
     lower: Fragility | None = None
 
     @property
@@ -127,16 +127,12 @@ class Bivariate(_FittedTwice):
     `x2`.
     """
 
-    structure: str
-    limit: Limit
     measures: tuple[str, str]
     x1: Reals
     x2: Reals
     runs: Integers
     exceeding: Integers
     surface: Surface
-    left_out: int = 0
-    unknown: int | None = 0
     lower: Bivariate | None = None
 
     @property
@@ -300,7 +296,7 @@ def _curve(
         curve = fit_capacities(
             lower, upper, tally.one(of), levels=tried, confidence=confidence, weight=tally.weight(of)
         )
-    return Fragility(structure, limit, measure, seen, curve, None, int(cells.runs[~there].sum()))
+    return Fragility(structure, limit, measure, seen, curve, None, left_out=int(cells.runs[~there].sum()))
 
 
 def _undecided_runs(cells: Cells, limit: Limit, there: Bools) -> int:
@@ -358,4 +354,6 @@ def _surface(
     x1, x2, runs, exceeding = x1[there], x2[there], cells.runs[there], cells.exceeding(limit)[there]
     record, weight = cells.tally.one(cells.record[there]), cells.tally.weight(cells.record[there])
     surface = fit_surface(x1, x2, exceeding, record, runs=runs, confidence=definition.confidence, weight=weight)
-    return Bivariate(structure, limit, measures, x1, x2, runs, exceeding, surface, int(cells.runs[~there].sum()))
+    return Bivariate(
+        structure, limit, measures, x1, x2, runs, exceeding, surface, left_out=int(cells.runs[~there].sum())
+    )

@@ -17,10 +17,9 @@ from rocking_cli.dynamics.model import NO_REBOUND, check_elements
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.processing.intensity import all_measures, parse_measure
 from rocking_cli.studies.fragility.definition import SLIDING, Definition
-from rocking_cli.studies.fragility.displacements import FACT, asked_for
-from rocking_cli.studies.fragility.intensity import PGA, PGV
 from rocking_cli.studies.fragility.measuring import complete
 from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
+from rocking_cli.studies.fragility.quantities import FACT, PGA, PGV, asked_for
 from rocking_cli.studies.fragility.sources import KeptMotions
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import Sample, Study, digest
@@ -355,9 +354,9 @@ def _ends(values: list[Any]) -> str:
     return f"{len(values)} numbers from {min(values)} to {max(values)}"
 
 
-def _told(values: list[Any], most: int = 3) -> str:
-    named = ", ".join(_one(each) for each in values[:most])
-    return named + (f" and {len(values) - most} more" if len(values) > most else "")
+def _told(values: list[Any]) -> str:
+    named = ", ".join(_one(each) for each in values[:3])
+    return named + (f" and {len(values) - 3} more" if len(values) > 3 else "")
 
 
 def _one(value: Any) -> str:

@@ -47,33 +47,23 @@ class Cut:
 
 
 @dataclass(frozen=True, eq=False)
-class FragilityCurve:
-    """A fragility curve, or the reason why none could be fitted.
+class FittedToRuns:
+    """A fit to runs by maximum likelihood, or the reason why there is none.
 
     Parameters
     ----------
     kind : str
-        `lognormal`: P = Phi(ln(x/median)/dispersion). `logistic`: P = 1/(1 + exp(-(x - median)/scale)). `step`: no run
-        exceeds up to one intensity, all exceed from another one on. `none`: no curve.
+        The form of the fit; `none` without one.
     why : str
-        Why this kind was chosen, a sentence.
+        A sentence on why this kind was chosen, or why there is no fit.
     confidence : float
         Confidence level of all intervals and bands.
     runs, exceedances : int
         Number of runs, or of capacities, and how many of them exceed.
     fit : Fit or None
-        The fitted predictor: a lognormal in 1 and ln x, a logistic in 1 and x.
-    step : Estimate or None
-        Intensity at which the step is placed, and the interval in which it lies.
-    goodness : Goodness or None
-        Goodness-of-fit test of the kind that was chosen.
-    aic : dict of str to float, or None
-        Akaike's criterion of the kinds that were fitted; it ignores the dependence between runs of one record.
+        The coefficients, with their covariance.
     records : int
         Number of different records.
-    implied : mapping of limit state to FragilityCurve
-        Curves of limit states that are exceeded whenever this one is. Probability, band and median are cut by them: no
-        structure overturns that does not uplift.
     """
 
     kind: Kind
@@ -82,10 +72,38 @@ class FragilityCurve:
     runs: int
     exceedances: int
     fit: Fit | None = None
+    records: int = 0
+
+    @property
+    def warning(self) -> str:
+        """Warning that there are too few records for reliable intervals; empty if there are enough."""
+        return few_records(self.records) if self.fit is not None else ""
+
+
+@dataclass(frozen=True, eq=False)
+class FragilityCurve(FittedToRuns):
+    """A fragility curve, or the reason why none could be fitted; other fields as in `FittedToRuns`.
+
+    Parameters
+    ----------
+    kind : str
+        `lognormal`: P = Phi(ln(x/median)/dispersion), fitted in 1 and ln x. `logistic`: P = 1/(1 + exp(-(x - median)
+        /scale)), fitted in 1 and x. `step`: no run exceeds up to one intensity, all exceed from another one on. `none`:
+        no curve.
+    step : Estimate or None
+        Intensity at which the step is placed, and the interval in which it lies.
+    goodness : Goodness or None
+        Goodness-of-fit test of the kind that was chosen.
+    aic : dict of str to float, or None
+        Akaike's criterion of the kinds that were fitted; it ignores the dependence between runs of one record.
+    implied : mapping of limit state to FragilityCurve
+        Curves of limit states that are exceeded whenever this one is. Probability, band and median are cut by them: no
+        structure overturns that does not uplift.
+    """
+
     step: Estimate | None = None
     goodness: Goodness | None = None
     aic: dict[Kind, float] | None = None
-    records: int = 0
     implied: Mapping[str | float, FragilityCurve] = field(default_factory=dict)
 
     @property
@@ -97,11 +115,6 @@ class FragilityCurve:
     def steps(self) -> list[Estimate]:
         """The step of this curve and those of the curves that cut it: below each, the probability is zero."""
         return [each.step for each in (self, *self.implied.values()) if each.step is not None]
-
-    @property
-    def warning(self) -> str:
-        """Warning that there are too few records for reliable intervals; empty if there are enough."""
-        return few_records(self.records) if self.fit is not None else ""
 
     @property
     def median(self) -> Estimate | None:
@@ -416,44 +429,22 @@ PARALLEL = 1e-4  # 1 - |correlation| of two measures that are one
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
-    """Probability of exceedance as a function of two intensities, P = Phi(c0 + c1 ln x1 + c2 ln x2).
+class Surface(FittedToRuns):
+    """Probability of exceedance as a function of two intensities, P = Phi(c0 + c1 ln x1 + c2 ln x2); `lognormal`.
+
+    Other fields are as in `FittedToRuns`; `why` also says how the two measures compare.
 
     Parameters
     ----------
-    kind : str
-        `lognormal` or `none`.
-    why : str
-        A sentence on why there is no surface, or on how the two measures compare.
-    confidence : float
-        Confidence level of the intervals.
-    runs, exceedances : int
-        Number of runs, and how many exceed.
-    fit : Fit or None
-        The coefficients, with their covariance.
     aic : dict of str to float or None
         Akaike's criterion with `both`, and with the `first` and the `second` measure alone.
     p_values : tuple of float or None
         P-values of the gain from adding the first measure to the second, and the second to the first: by the likelihood
         ratio, or if records repeat by the robust standard error.
-    records : int
-        Number of different records.
     """
 
-    kind: Literal["lognormal", "none"]
-    why: str
-    confidence: float
-    runs: int
-    exceedances: int
-    fit: Fit | None = None
     aic: dict[str, float] | None = None
     p_values: tuple[float, float] | None = None
-    records: int = 0
-
-    @property
-    def warning(self) -> str:
-        """Warning that there are too few records for reliable intervals; empty if there are enough."""
-        return few_records(self.records) if self.fit is not None else ""
 
     @property
     def coefficients(self) -> list[Estimate] | None:

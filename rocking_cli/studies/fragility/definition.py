@@ -20,12 +20,11 @@ from rocking_cli.processing.entry import Entry, FloorItem, Steps
 from rocking_cli.processing.reading import Reading, reading_of
 from rocking_cli.processing.steps import parse_steps
 from rocking_cli.studies.file_part import Part, Sound, problems_of
-from rocking_cli.studies.fragility.displacements import is_quantity, metres, spelt
 from rocking_cli.studies.fragility.distributions import Distribution, Positive, in_units_of_fields
 from rocking_cli.studies.fragility.hazard_curve import wrong_points
-from rocking_cli.studies.fragility.intensity import PGA, no_levels, spelled
-from rocking_cli.studies.fragility.intensity import SCALE as SCALE
 from rocking_cli.studies.fragility.observed import SAME
+from rocking_cli.studies.fragility.quantities import PGA, is_quantity, metres, no_levels, spelled, spelt
+from rocking_cli.studies.fragility.quantities import SCALE as SCALE
 
 UPLIFT, OVERTURNING, SLIDING = "uplift", "overturning", "sliding"
 LAMBDA = "lambda"  # what a motion reaches that uplifts a structure, though no limit state to be asked of

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Literal, NamedTuple, Protocol
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -39,24 +39,6 @@ class Slopes:
     information: Reals
 
 
-class Terms(Protocol):
-    """The different observations of a fit, each with a log-likelihood that is concave in the coefficients.
-
-    Parameters
-    ----------
-    back : ndarray, shape (k, k)
-        Matrix that converts coefficients of the standardised design to the caller's units.
-    """
-
-    back: Reals
-
-    def __len__(self) -> int: ...
-
-    def at(self, coefficients: Reals, part: slice) -> Slopes:
-        """Return log-likelihoods and derivatives of some of the terms at given coefficients."""
-        ...
-
-
 class ExceedanceTerms:
     """The terms of runs: for each row of a design, a run that exceeds or one that does not.
 
@@ -79,7 +61,7 @@ class ExceedanceTerms:
         return self._sign.size
 
     def at(self, coefficients: Reals, part: slice) -> Slopes:
-        """Return log-likelihoods and derivatives, as `Terms.at`."""
+        """Return log-likelihoods and derivatives of some of the terms at given coefficients."""
         from scipy.special import expit, log_expit, log_ndtr
 
         design, sign = self._design[part], self._sign[part]
@@ -114,7 +96,7 @@ class Brackets:
         return int(self._lower.size)
 
     def at(self, coefficients: Reals, part: slice) -> Slopes:
-        """Return log-likelihoods ln[Phi(a + b upper) - Phi(a + b lower)] and derivatives, as `Terms.at`."""
+        """Return log-likelihoods ln[Phi(a + b upper) - Phi(a + b lower)] and derivatives."""
         from scipy.special import log_ndtr
 
         a, b = coefficients
@@ -138,6 +120,12 @@ class Brackets:
             row = np.stack([np.ones_like(end), end], axis=-1)
             information += weight[:, None, None] * row[:, :, None] * row[:, None, :]
         return Slopes(value, score, information)
+
+
+Terms = ExceedanceTerms | Brackets
+"""The observations of a fit, each with a log-likelihood that is concave in the coefficients.
+
+Their `back` converts coefficients of the standardised design to the caller's units."""
 
 
 def totals(group: Integers, weights: Reals, count: int = 0) -> Reals:

@@ -13,8 +13,8 @@ from rocking_cli.core import Mechanism, NoEquivalentBlock, equivalent_block
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.processing.intensity import Measure, RunMeasure, parse_measure
 from rocking_cli.processing.intensity.base import Reference
-from rocking_cli.studies.fragility.intensity import PGA, PGV, SCALE
 from rocking_cli.studies.fragility.plan import Plan, weaker_block
+from rocking_cli.studies.fragility.quantities import PGA, PGV, SCALE
 from rocking_cli.studies.fragility.sources import KeptMotions
 
 V_IMP = "v_imp"

@@ -13,8 +13,8 @@ from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.core import Equivalence, EquivalentBlock
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.processing.intensity import Reference, parse_measure
-from rocking_cli.studies.fragility.intensity import PGA, PGV, SCALE
 from rocking_cli.studies.fragility.observed import SAME
+from rocking_cli.studies.fragility.quantities import PGA, PGV, SCALE
 from rocking_cli.studies.fragility.sources import Record
 from rocking_cli.studies.under_pulses import uplift
 

@@ -16,7 +16,7 @@ from pydantic import ValidationError
 from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
 from rocking_cli.excitation.pulses import parse_pulse
-from rocking_cli.excitation.selection import select
+from rocking_cli.excitation.records.opening import select
 from rocking_cli.io.field_problems import say
 from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text

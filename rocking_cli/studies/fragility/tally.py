@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.studies.fragility.definition import OVERTURNING, SLIDING, UPLIFT, Limit
-from rocking_cli.studies.fragility.displacements import kept
-from rocking_cli.studies.fragility.intensity import of_the_motion, proportional
 from rocking_cli.studies.fragility.observed import SAME
 from rocking_cli.studies.fragility.plan import Plan
+from rocking_cli.studies.fragility.quantities import kept, of_the_motion, proportional
 from rocking_cli.studies.fragility.store import FAILED, STANDS, Endings, Store
 from rocking_cli.studies.fragility.study import RESTITUTION
 from rocking_cli.studies.fragility.thresholds import FACT as ONSET

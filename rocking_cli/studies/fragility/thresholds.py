@@ -13,9 +13,8 @@ from rocking_cli.core import Direction, Mechanism, both_statics, equivalent_bloc
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity import parse_measure
-from rocking_cli.studies.fragility.displacements import asked_for, metres
-from rocking_cli.studies.fragility.intensity import PGA
 from rocking_cli.studies.fragility.plan import Plan, Trial
+from rocking_cli.studies.fragility.quantities import PGA, asked_for, metres
 from rocking_cli.studies.fragility.study import Sample, Study
 from rocking_cli.studies.movements import is_held, top
 from rocking_cli.studies.under_pulses import uplift

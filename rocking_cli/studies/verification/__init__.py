@@ -4,12 +4,12 @@ from rocking_cli.studies.file_part import Part as Part
 from rocking_cli.studies.verification.code import Code as Code
 from rocking_cli.studies.verification.code import Number as Number
 from rocking_cli.studies.verification.code import Site as Site
+from rocking_cli.studies.verification.results import Clause as Clause
 from rocking_cli.studies.verification.results import Control as Control
+from rocking_cli.studies.verification.results import Formula as Formula
 from rocking_cli.studies.verification.results import Histories as Histories
 from rocking_cli.studies.verification.results import Method as Method
 from rocking_cli.studies.verification.results import Verification as Verification
 from rocking_cli.studies.verification.results import Verified as Verified
+from rocking_cli.studies.verification.results import Working as Working
 from rocking_cli.studies.verification.results import governing as governing
-from rocking_cli.studies.verification.working import Clause as Clause
-from rocking_cli.studies.verification.working import Formula as Formula
-from rocking_cli.studies.verification.working import Working as Working
