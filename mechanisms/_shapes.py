@@ -1,4 +1,4 @@
-"""The bodies of a linkage as users give them: a polygon, plates, a disc, point masses, or numbers."""
+"""Bodies as users give them: a polygon, plates with openings and rounded feet, a disc, point masses, or numbers."""
 
 from __future__ import annotations
 
@@ -10,11 +10,10 @@ from typing import Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from mechanisms._plates import BodyPart, plates, united
-from mechanisms._polygons import fault_of
-from rocking_cli.core import Body, Outline, Vertex, disc, geometry_error, point, polygon, quantity
+from mechanisms._polygons import fault_of, gap, lies_within, overlap, pierced, size_of
+from rocking_cli.core import Body, Outline, Vertex, annular_sector, disc, geometry_error, point, polygon, quantity
 from rocking_cli.core.fields import Described
-from rocking_cli.core.kinematics import area_of
+from rocking_cli.core.kinematics import Points, area_of, distance, inside
 
 SHAPES = ("polygon", "parts", "disc", "masses")
 
@@ -132,3 +131,180 @@ class Shape(Described):
         """Return whether density and depth are known, for the body or for all of its parts."""
         parts = [(part.density or own[0], part.depth or own[1]) for part in self._solids] or [(own[0], own[1])]
         return all(None not in each for each in parts)
+
+
+TOUCH = 1e-3  # largest distance of parts that touch, over the size of the body
+EXACT = 1e-6  # overlap of parts by rounding, over the size of the body
+ARC = 24  # sides with which a rounded corner is drawn
+
+
+class BodyPart(Described):
+    """A plate of a body, or an opening in a plate."""
+
+    polygon: list[Vertex] = quantity(
+        "corners [x, y] in order around it", unit="m", example=[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], min_length=3,
+        max_length=1000,
+    )  # fmt: skip
+    density: float | None = quantity(
+        "its density; if omitted, that of the body", unit="kg/m3", default=None, gt=0, le=1e6
+    )
+    depth: float | None = quantity("its depth; if omitted, that of the body", unit="m", default=None, gt=0, le=1e6)
+    opening: bool = Field(False, description="whether it is cut out of the part that it lies in")
+
+    @model_validator(mode="after")
+    def _is_a_plate(self) -> Self:
+        if fault := fault_of(self.corners):
+            raise geometry_error("polygon", fault)
+        if self.opening and (self.density is not None or self.depth is not None):
+            key = "density" if self.density is not None else "depth"
+            raise geometry_error(key, "an opening goes through the part it lies in: it has no density or depth")
+        return self
+
+    @property
+    def corners(self) -> Points:
+        """Corners of the part, x + iy [m]."""
+        return np.array([complex(*vertex) for vertex in self.polygon])
+
+
+@dataclass(frozen=True)
+class Plate:
+    """A part with its openings, and its mass per area [kg/m2]."""
+
+    corners: Points
+    holes: Sequence[Points]
+    per_area: float
+
+    @property
+    def outline(self) -> Outline:
+        """Outline as one closed line, which includes the openings [m]."""
+        found: list[complex] = pierced(self.corners, self.holes).tolist()
+        return found
+
+    @property
+    def pieces(self) -> list[tuple[int, Body]]:
+        """Signed pieces whose sum is the plate: the part (+1) and its openings (-1)."""
+        return [(sign, _weighed(z, self.per_area)) for sign, z in [(1, self.corners), *((-1, z) for z in self.holes)]]
+
+
+def plates(parts: Sequence[BodyPart], per_area: Sequence[float]) -> list[Plate]:
+    """Return the plates of a body, each with its openings. Raises a geometry error if parts do not fit together."""
+    solids = [k for k, part in enumerate(parts) if not part.opening]
+    openings = [k for k, part in enumerate(parts) if part.opening]
+    z = [part.corners for part in parts]
+    size = size_of(np.concatenate([z[k] for k in solids])) if solids else 0.0
+    if not solids:
+        raise geometry_error("parts", "all of them are openings: nothing is left")
+    for kind in (solids, openings):
+        for at, k in enumerate(kind):
+            for j in kind[:at]:
+                if overlap(z[k], z[j], EXACT * size):
+                    why = f"it overlaps part {j + 1}: what both have in common would count twice"
+                    raise geometry_error(("parts", k, "polygon"), why)
+    _check_joined([z[k] for k in solids], solids, TOUCH * size)
+    holes: dict[int, list[Points]] = {k: [] for k in solids}
+    for k in openings:
+        home = next((j for j in solids if lies_within(z[k], z[j], EXACT * size)), None)
+        if home is None:
+            why = "this opening lies in no part: it must be within one; cut it where parts meet"
+            raise geometry_error(("parts", k, "polygon"), why)
+        holes[home].append(z[k])
+    return [Plate(z[k], holes[k], per_area[k]) for k in solids]
+
+
+def _check_joined(z: Sequence[Points], names: Sequence[int], touch: float) -> None:
+    """Raise a geometry error if a part is not connected to the others."""
+    joined, left = {0}, set(range(1, len(z)))
+    while left:
+        gaps = {k: min(gap(z[k], z[j]) for j in joined) for k in left}
+        near = {k for k, apart in gaps.items() if apart <= touch}
+        if not near:
+            k = min(left)
+            why = f"it is joined to no other part: the nearest is {gaps[k]:.4g} m away"
+            raise geometry_error(("parts", names[k], "polygon"), why)
+        joined, left = joined | near, left - near
+
+
+def united(name: str, pieces: Sequence[tuple[int, Body]]) -> Body:
+    """Return one body as the sum of pieces, of which those of sign -1 are subtracted."""
+    mass = sum(sign * piece.mass for sign, piece in pieces)
+    centroid = sum(sign * piece.mass * piece.centroid for sign, piece in pieces) / mass
+    inertia = sum(sign * (piece.inertia + piece.mass * abs(piece.centroid - centroid) ** 2) for sign, piece in pieces)
+    return Body(name, mass, max(inertia, 0.0), centroid)
+
+
+@dataclass(frozen=True)
+class Fillet:
+    """A corner of a plate rounded by a circle that touches both of its sides.
+
+    Parameters
+    ----------
+    corner, start, end : complex
+        The corner, and the points at which the circle touches the base and the other side [m].
+    centre : complex
+        Centre of the circle [m].
+    radius : float
+        Radius of the circle [m].
+    """
+
+    corner: complex
+    start: complex
+    end: complex
+    centre: complex
+    radius: float
+
+    @property
+    def arc(self) -> Points:
+        """Points of the circle, starting at the base [m]."""
+        turn = np.angle((self.end - self.centre) / (self.start - self.centre))
+        found: Points = self.centre + (self.start - self.centre) * np.exp(1j * turn * np.linspace(0, 1, ARC + 1))
+        return found
+
+    def pieces(self, per_area: float) -> list[tuple[int, Body]]:
+        """Return the pieces cut off the plate: the kite between both sides and the centre, less the sector."""
+        kite = np.array([self.corner, self.start, self.centre, self.end])
+        angles = np.angle(self.start - self.centre), np.angle((self.end - self.centre) / (self.start - self.centre))
+        start, turn = (float(angle) for angle in angles)
+        sector = annular_sector("", per_area, 0.0, self.radius, start, start + turn)
+        moved = Body("", sector.mass, sector.inertia, sector.centroid + self.centre)
+        return [(-1, _weighed(kite, per_area)), (1, moved)]
+
+    def rounded(self, outline: Outline) -> Outline:
+        """Return an outline with the arc in place of the corner."""
+        z = np.asarray(outline)
+        k = int(np.abs(z - self.corner).argmin())
+        from_base, from_side = (
+            abs(np.angle((z[k - 1] - z[k]) / (end - self.corner))) for end in (self.start, self.end)
+        )
+        arc = self.arc if from_base < from_side else self.arc[::-1]
+        found: list[complex] = np.concatenate([z[:k], arc, z[k + 1 :]]).tolist()
+        return found
+
+
+def fillet(z: Points, foot: complex, inwards: int, radius: float) -> Fillet:
+    """Return the fillet of a foot corner of a polygon. Raises `ValueError` if the radius does not fit.
+
+    `inwards` is the sign of x towards the other foot.
+    """
+    k = int(np.abs(z - foot).argmin())
+    sides = z[k - 1] - z[k], z[(k + 1) % len(z)] - z[k]
+    base, other = sorted(sides, key=lambda side: abs(side.imag) - inwards * side.real)
+    if not (inwards * base.real > 0 and abs(base.imag) <= EXACT * abs(base)):
+        raise ValueError("there is no level base at this foot to roll off")
+    half = abs(np.angle(other / base)) / 2
+    inset = radius / np.tan(half)
+    if inset > min(abs(base), abs(other)):
+        raise ValueError(f"is larger than the sides at the foot have room for, {min(abs(base), abs(other)):.4g} m")
+    start = foot + inwards * inset
+    return Fillet(
+        foot, complex(start), complex(foot + inset * other / abs(other)), complex(start + 1j * radius), radius
+    )
+
+
+def foot_is_cut(foot: complex, holes: Sequence[Points], tolerance: float) -> bool:
+    """Return whether an opening removes the foot of a body."""
+    at = np.array([foot])
+    return any(bool(inside(at, z)[0]) or distance(at, z)[0] <= tolerance for z in holes)
+
+
+def _weighed(z: Points, per_area: float) -> Body:
+    return polygon("", per_area * abs(area_of(z)), z.tolist())

@@ -11,8 +11,8 @@ from typing import ClassVar, Self
 import numpy as np
 from pydantic import model_validator
 
-from mechanisms._plates import EXACT, BodyPart, Fillet, Plate, fillet, foot_is_cut, plates, united
 from mechanisms._polygons import SAME, Bools, fault_of, size_of
+from mechanisms._shapes import EXACT, BodyPart, Fillet, Plate, fillet, foot_is_cut, plates, united
 from mechanisms._single_body import SingleBody
 from rocking_cli.core import (
     Body,

@@ -31,7 +31,7 @@ from mechanisms._assembly import (
     remaining,
     thrust,
 )
-from mechanisms._assembly.rays import Rays, scaled
+from mechanisms._assembly.problem import Rays, scaled
 from mechanisms._assembly.unique import kept_rays, velocity_space
 from mechanisms.arch import Arch
 from rocking_cli.core import Direction, Guide, annular_sector, four_bar, polygon

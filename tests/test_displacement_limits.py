@@ -9,13 +9,12 @@ from scipy.optimize import brentq
 
 from rocking_cli import load_structure, respond
 from rocking_cli.core import Direction
-from rocking_cli.studies.fragility import thresholds
+from rocking_cli.studies.fragility import tally
 from rocking_cli.studies.fragility.campaign import prepare
 from rocking_cli.studies.fragility.quantities import FACT, is_quantity, kept, metres, spelt
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
-from rocking_cli.studies.fragility.tally import count, exceeds
-from rocking_cli.studies.fragility.thresholds import first_reached, of_a_structure
+from rocking_cli.studies.fragility.tally import count, exceeds, first_reached, of_a_structure
 from rocking_cli.studies.movements import Watched
 from tests.conftest import EXAMPLES
 from tests.stores import command
@@ -181,9 +180,7 @@ def test_a_store_without_them_opens_and_a_study_that_asks_adds_them_and_runs_not
     found, expected = (json.loads(command("results", each, "--json").stdout)["curves"] for each in (place, whole[2]))
     assert found == expected and {each["limit_state"] for each in found} >= set(LIMITS)
     # What is known is not looked for again, also where the limits of today are others.
-    monkeypatch.setattr(
-        thresholds, "of_a_structure", lambda mechanism, wanted: [(float(each), None) for each in wanted]
-    )
+    monkeypatch.setattr(tally, "of_a_structure", lambda mechanism, wanted: [(float(each), None) for each in wanted])
     write(tmp_path, limit_states=["25 mm", "1 m"])
     with Store.writing(place) as store:
         prepare(load_study(path), store)

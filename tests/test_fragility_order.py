@@ -16,7 +16,7 @@ from rocking_cli.studies.fragility.hazard_curve import HazardCurve, annual_rate
 from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import load_study
-from rocking_cli.studies.fragility.thresholds import accelerations
+from rocking_cli.studies.fragility.tally import accelerations
 from rocking_cli.views import nrml as openquake
 from rocking_cli.views.column import data_of
 from rocking_cli.views.fragility import _curves, fit_columns

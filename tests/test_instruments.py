@@ -8,7 +8,7 @@ import pytest
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records import read_record
-from rocking_cli.excitation.records.sensor import Gain
+from rocking_cli.excitation.records.record_units import Gain
 from rocking_cli.processing.reading import Reading
 from rocking_cli.processing.steps import parse_steps
 from tests.conftest import SHARED, rows_of
@@ -58,7 +58,7 @@ class TestDerivatives:
 
     @pytest.mark.parametrize(("quantity", "response"), [("displacement", 0.44295), ("velocity", 0.30168)])
     def test_half_is_left_at_the_frequency_that_is_said(self, tmp_path, quantity, response):
-        from rocking_cli.excitation.records.sensor import in_words
+        from rocking_cli.excitation.records.record_units import in_words
 
         f = response / DT
         values = np.sin(2 * np.pi * f * T + 0.3)

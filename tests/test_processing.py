@@ -146,7 +146,7 @@ class TestShape:
         from dataclasses import replace
 
         from rocking_cli.excitation.base import Doubt
-        from rocking_cli.excitation.records.sensor import as_acceleration
+        from rocking_cli.excitation.records.record_units import as_acceleration
 
         coarse = replace(motion, acceleration=np.round(0.05 * np.sin(motion.time), 3))  # displacements of whole mm
         (noisy,) = (each for each in as_acceleration(coarse, "displacement").remarks if each.kind == "resolution")

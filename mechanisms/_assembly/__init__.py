@@ -34,4 +34,4 @@ from mechanisms._assembly.mechanism import Thrust as Thrust
 from mechanisms._assembly.mechanism import leading as leading
 from mechanisms._assembly.mechanism import linkage as linkage
 from mechanisms._assembly.mechanism import thrust as thrust
-from mechanisms._assembly.rays import Bearings as Bearings
+from mechanisms._assembly.problem import Bearings as Bearings

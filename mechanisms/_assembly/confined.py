@@ -17,9 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mechanisms._assembly.blocks import NoAnswer
-from mechanisms._assembly.problem import STRONGEST, AssemblyProblem
+from mechanisms._assembly.problem import STRONGEST, AssemblyProblem, moving
 from mechanisms._assembly.programme import Sparse, beside, from_blocks, from_entries, least, unit_columns
-from mechanisms._assembly.rays import moving
 from rocking_cli.core import Reals
 from rocking_cli.core.contacts import MASONRY
 

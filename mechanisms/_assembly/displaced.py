@@ -15,8 +15,8 @@ import numpy as np
 
 from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, NoAnswer
 from mechanisms._assembly.mechanism import Opening
+from mechanisms._assembly.problem import Bearings, Frame, scaled
 from mechanisms._assembly.programme import TOLERANCE, beside, least, solved, solver, weighted_squares
-from mechanisms._assembly.rays import Bearings, Frame, scaled
 from mechanisms._assembly.unique import velocity_space
 from rocking_cli.core import Guide, Reals
 

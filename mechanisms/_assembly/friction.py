@@ -15,9 +15,8 @@ from mechanisms._assembly.blocks import AssemblyContact
 from mechanisms._assembly.confined import undilated
 from mechanisms._assembly.limit import Collapse
 from mechanisms._assembly.mechanism import STILL
-from mechanisms._assembly.problem import AssemblyProblem
+from mechanisms._assembly.problem import AssemblyProblem, Rays
 from mechanisms._assembly.programme import beside, least
-from mechanisms._assembly.rays import Rays
 from rocking_cli.core import Reals
 from rocking_cli.core.contacts import MASONRY
 

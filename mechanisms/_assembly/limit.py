@@ -16,8 +16,7 @@ import numpy as np
 
 from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, DoesNotStand, NoAnswer, NothingMoves, listed
 from mechanisms._assembly.confined import Undilated, undilated
-from mechanisms._assembly.problem import NOTHING, STRONGEST, AssemblyProblem
-from mechanisms._assembly.rays import moving
+from mechanisms._assembly.problem import NOTHING, STRONGEST, AssemblyProblem, moving
 from mechanisms._assembly.unique import kept_rays, mechanisms_of, smallest, velocity_space
 from rocking_cli.core import Direction, Guide, Reals
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact
 from mechanisms._assembly.limit import Collapse
-from mechanisms._assembly.rays import Frame
+from mechanisms._assembly.problem import Frame
 from rocking_cli.core import Direction, Guide, Reals
 
 STILL = 1e-8  # velocities that count as zero, over the fastest one

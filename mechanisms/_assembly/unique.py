@@ -29,9 +29,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mechanisms._assembly.blocks import NoAnswer
-from mechanisms._assembly.problem import NOTHING, AssemblyProblem
+from mechanisms._assembly.problem import NOTHING, AssemblyProblem, Bools, Frame, Indices, Rays
 from mechanisms._assembly.programme import Sparse, beside, components, from_blocks, from_entries, least
-from mechanisms._assembly.rays import Bools, Frame, Indices, Rays
 from rocking_cli.core import Reals
 from rocking_cli.core.kinematics import Points
 

@@ -82,7 +82,7 @@ def fragility(
     """
     from rocking_cli.ask.results import results
     from rocking_cli.studies.fragility.study import load_study
-    from rocking_cli.studies.fragility.thresholds import held
+    from rocking_cli.studies.fragility.tally import held
 
     if check:
         refuse_idle(

@@ -13,7 +13,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_measured
 from rocking_cli.excitation.records.opening import allow_again
-from rocking_cli.excitation.records.sensor import Quantity, as_acceleration, size_of, smallest_step
+from rocking_cli.excitation.records.record_units import Quantity, as_acceleration, size_of, smallest_step
 from rocking_cli.processing.reading_options import ALL, READING, ReadingArguments
 from rocking_cli.processing.steps import Factor, Lowpass, Resample, Step, of_vertical, process
 from rocking_cli.text import exact

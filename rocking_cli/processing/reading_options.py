@@ -14,7 +14,7 @@ from rocking_cli.units import UnitError, number_of
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from rocking_cli.excitation.records.sensor import Gain
+    from rocking_cli.excitation.records.record_units import Gain
     from rocking_cli.processing.floor import Floor
     from rocking_cli.processing.steps import Step
 
@@ -74,8 +74,7 @@ def _acceleration(given: Any) -> float:
 
 def _unit(given: Any) -> str:
     """Return the name of a unit of acceleration, velocity or length in any spelling that headers have."""
-    from rocking_cli.excitation.records.record_units import canonical
-    from rocking_cli.excitation.records.sensor import quantity_of
+    from rocking_cli.excitation.records.record_units import canonical, quantity_of
 
     name = canonical(str(given))
     if name is None and quantity_of(str(given)) is None:
@@ -90,7 +89,7 @@ def _quantity(given: Any) -> str:
 
 
 def _gain(given: Any) -> Any:
-    from rocking_cli.excitation.records.sensor import Gain
+    from rocking_cli.excitation.records.record_units import Gain
 
     return given if isinstance(given, Gain) else Gain.parse(str(given))
 

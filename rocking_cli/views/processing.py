@@ -10,12 +10,12 @@ if TYPE_CHECKING:
 
 def in_words(motion: GroundMotion) -> str:
     """Return the processing steps of a motion in a few words; empty if there are none."""
-    from rocking_cli.excitation.records import sensor
+    from rocking_cli.excitation.records import record_units
 
     steps = list(motion.processing)
-    for quantity in sensor.QUANTITIES:
-        if (said := sensor.said(quantity)) in steps:
-            steps[steps.index(said)] += f" ({sensor.in_words(quantity, motion.of_ground.dt)})"
+    for quantity in record_units.QUANTITIES:
+        if (said := record_units.said(quantity)) in steps:
+            steps[steps.index(said)] += f" ({record_units.in_words(quantity, motion.of_ground.dt)})"
     return f"processed: {', '.join(steps)}" if steps else ""
 
 

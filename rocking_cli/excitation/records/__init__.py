@@ -9,8 +9,8 @@ from pathlib import Path
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records.opening import decoded, open_record
+from rocking_cli.excitation.records.record_units import QUANTITIES, Gain, Quantity, Wanted, as_acceleration
 from rocking_cli.excitation.records.registry import Reader, load_readers, reader_for, takes_bytes, takes_wanted
-from rocking_cli.excitation.records.sensor import QUANTITIES, Gain, Quantity, Wanted, as_acceleration
 
 __all__ = ["read_measured", "read_record"]
 

@@ -11,8 +11,14 @@ import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.records.record_units import header_units, is_unit, other_quantity
-from rocking_cli.excitation.records.sensor import Wanted, plural, quantity_of
+from rocking_cli.excitation.records.record_units import (
+    Wanted,
+    header_units,
+    is_unit,
+    other_quantity,
+    plural,
+    quantity_of,
+)
 from rocking_cli.patterns import regex
 
 MOST = 1000  # columns of a table

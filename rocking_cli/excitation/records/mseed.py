@@ -13,8 +13,8 @@ import numpy as np
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, GroundMotion
 from rocking_cli.excitation.records.layout import choose
+from rocking_cli.excitation.records.record_units import Wanted
 from rocking_cli.excitation.records.seismo import channel_of, origin_of, traces, velocity_code
-from rocking_cli.excitation.records.sensor import Wanted
 
 TITLE = "miniSEED"
 SIGN = "a binary header with six digits and D, R, Q or M, or with MS and 3, then a date"

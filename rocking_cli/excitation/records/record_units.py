@@ -1,15 +1,26 @@
-"""Units of accelerations: their spellings and sizes, and where a header states them. A unit is never guessed."""
+"""Units of accelerations: their spellings and sizes, and where a header states them. A unit is never guessed.
+
+Other recorded values are displacements, velocities, volts and counts.
+"""
 
 from __future__ import annotations
 
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import isclose, isfinite
+from typing import Literal, NamedTuple, get_args
 
+import numpy as np
+
+from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
+from rocking_cli.excitation.doubts import of_samples
 from rocking_cli.patterns import regex
-from rocking_cli.units import UnitError, number_of, split
+from rocking_cli.text import did_you_mean, exact
+from rocking_cli.units import KINDS, UnitError, number_of, split
 
 UNITS: dict[str, float] = {
     "g": STANDARD_GRAVITY,
@@ -210,3 +221,241 @@ def _normal(line: str) -> str:
     for old, new in (("_", " "), ("²", "2"), ("⁻", "-"), ("\N{MINUS SIGN}", "-"), ('"', " "), ("'s", "")):
         line = line.lower().replace(old, new)
     return line.strip()
+
+
+Quantity = Literal["acceleration", "velocity", "displacement"]
+QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
+OTHER_UNITS: dict[Quantity, tuple[str, ...]] = {
+    "velocity": tuple(KINDS["velocity"]),
+    "displacement": tuple(KINDS["length"]),
+}
+"""The units of what is differentiated; those of accelerations are in `units.UNITS`."""
+EXAMPLE = "0.05 m/V"
+LEAST, MOST = 1e-30, 1e30  # of the number in a gain: beyond them products overflow
+TIMES = frozenset(
+    ["s", "sec", "second", "seconds", "ms", "min", "minute", "minutes", "h", "hr", "hour", "hours", "d", "day", "days"]
+)
+COARSE = 0.05  # of the peak: what one step of the smallest digit may make of it
+
+_IN_HEADER = regex(r"[\[(]\s*([^\])\s]+)\s*[\])]|\bin\s+([^\s,;]+)")
+_STATED = regex(r"[\[(]\s*([^\])\s]+)\s*[\])]")
+_FORM = regex(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.ASCII)
+_PER = regex(r"(.+?)\s*(?:/|\bper\b)\s*([^\W\d_%]{1,20}|%)")
+
+
+class _Stated(NamedTuple):
+    """A unit stated in a header: its name, its size in SI units and its line."""
+
+    unit: str
+    size: float
+    line: int
+
+
+class Wanted(NamedTuple):
+    """Request to a reader with `TAKES_WANTED = True`, beyond accelerations at even times.
+
+    Parameters
+    ----------
+    quantity : str
+        Quantity of the values in the file; the reader returns them in place of accelerations, in SI units.
+    raw : bool
+        Whether the values are the output of an instrument: they are then returned unchanged, whatever their unit.
+    uneven : bool
+        Whether times may be uneven: the values are then interpolated to an even grid, and a `Doubt` states how uneven
+        the times are.
+    """
+
+    quantity: Quantity = "acceleration"
+    raw: bool = False
+    uneven: bool = False
+
+    def unit(self, file: str, header: Sequence[tuple[int, str]], units: str | None) -> tuple[str, float]:
+        """Return name and size of the unit of the values; arguments and errors are those of `units.resolve_unit`."""
+        if self.raw:
+            for number, line in header:
+                if stated := header_units(line):
+                    message = f"the header says that the values are in {', '.join(sorted(stated))} already"
+                    hint = "leave `gain` out"
+                    raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
+            return "raw", 1.0
+        if self.quantity == "acceleration":
+            found = resolve_unit(file, header, units)
+            return found, UNITS[found]
+        return self._other_unit(file, header, units)
+
+    def _refuse_another(self, file: str, header: Sequence[tuple[int, str]]) -> None:
+        """Raise `InputError` if the labels have units in brackets, and all of these are of other quantities."""
+        for number, line in header[-1:]:
+            said = {each: unit for unit in _STATED.findall(line) if (each := quantity_of(unit)) is not None}
+            if said and self.quantity not in said:
+                other, unit = next(iter(said.items()))
+                message = f"the header says that the values are in {unit}, a unit of {plural(other)}"
+                hint = f"is it `from` {other}?"
+                raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
+
+    def _stated(self, header: Sequence[tuple[int, str]]) -> _Stated | None:
+        """Return the unit that the header states; None if it states none."""
+        for number, line in reversed(header):
+            for one in (a or b for a, b in _IN_HEADER.findall(line)):
+                if (size := size_of(one, self.quantity)) is not None:
+                    return _Stated(one, size, number)
+        return None
+
+    def _other_unit(self, file: str, header: Sequence[tuple[int, str]], units: str | None) -> tuple[str, float]:
+        known = ", ".join(units_of(self.quantity))
+        size = None if units is None else size_of(units, self.quantity)
+        if units is not None and size is None:
+            message = f"'{units}' is not a unit of {self.quantity}"
+            raise InputError(Problem(message, field="`units`", hint=f"choose one of: {known}"))
+        self._refuse_another(file, header)
+        stated = self._stated(header)
+        if size is not None and stated is not None and not isclose(size, stated.size):
+            message = f"the header says the unit is {stated.unit}, but `units` says {units}"
+            raise InputError(Problem(message, file, stated.line, hint="leave `units` out, or correct the header"))
+        if units is not None and size is not None:
+            return units, size
+        if stated is not None:
+            return stated.unit, stated.size
+        message = f"the file does not say what unit its {plural(self.quantity)} are in"
+        hint = f"say which it is with `units`: {known}; or with `gain`, such as {EXAMPLE}"
+        raise InputError(Problem(message, file, hint=hint))
+
+
+def plural(quantity: Quantity) -> str:
+    """Return the plural of a quantity, in words."""
+    return "velocities" if quantity == "velocity" else f"{quantity}s"
+
+
+def units_of(quantity: Quantity) -> tuple[str, ...]:
+    """Return the units in which a quantity may be given."""
+    return tuple(UNITS) if quantity == "acceleration" else OTHER_UNITS[quantity]
+
+
+def size_of(unit: str, quantity: Quantity) -> float | None:
+    """Return the size of a unit of a quantity, in SI units; None if it is not a unit of this quantity."""
+    if quantity == "acceleration":
+        name = canonical(unit)
+        return None if name is None else UNITS[name]
+    said = KINDS["velocity" if quantity == "velocity" else "length"].get("".join(unit.split()))
+    return None if said is None else float(said)
+
+
+def quantity_of(unit: str) -> Quantity | None:
+    """Return the quantity of a unit; None if it is not that of an acceleration, velocity or displacement."""
+    return next((each for each in QUANTITIES if size_of(unit, each) is not None), None)
+
+
+@dataclass(frozen=True)
+class Gain:
+    """Value of one unit of an instrument's output.
+
+    Parameters
+    ----------
+    size : float
+        Value in m/s2, m/s or m, not zero; a negative one reverses the motion.
+    quantity : str
+        Quantity of the value.
+    text : str
+        The gain as written: `0.05 m/V`.
+    """
+
+    size: float
+    quantity: Quantity
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+    @classmethod
+    def parse(cls, text: str) -> Gain:
+        """Read a gain such as `0.05 m/V`, `1.5e-5 m/count` or `2 g/V`; the unit after the slash is optional.
+
+        Raises
+        ------
+        InputError
+            If the text has no number, or no unit of acceleration, velocity or length.
+        """
+        match = _FORM.fullmatch(text)
+        if match is None or not LEAST <= abs(float(match[1])) <= MOST:
+            raise _refused(f"{text!r} is not a number with a unit")
+        number, unit = match[1], match[2]
+        if not unit:
+            raise _refused(f"{text!r} is a gain without a unit")
+        per = None if quantity_of(unit) else _PER.fullmatch(unit)
+        if per is not None and per[2].lower() in TIMES:
+            raise _refused(f"{unit!r} is not a known unit, and {per[2]!r} is not an output of an instrument")
+        of = unit if per is None else per[1]
+        quantity = quantity_of(of)
+        if quantity is None:
+            known = [name for each in QUANTITIES for name in units_of(each)]
+            raise _refused(f"{of!r} is not a unit of acceleration, velocity or length", did_you_mean(of, known))
+        size = size_of(of, quantity)
+        assert size is not None
+        return cls(float(number) * size, quantity, f"{exact(float(number))} {unit}")
+
+
+def _refused(message: str, guess: str | None = None) -> InputError:
+    hint = f"{guess}; " if guess else ""
+    return InputError(Problem(message, field="`gain`", hint=f"{hint}say what one unit stands for, such as {EXAMPLE}"))
+
+
+def smallest_step(measured: GroundMotion) -> float:
+    """Return the smallest non-zero difference of consecutive samples, usually one last digit; 0 if there is none."""
+    steps = np.abs(np.diff(measured.acceleration))
+    smallest = float(steps[steps > 0].min(initial=np.inf))
+    return smallest if isfinite(smallest) else 0.0
+
+
+def as_acceleration(measured: GroundMotion, quantity: Quantity, step: float | None = None) -> GroundMotion:
+    """Return the ground acceleration from measured displacements, velocities or accelerations.
+
+    Parameters
+    ----------
+    measured : GroundMotion
+        Motion whose "accelerations" are the measured values, in m, m/s or m/s2; accelerations are returned unchanged.
+    quantity : str
+        Quantity of the measured values.
+    step : float, optional
+        `smallest_step` of the values before corrections, which hide it; 0 to raise no doubt about the resolution.
+
+    Returns
+    -------
+    GroundMotion
+        Motion by central differences, zero at the first and the last sample. At a frequency f they reduce the amplitude
+        by sinc^2(f dt) for displacements and sinc(2 f dt) for velocities, with sinc(x) = sin(pi x)/(pi x).
+    """
+    if quantity == "acceleration":
+        return measured
+    dt, values = measured.dt, measured.acceleration
+    step = smallest_step(measured) if step is None else step
+    inner = np.diff(values, 2) / dt**2 if quantity == "displacement" else (values[2:] - values[:-2]) / (2 * dt)
+    found = np.pad(inner, 1)
+    if not np.isfinite(found).all():
+        raise InputError(Problem("its differences are beyond the range of numbers", measured.name))
+    remarks = (*measured.remarks, *of_samples(measured, accelerations=False), *_resolution(step, found, dt, quantity))
+    return replace(measured, acceleration=found, remarks=remarks, processing=(*measured.processing, said(quantity)))
+
+
+def said(quantity: Quantity) -> str:
+    """Return the name of the differentiation of a quantity in the list of processing steps."""
+    return f"from {quantity}"
+
+
+def in_words(quantity: Quantity, dt: float) -> str:
+    """Return a description of the differentiation as a filter, for users."""
+    twice, half = ("twice ", 0.44295 / dt) if quantity == "displacement" else ("", 0.30168 / dt)
+    return f"differentiated {twice}by central differences, which leave half of what is at {half:.3g} Hz"
+
+
+def _resolution(smallest: float, found: Reals, dt: float, quantity: Quantity) -> tuple[Doubt, ...]:
+    """Return a doubt if one step of the last digit, differentiated, is a large part of the peak acceleration."""
+    power, unit = (2, "m") if quantity == "displacement" else (1, "m/s")
+    noise = smallest / dt**power
+    peak = float(np.abs(found).max())
+    if not (isfinite(noise) and noise > COARSE * peak):
+        return ()
+    text = (
+        f"its smallest step, {smallest:.3g} {unit}, is {noise / STANDARD_GRAVITY:.2g} g once differentiated, of a peak "
+        f"of {peak / STANDARD_GRAVITY:.2g} g: noise, unless a `lowpass` takes it out"
+    )
+    return (Doubt("resolution", noise / STANDARD_GRAVITY, text),)

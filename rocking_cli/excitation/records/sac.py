@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
 from rocking_cli.excitation.records.layout import choose
+from rocking_cli.excitation.records.record_units import Wanted
 from rocking_cli.excitation.records.seismo import channel_of, origin_of, traces, velocity_code
-from rocking_cli.excitation.records.sensor import Wanted
 
 TITLE = "SAC"
 SIGN = "a binary header with version 6 or 7 in its 77th word"

@@ -14,8 +14,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Origin
 from rocking_cli.excitation.records.layout import Channel
 from rocking_cli.excitation.records.origins import origin
-from rocking_cli.excitation.records.record_units import UNITS
-from rocking_cli.excitation.records.sensor import Wanted
+from rocking_cli.excitation.records.record_units import UNITS, Wanted
 from rocking_cli.excitation.records.text import sensible, usable
 from rocking_cli.patterns import regex
 

@@ -18,7 +18,7 @@ from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
 from rocking_cli.excitation.record_csv import DONE
 from rocking_cli.excitation.records.columns import MOST, Choice, Label, choose, labels
 from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.excitation.records.sensor import Wanted, plural
+from rocking_cli.excitation.records.record_units import Wanted, plural
 from rocking_cli.excitation.records.widths import PrintedRows, unlike_the_others
 from rocking_cli.patterns import regex
 

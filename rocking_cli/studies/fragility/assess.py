@@ -24,8 +24,7 @@ from rocking_cli.studies.fragility.hazard_curve import HazardCurve, Rate, annual
 from rocking_cli.studies.fragility.observed import Observations
 from rocking_cli.studies.fragility.plan import Plan
 from rocking_cli.studies.fragility.store import Store
-from rocking_cli.studies.fragility.tally import Cells, Counted, Tally, count, intensities
-from rocking_cli.studies.fragility.thresholds import Onset
+from rocking_cli.studies.fragility.tally import Cells, Counted, Onset, Tally, count, intensities
 
 MOST_UNKNOWN = 0.02  # share of runs of which it is not known whether they exceed, up to which one curve is enough
 

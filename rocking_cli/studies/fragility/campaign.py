@@ -17,14 +17,12 @@ from rocking_cli.dynamics.model import NO_REBOUND, check_elements
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.processing.intensity import all_measures, parse_measure
 from rocking_cli.studies.fragility.definition import SLIDING, Definition
-from rocking_cli.studies.fragility.measuring import complete
-from rocking_cli.studies.fragility.plan import Plan, Trial, weaker
+from rocking_cli.studies.fragility.plan import Plan, Trial, complete, weaker
 from rocking_cli.studies.fragility.quantities import FACT, PGA, PGV, asked_for
 from rocking_cli.studies.fragility.sources import KeptMotions
 from rocking_cli.studies.fragility.store import Store
 from rocking_cli.studies.fragility.study import Sample, Study, digest
-from rocking_cli.studies.fragility.thresholds import FACT as ONSET
-from rocking_cli.studies.fragility.thresholds import accelerations, rotations
+from rocking_cli.studies.fragility.tally import ONSET, accelerations, rotations
 from rocking_cli.studies.fragility.work_units import carry_out, unit_size, units
 from rocking_cli.studies.fragility.workers import Workers
 

@@ -16,8 +16,7 @@ from rocking_cli.arrays import Integers, Reals
 from rocking_cli.processing.intensity import RunMeasure, all_measures, parse_measure
 from rocking_cli.studies.fragility.assess import Fragility, counted, curves
 from rocking_cli.studies.fragility.definition import Definition, Limit
-from rocking_cli.studies.fragility.measuring import ORIGIN, V_IMP
-from rocking_cli.studies.fragility.plan import Plan
+from rocking_cli.studies.fragility.plan import ORIGIN, V_IMP, Plan
 from rocking_cli.studies.fragility.quantities import PGA, PGV
 from rocking_cli.studies.fragility.store import STANDS, Store
 from rocking_cli.studies.fragility.tally import samples_of
