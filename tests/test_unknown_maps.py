@@ -22,7 +22,7 @@ from rocking_cli.plotting.history import draw_history
 from rocking_cli.plotting.moving import ratio_chart
 from rocking_cli.plotting.overturning import draw_comparison, draw_map
 from rocking_cli.plotting.spectrum import draw_spectra
-from rocking_cli.processing.scaled import Scaled
+from rocking_cli.processing.listed import Scaled
 from rocking_cli.structure import Structure
 from rocking_cli.structure_file import load_structure
 from rocking_cli.studies import under_pulses

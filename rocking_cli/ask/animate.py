@@ -18,7 +18,7 @@ from rocking_cli.ask.several import Answers, answers, are_several, ask_each, pla
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING
-from rocking_cli.processing.scaled import Scaled
+from rocking_cli.processing.listed import Scaled
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
 from rocking_cli.views.view import heading

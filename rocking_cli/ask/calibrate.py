@@ -152,8 +152,7 @@ def _of_trace(
 def _write(structure: Structure, source: Path, out: Path, found: TraceFit) -> None:
     """Write a copy of the file of a structure with the fitted restitution and its scatter."""
     from rocking_cli.io.files import keep_apart, write_whole
-    from rocking_cli.io.yaml_file import with_fields
-    from rocking_cli.io.yaml_file import read_text
+    from rocking_cli.io.yaml_file import read_text, with_fields
     from rocking_cli.structure import Structure
     from rocking_cli.structure_file import parse_structure
 

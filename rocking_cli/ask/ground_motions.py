@@ -17,12 +17,11 @@ from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulses import Pulse, PulseShapes, parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.excitation.records.opening import allow_again, select
-from rocking_cli.processing.listed import Listed, is_list
+from rocking_cli.processing.listed import Listed, Scaled, is_list
 from rocking_cli.processing.reading import Reading, reading_of
 from rocking_cli.processing.reading_options import SCALING
 from rocking_cli.processing.reading_options import MotionArguments as MotionArguments
 from rocking_cli.processing.reading_options import ReadingArguments as ReadingArguments
-from rocking_cli.processing.scaled import Scaled
 from rocking_cli.processing.steps import Resample, process
 from rocking_cli.views.processing import in_words
 from rocking_cli.views.view import FEW

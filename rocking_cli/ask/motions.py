@@ -24,7 +24,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import measure
 from rocking_cli.names import OPENING
 from rocking_cli.processing.floor import Floor
-from rocking_cli.processing.scaled import Scaled
+from rocking_cli.processing.listed import Scaled
 from rocking_cli.processing.steps import Step, parse_steps, process
 from rocking_cli.structure import Structure
 from rocking_cli.studies.azimuths import AzimuthResponses

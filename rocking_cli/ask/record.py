@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
     from rocking_cli.ask.given import StructureLike
     from rocking_cli.io.tables import Columns
+    from rocking_cli.processing.listed import Scaled
     from rocking_cli.processing.oscillator import ResponseSpectrum
-    from rocking_cli.processing.scaled import Scaled
     from rocking_cli.structure import Structure
 
 PATIENCE = 1.0  # s without a word

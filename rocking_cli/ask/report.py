@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rocking_cli.ask.sheets import SheetOrigin
     from rocking_cli.documents.page import VerifiedReport
     from rocking_cli.io.tables import Columns
-    from rocking_cli.processing.scaled import Scaled
+    from rocking_cli.processing.listed import Scaled
     from rocking_cli.structure import Structure
     from rocking_cli.studies.assessment import Assessment, TitleBlock
     from rocking_cli.studies.verification.code import SiteFile

@@ -23,8 +23,8 @@ from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.names import OPENING
+from rocking_cli.processing.listed import Scaled
 from rocking_cli.processing.reading_options import ALL
-from rocking_cli.processing.scaled import Scaled
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.studies.release import Release

@@ -14,7 +14,7 @@ from rocking_cli.ask.answer import Answer, MappingAnswer, no_plot
 from rocking_cli.ask.ground_motions import Motion, Motions
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import RockingError
-from rocking_cli.processing.scaled import Scaled
+from rocking_cli.processing.listed import Scaled
 from rocking_cli.text import numbered
 from rocking_cli.views.view import Table, View
 

@@ -14,7 +14,7 @@ from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, orig
 from rocking_cli.io.browser import as_pdf, browser
 from rocking_cli.io.files import check_writable, write_whole
 from rocking_cli.io.json_text import json_text
-from rocking_cli.processing.scaled import Scaled
+from rocking_cli.processing.listed import Scaled
 from rocking_cli.structure import Structure
 from rocking_cli.studies.assessment import File, TitleBlock, file_of_motion, versions
 from rocking_cli.studies.verification.code import SiteFile

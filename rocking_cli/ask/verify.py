@@ -19,7 +19,7 @@ from rocking_cli.studies.verification.results import Verification
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.processing.scaled import Scaled
+    from rocking_cli.processing.listed import Scaled
 
 
 @takes_numbers

@@ -140,8 +140,8 @@ class JointCheck:
         The joint of `warned`.
     largest : float
         Largest opening or slip of a joint [m], over the whole history.
-    largest_joint, largest_time : str and float
-        Joint and time [s] of the largest opening; empty and NaN if none opens.
+    largest_joint : str
+        Joint of the largest opening; empty if none opens.
     longest : float
         The longest time for which a joint is open, or slides [s].
     parted : float or None
@@ -170,7 +170,6 @@ class JointCheck:
     warned_joint: str
     largest: float
     largest_joint: str
-    largest_time: float
     longest: float
     parted: float | None
     parted_joint: str
@@ -210,7 +209,6 @@ def check_of(joints: JointTables | None, marks: Reals) -> JointCheck | None:
         warned_joint=label(kernels.WARNED_WHERE),
         largest=float(marks[kernels.LARGEST]),
         largest_joint=label(kernels.LARGEST_WHERE),
-        largest_time=float(marks[kernels.LARGEST_AT]),
         longest=float(marks[kernels.LONGEST]),
         parted=float(marks[opens]) if stays_closed else None,
         parted_joint=label(where),

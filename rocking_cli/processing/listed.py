@@ -1,4 +1,4 @@
-"""A record file named by the user, alone or in a list of records."""
+"""A record file named by the user, alone or in a list of records; and a motion with its scale factor and source."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from rocking_cli.excitation.records.origins import name
 from rocking_cli.processing.reading import Reading
 
 if TYPE_CHECKING:  # pydantic is for who gives a list
+    from rocking_cli.excitation.pulses import Pulse
     from rocking_cli.processing.entry import Entry
+
 
 SUFFIXES = (".yaml", ".yml")
 
@@ -52,3 +54,18 @@ class Listed(NamedTuple):
 def is_list(path: Path) -> bool:
     """Return whether a file is a list of records, by its name."""
     return path.suffix.lower() in SUFFIXES
+
+
+class Scaled(NamedTuple):
+    """A ground motion as read, its scale factor, and its pulse, or its record and how that was read."""
+
+    motion: GroundMotion
+    factor: float
+    pulse: Pulse | None = None
+    record: Listed | None = None
+    reading: Reading | None = None
+
+    @property
+    def file(self) -> Path | None:
+        """The file of the record, if there is one."""
+        return self.record.path if self.record is not None else None

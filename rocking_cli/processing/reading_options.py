@@ -131,87 +131,44 @@ CORRECTIONS = ("baseline", "highpass", "lowpass", "taper", "trim", "resample")
 class ReadingArguments(TypedDict, total=False):
     """Keyword arguments of verbs that read records; the corrections are made in the order in which they are given."""
 
-    # fmt: off - a table: name, types, help, parser, metavar, and its name elsewhere if that is another
-    units: Annotated[
-        str | None, Option("Unit of the record, if the file does not state it.", _unit, f"[{'|'.join(UNITS)}]")
-    ]
-    dt: Annotated[
-        float | str | None, Option("Sampling interval in s, if the file has no times.", _in("s", "dt", "0.01s"), "TIME")
-    ]
-    channel: Annotated[
-        str | int | None, Option("Channel or column to read: its number, from 1, or its name.", _channel, "CHANNEL")
-    ]
-    quantity: Annotated[
-        Literal["acceleration", "velocity", "displacement"] | None,
-        Option(
-            "Quantity in the record; velocities and displacements are differentiated.",
-            _quantity,
-            f"[{'|'.join(QUANTITIES)}]",
-            "from",
-        ),
-    ]
-    gain: Annotated[
-        "Gain | str | None",
-        Option(
-            "Instrument sensitivity: the value of one unit of the record, such as 0.05m/V or 4.7e-6m/s2/count.",
-            _gain,
-            "GAIN",
-        ),
-    ]
-    other: Annotated[
-        "str | Path | None",
-        Option(
-            "Second horizontal component, perpendicular to the record; the two are rotated into the plane of the "
-            "structure.",
-            _file,
-            "FILE",
-            "with",
-        ),
-    ]
-    other_channel: Annotated[
-        str | int | None, Option("Channel of the second component in its file.", _channel, "CHANNEL", "with_channel")
-    ]
-    azimuth: Annotated[
-        float | str | None,
-        Option(
-            "Azimuth of the structure's plane, in degrees: 0 is the record, 90 the second. `respond` also accepts all.",
-            _azimuth,
-            "DEGREES",
-        ),
-    ]
-    baseline: Annotated[
-        "Step | str | None",
-        Option(
-            "Baseline correction: the best-fitting constant, line or parabola is subtracted.",
-            _step("baseline"),
-            "linear|quadratic",
-        ),
-    ]
-    highpass: Annotated[
-        "Step | str | float | None",
-        Option("High-pass corner frequency in Hz (Butterworth, zero phase).", _step("highpass"), "HZ"),
-    ]
-    lowpass: Annotated[
-        "Step | str | float | None",
-        Option("Low-pass corner frequency in Hz (Butterworth, zero phase).", _step("lowpass"), "HZ"),
-    ]
-    taper: Annotated[
-        "Step | str | float | None",
-        Option("Fraction of the duration over which each end is tapered to zero.", _step("taper"), "SHARE"),
-    ]
-    trim: Annotated["Step | str | None", Option("Start and end of the part to keep, in s.", _step("trim"), "FROM:TO")]
-    resample: Annotated[
-        "Step | str | float | None",
-        Option("Resample to this interval, in s; uneven times are put on a regular grid.", _step("resample"), "TIME"),
-    ]
-    floor: Annotated[
-        "Floor | str | Mapping[str, Any] | None",
-        Option(
-            "Floor of a building on which the structure stands: T1=0.4,xi=0.05,z=0.67,gamma=1.29 (or n=3 storeys).",
-            _floor,
-            "T1=...",
-        ),
-    ]
+    # A table: name, types, help, parser, metavar, and its name elsewhere if that is another.
+    # fmt: off
+    units: Annotated[str | None, Option(
+        "Unit of the record, if the file does not state it.", _unit, f"[{'|'.join(UNITS)}]")]
+    dt: Annotated[float | str | None, Option(
+        "Sampling interval in s, if the file has no times.", _in("s", "dt", "0.01s"), "TIME")]
+    channel: Annotated[str | int | None, Option(
+        "Channel or column to read: its number, from 1, or its name.", _channel, "CHANNEL")]
+    quantity: Annotated[Literal["acceleration", "velocity", "displacement"] | None, Option(
+        "Quantity in the record; velocities and displacements are differentiated.",
+        _quantity, f"[{'|'.join(QUANTITIES)}]", "from")]
+    gain: Annotated["Gain | str | None", Option(
+        "Instrument sensitivity: the value of one unit of the record, such as 0.05m/V or 4.7e-6m/s2/count.",
+        _gain, "GAIN")]
+    other: Annotated["str | Path | None", Option(
+        "Second horizontal component, perpendicular to the record; the two are rotated into the plane of the "
+        "structure.", _file, "FILE", "with")]
+    other_channel: Annotated[str | int | None, Option(
+        "Channel of the second component in its file.", _channel, "CHANNEL", "with_channel")]
+    azimuth: Annotated[float | str | None, Option(
+        "Azimuth of the structure's plane, in degrees: 0 is the record, 90 the second. `respond` also accepts all.",
+        _azimuth, "DEGREES")]
+    baseline: Annotated["Step | str | None", Option(
+        "Baseline correction: the best-fitting constant, line or parabola is subtracted.",
+        _step("baseline"), "linear|quadratic")]
+    highpass: Annotated["Step | str | float | None", Option(
+        "High-pass corner frequency in Hz (Butterworth, zero phase).", _step("highpass"), "HZ")]
+    lowpass: Annotated["Step | str | float | None", Option(
+        "Low-pass corner frequency in Hz (Butterworth, zero phase).", _step("lowpass"), "HZ")]
+    taper: Annotated["Step | str | float | None", Option(
+        "Fraction of the duration over which each end is tapered to zero.", _step("taper"), "SHARE")]
+    trim: Annotated["Step | str | None", Option(
+        "Start and end of the part to keep, in s.", _step("trim"), "FROM:TO")]
+    resample: Annotated["Step | str | float | None", Option(
+        "Resample to this interval, in s; uneven times are put on a regular grid.", _step("resample"), "TIME")]
+    floor: Annotated["Floor | str | Mapping[str, Any] | None", Option(
+        "Floor of a building on which the structure stands: T1=0.4,xi=0.05,z=0.67,gamma=1.29 (or n=3 storeys).",
+        _floor, "T1=...")]
     # fmt: on
 
 

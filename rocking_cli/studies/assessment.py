@@ -24,7 +24,7 @@ from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulse_fit import PulseFit, fit_pulses
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.excitation.records.opening import name_of, original
-from rocking_cli.processing.scaled import Scaled
+from rocking_cli.processing.listed import Scaled
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion, worst
 from rocking_cli.studies.linearisation import Linearisation, compare

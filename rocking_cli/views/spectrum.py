@@ -11,7 +11,7 @@ import numpy as np
 
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.names import FEWEST, NO_UPLIFT, OVERTURNS, ROCKS, UNKNOWN
-from rocking_cli.processing.scaled import Scaled
+from rocking_cli.processing.listed import Scaled
 from rocking_cli.studies.spectrum import Spectrum
 from rocking_cli.views import processing
 from rocking_cli.views.column import Column, only_shown, rounded, table_of
