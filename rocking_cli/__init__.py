@@ -61,7 +61,7 @@ _HOME = {
     "excitation.pulse_fit": ["PulseFit", "fit_pulse"],
     "excitation.pulses": ["Pulse", "parse_pulse"],
     "excitation.records": ["read_record"],
-    "processing.components": ["turned"],
+    "processing.reading": ["turned"],
     "processing.floor": ["Floor"],
     "processing.intensity": ["Measure", "MotionMeasure", "RelativeMeasure", "RunMeasure", "parse_measure"],
     "processing.oscillator": ["ResponseSpectrum"],
