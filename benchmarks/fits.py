@@ -17,10 +17,10 @@ from pathlib import Path
 import numpy as np
 from fragility import EXAMPLES, in_process, write_records
 
-from rocking_cli.studies.fragility.campaign import prepare, run
-from rocking_cli.studies.fragility.store import RunRows, Store
-from rocking_cli.studies.fragility.study import load_study
-from rocking_cli.studies.fragility.workers import threads
+from rocking_cli.questions.fragility.campaign import prepare, run
+from rocking_cli.questions.fragility.store import RunRows, Store
+from rocking_cli.questions.fragility.study import load_study
+from rocking_cli.questions.fragility.workers import threads
 
 ASKED = "limit_states: [uplift, 0.5, overturning]\n"
 METHODS = {
@@ -69,9 +69,9 @@ def beside_runs(folder: Path) -> None:
 def _fits(place: Path) -> float:
     """Seconds from a finished store to its curves, in a new process but for what every command imports."""
     code = (
-        "import sys, time; from rocking_cli.cli.study_output import StudyOutput, show_study;"
-        "from rocking_cli.cli.watching import OnTerminal; from rocking_cli.ask.results import results;"
-        "import rocking_cli.studies.fragility.campaign; start = time.perf_counter();"
+        "import sys, time; from rocking_cli.questions.fragility.study_output import StudyOutput, show_study;"
+        "from rocking_cli.cli.watching import OnTerminal; from rocking_cli.questions.fragility.results import results;"
+        "import rocking_cli.questions.fragility.campaign; start = time.perf_counter();"
         "show_study(results(sys.argv[1]), StudyOutput(None, None, as_json=True), OnTerminal());"
         "print(time.perf_counter() - start, file=sys.stderr)"
     )

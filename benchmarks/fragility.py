@@ -17,11 +17,11 @@ from pathlib import Path
 
 import numpy as np
 
-from rocking_cli.studies.fragility import workers as places
-from rocking_cli.studies.fragility.campaign import prepare, run
-from rocking_cli.studies.fragility.store import Store
-from rocking_cli.studies.fragility.study import load_study
-from rocking_cli.studies.fragility.work_units import carry_out, unit_size, units
+from rocking_cli.questions.fragility import workers as places
+from rocking_cli.questions.fragility.campaign import prepare, run
+from rocking_cli.questions.fragility.store import Store
+from rocking_cli.questions.fragility.study import load_study
+from rocking_cli.questions.fragility.work_units import carry_out, unit_size, units
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 RECORDS, LEVELS = 100, 20
@@ -157,7 +157,7 @@ def large(kernel: float, overhead: float) -> None:
 
 def collecting() -> float:
     """Runs a second that the store takes."""
-    from rocking_cli.studies.fragility.store import COLUMNS, RunRows
+    from rocking_cli.questions.fragility.store import COLUMNS, RunRows
 
     with tempfile.TemporaryDirectory() as folder:
         path = write_study(Path(folder), 2)

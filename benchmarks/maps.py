@@ -19,8 +19,8 @@ import numpy as np
 
 from rocking_cli import Runs, load_structure, respond_many
 from rocking_cli.dynamics.model import linear_model
+from rocking_cli.questions.overturning.study import overturning_map
 from rocking_cli.structure import Structure
-from rocking_cli.studies.overturning import overturning_map
 from rocking_cli.studies.under_pulses import PulsedModel, linear_block, outcomes, parse_shape, pulsed_model
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"

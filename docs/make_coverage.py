@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking_cli.studies.fragility.curves import FragilityCurve, Observations, fit_capacities, fit_curve
+from rocking_cli.questions.fragility.curves import FragilityCurve, Observations, fit_capacities, fit_curve
 
 MEDIAN, DISPERSION = 0.4, 0.5
 RECORDS = (5, 10, 20, 50)

@@ -28,7 +28,6 @@ from numpy.typing import NDArray
 from rocking_cli import Mechanism, Registry, equivalent_block
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History, follow
-from rocking_cli.engines import respond
 from rocking_cli.errors import MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulse_fit import fit_pulse
@@ -36,8 +35,9 @@ from rocking_cli.excitation.pulses.shapes import Sine
 from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting import style
 from rocking_cli.plotting.structure import draw_at_rest
+from rocking_cli.questions.error.study import linearisation
 from rocking_cli.structure import Structure
-from rocking_cli.studies.linearisation import linearisation
+from rocking_cli.studies.engines import respond
 from rocking_cli.studies.picture import picture
 
 Reals = NDArray[np.float64]

@@ -14,8 +14,7 @@ import make_reference
 from make_runs import Content, Run, keep, run, shown
 from parts import asked, renewed
 
-from rocking_cli import Registry
-from rocking_cli.studies import verification
+from rocking_cli import Registry, verification
 
 DOCS = Path(__file__).resolve().parent
 PROJECT = DOCS.parent

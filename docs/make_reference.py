@@ -16,7 +16,7 @@ import rocking_cli
 from rocking_cli import core
 from rocking_cli.cli.help import OF_RECORDS, RecordOption
 from rocking_cli.cli.main import main
-from rocking_cli.studies.verification import Code
+from rocking_cli.verification import Code
 from rocking_cli.views.mechanisms import fields
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"

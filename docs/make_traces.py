@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli import Block, InputError
+from rocking_cli.questions.calibrate.study import fit_trace
+from rocking_cli.questions.calibrate.trace import Trace
 from rocking_cli.structure import Structure
-from rocking_cli.studies.experiments.trace import Trace
-from rocking_cli.studies.experiments.trace_fit import fit_trace
 
 Reals = NDArray[np.float64]
 

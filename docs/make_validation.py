@@ -31,7 +31,7 @@ from rocking_cli import (
     respond,
 )
 from rocking_cli.core.reactions import reactions
-from rocking_cli.studies.linearisation import linearisation
+from rocking_cli.questions.error.study import linearisation
 
 DOCS = Path(__file__).resolve().parent
 PAGE = DOCS / "validation.md"

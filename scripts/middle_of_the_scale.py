@@ -31,9 +31,9 @@ from scipy.spatial import ConvexHull
 from rocking_cli import load_structure, read_record
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.model import KINEMATIC, SLENDERNESS, Model
+from rocking_cli.questions.score.study import ClusterDraws, ScoreEstimate, surprise
 from rocking_cli.structure import Structure
 from rocking_cli.studies import neighbours
-from rocking_cli.studies.experiments.score import ClusterDraws, ScoreEstimate, surprise
 from rocking_cli.studies.neighbours import Neighbourhood, follow
 from rocking_cli.views.neighbours import deviations
 

@@ -97,7 +97,7 @@ def _no_defaults_of_a_user(tmp_path_factory, monkeypatch):
 @pytest.fixture
 def small_maps(monkeypatch):
     """Maps of few points in the reports of a test of something else."""
-    from rocking_cli.studies import assessment
+    from rocking_cli.questions.report import study as assessment
 
     monkeypatch.setattr(assessment, "POINTS", 20)
 

@@ -1,8 +1,8 @@
 """Histories and models of a mechanism, by its structure."""
 
-from rocking_cli import engines
 from rocking_cli.names import OPENING
 from rocking_cli.structure import Structure
+from rocking_cli.studies import engines
 
 _recent: list[Structure] = []
 

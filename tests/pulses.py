@@ -4,8 +4,8 @@ from math import isnan
 from types import SimpleNamespace
 
 from rocking_cli.dynamics import exact
+from rocking_cli.questions.pulse.view import EXACT
 from rocking_cli.views.column import data_of
-from rocking_cli.views.pulse import EXACT
 
 
 def exact_pulse(a, omega, eta, shape="sine"):

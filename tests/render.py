@@ -17,22 +17,22 @@ from matplotlib.ticker import NullFormatter
 from PIL import Image, ImageFilter
 from scipy.special import ndtr
 
+from rocking_cli.core.structure_file import load_structure
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_record
-from rocking_cli.plotting.fragility import LabelledCurve, draw_curves, draw_surface
-from rocking_cli.plotting.history import draw_history
-from rocking_cli.plotting.margin import draw_margins
-from rocking_cli.plotting.overturning import draw_map
 from rocking_cli.plotting.structure import draw_structure
-from rocking_cli.structure_file import load_structure
-from rocking_cli.studies.fragility.assess import Bivariate
-from rocking_cli.studies.fragility.curves import fit_curve, fit_surface
-from rocking_cli.studies.fragility.observed import Observations
-from rocking_cli.studies.margin import FACTORS, Margin
+from rocking_cli.questions.fragility.assess import Bivariate
+from rocking_cli.questions.fragility.curves import fit_curve, fit_surface
+from rocking_cli.questions.fragility.observed import Observations
+from rocking_cli.questions.fragility.picture import LabelledCurve, draw_curves, draw_surface
+from rocking_cli.questions.margin.picture import draw_margins
+from rocking_cli.questions.margin.study import FACTORS, Margin
+from rocking_cli.questions.overturning.picture import draw_map
+from rocking_cli.questions.overturning.study import OverturningMap, overturning_map
+from rocking_cli.questions.respond.picture import draw_history
 from rocking_cli.studies.neighbours import Neighbourhood
-from rocking_cli.studies.overturning import OverturningMap, overturning_map
 from rocking_cli.studies.picture import picture
 from rocking_cli.studies.under_pulses import linear_block, parse_shape
 from tests.conftest import EXAMPLES

@@ -19,7 +19,7 @@ import numpy as np
 from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
-from rocking_cli.studies.fragility.store import COLUMNS, MARK, Store
+from rocking_cli.questions.fragility.store import COLUMNS, MARK, Store
 from tests.conftest import EXAMPLES
 
 STUDY = f"""\
@@ -277,8 +277,8 @@ def is_sound(place: Path, sound: Path, told: str) -> None:
 WAITS = """
 import sys, time
 from pathlib import Path
-import rocking_cli.cli.fragility, rocking_cli.cli.study_output, rocking_cli.studies.fragility.campaign
-import rocking_cli.dynamics.kernels, rocking_cli.views.fragility
+import rocking_cli.questions.fragility.command, rocking_cli.questions.fragility.study_output, rocking_cli.questions.fragility.campaign
+import rocking_cli.dynamics.kernels, rocking_cli.questions.fragility.view
 from rocking_cli.cli.main import main
 Path(sys.argv[1]).touch()
 while not Path(sys.argv[2]).exists():

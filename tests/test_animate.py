@@ -11,11 +11,11 @@ import pytest
 from PIL import Image
 
 from mechanisms.block import Block
+from rocking_cli.core.structure_file import load_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting import style
-from rocking_cli.plotting.animation import animation_page, frame_time
-from rocking_cli.structure_file import load_structure
+from rocking_cli.questions.animate.picture import animation_page, frame_time
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.picture import picture
 from tests.conftest import EXAMPLES

@@ -405,8 +405,8 @@ def test_a_type_checker_accepts_the_page(maker, tmp_path):
 TYPED = """
 from typing import assert_type
 import rocking_cli as rk
-from rocking_cli.ask.record import RecordAnswer
-from rocking_cli.ask.respond import ResponseAnswer
+from rocking_cli.questions.record.verb import RecordAnswer
+from rocking_cli.questions.respond.verb import ResponseAnswer
 from rocking_cli.ask.several import Answers
 block = rk.Block(width=0.7, height=2.8)
 assert_type(rk.respond(block, "sine:0.3g:0.5s", tail=3), ResponseAnswer)

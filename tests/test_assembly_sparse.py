@@ -200,7 +200,7 @@ def test_what_is_idle_is_said_and_what_is_another_mechanism_is_refused(tmp_path)
     def brick(x0, wide, high):
         return {"polygon": [[x0, 0.0], [x0 + wide, 0.0], [x0 + wide, high], [x0, high]]}
 
-    from rocking_cli.views.collapse import view
+    from rocking_cli.questions.collapse.view import view
 
     found = assembly({"tower": brick(0.0, 1.0, 4.0), "grain": brick(3.0, GRAIN, 4 * GRAIN)})
     each = found.collapse(POSITIVE)

@@ -15,14 +15,14 @@ from rocking_cli.cli.main import main
 from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
 from rocking_cli.io.yaml_file import with_fields
+from rocking_cli.questions.calibrate.free_rocking import MechanismSide, ScaledSide, free_rocking
+from rocking_cli.questions.calibrate.region import JointRegion, joint_region
+from rocking_cli.questions.calibrate.study import fit_trace, pool
+from rocking_cli.questions.calibrate.trace import Trace, read_trace
+from rocking_cli.questions.calibrate.view import region_view, trace_view
+from rocking_cli.questions.score.table import parse_columns
 from rocking_cli.structure import Structure
-from rocking_cli.studies.experiments.free_rocking import MechanismSide, ScaledSide, free_rocking
-from rocking_cli.studies.experiments.region import JointRegion, joint_region
-from rocking_cli.studies.experiments.table import parse_columns
-from rocking_cli.studies.experiments.trace import Trace, read_trace
-from rocking_cli.studies.experiments.trace_fit import fit_trace, pool
 from rocking_cli.studies.neighbours import Neighbourhood
-from rocking_cli.views.calibrate import region_view, trace_view
 from tests.conftest import EXAMPLES
 from tests.elsewhere import PROJECT
 from tests.test_cli import run, run_json

@@ -15,7 +15,7 @@ from click.testing import CliRunner
 
 from rocking_cli.cli.main import COMMANDS, main
 from rocking_cli.core.registry import Registry
-from rocking_cli.structure_file import parse_structure
+from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.neighbours import deviations
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS, rows_of
@@ -65,8 +65,8 @@ def shares(near):
 
 class TestNeighbours:
     def test_they_are_what_the_study_finds(self):
+        from rocking_cli.core.structure_file import load_structure
         from rocking_cli.excitation.records import read_record
-        from rocking_cli.structure_file import load_structure
         from rocking_cli.studies.neighbours import neighbours
         from tests.following import build_model
 
@@ -517,7 +517,7 @@ def test_the_units_offered_are_those_the_readers_know():
 
 @pytest.mark.parametrize("command", ["respond", "margin"])
 def test_where_a_mechanism_is_not_on_the_safe_side_the_verdict_says_so_too(command):
-    from rocking_cli.structure_file import load_structure
+    from rocking_cli.core.structure_file import load_structure
 
     wall = EXAMPLES / "wall.yaml"
     said = " ".join(run(command, wall, "--pulse", "sine:0.4g:0.8s", "--neighbours", 2).stdout.split())

@@ -11,8 +11,8 @@ from rocking_cli.cli.main import main
 from rocking_cli.core import equivalent_block
 from rocking_cli.dynamics.exact import closed_form, exact_response
 from rocking_cli.excitation.pulses import parse_pulse
+from rocking_cli.questions.pulse.study_on_structure import sampled_history
 from rocking_cli.structure import Structure
-from rocking_cli.studies.pulse_on_structure import sampled_history
 from tests.following import respond
 from tests.pulses import exact_pulse
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from rocking_cli.cli import respond as respond_command
 from rocking_cli.cli.main import main
+from rocking_cli.core.structure_file import load_structure
 from rocking_cli.excitation.pulse_fit import FITTED, fit_pulse
 from rocking_cli.excitation.pulses import PulseShapes, parse_pulse
 from rocking_cli.excitation.records import read_record
-from rocking_cli.plotting.history import draw_history
-from rocking_cli.plotting.record import draw_pulses
-from rocking_cli.structure_file import load_structure
+from rocking_cli.questions.record.picture import draw_pulses
+from rocking_cli.questions.respond import command as respond_command
+from rocking_cli.questions.respond.picture import draw_history
 from tests.conftest import rows_of
 from tests.following import respond
 from tests.test_cli import ACCEL, FRAME, run, run_json
@@ -131,9 +131,9 @@ class TestInARecord:
         assert json.loads(result.stdout)["pulses"]["velocity"]["sine"]["sign"] == -1
 
     def test_a_long_search_says_how_far_it_is(self, made, monkeypatch):
-        monkeypatch.setattr("rocking_cli.ask.record.PATIENCE", float("inf"))
+        monkeypatch.setattr("rocking_cli.questions.record.verb.PATIENCE", float("inf"))
         assert "fitted" not in run("record", made, "--fit-pulse").stderr
-        monkeypatch.setattr("rocking_cli.ask.record.PATIENCE", 0.0)
+        monkeypatch.setattr("rocking_cli.questions.record.verb.PATIENCE", 0.0)
         assert "made.csv: 3 of 6 pulses fitted" in run("record", made, "--fit-pulse").stderr
 
     def test_the_picture_shows_the_best_of_each_criterion(self, made, tmp_path):

@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 import pytest
 
+from rocking_cli.core.structure_file import load_structure
 from rocking_cli.excitation.records import read_record
-from rocking_cli.structure_file import load_structure
-from rocking_cli.studies import spectrum as study
+from rocking_cli.questions.spectrum import study
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS, rows_of
 from tests.following import respond
 from tests.test_cli import run as command

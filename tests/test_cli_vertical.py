@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rocking_cli.core.structure_file import load_structure
 from rocking_cli.dynamics.history import contact_lost
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_record
-from rocking_cli.structure_file import load_structure
 from rocking_cli.views.response import vertical_notes
 from tests.following import respond
 from tests.test_cli import ACCEL, FRAME, run, run_json

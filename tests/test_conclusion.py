@@ -16,7 +16,7 @@ import rocking_cli as rk
 from rocking_cli.cli.main import main
 from rocking_cli.core import Direction
 from rocking_cli.studies.conclusion import ORDER, Concluded, Conclusion, LeftOut, NeighbourShare, NextStep, worst
-from rocking_cli.studies.verification.results import Requirement
+from rocking_cli.verification.results import Requirement
 from rocking_cli.views.conclusion import (
     STEPS,
     conclusion_data,

@@ -13,9 +13,9 @@ from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
 from rocking_cli import errors
 from rocking_cli.core.reactions import impulses
+from rocking_cli.core.structure_file import load_structure
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_record
-from rocking_cli.structure_file import load_structure
 from rocking_cli.studies import contact
 from rocking_cli.studies.contact import Contacts, _stretches
 from rocking_cli.views.contact import contact_columns, contact_words

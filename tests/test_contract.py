@@ -35,12 +35,12 @@ from rocking_cli.core.answers import Kinematics
 from rocking_cli.core.given import Given
 from rocking_cli.core.mechanism import _is_final
 from rocking_cli.core.registry import Registry
+from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.dynamics.tables import tabulate
 from rocking_cli.errors import MechanismError, PluginError
 from rocking_cli.plugins.errors import own_traceback
-from rocking_cli.structure_file import load_structure, parse_structure
+from rocking_cli.questions.equiv.view import hung_data, hung_in_words
 from rocking_cli.testing import CHECKS, MechanismContract, contract
-from rocking_cli.views.equivalent_block import hung_data, hung_in_words
 from rocking_cli.views.template import template
 from tests.conftest import EXAMPLES
 

@@ -10,12 +10,12 @@ from mechanisms.rigid_body import RigidBody
 from mechanisms.spanning_wall import SpanningWall
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction
+from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.errors import InputError
+from rocking_cli.questions.equiv.view import view
 from rocking_cli.structure import Structure
-from rocking_cli.structure_file import parse_structure
 from rocking_cli.studies.picture import picture
 from rocking_cli.testing import contract
-from rocking_cli.views.equivalent_block import view
 
 POSITIVE, NEGATIVE = Direction
 G = 9.80665

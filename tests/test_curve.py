@@ -10,9 +10,9 @@ from scipy.interpolate import PchipInterpolator
 from mechanisms.block import Block
 from mechanisms.curve import Curve, MonotoneCubic
 from rocking_cli.core import Direction, NoEquivalentBlock, equivalent_block
+from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.errors import InputError, StructureError
 from rocking_cli.structure import Structure
-from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.testing import contract
 
 POSITIVE, NEGATIVE = Direction

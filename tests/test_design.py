@@ -9,11 +9,11 @@ import pytest
 
 import rocking_cli as rk
 from rocking_cli.errors import InputError
+from rocking_cli.questions.design.metrics import METRICS, Excitation, Metric
+from rocking_cli.questions.design.study import Aim, Span, design
+from rocking_cli.questions.design.view import answer
 from rocking_cli.structure import Structure
-from rocking_cli.studies.design import Aim, Span, design
-from rocking_cli.studies.metrics import METRICS, Excitation, Metric
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
-from rocking_cli.views.design import answer
 from tests.conftest import EXAMPLES
 from tests.test_cli import run
 

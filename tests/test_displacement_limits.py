@@ -9,12 +9,12 @@ from scipy.optimize import brentq
 
 from rocking_cli import load_structure, respond
 from rocking_cli.core import Direction
-from rocking_cli.studies.fragility import tally
-from rocking_cli.studies.fragility.campaign import prepare
+from rocking_cli.questions.fragility import tally
+from rocking_cli.questions.fragility.campaign import prepare
+from rocking_cli.questions.fragility.store import Store
+from rocking_cli.questions.fragility.study import load_study
+from rocking_cli.questions.fragility.tally import count, exceeds, first_reached, of_a_structure
 from rocking_cli.studies.fragility.quantities import FACT, is_quantity, kept, metres, spelt
-from rocking_cli.studies.fragility.store import Store
-from rocking_cli.studies.fragility.study import load_study
-from rocking_cli.studies.fragility.tally import count, exceeds, first_reached, of_a_structure
 from rocking_cli.studies.movements import Watched
 from tests.conftest import EXAMPLES
 from tests.stores import command

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from rocking_cli.studies.fragility.distributions import Distribution, draw
+from rocking_cli.questions.fragility.distributions import Distribution, draw
 
 P = np.array([1e-6, 0.01, 0.2, 0.5, 0.77, 0.99, 1 - 1e-6])
 CASES = {

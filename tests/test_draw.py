@@ -22,11 +22,11 @@ from mechanisms.rigid_body import RigidBody
 from mechanisms.symmetric_frame import SymmetricFrame
 from mechanisms.wall import Wall
 from rocking_cli.core import Angle, Body, Direction, Hinge, Length, Mechanism, Sketch, box, rotation, three_digits
+from rocking_cli.core.structure_file import load_structure
 from rocking_cli.plotting import dimensions, style
 from rocking_cli.plotting.labels import Labels, mathematics
 from rocking_cli.plotting.panels import Panel
 from rocking_cli.plotting.structure import colour, draw_structure
-from rocking_cli.structure_file import load_structure
 from rocking_cli.studies.picture import ASSUMED, NODES, picture
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json

@@ -5,9 +5,9 @@ import re
 import pytest
 
 import rocking_cli as rk
-from rocking_cli.engines import follow, respond
 from rocking_cli.errors import InputError
 from rocking_cli.structure import Structure
+from rocking_cli.studies.engines import follow, respond
 
 BLOCK = Structure(rk.Block(width=0.7, height=2.8))
 LEANING = Structure(rk.Block(width=0.7, height=2.8, one_sided="positive", rebound=0.5))

@@ -9,15 +9,15 @@ import pytest
 from mechanisms.block import Block
 from mechanisms.symmetric_frame import SymmetricFrame
 from rocking_cli.core import Direction, equivalent_block
+from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.names import OPENING
-from rocking_cli.plotting.equivalent_pulses import draw_equivalent
+from rocking_cli.questions.equivalent import study
+from rocking_cli.questions.equivalent.picture import draw_equivalent
+from rocking_cli.questions.equivalent.view import judge
 from rocking_cli.structure import Structure
-from rocking_cli.structure_file import load_structure, parse_structure
-from rocking_cli.studies import equivalent_pulses as study
-from rocking_cli.views.equivalent_pulses import judge
 from tests.conftest import EXAMPLES, rows_of
 from tests.following import respond
 from tests.pulses import exact_pulse

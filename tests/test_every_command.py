@@ -23,7 +23,7 @@ from click.testing import CliRunner
 
 from rocking_cli.cli import terminal
 from rocking_cli.cli.main import COMMANDS, main
-from rocking_cli.studies import assessment
+from rocking_cli.questions.report import study as assessment
 from rocking_cli.text import printable
 from tests.conftest import EXAMPLES, PROJECT
 from tests.test_hostile_text import HARMFUL

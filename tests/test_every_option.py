@@ -23,13 +23,13 @@ from click.testing import CliRunner
 from matplotlib.figure import Figure
 
 import rocking_cli as rk
-import rocking_cli.studies.assessment
-import rocking_cli.studies.selfcheck
-import rocking_cli.views.selfcheck
+import rocking_cli.questions.report.study
+import rocking_cli.questions.selfcheck.study
+import rocking_cli.questions.selfcheck.view
 from rocking_cli.ask.answer import Answer
-from rocking_cli.ask.results import StudyAnswer
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.cli.main import COMMANDS, main
+from rocking_cli.questions.fragility.results import StudyAnswer
 from rocking_cli.views.view import View
 from tests.conftest import EXAMPLES
 
@@ -257,7 +257,7 @@ def answered(verb, arguments):
 @pytest.fixture(autouse=True)
 def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(rocking_cli.studies.assessment, "POINTS", 4)
+    monkeypatch.setattr(rocking_cli.questions.report.study, "POINTS", 4)
     Path("in.yaml").write_text("mechanism: block\nwidth: 0.7\nheight: 2.8\nfriction: 0.2\n")
     rows = zip(TIME, RECORD.acceleration, strict=True)
     Path("in.txt").write_text("time,a\n" + "".join(f"{t},{a}\n" for t, a in rows))
@@ -302,8 +302,10 @@ def test_arguments_of_a_store_have_an_effect():
 
 def test_a_quick_selfcheck_computes_less(monkeypatch):
     asked = []
-    monkeypatch.setattr(rocking_cli.studies.selfcheck, "run_checks", lambda *_, quick, **more: asked.append(quick))
-    monkeypatch.setattr(rocking_cli.views.selfcheck, "view", lambda found: View({}, []))
+    monkeypatch.setattr(
+        rocking_cli.questions.selfcheck.study, "run_checks", lambda *_, quick, **more: asked.append(quick)
+    )
+    monkeypatch.setattr(rocking_cli.questions.selfcheck.view, "view", lambda found: View({}, []))
     for quick in (False, True):
         rk.selfcheck(quick=quick)
     assert asked == [False, True]
@@ -443,9 +445,9 @@ def listen(monkeypatch, command):
         monkeypatch.setattr(f"rocking_cli.cli.{command}.show_study", hear)
     else:
         answer = Answer(*parts, tables={"spectrum": lambda: {"a": [1.0]}})
-    monkeypatch.setattr("rocking_cli.cli.set_folder.write_set", hear)
-    monkeypatch.setattr("rocking_cli.views.record.parts", lambda *given: ["words"])
-    monkeypatch.setattr("rocking_cli.views.survey.blocks", lambda *given, **named: [{"a": [1.0]}])
+    monkeypatch.setattr("rocking_cli.questions.select.set_folder.write_set", hear)
+    monkeypatch.setattr("rocking_cli.questions.record.view.parts", lambda *given: ["words"])
+    monkeypatch.setattr("rocking_cli.questions.survey.view.blocks", lambda *given, **named: [{"a": [1.0]}])
     verb = getattr(rk, command, None)
     if callable(verb):
         monkeypatch.setattr(f"{verb.__module__}.{command}", hear)

@@ -13,11 +13,11 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from rocking_cli.ask.fragility import workers_of
 from rocking_cli.cli import defaults
 from rocking_cli.cli.main import COMMANDS, main
 from rocking_cli.dynamics import shipped
 from rocking_cli.errors import InputError
+from rocking_cli.questions.fragility.verb import workers_of
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
@@ -145,7 +145,9 @@ class TestDefaults:
     def test_jobs_are_for_this_machine_and_silent_on_a_cluster(self, monkeypatch):
         Path("study.yaml").write_text("name: unread\n", encoding="utf-8")
         asked = []
-        monkeypatch.setattr("rocking_cli.ask.fragility.fragility", lambda study, **given: asked.append(given["jobs"]))
+        monkeypatch.setattr(
+            "rocking_cli.questions.fragility.verb.fragility", lambda study, **given: asked.append(given["jobs"])
+        )
         for typed in ([], ["--jobs", "2"]):
             monkeypatch.setenv("ROCKING_JOBS", "3")
             CliRunner().invoke(main, ["fragility", "study.yaml", "--scheduler", "tcp://there", *typed])
@@ -169,7 +171,7 @@ class TestDefaults:
 
 class TestInfo:
     def test_it_knows_the_versions_the_extras_and_the_plugins(self, monkeypatch):
-        from rocking_cli.studies import installation
+        from rocking_cli.questions.info import study as installation
 
         found = run_json("info")
         assert found["version"] == version("rocking-cli") and found["libraries"]["numpy"] == version("numpy")

@@ -19,9 +19,9 @@ import yaml
 from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
-from rocking_cli.cli.new import STARTERS
 from rocking_cli.core.registry import Registry
 from rocking_cli.io.yaml_file import parse
+from rocking_cli.questions.new.command import STARTERS
 from tests.conftest import EXAMPLES, PROJECT, YAML_FILES
 
 pytestmark = pytest.mark.rest

@@ -13,7 +13,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import read_record
 from rocking_cli.processing.floor import Floor
 from rocking_cli.processing.reading import turned
-from rocking_cli.studies.azimuths import all_around, sectors
+from rocking_cli.questions.respond.azimuths import all_around, sectors
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 

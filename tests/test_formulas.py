@@ -21,7 +21,7 @@ from rocking_cli.codes.italian import formulas
 from rocking_cli.codes.italian.rules import RULES
 from rocking_cli.codes.italian.sheet.build import SHEET, parts
 from rocking_cli.core import Direction
-from rocking_cli.studies.verification.results import Formula, as_written, in_plain, put
+from rocking_cli.verification.results import Formula, as_written, in_plain, put
 from rocking_cli.views.sheet.document import Sentence, Steps
 from rocking_cli.views.verification import shown, view
 from rocking_cli.views.view import Table

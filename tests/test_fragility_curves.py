@@ -12,12 +12,12 @@ from scipy.stats import binom, chi2, norm
 from scipy.stats import t as student
 from statsmodels.discrete.discrete_model import Logit, Probit
 
-from rocking_cli.studies.fragility import curves
-from rocking_cli.studies.fragility import fit as fitting
-from rocking_cli.studies.fragility.curves import fit_capacities, fit_surface
-from rocking_cli.studies.fragility.fit import NO_ERRORS, fit_outcomes, separable
-from rocking_cli.studies.fragility.goodness import goodness_of_runs
-from rocking_cli.studies.fragility.observed import HELD, Observations
+from rocking_cli.questions.fragility import curves
+from rocking_cli.questions.fragility.curves import fit_capacities, fit_surface
+from rocking_cli.questions.fragility.goodness import goodness_of_runs
+from rocking_cli.questions.fragility.observed import HELD, Observations
+from rocking_cli.studies import fit as fitting
+from rocking_cli.studies.fit import NO_ERRORS, fit_outcomes, separable
 from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape
 from tests.conftest import PROJECT
 

@@ -7,20 +7,20 @@ import numpy as np
 import pytest
 
 import rocking_cli as rk
-from rocking_cli.studies.fragility import ranking, tally
-from rocking_cli.studies.fragility.assess import Fragility, curves
-from rocking_cli.studies.fragility.curves import FragilityCurve
-from rocking_cli.studies.fragility.definition import implies
-from rocking_cli.studies.fragility.fit import Fit
-from rocking_cli.studies.fragility.hazard_curve import HazardCurve, annual_rate
-from rocking_cli.studies.fragility.observed import Observations
-from rocking_cli.studies.fragility.store import Store
-from rocking_cli.studies.fragility.study import load_study
-from rocking_cli.studies.fragility.tally import accelerations
-from rocking_cli.views import nrml as openquake
+from rocking_cli.questions.fragility import nrml as openquake
+from rocking_cli.questions.fragility import ranking, tally
+from rocking_cli.questions.fragility.assess import Fragility, curves
+from rocking_cli.questions.fragility.curves import FragilityCurve
+from rocking_cli.questions.fragility.definition import implies
+from rocking_cli.questions.fragility.hazard_curve import HazardCurve, annual_rate
+from rocking_cli.questions.fragility.nrml import chosen
+from rocking_cli.questions.fragility.observed import Observations
+from rocking_cli.questions.fragility.store import Store
+from rocking_cli.questions.fragility.study import load_study
+from rocking_cli.questions.fragility.tally import accelerations
+from rocking_cli.questions.fragility.view import _curves, fit_columns
+from rocking_cli.studies.fit import Fit
 from rocking_cli.views.column import data_of
-from rocking_cli.views.fragility import _curves, fit_columns
-from rocking_cli.views.nrml import chosen
 from tests.conftest import EXAMPLES
 
 LIMITS = ["uplift", 0.1, 0.5, "25 mm", "overturning"]

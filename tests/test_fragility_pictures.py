@@ -10,10 +10,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from scipy.stats import binomtest
 
-from rocking_cli.plotting.fragility import LabelledCurve, draw_curves, draw_ida, draw_surface
-from rocking_cli.studies.fragility.assess import Bivariate
-from rocking_cli.studies.fragility.curves import fit_curve, fit_surface
-from rocking_cli.studies.fragility.observed import Observations
+from rocking_cli.questions.fragility.assess import Bivariate
+from rocking_cli.questions.fragility.curves import fit_curve, fit_surface
+from rocking_cli.questions.fragility.observed import Observations
+from rocking_cli.questions.fragility.picture import LabelledCurve, draw_curves, draw_ida, draw_surface
 
 LEVELS = np.array([0.2, 0.4, 0.6, 0.8])
 

@@ -16,10 +16,10 @@ from hypothesis import strategies as st
 
 from rocking_cli.cli.main import main
 from rocking_cli.core import Direction, equivalent_block
+from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.errors import InputError, MechanismError, RockingError
 from rocking_cli.excitation.measures import measure
 from rocking_cli.excitation.records import read_record
-from rocking_cli.structure_file import parse_structure
 from tests import hostile
 
 pytestmark = pytest.mark.rest

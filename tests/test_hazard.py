@@ -8,9 +8,9 @@ from scipy.integrate import quad
 from scipy.stats import norm
 
 from rocking_cli.errors import InputError
-from rocking_cli.studies.fragility.curves import FragilityCurve
-from rocking_cli.studies.fragility.fit import Estimate, Fit
-from rocking_cli.studies.fragility.hazard_curve import HazardCurve, annual_rate, read_hazard, wrong_points
+from rocking_cli.questions.fragility.curves import FragilityCurve
+from rocking_cli.questions.fragility.hazard_curve import HazardCurve, annual_rate, read_hazard, wrong_points
+from rocking_cli.studies.fit import Estimate, Fit
 
 COVARIANCE = np.array([[0.02, 0.015], [0.015, 0.03]])
 

@@ -11,7 +11,6 @@ from mechanisms.arch import Arch
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from mechanisms.wall import Wall
-from rocking_cli import engines
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.deck import MOST_IMPACTS, run_deck
@@ -22,6 +21,7 @@ from rocking_cli.dynamics.tables import DirectionTable
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure, build_models
+from rocking_cli.studies import engines
 from tests.following import respond
 from tests.reference_history import Linear, Nonlinear
 from tests.unchecked import UncheckedArch

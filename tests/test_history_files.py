@@ -12,7 +12,7 @@ from mechanisms.block import Block
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.io import tables
 from rocking_cli.io.tables import write_csv
-from rocking_cli.views.history_table import blocks
+from rocking_cli.questions.respond.history_table import blocks
 from tests.following import respond
 
 BLOCK = Block(width=0.7, height=2.8)

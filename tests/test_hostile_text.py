@@ -78,7 +78,7 @@ def test_what_a_study_varies_may_have_units(tmp_path):
     )
 
     def samples(low, high, median):
-        from rocking_cli.studies.fragility.study import load_study
+        from rocking_cli.questions.fragility.study import load_study
 
         text = study.replace("LOW", low).replace("HIGH", high).replace("MEDIAN", median)
         (tmp_path / "st.yaml").write_text(text, encoding="utf-8")

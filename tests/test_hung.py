@@ -13,9 +13,9 @@ from mechanisms.symmetric_frame import SymmetricFrame
 from rocking_cli.core import Direction
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting import hung, style
-from rocking_cli.plotting.history import draw_history
 from rocking_cli.plotting.moving import moving, ratio_chart
 from rocking_cli.plotting.structure import NO_CRITICAL, draw_structure
+from rocking_cli.questions.respond.picture import draw_history
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.movements import Watched
 from rocking_cli.studies.picture import NODES, picture

@@ -20,8 +20,8 @@ from rocking_cli.processing.intensity import (
     parse_measures,
     power_of,
 )
+from rocking_cli.questions.record.study import intensities, reference_of
 from rocking_cli.structure import Structure
-from rocking_cli.studies.motion_intensities import intensities, reference_of
 from tests.conftest import EXAMPLES
 
 NOISE = GroundMotion("noise", 0.02, np.random.default_rng(5).normal(size=400))

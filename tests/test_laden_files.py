@@ -6,8 +6,8 @@ import pytest
 
 from rocking_cli import Registry, load_structure
 from rocking_cli.core import Direction
+from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.errors import InputError
-from rocking_cli.structure_file import parse_structure
 from tests.conftest import EXAMPLES
 from tests.test_cli import run
 

@@ -17,10 +17,10 @@ from rocking_cli.dynamics.history import follow
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
+from rocking_cli.questions.equivalent.study import equivalent
+from rocking_cli.questions.spectrum.study import Sizes, shape_of
 from rocking_cli.structure import Structure
-from rocking_cli.studies.equivalent_pulses import equivalent
 from rocking_cli.studies.neighbours import Neighbourhood, neighbours
-from rocking_cli.studies.spectrum import Sizes, shape_of
 from rocking_cli.studies.under_pulses import outcomes, parse_shape, pulsed_model
 from tests.conftest import EXAMPLES
 from tests.oracle import Ground, simulate

@@ -18,14 +18,14 @@ from mechanisms.block import Block
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.core.advice import grade, preferred_kappa
+from rocking_cli.core.structure_file import load_structure
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import percent
-from rocking_cli.plotting.linearisation import draw_linearisation
-from rocking_cli.structure_file import load_structure
-from rocking_cli.studies.linearisation import linearisation, preferred, velocity_ratios
-from rocking_cli.views.equivalent_block import kappa_in_words
-from rocking_cli.views.error import trust
+from rocking_cli.questions.equiv.view import kappa_in_words
+from rocking_cli.questions.error.picture import draw_linearisation
+from rocking_cli.questions.error.study import linearisation, preferred, velocity_ratios
+from rocking_cli.questions.error.view import trust
 from tests.conftest import EXAMPLES
 from tests.following import respond
 from tests.test_cli import run, run_json

@@ -8,19 +8,19 @@ import re
 import numpy as np
 import pytest
 
-from rocking_cli import engines
 from rocking_cli.core import Direction
+from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.records import read_record
-from rocking_cli.plotting.margin import draw_margins
+from rocking_cli.questions.margin import study as margins
+from rocking_cli.questions.margin.picture import draw_margins
+from rocking_cli.questions.margin.study import FACTORS, LEVELS, Margin, margin
+from rocking_cli.questions.margin.view import in_words
 from rocking_cli.structure import Structure, build_models
-from rocking_cli.structure_file import load_structure, parse_structure
-from rocking_cli.studies import margin as margins
-from rocking_cli.studies.margin import FACTORS, LEVELS, Margin, margin
+from rocking_cli.studies import engines
 from rocking_cli.studies.neighbours import Neighbourhood
-from rocking_cli.views.margin import in_words
 from tests.conftest import EXAMPLES
 from tests.following import build_model
 from tests.test_cli import run, run_json, some

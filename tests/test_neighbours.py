@@ -8,13 +8,13 @@ import pytest
 from scipy.special import ndtr, ndtri
 
 from rocking_cli.core import Direction, equivalent_block
+from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.pulses.shapes import Sine
 from rocking_cli.excitation.records import read_record
-from rocking_cli.structure_file import load_structure, parse_structure
 from rocking_cli.studies.neighbours import (
     Draws,
     Neighbourhood,

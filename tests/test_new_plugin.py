@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from rocking_cli.cli.new import SITE, STARTERS, STUDY
-from rocking_cli.cli.new_plugin import CODE, LONGEST, MECHANISM
+from rocking_cli.questions.new.command import SITE, STARTERS, STUDY
+from rocking_cli.questions.new.new_plugin import CODE, LONGEST, MECHANISM
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 

@@ -10,11 +10,11 @@ from pyarrow import parquet
 from scipy.stats import lognorm, norm
 
 from rocking_cli.errors import InputError
-from rocking_cli.studies.fragility.assess import Fragility
-from rocking_cli.studies.fragility.curves import fit_curve
-from rocking_cli.studies.fragility.observed import Observations
-from rocking_cli.views.fragility_table import curve_blocks
-from rocking_cli.views.nrml import chosen, identifier, intensity_type, limit_id, nrml
+from rocking_cli.questions.fragility.assess import Fragility
+from rocking_cli.questions.fragility.curves import fit_curve
+from rocking_cli.questions.fragility.nrml import chosen, identifier, intensity_type, limit_id, nrml
+from rocking_cli.questions.fragility.observed import Observations
+from rocking_cli.questions.fragility.table import curve_blocks
 from tests.conftest import EXAMPLES, rows_of
 from tests.stores import command
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom, binomtest
 
-from rocking_cli.studies.fragility.observed import FEW, GROUPS, HELD, STRIPES, Observations, few_records, one_of_each
+from rocking_cli.questions.fragility.observed import FEW, GROUPS, HELD, STRIPES, Observations, few_records, one_of_each
 
 LEVELS = np.array([0.2, 0.4, 0.6])
 

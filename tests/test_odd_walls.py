@@ -195,7 +195,7 @@ def test_too_many_entries_are_counted():
     wall = {f"b{k}": brick(2.0 * k, 0.0, 2.0 * k + 1, 1.0) for k in range(3)}
     text = yaml.safe_dump({"mechanism": "assembly", "density": 1, "depth": 1, "blocks": wall,
                            "ground": {f"g{k}": brick(0.0, -1.0, 1.0, 0.0) for k in range(101)}})  # fmt: skip
-    from rocking_cli.structure_file import parse_structure
+    from rocking_cli.core.structure_file import parse_structure
 
     with pytest.raises(InputError, match="at most 100 entries, has 101"):
         parse_structure(text, "wall.yaml", "wall")

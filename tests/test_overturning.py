@@ -11,15 +11,15 @@ import pytest
 
 from mechanisms.block import Block
 from rocking_cli.core import Direction, equivalent_block
+from rocking_cli.core.structure_file import load_structure
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.exact import closed_form, exact_response
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import COARSE
-from rocking_cli.plotting.overturning import draw_comparison, draw_map
+from rocking_cli.questions.overturning.picture import draw_comparison, draw_map
+from rocking_cli.questions.overturning.study import SCAN, Region, boundaries, compare, overturning_map
 from rocking_cli.structure import Structure, build_models
-from rocking_cli.structure_file import load_structure
-from rocking_cli.studies.overturning import SCAN, Region, boundaries, compare, overturning_map
 from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape, pulsed_model, weakest
 from tests.conftest import EXAMPLES, rows_of
 from tests.following import respond

@@ -10,9 +10,9 @@ from mechanisms.block import Block
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import measure
 from rocking_cli.plotting import style
-from rocking_cli.plotting.history import FELT, draw_history
-from rocking_cli.plotting.record import draw_record
 from rocking_cli.plotting.style import BINS, visible
+from rocking_cli.questions.record.picture import draw_record
+from rocking_cli.questions.respond.picture import FELT, draw_history
 from rocking_cli.studies.contact import Contacts
 from tests.following import respond
 

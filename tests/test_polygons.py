@@ -12,8 +12,8 @@ from mechanisms.block import Block
 from mechanisms.rigid_body import MOST, RigidBody
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.errors import FieldError, MechanismError
+from rocking_cli.questions.error.study import compare
 from rocking_cli.structure import Structure
-from rocking_cli.studies.linearisation import compare
 from rocking_cli.studies.picture import picture
 from tests.test_cli import run
 

@@ -21,7 +21,7 @@ from rocking_cli.core import equivalent_block
 from rocking_cli.dynamics.exact import closed_form
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.views.pulse import why_not_valid
+from rocking_cli.questions.pulse.view import why_not_valid
 from tests.following import respond
 from tests.pulses import exact_pulse
 

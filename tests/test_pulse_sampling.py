@@ -15,8 +15,8 @@ from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.dynamics.history import follow
 from rocking_cli.excitation.pulses import COARSE, Pulse, parse_pulse
 from rocking_cli.excitation.pulses.base import FINE
+from rocking_cli.questions.pulse.study_on_structure import sampled_history
 from rocking_cli.structure import Structure
-from rocking_cli.studies.pulse_on_structure import sampled_history
 from rocking_cli.studies.under_pulses import parse_shape
 from tests.following import build_model
 

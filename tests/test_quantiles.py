@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 import yaml
 
-from rocking_cli.plotting.quantiles import draw_quantiles
-from rocking_cli.studies.fragility import assess, quantiles
-from rocking_cli.studies.fragility.quantiles import Group, Quantiles, all_quantiles
-from rocking_cli.studies.fragility.store import Store
-from rocking_cli.studies.fragility.study import load_study
+from rocking_cli.questions.fragility import assess, quantiles
+from rocking_cli.questions.fragility.quantiles import Group, Quantiles, all_quantiles
+from rocking_cli.questions.fragility.quantiles_picture import draw_quantiles
+from rocking_cli.questions.fragility.store import Store
+from rocking_cli.questions.fragility.study import load_study
 from tests.conftest import EXAMPLES
 from tests.stores import command
 from tests.test_study_runs import carry_out

@@ -8,12 +8,12 @@ import pytest
 import statsmodels.api as sm
 
 from rocking_cli.excitation.base import Origin
-from rocking_cli.studies.fragility import ranking, sources
-from rocking_cli.studies.fragility.campaign import prepare, steps
-from rocking_cli.studies.fragility.ranking import Ranked, Ranking, line, serves
-from rocking_cli.studies.fragility.store import Store
-from rocking_cli.studies.fragility.study import load_study
-from rocking_cli.views.ranking import judge
+from rocking_cli.questions.fragility import ranking, sources
+from rocking_cli.questions.fragility.campaign import prepare, steps
+from rocking_cli.questions.fragility.ranking import Ranked, Ranking, line, serves
+from rocking_cli.questions.fragility.ranking_view import judge
+from rocking_cli.questions.fragility.store import Store
+from rocking_cli.questions.fragility.study import load_study
 from tests.conftest import EXAMPLES, rows_of
 from tests.stores import command
 
@@ -195,7 +195,7 @@ class TestStudy:
     def test_what_residuals_are_held_against_can_be_given(self, study):
         with Store.reading(study[0] / "study.db") as kept:
             plan = kept.plan()
-            from rocking_cli.studies.fragility.definition import Definition
+            from rocking_cli.questions.fragility.definition import Definition
 
             definition = Definition.model_validate(kept.fact("definition"))
             found = ranking.rank(kept, plan, definition, against={"depth": np.arange(6.0)})

@@ -23,7 +23,7 @@ from rocking_cli.core import Body, Direction, Joint, Mechanism, rotation
 from rocking_cli.core.reactions import acceleration, at_uplift, impulses, parts, reactions
 from rocking_cli.core.released import impulses as released_impulses
 from rocking_cli.core.released import released
-from rocking_cli.structure_file import load_structure
+from rocking_cli.core.structure_file import load_structure
 from tests.conftest import EXAMPLES
 from tests.reference_mechanics import deviation
 

@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 
 from rocking_cli import GroundMotion, Runs, respond_many
+from rocking_cli.core.structure_file import load_structure
 from rocking_cli.dynamics import calling, pulse_motion, shipped, ways
 from rocking_cli.dynamics.calling import FUNCTIONS, HISTORIES, PULSES, SETS, TIED
 from rocking_cli.dynamics.exact_batch import exact_many
@@ -25,7 +26,6 @@ from rocking_cli.dynamics.history import follow
 from rocking_cli.errors import BrokenKernels, InputError, KernelWarning
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.structure import Structure
-from rocking_cli.structure_file import load_structure
 from tests.conftest import EXAMPLES, PROJECT
 
 RNG = np.random.default_rng(31)

@@ -7,10 +7,10 @@ import pytest
 
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion, Origin
-from rocking_cli.plotting.record_set import MEAN, draw_record_set
 from rocking_cli.processing.oscillator import response_spectrum
-from rocking_cli.studies import subsets
-from rocking_cli.studies.record_set import (
+from rocking_cli.questions.select import subsets
+from rocking_cli.questions.select.picture import MEAN, draw_record_set
+from rocking_cli.questions.select.study import (
     Candidates,
     SetRequirements,
     candidates,
@@ -19,8 +19,8 @@ from rocking_cli.studies.record_set import (
     log_weights,
     periods_of,
 )
-from rocking_cli.studies.target_spectrum import TargetSpectrum, read_target
-from rocking_cli.views.record_set import ShownSet, ratio_in_words, view
+from rocking_cli.questions.select.target_spectrum import TargetSpectrum, read_target
+from rocking_cli.questions.select.view import ShownSet, ratio_in_words, view
 
 BAND = (0.2, 2.0)
 CODE = TargetSpectrum("code", np.array([0.0, 0.15, 0.5, 1.0, 2.0, 4.0]), np.array([0.3, 0.75, 0.75, 0.375, 0.19, 0.05]))

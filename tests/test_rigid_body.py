@@ -11,8 +11,8 @@ from mechanisms.block import Block
 from mechanisms.rigid_body import RigidBody
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.core.kinematics import area_of
+from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.errors import InputError
-from rocking_cli.structure_file import parse_structure
 from rocking_cli.testing import contract
 from tests.reference_mechanics import polygon_moments
 

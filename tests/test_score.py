@@ -10,12 +10,12 @@ import pytest
 
 import rocking_cli as rk
 from rocking_cli.errors import InputError
-from rocking_cli.plotting.score import draw_reliability
-from rocking_cli.studies.experiments import score as score_study
-from rocking_cli.studies.experiments.score import Stated, distance_from_uniform, fitted_shares, scored
-from rocking_cli.studies.experiments.table import ObservedTest, parse_columns, read_tests
+from rocking_cli.questions.score import study as score_study
+from rocking_cli.questions.score.picture import draw_reliability
+from rocking_cli.questions.score.study import Stated, distance_from_uniform, fitted_shares, scored
+from rocking_cli.questions.score.table import ObservedTest, parse_columns, read_tests
+from rocking_cli.questions.score.view import view
 from rocking_cli.studies.neighbours import Neighbourhood, follow
-from rocking_cli.views.score import view
 from tests.conftest import EXAMPLES, SHARED, rows_of
 from tests.elsewhere import PROJECT
 from tests.test_cli import run, run_json

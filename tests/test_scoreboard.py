@@ -4,8 +4,8 @@ import runpy
 
 import pytest
 
-from rocking_cli.studies.experiments.score import Stated, scored
-from rocking_cli.studies.experiments.table import ObservedTest
+from rocking_cli.questions.score.study import Stated, scored
+from rocking_cli.questions.score.table import ObservedTest
 from rocking_cli.studies.neighbours import Neighbourhood
 from tests.conftest import PROJECT
 

@@ -15,9 +15,9 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.core import quantity
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.studies.verification import Code, Formula, Method, Number, Site, Verified, governing
-from rocking_cli.studies.verification.code import Codes, codes
 from rocking_cli.testing import CodeContract
+from rocking_cli.verification import Code, Formula, Method, Number, Site, Verified, governing
+from rocking_cli.verification.code import Codes, codes
 from rocking_cli.views.sheet.build import SheetOfCode
 from rocking_cli.views.verification import Showing
 from tests.conftest import EXAMPLES, PROJECT
@@ -323,7 +323,9 @@ class TestVerify:
 
     @pytest.mark.parametrize("more", [(), ("--record", EXAMPLES / "accel.csv")])
     def test_a_report_without_a_sheet_is_refused_at_once(self, more, demo, monkeypatch):
-        monkeypatch.setattr("rocking_cli.studies.assessment.gather", lambda *given, **named: pytest.fail("too late"))
+        monkeypatch.setattr(
+            "rocking_cli.questions.report.study.gather", lambda *given, **named: pytest.fail("too late")
+        )
         before = in_the_folder()
         said = run("report", "block.yaml", "--verify", "site.yaml", *more, code=2).stderr
         assert said.splitlines()[0] == "error: site.yaml: UNI-demo has no calculation sheet"
@@ -361,7 +363,7 @@ class TestOtherCommands:
         assert "ratio" in run(*words).stdout
 
     def test_numbers_of_another_code_are_refused_before_any_work(self, demo, monkeypatch):
-        monkeypatch.setattr("rocking_cli.studies.design._at", lambda *given: pytest.fail("too late"))
+        monkeypatch.setattr("rocking_cli.questions.design.study._at", lambda *given: pytest.fail("too late"))
         words = ("--vary", "width=0.3m:1m", "--until", "zeta_damage >= 1", *demo)
         said = run("design", "block.yaml", *words, code=2).stderr
         assert "zeta_damage is a number of NTC2018, but the site is for UNI-demo" in said and "`ratio`" in said
@@ -637,7 +639,7 @@ class TestGuide:
         run("verify", "block.yaml", *demo, "--sheet", "s.html")
         page = Path("s.html").read_text(encoding="utf-8")
         assert "The verification is satisfied: ratio 1.83" in page and "1.5 · 2.45166" in page
-        monkeypatch.setattr("rocking_cli.studies.verification.check.verify", lambda *given: pytest.fail("too late"))
+        monkeypatch.setattr("rocking_cli.verification.check.verify", lambda *given: pytest.fail("too late"))
         said = run("verify", "block.yaml", *demo, "--sheet", "t.html", "--language", "it", code=2).stderr
         assert "--language: there is no calculation sheet in 'it'" in said and "known: en" in said
         assert not Path("t.html").exists()

@@ -21,10 +21,11 @@ from rocking_cli.dynamics.calling import SETS
 from rocking_cli.dynamics.exact import closed_form
 from rocking_cli.excitation.records import record_units
 from rocking_cli.excitation.records.registry import Readers
-from rocking_cli.studies import selfcheck as run
-from rocking_cli.studies.selfcheck import Check, NotRun, checks
-from rocking_cli.studies.selfcheck.checks import different_values, largest_difference
-from rocking_cli.views.selfcheck import view
+from rocking_cli.questions.selfcheck import checks
+from rocking_cli.questions.selfcheck import study as run
+from rocking_cli.questions.selfcheck.checks import different_values, largest_difference
+from rocking_cli.questions.selfcheck.study import Check, NotRun
+from rocking_cli.questions.selfcheck.view import view
 from tests.reference_mechanics import Voussoirs
 from tests.test_arch import Scan
 
@@ -328,7 +329,7 @@ class TestCommand:
 class TestHostilePlaces:
     @pytest.mark.parametrize(
         ("module", "names"),
-        [("rocking_cli.studies.selfcheck.checks", CHECKS), ("scipy.integrate", ["release", "histories"])],
+        [("rocking_cli.questions.selfcheck.checks", CHECKS), ("scipy.integrate", ["release", "histories"])],
     )
     def test_with_a_module_that_cannot_be_imported(self, monkeypatch, module, names):
         monkeypatch.setitem(sys.modules, module, None)

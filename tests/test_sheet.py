@@ -21,13 +21,13 @@ from rocking_cli.codes.italian.remarks import differences
 from rocking_cli.codes.italian.sheet import build, dynamic, site, steps, summary
 from rocking_cli.core import Direction
 from rocking_cli.core.registry import Registry
+from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.documents import sheet_docx, sheet_page
 from rocking_cli.documents.sheet_page import MARKS
 from rocking_cli.io.yaml_file import parse
-from rocking_cli.structure_file import parse_structure
 from rocking_cli.studies.conclusion import Concluded
-from rocking_cli.studies.verification.check import site_in
-from rocking_cli.studies.verification.results import control_at
+from rocking_cli.verification.check import site_in
+from rocking_cli.verification.results import control_at
 from rocking_cli.views.sheet.document import Steps
 from rocking_cli.views.sheet.language import texts_of
 from rocking_cli.views.verdict import SENSE

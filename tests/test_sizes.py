@@ -16,9 +16,9 @@ from rocking_cli.cli.main import main
 from rocking_cli.core import Body, Direction, Mechanism, box, equivalent_block, length, quantity, rotation
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.pulses import parse_pulse
-from rocking_cli.plotting.spectrum import draw_spectra
+from rocking_cli.questions.spectrum.picture import draw_spectra
+from rocking_cli.questions.spectrum.study import count_histories, shape_of, spectra
 from rocking_cli.structure import Structure
-from rocking_cli.studies.spectrum import count_histories, shape_of, spectra
 from tests.following import respond
 
 

@@ -9,11 +9,11 @@ import sympy as sp
 from mechanisms.spanning_wall import SpanningWall
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
+from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.errors import InputError
+from rocking_cli.questions.equiv.view import view
 from rocking_cli.structure import Structure
-from rocking_cli.structure_file import parse_structure
 from rocking_cli.testing import contract
-from rocking_cli.views.equivalent_block import view
 from tests.test_lagrange import Piece, agrees, point, t, turned
 
 POSITIVE, NEGATIVE = Direction

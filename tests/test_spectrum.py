@@ -14,9 +14,8 @@ from rocking_cli.dynamics.exact import exact_response
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulses import parse_pulse
-from rocking_cli.plotting.spectrum import draw_spectra
-from rocking_cli.structure import Structure
-from rocking_cli.studies.spectrum import (
+from rocking_cli.questions.spectrum.picture import draw_spectra
+from rocking_cli.questions.spectrum.study import (
     Spectrum,
     SpectrumShape,
     blocks_of,
@@ -25,6 +24,7 @@ from rocking_cli.studies.spectrum import (
     shape_of,
     spectra,
 )
+from rocking_cli.structure import Structure
 from tests.following import respond
 
 PULSE = parse_pulse("sine:0.45g:0.8s")

@@ -6,11 +6,11 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from rocking_cli.cli.new import STARTERS, STUDY
 from rocking_cli.core import both_statics
+from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.dynamics.history import follow
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.structure_file import load_structure, parse_structure
+from rocking_cli.questions.new.command import STARTERS, STUDY
 from tests.conftest import EXAMPLES
 from tests.following import build_model
 from tests.test_cli import run

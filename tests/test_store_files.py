@@ -9,8 +9,8 @@ from contextlib import closing
 import pytest
 
 from rocking_cli.errors import InputError
-from rocking_cli.studies.fragility import store
-from rocking_cli.studies.fragility.store import Store, in_words, open_locked, put_aside, this_process
+from rocking_cli.questions.fragility import store
+from rocking_cli.questions.fragility.store import Store, in_words, open_locked, put_aside, this_process
 from tests.stores import Sound, command, shown
 
 
@@ -68,7 +68,7 @@ def test_ended_before_the_first_run_it_has_said_where_the_old_store_is(sound, pl
 
     old = place.read_bytes()
     with monkeypatch.context() as patch:
-        patch.setattr("rocking_cli.studies.fragility.campaign.run", end)
+        patch.setattr("rocking_cli.questions.fragility.campaign.run", end)
         result = command("fragility", sound.study, "--store", place, "--restart")
     assert result.exit_code == 130
     aside = place.with_name("study.before.db")
@@ -124,7 +124,7 @@ def test_a_damaged_run_is_named_and_refused(sound, place):
 def test_what_is_damaged_is_counted_whatever_is_read_at_a_time(place, monkeypatch):
     with closing(sqlite3.connect(place, isolation_level=None)) as connection:
         connection.execute("UPDATE run SET checksum = checksum + 1 WHERE id % 100 = 7")
-    monkeypatch.setattr("rocking_cli.studies.fragility.store.READ", 9)
+    monkeypatch.setattr("rocking_cli.questions.fragility.store.READ", 9)
     said = command("results", place).stderr
     assert "3 runs do not match" in said and "237 of 240 runs are whole" in said
 
@@ -134,7 +134,7 @@ def test_a_page_that_cannot_be_read_is_named_and_what_can_is_counted(sound, plac
     leaves = [k for k in range(4096, len(content), 4096) if content[k] == 13 and content[k + 4] >= 40]
     content[leaves[-1] : leaves[-1] + 8] = bytes(8)
     place.write_bytes(content)
-    monkeypatch.setattr("rocking_cli.studies.fragility.store.READ", 20)
+    monkeypatch.setattr("rocking_cli.questions.fragility.store.READ", 20)
     result = command("fragility", sound.study, "--store", place)
     assert result.exit_code == 2 and "malformed" in result.stderr and place.read_bytes() == content
     assert 0 < int(re.search(r"(\d+) of 240 runs are whole", result.stderr)[1]) < 240
@@ -186,8 +186,8 @@ def test_a_store_that_is_replaced_while_it_is_opened_is_left_for_the_new_one(
 
 
 def test_a_study_that_another_process_begins_meanwhile_is_left_to_it(sound, tmp_path):
-    from rocking_cli.studies.fragility.campaign import prepare
-    from rocking_cli.studies.fragility.study import load_study
+    from rocking_cli.questions.fragility.campaign import prepare
+    from rocking_cli.questions.fragility.study import load_study
 
     place, study = tmp_path / "study.db", load_study(sound.study)
     with Store.writing(place) as late, Store.writing(place) as first:

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
 from rocking_cli.core.given import DirectionalRestitution
+from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.errors import InputError, MechanismError, StructureError, of_structure
-from rocking_cli.structure_file import load_structure, parse_structure
 
 
 def parse(text):

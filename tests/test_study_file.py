@@ -3,7 +3,7 @@
 import pytest
 
 from rocking_cli.errors import InputError
-from rocking_cli.studies.fragility.study import digest, load_study
+from rocking_cli.questions.fragility.study import digest, load_study
 from tests.conftest import EXAMPLES
 
 GOOD = f"""\

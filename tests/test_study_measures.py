@@ -12,8 +12,8 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity.built_in import SpectralAcceleration
 from rocking_cli.processing.oscillator import response_spectrum
-from rocking_cli.studies.fragility.store import Store
-from rocking_cli.studies.fragility.study import load_study
+from rocking_cli.questions.fragility.store import Store
+from rocking_cli.questions.fragility.study import load_study
 from tests.conftest import EXAMPLES, rows_of
 from tests.stores import command
 

@@ -20,15 +20,15 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity import Reference, parse_measure
 from rocking_cli.processing.reading import Reading
-from rocking_cli.studies.fragility import assess, curves, sources, store, tally, work_units, workers
-from rocking_cli.studies.fragility.campaign import differences, prepare, run
-from rocking_cli.studies.fragility.definition import RecordEntry
-from rocking_cli.studies.fragility.observed import few_records
-from rocking_cli.studies.fragility.plan import Trial, weaker
+from rocking_cli.questions.fragility import assess, curves, sources, store, tally, work_units, workers
+from rocking_cli.questions.fragility.campaign import differences, prepare, run
+from rocking_cli.questions.fragility.definition import RecordEntry
+from rocking_cli.questions.fragility.observed import few_records
+from rocking_cli.questions.fragility.plan import Trial, weaker
+from rocking_cli.questions.fragility.sources import Source
+from rocking_cli.questions.fragility.store import COLUMNS, Store, StoreError
+from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.studies.fragility.quantities import ALWAYS
-from rocking_cli.studies.fragility.sources import Source
-from rocking_cli.studies.fragility.store import COLUMNS, Store, StoreError
-from rocking_cli.studies.fragility.study import load_study
 from tests.conftest import EXAMPLES, rows_of
 from tests.test_cli import run as command
 from tests.test_cli import run_json
@@ -127,18 +127,18 @@ class TestSameResults:
     @pytest.mark.every(2)
     @pytest.mark.parametrize("size", [1, 7, 64, 1000])
     def test_whatever_the_units(self, whole, tmp_path, monkeypatch, size):
-        monkeypatch.setattr("rocking_cli.studies.fragility.campaign.unit_size", lambda runs, workers: size)
+        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.unit_size", lambda runs, workers: size)
         carry_out(whole[0], tmp_path / "other.db", jobs=3)
         assert dump(tmp_path / "other.db") == dump(whole[2])
 
     def test_whatever_memory_there_is_for_records(self, whole, tmp_path, monkeypatch):
         monkeypatch.setattr(work_units, "SAMPLES", 1)
-        monkeypatch.setattr("rocking_cli.studies.fragility.sources.KEPT", 1)
+        monkeypatch.setattr("rocking_cli.questions.fragility.sources.KEPT", 1)
         carry_out(whole[0], tmp_path / "other.db", jobs=2)
         assert dump(tmp_path / "other.db") == dump(whole[2])
 
     def test_after_an_error_in_the_middle(self, whole, tmp_path, monkeypatch):
-        monkeypatch.setattr("rocking_cli.studies.fragility.campaign.unit_size", lambda runs, workers: 20)
+        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.unit_size", lambda runs, workers: 20)
         done = []
 
         def breaks(unit):
@@ -148,14 +148,14 @@ class TestSameResults:
             return work_units.carry_out(unit)
 
         place = tmp_path / "other.db"
-        monkeypatch.setattr("rocking_cli.studies.fragility.campaign.carry_out", breaks)
+        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.carry_out", breaks)
         with pytest.raises(OSError, match="on fire"):
             carry_out(whole[0], place, jobs=1)
         with Store.reading(place) as kept:
             assert 0 < kept.count()[0] < whole[1].plan.total
         ran = []
         monkeypatch.setattr(
-            "rocking_cli.studies.fragility.campaign.carry_out",
+            "rocking_cli.questions.fragility.campaign.carry_out",
             lambda unit: ran.append(unit) or work_units.carry_out(unit),
         )
         before = whole[1].plan.total - carry_out(whole[0], place, jobs=2).finished
@@ -164,7 +164,7 @@ class TestSameResults:
 
     def test_after_a_full_disk(self, whole, tmp_path, monkeypatch):
         monkeypatch.setattr(store, "PATIENCE", 0.0)
-        monkeypatch.setattr("rocking_cli.studies.fragility.campaign.unit_size", lambda runs, workers: 10)
+        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.unit_size", lambda runs, workers: 10)
         place = tmp_path / "other.db"
         with pytest.raises(StoreError, match="full"), Store.writing(place) as kept, workers.threads(1) as hands:
             prepared = prepare(load_study(whole[0]), kept)
@@ -382,7 +382,7 @@ class TestChanges:
             carry_out(path, tmp_path / "study.db")
 
     def test_another_version_is_named(self, whole, tmp_path, place, monkeypatch):
-        monkeypatch.setattr("rocking_cli.studies.fragility.campaign.__version__", "9.9")
+        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.__version__", "9.9")
         with pytest.raises(InputError, match=r"version of rocking-cli was .*, is now 9.9"):
             carry_out(whole[0], place)
 
@@ -405,7 +405,7 @@ class TestChanges:
             p, lambda_ = weaker(equivalence, model)
             return 1.001 * p, lambda_
 
-        monkeypatch.setattr("rocking_cli.studies.fragility.campaign.weaker", other)
+        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.weaker", other)
         with pytest.raises(InputError, match=r"p of sample 1 of uncertain was .*, is now"):
             carry_out(whole[0], place)
 
@@ -823,5 +823,5 @@ def test_the_checksum_of_a_pulse_is_of_all_its_digits_and_of_how_it_is_sampled(m
 
     one = checksum("sine:0.3g:1s")
     assert one == checksum("sine:0.3g:1.0s") != checksum("sine:0.30000001g:1s")
-    monkeypatch.setattr("rocking_cli.studies.fragility.sources.SAMPLING", "otherwise")
+    monkeypatch.setattr("rocking_cli.questions.fragility.sources.SAMPLING", "otherwise")
     assert checksum("sine:0.3g:1s") != one

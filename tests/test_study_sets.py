@@ -9,8 +9,8 @@ import statsmodels.api as sm
 from pydantic import ValidationError
 
 from rocking_cli.processing.entry import Entry
-from rocking_cli.studies.fragility.curves import fit_capacities, fit_curve, fit_surface
-from rocking_cli.studies.fragility.observed import Observations
+from rocking_cli.questions.fragility.curves import fit_capacities, fit_curve, fit_surface
+from rocking_cli.questions.fragility.observed import Observations
 from tests.conftest import EXAMPLES
 from tests.test_cli import run
 

@@ -11,11 +11,11 @@ from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
 from rocking_cli.errors import InputError, SolverError
+from rocking_cli.questions.fragility import store, tally, work_units
+from rocking_cli.questions.fragility.campaign import prepare
+from rocking_cli.questions.fragility.store import COLUMNS, Store
+from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.studies.contact import Contacts
-from rocking_cli.studies.fragility import store, tally, work_units
-from rocking_cli.studies.fragility.campaign import prepare
-from rocking_cli.studies.fragility.store import COLUMNS, Store
-from rocking_cli.studies.fragility.study import load_study
 from tests.conftest import EXAMPLES
 from tests.following import respond
 from tests.stores import command, version_of

@@ -17,9 +17,9 @@ from rocking_cli.dynamics.parallel import in_processes
 from rocking_cli.errors import InputError, Refused
 from rocking_cli.io.dotted import HOLE, closed, put, words
 from rocking_cli.io.spreadsheet import parse_sheet
-from rocking_cli.studies.structure_table import StructureTable
-from rocking_cli.studies.survey import MadeStructure, Under, survey
-from rocking_cli.views.survey import sentences
+from rocking_cli.questions.survey.structure_table import StructureTable
+from rocking_cli.questions.survey.study import MadeStructure, Under, survey
+from rocking_cli.questions.survey.view import sentences
 from tests.conftest import EXAMPLES, rows_of
 from tests.test_cli import run, some
 

@@ -5,8 +5,8 @@ import pytest
 from scipy.integrate import quad
 
 from rocking_cli.core import Direction
+from rocking_cli.core.structure_file import load_structure
 from rocking_cli.dynamics.tables import END, tabulate
-from rocking_cli.structure_file import load_structure
 from tests.conftest import EXAMPLES
 
 FILES = sorted(path.name for path in EXAMPLES.glob("*.yaml"))

@@ -13,7 +13,7 @@ from mechanisms.rigid_body import RigidBody
 from mechanisms.wall import Wall
 from rocking_cli import Registry
 from rocking_cli.core.mechanism import doubtful_size, extent
-from rocking_cli.structure_file import parse_structure
+from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.units import KINDS, UnitError, kind_of, read, units_of
 from rocking_cli.views.template import template
 from tests.conftest import PROJECT

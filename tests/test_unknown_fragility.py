@@ -13,20 +13,20 @@ import yaml
 
 from rocking_cli.dynamics.history import follow
 from rocking_cli.errors import InputError
-from rocking_cli.plotting.fragility import LabelledCurve, draw_curves, draw_ida, draw_surface
-from rocking_cli.plotting.quantiles import draw_quantiles
+from rocking_cli.questions.fragility import assess, quantiles, store, tally
+from rocking_cli.questions.fragility import nrml as openquake
+from rocking_cli.questions.fragility.assess import Fragility
+from rocking_cli.questions.fragility.curves import fit_curve
+from rocking_cli.questions.fragility.observed import Observations
+from rocking_cli.questions.fragility.picture import LabelledCurve, draw_curves, draw_ida, draw_surface
+from rocking_cli.questions.fragility.quantiles import all_quantiles
+from rocking_cli.questions.fragility.quantiles_picture import draw_quantiles
+from rocking_cli.questions.fragility.ranking import rank
+from rocking_cli.questions.fragility.ranking_view import judge
+from rocking_cli.questions.fragility.store import UNKNOWN, Endings, Store
+from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.studies.contact import Contacts
-from rocking_cli.studies.fragility import assess, quantiles, store, tally
-from rocking_cli.studies.fragility.assess import Fragility
-from rocking_cli.studies.fragility.curves import fit_curve
-from rocking_cli.studies.fragility.observed import Observations
-from rocking_cli.studies.fragility.quantiles import all_quantiles
 from rocking_cli.studies.fragility.quantities import kept
-from rocking_cli.studies.fragility.ranking import rank
-from rocking_cli.studies.fragility.store import UNKNOWN, Endings, Store
-from rocking_cli.studies.fragility.study import load_study
-from rocking_cli.views import nrml as openquake
-from rocking_cli.views.ranking import judge
 from tests.conftest import EXAMPLES, rows_of
 from tests.following import build_model
 from tests.stores import command

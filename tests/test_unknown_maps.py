@@ -11,32 +11,32 @@ from matplotlib.patches import Rectangle
 
 import rocking_cli as rk
 from mechanisms.block import Block
+from rocking_cli.core.structure_file import load_structure
 from rocking_cli.dynamics.outcome import OUTCOME, Outcome
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import COARSE, parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting import style
-from rocking_cli.plotting.animation import animation_page
-from rocking_cli.plotting.equivalent_pulses import draw_equivalent
-from rocking_cli.plotting.history import draw_history
 from rocking_cli.plotting.moving import ratio_chart
-from rocking_cli.plotting.overturning import draw_comparison, draw_map
-from rocking_cli.plotting.spectrum import draw_spectra
 from rocking_cli.processing.listed import Scaled
+from rocking_cli.questions.animate.picture import animation_page
+from rocking_cli.questions.equivalent.picture import draw_equivalent
+from rocking_cli.questions.equivalent.study import equivalent
+from rocking_cli.questions.equivalent.view import judge
+from rocking_cli.questions.overturning.picture import draw_comparison, draw_map
+from rocking_cli.questions.overturning.study import FALLS, Comparison, Region, compare, overturning_map
+from rocking_cli.questions.overturning.view import NO_JOINTS, comparison_view, map_table, map_view
+from rocking_cli.questions.pulse.study_on_structure import COARSEST, _alike, sampled_history
+from rocking_cli.questions.respond.picture import draw_history
+from rocking_cli.questions.spectrum import view as spectrum_views
+from rocking_cli.questions.spectrum.picture import draw_spectra
+from rocking_cli.questions.spectrum.study import Spectrum, _worst, blocks_of, shape_of, spectra
 from rocking_cli.structure import Structure
-from rocking_cli.structure_file import load_structure
 from rocking_cli.studies import under_pulses
-from rocking_cli.studies.equivalent_pulses import equivalent
 from rocking_cli.studies.film import Film
-from rocking_cli.studies.overturning import FALLS, Comparison, Region, compare, overturning_map
 from rocking_cli.studies.picture import picture
-from rocking_cli.studies.pulse_on_structure import COARSEST, _alike, sampled_history
-from rocking_cli.studies.spectrum import Spectrum, _worst, blocks_of, shape_of, spectra
 from rocking_cli.studies.under_pulses import outcomes, parse_shape, pulsed_model
-from rocking_cli.views import spectrum as spectrum_views
 from rocking_cli.views.animation import why_it_ends
-from rocking_cli.views.equivalent_pulses import judge
-from rocking_cli.views.overturning import NO_JOINTS, comparison_view, map_table, map_view
 from tests.conftest import EXAMPLES
 from tests.following import respond
 from tests.test_cli import run

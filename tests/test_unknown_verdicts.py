@@ -19,20 +19,20 @@ from rocking_cli.codes.italian.sheet.build import SHEET
 from rocking_cli.codes.italian.sheet.steps import ENGLISH
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.outcome import Outcome
-from rocking_cli.plotting.azimuths import draw_azimuths
-from rocking_cli.plotting.survey import draw_survey
+from rocking_cli.questions.design.metrics import METRICS, Excitation
+from rocking_cli.questions.margin import view as margin_views
+from rocking_cli.questions.margin.study import Margin
+from rocking_cli.questions.report import view as assessment
+from rocking_cli.questions.respond import azimuths_view as azimuth_views
+from rocking_cli.questions.respond.azimuths import AzimuthResponses
+from rocking_cli.questions.respond.azimuths_picture import draw_azimuths
+from rocking_cli.questions.survey import view as survey_views
+from rocking_cli.questions.survey.picture import draw_survey
+from rocking_cli.questions.survey.study import ORDERS, Survey, Surveyed, Under
 from rocking_cli.structure import Structure
-from rocking_cli.studies.azimuths import AzimuthResponses
 from rocking_cli.studies.conclusion import Concluded, Conclusion
-from rocking_cli.studies.margin import Margin
-from rocking_cli.studies.metrics import METRICS, Excitation
 from rocking_cli.studies.movements import Watched, largest
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours
-from rocking_cli.studies.survey import ORDERS, Survey, Surveyed, Under
-from rocking_cli.views import assessment
-from rocking_cli.views import azimuths as azimuth_views
-from rocking_cli.views import margin as margin_views
-from rocking_cli.views import survey as survey_views
 from tests.conftest import EXAMPLES
 from tests.following import respond
 from tests.test_cli import run, run_json

@@ -19,8 +19,8 @@ from rocking_cli.codes.italian.ground import Hazard, SiteGround
 from rocking_cli.core import Direction, box
 from rocking_cli.core.coefficients import coefficients
 from rocking_cli.errors import InputError
-from rocking_cli.studies.verification.code import codes
-from rocking_cli.studies.verification.results import Control, control_at
+from rocking_cli.verification.code import codes
+from rocking_cli.verification.results import Control, control_at
 
 G = 9.80665
 WEIGHT = 18000 / G  # of masonry, as a density

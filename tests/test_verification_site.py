@@ -4,8 +4,8 @@ import pytest
 
 from rocking_cli.core import Direction
 from rocking_cli.errors import InputError
-from rocking_cli.studies.verification.check import read_site
-from rocking_cli.studies.verification.code import codes
+from rocking_cli.verification.check import read_site
+from rocking_cli.verification.code import codes
 from tests.test_cli import run, run_json
 
 GOOD = "FC: 1.35\nag: 0.2\nF0: 2.5\nTC: 0.4\nS: 1.2\n"

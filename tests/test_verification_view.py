@@ -10,8 +10,8 @@ from rocking_cli.codes.italian.remarks import differences
 from rocking_cli.codes.italian.sheet.steps import TERMINAL
 from rocking_cli.codes.italian.sheet.summary import verdicts
 from rocking_cli.core import Direction
-from rocking_cli.studies.verification.code import codes
-from rocking_cli.studies.verification.results import Working
+from rocking_cli.verification.code import codes
+from rocking_cli.verification.results import Working
 from rocking_cli.views.verification import standing, view
 from rocking_cli.views.view import Table
 from tests.conftest import EXAMPLES

@@ -11,16 +11,16 @@ from matplotlib.colors import to_rgb
 from mechanisms.assembly import Assembly
 from mechanisms.symmetric_frame import SymmetricFrame
 from rocking_cli.core import Direction, equivalent_block
+from rocking_cli.core.structure_file import load_structure
 from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting import style
-from rocking_cli.plotting.animation import animation_page
 from rocking_cli.plotting.structure import INKED, LEAST, POINT, draw_structure, weight
-from rocking_cli.structure_file import load_structure
-from rocking_cli.studies.collapse import collapses
+from rocking_cli.questions.animate.picture import animation_page
+from rocking_cli.questions.collapse.study import collapses
+from rocking_cli.questions.collapse.view import data, view
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.picture import MANY, STARTED, picture
 from rocking_cli.text import in_short
-from rocking_cli.views.collapse import data, view
 from tests.conftest import EXAMPLES
 from tests.following import respond
 from tests.test_cli import run

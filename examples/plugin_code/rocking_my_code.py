@@ -8,15 +8,7 @@ from them. The formulas here are an example, not those of any code.
 from __future__ import annotations
 
 from rocking_cli.core import Direction, Mechanism, quantity
-from rocking_cli.studies.verification import (
-    Code,
-    Formula,
-    Method,
-    Site,
-    Verification,
-    Verified,
-    governing,
-)
+from rocking_cli.verification import Code, Formula, Method, Site, Verification, Verified, governing
 
 # Uplift starts rocking, but a structure overturns only under more: the factor by which the ultimate limit state counts
 # on it.

@@ -163,12 +163,12 @@ def _write(figure: Figure, path: Path) -> None:
 
 
 def drawn(function: str, *args: Any, **named: Any) -> Callable[[], Figure]:
-    """Return what draws a plot by a function of `plotting`, such as "margin.draw_margins", imported when called."""
+    """Return what draws a plot by a function such as "questions.margin.picture.draw_margins", imported when called."""
     return partial(_draw, function, *args, **named)
 
 
 def _draw(function: str, *args: Any, **named: Any) -> Figure:
-    figure: Figure = resolve_name(f"rocking_cli.plotting.{function}")(*args, **named)
+    figure: Figure = resolve_name(f"rocking_cli.{function}")(*args, **named)
     return figure
 
 

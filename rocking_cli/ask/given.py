@@ -14,6 +14,7 @@ from rocking_cli.ask.numbers import refuse_idle
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.core import CollapseMechanism, Direction, Mechanism
 from rocking_cli.core.mechanism import doubts
+from rocking_cli.core.structure_file import default_name, parse_structure
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -23,7 +24,6 @@ from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import decoded, read_text
 from rocking_cli.names import OPENING
 from rocking_cli.structure import Structure
-from rocking_cli.structure_file import default_name, parse_structure
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.text import one_line
 from rocking_cli.views.view import heading
@@ -31,7 +31,7 @@ from rocking_cli.views.view import heading
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking_cli.studies.verification.code import SiteFile
+    from rocking_cli.verification.code import SiteFile
 
 StructureLike = Mechanism | Structure | str | Path
 """Mechanism, or its YAML file, "-" for standard input; or a structure that was opened before."""
@@ -144,8 +144,8 @@ def structures_of(
 def site_of(given: SiteLike) -> SiteFile:
     """Read the site for a code of practice from its file, or take its fields. Raises `InputError`."""
     from rocking_cli.io.yaml_file import parse
-    from rocking_cli.studies.verification.check import read_site, site_in
-    from rocking_cli.studies.verification.code import HINT
+    from rocking_cli.verification.check import read_site, site_in
+    from rocking_cli.verification.code import HINT
 
     if isinstance(given, Mapping):
         return site_in(parse(json_text(given), "site", "site", HINT))

@@ -24,6 +24,7 @@ COMMANDS = (
     "results", "report", "mechanisms", "measures", "new", "info", "selfcheck",
     "completion",
 )  # fmt: skip
+ROOMS = {"results": "fragility.results_command"}
 DO_WITHOUT = ("info", "selfcheck")
 """Commands that run even if the user's defaults are invalid."""
 LATEST = 11  # digits of SOURCE_DATE_EPOCH, up to the year 5138
@@ -82,7 +83,9 @@ class LazyGroup(click.Group):
         """Import the module of a command."""
         if cmd_name not in COMMANDS:
             return None
-        command: click.Command = import_module(f"rocking_cli.cli.{cmd_name}").command
+        command: click.Command = import_module(
+            f"rocking_cli.questions.{ROOMS.get(cmd_name, cmd_name + '.command')}"
+        ).command
         command.context_class = _Context
         return command
 

@@ -12,8 +12,8 @@ from rocking_cli.core import Mechanism
 from rocking_cli.documents.sheet_page import MARKS, figure_of, runs
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plotting import style
-from rocking_cli.studies.verification.results import Working
 from rocking_cli.text import printable
+from rocking_cli.verification.results import Working
 from rocking_cli.views.sheet.document import Drawing, Item, Listing, Sheet, SheetPart, Steps
 from rocking_cli.views.view import Table
 

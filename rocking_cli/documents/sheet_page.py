@@ -14,8 +14,8 @@ from rocking_cli.documents.figures import inline_svg, template
 from rocking_cli.plotting.moving import asset
 from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.studies.picture import picture
-from rocking_cli.studies.verification.results import MARK
 from rocking_cli.text import printable
+from rocking_cli.verification.results import MARK
 from rocking_cli.views.sheet.document import Drawing, Sheet
 
 MARKS = {"print": "", "transcription": "*", "code": "†", "ours": "‡", "plain": ""}

@@ -9,13 +9,13 @@ from functools import cached_property, partial
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import Agreement, agreements, remedy
-from rocking_cli.engines import respond
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare, NextStep, are_alike, worst
 from rocking_cli.studies.contact import ContactDemand, Contacts
+from rocking_cli.studies.engines import respond
 from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
 
 Histories = Mapping[ModelName, History]

@@ -21,10 +21,10 @@ from rocking_cli.errors import InputError
 from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import parse
 from rocking_cli.structure import Structure
-from rocking_cli.studies.verification.check import site_in, verify
-from rocking_cli.studies.verification.code import Code, SiteFile, codes
-from rocking_cli.studies.verification.results import CLOSE, Verification, Verified
 from rocking_cli.testing.mechanism import _demand
+from rocking_cli.verification.check import site_in, verify
+from rocking_cli.verification.code import Code, SiteFile, codes
+from rocking_cli.verification.results import CLOSE, Verification, Verified
 from rocking_cli.views.template import starter
 from rocking_cli.views.verification import showing, table, view
 

@@ -19,8 +19,8 @@ from rocking_cli.studies.conclusion import (
     are_alike,
     worst,
 )
-from rocking_cli.studies.verification.results import Remark, Verification
 from rocking_cli.text import in_short
+from rocking_cli.verification.results import Remark, Verification
 from rocking_cli.views.sheet.language import ENGLISH, Language
 from rocking_cli.views.verdict import REMEDIES
 

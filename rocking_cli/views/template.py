@@ -9,7 +9,7 @@ import yaml
 from pydantic import BaseModel
 
 from rocking_cli.io.json_text import json_text
-from rocking_cli.studies.verification.code import Code, Site
+from rocking_cli.verification.code import Code, Site
 from rocking_cli.views.mechanisms import fields
 
 LONG = 40  # characters of a field and its value, above which the comment stands

@@ -14,8 +14,8 @@ from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, NONLINEAR
 from rocking_cli.codes.italian.site import ItalianSite, of_each
 from rocking_cli.core import Mechanism
 from rocking_cli.structure import Structure
-from rocking_cli.studies.verification.code import Code, Number
-from rocking_cli.studies.verification.results import Control, Histories
+from rocking_cli.verification.code import Code, Number
+from rocking_cli.verification.results import Control, Histories
 
 
 def _zeta(key: str) -> Number:

@@ -16,7 +16,7 @@ from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import NAME as INTERLOCK
 from rocking_cli.core.kinematics import Reals
 from rocking_cli.errors import InputError, Problem, StructureError
-from rocking_cli.studies.verification.results import Control
+from rocking_cli.verification.results import Control
 
 STEPS = 256  # to the end of a curve, between which it is held to be a function
 HALVINGS = 200

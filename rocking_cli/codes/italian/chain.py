@@ -14,7 +14,7 @@ from rocking_cli.core.hung.attached import Attached, Follow, PointMass, Spot
 from rocking_cli.core.kinematics import Reals
 from rocking_cli.core.reactions import parts
 from rocking_cli.errors import InputError
-from rocking_cli.studies.verification.results import Control
+from rocking_cli.verification.results import Control
 
 LEAST = 1e-9  # of the largest virtual displacement: a control point that moves less does not move sideways
 

@@ -6,7 +6,7 @@ a transcription of the text, not yet against the printed text.
 
 from __future__ import annotations
 
-from rocking_cli.studies.verification.results import Clause
+from rocking_cli.verification.results import Clause
 
 
 def _held(place: str) -> Clause:

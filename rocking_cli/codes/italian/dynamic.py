@@ -16,12 +16,12 @@ from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, Reco
 from rocking_cli.codes.italian.site import ItalianSite, floor_at
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History
-from rocking_cli.engines import follow
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import Structure
-from rocking_cli.studies.verification.results import Histories, where_it_stands
+from rocking_cli.studies.engines import follow
 from rocking_cli.text import did_you_mean
+from rocking_cli.verification.results import Histories, where_it_stands
 
 RECORDS = 7  # that the code wants before the mean may be used
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from rocking_cli.codes.italian import clauses
 from rocking_cli.codes.italian.rules import RULES
-from rocking_cli.studies.verification.results import Formula
+from rocking_cli.verification.results import Formula
 
 # What the site file says
 FC = Formula("FC", "given", clause=clauses.A_STAR, meaning="given_FC")

@@ -22,7 +22,7 @@ from rocking_cli.codes.italian.sheet.steps import workings_of_direction, working
 from rocking_cli.codes.italian.site import ItalianSite, of_structure
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.studies.conclusion import LeftOut
-from rocking_cli.studies.verification.results import Control, Later, Remark
+from rocking_cli.verification.results import Control, Later, Remark
 
 KEY, NAME = "NTC2018", "Italian code"
 EDITION = "NTC 2018 and Circolare 7/2019"

@@ -14,7 +14,7 @@ from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, Li
 from rocking_cli.codes.italian.rules import DAMAGE, FURTHER, LINEAR, NONLINEAR, RULES, STATES
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import digits_apart
-from rocking_cli.studies.verification.results import Remark
+from rocking_cli.verification.results import Remark
 
 LONG = 4.0  # s: above it the code requires a study of the site, or records
 LEAST_CONFIDENT = 1.35  # FC of the least knowledge, LC1

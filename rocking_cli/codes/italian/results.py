@@ -11,8 +11,8 @@ from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.rules import OF_STATE
 from rocking_cli.core import Direction
 from rocking_cli.studies.conclusion import ORDER, Concluded, Conclusion, LeftOut
-from rocking_cli.studies.verification import results as frame
-from rocking_cli.studies.verification.results import CLOSE, MotionPlace, Requirement
+from rocking_cli.verification import results as frame
+from rocking_cli.verification.results import CLOSE, MotionPlace, Requirement
 
 HISTORIES = "histories"
 """The key of the method by time histories in a conclusion."""

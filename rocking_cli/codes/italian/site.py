@@ -17,7 +17,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.yaml_file import Place
 from rocking_cli.processing.floor import Floor
 from rocking_cli.studies.file_part import Part, Sound
-from rocking_cli.studies.verification.code import Site
+from rocking_cli.verification.code import Site
 
 SIZES = ("ag", "F0", "TC", "S")
 MOST = 10_000  # rows of a table

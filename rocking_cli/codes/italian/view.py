@@ -12,7 +12,7 @@ from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, Ital
 from rocking_cli.codes.italian.sheet import dynamic
 from rocking_cli.codes.italian.sheet.steps import TERMINAL, ties
 from rocking_cli.codes.italian.sheet.summary import methods, verdicts
-from rocking_cli.studies.verification.results import in_plain
+from rocking_cli.verification.results import in_plain
 from rocking_cli.views.column import Column, frame_of, of
 from rocking_cli.views.conclusion import headline
 from rocking_cli.views.sheet.document import Sentence

@@ -8,10 +8,10 @@ from typing import Any
 
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.plugins.errors import blame
-from rocking_cli.studies.assessment import File, TitleBlock
-from rocking_cli.studies.verification.check import code_of
-from rocking_cli.studies.verification.code import SiteFile
-from rocking_cli.studies.verification.results import Verification
+from rocking_cli.questions.report.study import File, TitleBlock
+from rocking_cli.verification.check import code_of
+from rocking_cli.verification.code import SiteFile
+from rocking_cli.verification.results import Verification
 from rocking_cli.views.column import table_of, text_columns
 from rocking_cli.views.sheet.document import Item, Listing, Sentence, Sheet, SheetPart
 from rocking_cli.views.sheet.language import DIGITS, Language

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rocking_cli.studies.verification.results import Working
+from rocking_cli.verification.results import Working
 from rocking_cli.views.sheet.language import Language
 from rocking_cli.views.view import Table
 

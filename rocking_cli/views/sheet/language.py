@@ -12,7 +12,7 @@ from math import isnan
 from string import Formatter
 from typing import Any
 
-from rocking_cli.studies.verification.results import MINUS, Formula, Remark, Working, in_plain
+from rocking_cli.verification.results import MINUS, Formula, Remark, Working, in_plain
 from rocking_cli.views import view
 
 LANGUAGES = ("en", "it")

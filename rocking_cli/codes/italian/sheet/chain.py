@@ -9,7 +9,7 @@ from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.displaced import DisplacedChain, Moved
-from rocking_cli.studies.verification.results import Working
+from rocking_cli.verification.results import Working
 from rocking_cli.views.sheet.document import Item, SheetPart, Steps
 from rocking_cli.views.sheet.language import Language
 from rocking_cli.views.view import Table

@@ -22,7 +22,7 @@ from rocking_cli.codes.italian.ground import (
 from rocking_cli.codes.italian.rules import FIRST, FURTHER, RULES, STATES
 from rocking_cli.codes.italian.sheet import spectra
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.studies.verification.results import Working
+from rocking_cli.verification.results import Working
 from rocking_cli.views.sheet.document import Item, Sentence, SheetPart, Steps
 from rocking_cli.views.sheet.language import Language
 from rocking_cli.views.view import Table

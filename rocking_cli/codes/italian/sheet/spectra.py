@@ -20,7 +20,7 @@ from rocking_cli.codes.italian.demand import (
     correction,
 )
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.studies.verification.results import Formula, Working
+from rocking_cli.verification.results import Formula, Working
 from rocking_cli.views.sheet.language import Language
 
 G = STANDARD_GRAVITY

@@ -19,7 +19,7 @@ from rocking_cli.codes.italian.sheet import site, spectra
 from rocking_cli.codes.italian.sheet.chain import Scale
 from rocking_cli.codes.italian.sheet.site import hazard_at, is_close
 from rocking_cli.core.hung.attached import Spot
-from rocking_cli.studies.verification.results import Formula, Working
+from rocking_cli.verification.results import Formula, Working
 from rocking_cli.views.sheet.document import Item, Sentence, SheetPart, Steps, workings
 from rocking_cli.views.sheet.language import Language, texts_of
 from rocking_cli.views.view import Table

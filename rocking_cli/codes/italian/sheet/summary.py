@@ -12,7 +12,7 @@ from rocking_cli.codes.italian.results import HISTORIES, ItalianVerification, It
 from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, NONLINEAR, OF_STATE
 from rocking_cli.codes.italian.sheet.steps import title
 from rocking_cli.studies.conclusion import Concluded
-from rocking_cli.studies.verification.results import Remark, in_plain
+from rocking_cli.verification.results import Remark, in_plain
 from rocking_cli.views.conclusion import of_verification
 from rocking_cli.views.sheet.document import Item, Sentence, SheetPart
 from rocking_cli.views.sheet.language import Language

@@ -1,0 +1,1 @@
+"""A folder a question: its study, view, picture, verb and command."""

@@ -1,0 +1,1 @@
+"""`animate`: a structure that moves under a ground motion."""

@@ -1,0 +1,1 @@
+"""`calibrate`: the restitution from a trace of free rocking."""

@@ -1,0 +1,93 @@
+"""Plots of a calibration: a trace with its fit and residuals, and the likelihood over slenderness and restitution."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from rocking_cli.arrays import Reals
+from rocking_cli.plotting import style
+from rocking_cli.questions.calibrate.region import DROP, JointRegion
+from rocking_cli.questions.calibrate.study import GAP, TraceFit
+
+
+def draw_trace(found: TraceFit, name: str) -> Figure:
+    """Draw a trace of free rocking, its fit and impacts, and below the residuals of both fits.
+
+    Parameters
+    ----------
+    found : TraceFit
+        The fit.
+    name : str
+        Name of the structure.
+    """
+    figure = style.new_figure(5.6)
+    axes, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1))
+    style.heading(axes, f"{name}: free rocking, eta = {found.eta.value:.4f}, scatter {found.scatter:.2g}")
+    times, degrees = found.trace.times, np.degrees
+    start, end = found.part
+    axes.set_xlim(start - 0.15 * (end - start), end + 0.02 * (end - start))  # lifting and holding may be far longer
+    axes.plot(
+        times,
+        degrees(found.trace.angles),
+        color=style.RECORD,
+        marker=".",
+        markersize=3,
+        linestyle="none",
+        label="trace",
+    )
+    axes.plot(*_broken(times, degrees(found.fitted)), color=style.INK, linewidth=style.MEDIUM, label="fit with one eta")
+    rest = degrees(found.offset.value + found.drift.value * times)
+    axes.plot(times, rest, color=style.FAINT, linewidth=style.THIN, linestyle="--", label="at rest")
+    at_impact = degrees(found.offset.value + found.drift.value * found.impacts)
+    axes.plot(found.impacts, at_impact, label="impacts", linestyle="none", **{**style.MARKED, "markersize": 5})
+    axes.legend(loc="upper right", ncols=2, **style.LEGEND)
+    for values, look, label in (
+        (found.fitted, {"color": style.INK, "linewidth": style.THIN}, "one eta"),
+        (found.own, {"color": style.EXCEEDED, "linewidth": style.THIN, "linestyle": "--"}, "an eta for each impact"),
+    ):
+        below.plot(*_broken(times, degrees(found.trace.angles - values)), label=label, **look)
+    noise = degrees(found.noise)
+    below.axhspan(-2 * noise, 2 * noise, color=style.SHADE, zorder=0, label="twice the noise")
+    below.legend(loc="upper right", ncols=3, **style.LEGEND)
+    low, high = below.get_ylim()
+    below.set_ylim(low, high + 0.35 * (high - low))  # room for the legend
+    style.tidy(axes, y="angle [deg]")
+    style.tidy(below, "time [s]", "residual [deg]")
+    return figure
+
+
+def _broken(times: Reals, values: Reals) -> tuple[Reals, Reals]:
+    """Return a curve with breaks where the trace has gaps."""
+    steps = np.diff(times)
+    gaps = np.flatnonzero(steps > GAP * np.median(steps)) + 1
+    return np.insert(times, gaps, np.nan), np.insert(values, gaps, np.nan)
+
+
+def draw_region(found: JointRegion, name: str) -> Figure:
+    """Draw the likelihood over slenderness and restitution, and the edge of the joint region.
+
+    Parameters
+    ----------
+    found : JointRegion
+        The likelihood.
+    name : str
+        Name of the structure.
+    """
+    figure, axes = style.one_panel(
+        4.6, f"{name}: slenderness and restitution from {found.tests} tests in {found.clusters} clusters"
+    )
+    across, up = found.restitution, found.slenderness
+    below = np.maximum(found.likelihood - found.likelihood.max(), -20.0)
+    filled = axes.contourf(across, up, below, levels=[-20, -15, -10, -7, -5, -DROP, -1, 0], cmap="Blues")
+    axes.contour(across, up, below, levels=[-DROP], colors=[style.INK], linewidths=style.BOLD, linestyles="solid")
+    axes.plot(*found.best[::-1], color=style.CURSOR, label="likeliest", **style.STAR)
+    axes.plot([], [], color=style.INK, linewidth=style.BOLD, label="joint region of 90 %")
+    points = np.meshgrid(across, up)
+    axes.plot(*(each.ravel() for each in points), ".", color=style.FAINT, markersize=2)
+    axes.legend(loc="lower left", **style.LEGEND)
+    bar = figure.colorbar(filled, ax=axes)
+    bar.set_label("log-likelihood less the largest", fontsize=style.LABEL)
+    bar.ax.tick_params(labelsize=style.TICK)
+    style.tidy(axes, "restitution eta", "factor on slenderness")
+    return figure

@@ -1,0 +1,592 @@
+"""Restitution from a trace of free rocking: the whole trace is fitted at once.
+
+The start of the fit comes from the times of the impacts, with the frequency parameter known: the time between two
+impacts gives the peak between them, and this the energy. The fit itself uses every sample: rates before and after
+impacts, and peaks, would be biased by noise and drift.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from rocking_cli.arrays import Reals
+from rocking_cli.core import Direction
+from rocking_cli.dynamics.model import MEASURED
+from rocking_cli.errors import InputError
+from rocking_cli.questions.calibrate.free_rocking import (
+    FreeRocking,
+    MechanismSide,
+    RockingSide,
+    ScaledSide,
+    free_rocking,
+    quarter_cycles,
+)
+from rocking_cli.questions.calibrate.trace import Trace
+from rocking_cli.structure import Structure
+
+LEAST_IMPACTS = 3
+MOST_IMPACTS = 15  # that have a restitution of their own: later ones are too small to say anything of it
+LEAST_SAMPLES = 30
+LEAST_ALPHA = 0.07  # rad: for smaller slenderness, p and alpha cannot be told apart
+LEAST_ANGLE = 1e-6  # of the rotation at which the structure overturns: no instrument sees less
+LONGEST = 1e6  # s of a trace
+SEEN = 3.0  # times the noise: half-cycles with larger peaks are seen
+ABOVE = 5.0  # times the noise: the least largest angle of a trace
+FARTHEST = 0.98  # of the critical rotation: the largest release
+AFTER = 0.9  # of the quarter cycle before the first impact is fitted: what is before may be lifting, or a hand
+GROWS = 0.2  # of the release: a half-cycle that exceeds the one before on its side by more begins another test
+GAP = 3.0  # times the usual interval: what is longer is a gap
+STARTS = (0.6, 0.75, 0.85, 0.9, 0.94, 0.97, 0.985)  # restitutions, where the times of impacts do not lead to a fit
+FITS = 0.05  # of the release: a residual up to which no other start is tried; a missed impact gives more
+WINDOWS = (3, 6, 12, 24, 48, 1_000_000)  # impacts up to which the trace is fitted, one after the other
+NEAR = 0.03  # of the largest angle: levels of rest that are nearer lead to the same fit
+FURTHER = 3  # further starts, if the residual of the first is large
+POOR = 0.2  # of the release: a residual with which the trace is no free rocking of the structure
+OTHER = 0.1  # of the release: a residual, with an eta for each impact, with which it is that of another structure
+EXACT = 1e-5  # of the release: noise below which the fit itself is not exact
+PATTERN = 2.0  # times that of white noise: a variance of means of residuals that says more than noise
+STEP = 0.02  # of the errors of the geometry, by which their effect is found
+RELEASE, START, OFFSET, DRIFT, ETA = range(5)  # the parameters; further etas follow, and the geometry
+PRIOR = 1.0  # impacts with the scatter of other bodies that count with those of the trace
+DROP = 1.6  # of the log-likelihood: an interval of 5 to 95 % (1.35 of many impacts)
+OFF = 1.2  # times the noise: a residual that says more than noise
+SIDES, P, ALPHA = range(3)  # ln of the ratio of alpha of both sides, of p and of alpha, each over that of the file
+
+
+class Estimated(NamedTuple):
+    """A fitted number and its standard deviation."""
+
+    value: float
+    deviation: float
+
+
+class Pooled(NamedTuple):
+    """Mean and scatter of the restitutions of impacts.
+
+    Parameters
+    ----------
+    mean : float
+        Weighted mean.
+    weights : ndarray, shape (n,)
+        Weights of the mean.
+    scatter : float
+        Standard deviation of the restitution from impact to impact, drawn towards that of other bodies; never 0.
+    seen : float
+        That of these impacts alone, beyond what noise makes of it; 0 if noise suffices.
+    interval : tuple of float
+        Values of it that these impacts leave open, 5 to 95 %.
+    """
+
+    mean: float
+    weights: Reals
+    scatter: float
+    seen: float
+    interval: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class TraceFit:
+    """Restitution of a structure, fitted to a trace of free rocking.
+
+    Parameters
+    ----------
+    trace : Trace
+        The trace.
+    eta : Estimated
+        Coefficient of restitution: the mean of the impacts. Its deviation is that of noise, of the scatter from impact
+        to impact, and of the geometry of the structure.
+    etas : sequence of Estimated
+        That of each impact that is seen, each fitted on its own; deviations are those of noise.
+    pooled : Pooled
+        Mean and scatter of the restitutions, without the error of the geometry.
+    release : float
+        Angle at which the structure was let go, in the sense of the trace [rad]; like all that follows but `fitted`, it
+        is that of the fit with a restitution for each impact, which a scatter does not disturb.
+    release_time : float
+        Time at which it was let go [s].
+    offset, drift : Estimated
+        Angle of the trace at time zero with the structure at rest [rad], and its rate [rad/s].
+    impacts : ndarray, shape (k,)
+        Times of the impacts that are seen [s].
+    fitted, own : ndarray, shape (n,)
+        Angle at each sample [rad], with one restitution for all impacts and with one for each; NaN where the trace is
+        not fitted: before the structure falls, and long after it has come to rest.
+    noise : float
+        Noise of the trace, from the differences of neighbouring residuals [rad].
+    patterned : bool
+        Whether means of some neighbouring residuals are larger than white noise leaves; deviations include that.
+    sides : Estimated or None
+        Slenderness in the positive sense of the trace over that in the negative one, as a multiple of this ratio in the
+        structure; None if it rocks in one direction only.
+    p, alpha : Estimated, optional
+        Frequency parameter [rad/s] and slenderness [rad], if they were fitted.
+    """
+
+    trace: Trace
+    eta: Estimated
+    etas: Sequence[Estimated]
+    pooled: Pooled
+    release: float
+    release_time: float
+    offset: Estimated
+    drift: Estimated
+    impacts: Reals
+    fitted: Reals
+    own: Reals
+    noise: float
+    patterned: bool
+    sides: Estimated | None
+    p: Estimated | None = None
+    alpha: Estimated | None = None
+
+    @property
+    def scatter(self) -> float:
+        """Standard deviation of the restitution from impact to impact, drawn towards that of other bodies; never 0."""
+        return self.pooled.scatter
+
+    @property
+    def part(self) -> tuple[float, float]:
+        """Times between which the trace is fitted [s]."""
+        times = self.trace.times[np.isfinite(self.own)]
+        return float(times[0]), float(times[-1])
+
+    @property
+    def residual(self) -> float:
+        """Root mean square of the residual with one restitution [rad]."""
+        return _rms(self.trace.angles - self.fitted)
+
+    @property
+    def own_residual(self) -> float:
+        """Root mean square of the residual with a restitution for each impact [rad]."""
+        return _rms(self.trace.angles - self.own)
+
+
+@dataclass(frozen=True, eq=False)
+class _Problem:
+    """The samples to fit, and the structure; angles are in units of the release, `scale`, times from `origin`."""
+
+    times: Reals
+    angles: Reals
+    origin: float
+    scale: float
+    level: float  # of rest, where the fit starts
+    contact: float  # about the time of the first impact
+    crossings: Sequence[tuple[float, bool]]  # times of the impacts, and whether they are in a gap
+    sides: Mapping[Direction, RockingSide]
+    first: Direction
+    sense: float  # of the trace, that of a positive rotation of the structure
+    free: Sequence[int] = ()  # what of the geometry is fitted, too: the last parameters
+    geometry: tuple[float, float, float] = (0.0, 0.0, 0.0)  # what is held, or added to
+
+    def motion(self, x: Reals) -> FreeRocking:
+        """Return the rotation over the time from the release, for parameters."""
+        etas, geometry = x[ETA : x.size - len(self.free)], np.array(self.geometry)
+        geometry[list(self.free)] += x[x.size - len(self.free) :]
+        one, p, alpha = np.exp(geometry)
+        sides = {each: ScaledSide(side, p, alpha * one ** (int(each) / 2)) for each, side in self.sides.items()}
+        release = min(x[RELEASE] * self.scale, 0.9999 * sides[self.first].end)
+        until = float(self.times[-1] - x[START])
+        return free_rocking(sides, int(self.first) * release, etas, rebounds=len(sides) == 1, until=until)
+
+    def model(self, x: Reals, times: Reals) -> Reals:
+        """Return the angle at times for parameters."""
+        rotation = self.sense * self.motion(x).at(times - x[START]) / self.scale
+        return np.asarray(rotation + x[OFFSET] + x[DRIFT] * times / self.times[-1])
+
+    def distance(self, x: Reals) -> float:
+        """Return the root mean square of the residual with parameters."""
+        return _rms(self.model(x, self.times) - self.angles)
+
+    def fit(self, x: Reals, until: float = np.inf) -> tuple[Reals, Reals, float]:
+        """Return the fitted parameters, the Jacobian and the root mean square of the residual, up to a time."""
+        inside = self.times <= until
+        times, angles = self.times[inside], self.angles[inside]
+        low, high = np.full(x.size, -np.inf), np.full(x.size, np.inf)
+        etas, geometry = slice(ETA, x.size - len(self.free)), slice(x.size - len(self.free), None)
+        low[RELEASE], low[etas], high[etas], low[geometry], high[geometry] = 1e-6, 0.02, 1.2, -1.0, 1.0
+        found = least_squares(
+            lambda each: self.model(each, times) - angles, np.clip(x, low, high), bounds=(low, high),
+            x_scale="jac", diff_step=1e-6, xtol=1e-8, ftol=1e-6, gtol=1e-10, max_nfev=20,
+        )  # fmt: skip
+        return found.x, found.jac, float(np.sqrt(2 * found.cost / angles.size))
+
+
+def fit_trace(structure: Structure, trace: Trace, *, free_geometry: bool = False) -> TraceFit:
+    """Fit the restitution of a structure to a trace of free rocking.
+
+    Parameters
+    ----------
+    structure : Structure
+        The structure; its geometry is held.
+    trace : Trace
+        Angle over time, of either sense, with any sampling and gaps. Lifting and holding may come before the release,
+        and rest, or another test, after the rocking: the largest release is fitted.
+    free_geometry : bool
+        Whether p and alpha are fitted as well; only of a free-standing block.
+
+    Returns
+    -------
+    TraceFit
+        The restitution, its scatter, and that of each impact.
+
+    Raises
+    ------
+    InputError
+        If the trace, or the structure, does not allow a fit; the reason is given.
+    MechanismError
+        If the structure has no critical rotation.
+    """
+    mechanism = structure.mechanism
+    structure.ask("trace")
+    if free_geometry:
+        _check_free(structure)
+    sides: dict[Direction, RockingSide] = {
+        direction: MechanismSide(mechanism, direction, each.reference)
+        for direction, each in zip(Direction, structure.statics, strict=True)
+        if direction in mechanism.directions
+    }
+    noise = _noise(trace)
+    symmetric = structure.model("nonlinear").symmetric
+    problems, count = [], 0
+    for level in _levels(trace, noise, max(side.end for side in sides.values())):
+        for first in [Direction.POSITIVE] if symmetric else sides:
+            problem = _problem(trace, level, noise, sides, first)
+            if problem is not None:
+                problems.append(problem)
+                count = max(count, len(problem.crossings))
+    if not problems or (mechanism.rocks_both_ways and count < LEAST_IMPACTS):
+        raise InputError(_too_few(trace, count))
+    try:
+        with np.errstate(all="ignore"):  # a trial far off has no finite residual, and is no best fit
+            problem, x = _common(problems)
+            level = float(x[OFFSET] + x[DRIFT] * problem.contact / problem.times[-1]) * problem.scale
+            again = _problem(trace, level, noise, sides, problem.first)  # so that nothing of the lifting is fitted
+            return _each(*_common([again or problem]), trace, structure, free_geometry)
+    except (ArithmeticError, np.linalg.LinAlgError):
+        what = "no motion of this structure fits: check its size, and the units of times and angles"
+        raise InputError(f"{trace.name}: {what}") from None
+
+
+def _check_free(structure: Structure) -> None:
+    """Raise `InputError` unless p and alpha of a structure can be fitted."""
+    mechanism = structure.mechanism
+    if mechanism.mechanism != "block" or not mechanism.is_bare:
+        raise InputError(
+            f"{structure.name}: p and alpha can be fitted of a free-standing block (mechanism: block) only"
+        )
+    alpha = structure.equivalence.positive.phi_cr
+    if alpha < LEAST_ALPHA:
+        raise InputError(
+            f"{structure.name}: alpha is {alpha:.3g} rad. Below {LEAST_ALPHA:g} rad, a trace does not tell p "
+            "and alpha apart: hold the geometry"
+        )
+
+
+def _noise(trace: Trace) -> float:
+    """Return the noise of a trace. Raises `InputError` if it is too short or too long, or is no numbers."""
+    if not (np.isfinite(trace.angles).all() and np.isfinite(trace.times).all() and (np.diff(trace.times) > 0).all()):
+        what = "times and angles must be finite numbers, and times increase: leave out samples without an angle"
+        raise InputError(f"{trace.name}: {what}")
+    if trace.times.size < LEAST_SAMPLES:
+        raise InputError(f"{trace.name}: a trace needs at least {LEAST_SAMPLES} samples, got {trace.times.size}")
+    length = float(trace.times[-1] - trace.times[0])
+    if length > LONGEST:
+        raise InputError(f"{trace.name}: the trace lasts {length:.3g} s: check the unit of the times")
+    third = np.abs(np.diff(trace.angles, 3))  # has 20 times the variance of white noise
+    return float(np.median(third) or np.mean(third)) / 0.6745 / float(np.sqrt(20))
+
+
+def _rms(values: Reals) -> float:
+    return float(np.sqrt(np.nanmean(values**2)))
+
+
+def _too_few(trace: Trace, count: int) -> str:
+    return (
+        f"{trace.name}: {count or 'no'} impact{'s' * (count != 1)} can be seen above the noise, and a fit needs "
+        f"{LEAST_IMPACTS}: release the structure from a larger angle, or record longer"
+    )
+
+
+def _levels(trace: Trace, noise: float, most: float) -> list[float]:
+    """Return what the angle at rest may be [rad]: zero, the end of the trace, the middle between its extremes.
+
+    Raises `InputError` if no angle is large enough, or all are too large.
+    """
+    angles = trace.angles
+    size = float(np.ptp(angles)) / 2
+    if not size > 0:
+        raise InputError(f"{trace.name}: the angle is the same in all samples: there is no motion to fit")
+    if not size > ABOVE * noise:
+        raise InputError(
+            f"{trace.name}: the noise, {np.degrees(noise):.2g} deg, is not below a fifth of the largest angle, "
+            f"{np.degrees(size):.2g} deg: there is no motion to fit"
+        )
+    if size > 2 * most:
+        raise InputError(
+            f"{trace.name}: the largest angle, {np.degrees(size):.3g} deg, is more than twice the rotation at which "
+            f"the structure overturns, {np.degrees(most):.3g} deg: check the unit of the angles, and the structure"
+        )
+    if size < LEAST_ANGLE * most:
+        raise InputError(
+            f"{trace.name}: the largest angle, {np.degrees(size):.3g} deg, is below {LEAST_ANGLE:g} times the "
+            f"rotation at which the structure overturns, {np.degrees(most):.3g} deg: check the unit of the angles"
+        )
+    levels: list[float] = []
+    tail = angles[-max(angles.size // 10, 5) :]
+    for level in (float(np.median(tail)), 0.0, float((angles.max() + angles.min()) / 2)):
+        if all(abs(level - each) > NEAR * size for each in levels):
+            levels.append(level)
+    return levels
+
+
+def _problem(
+    trace: Trace, level: float, noise: float, sides: Mapping[Direction, RockingSide], first: Direction
+) -> _Problem | None:
+    """Find the rocking in a trace, and return what is to be fitted; None if nothing falls with this level of rest."""
+    times, angles = trace.times, trace.angles - level
+    top = int(np.argmax(np.abs(angles)))
+    release, sign = abs(float(angles[top])), float(np.sign(angles[top]))
+    sizes = np.linspace(0.002, FARTHEST, 80) * sides[first].end
+    table = quarter_cycles(sides[first], sizes)
+    if len(sides) == 1:  # no angle changes its sign: the first impact follows soon after half of the fall
+        falls = np.flatnonzero(sign * angles[top:] < release / 2)[:1]
+        crossings = [(float(times[top + k]) + 0.25 * float(np.interp(release, sizes, table)), True) for k in falls]
+    else:
+        crossings = [each for each in _crossings(times, angles, max(4 * noise, 0.01 * release)) if each[0] > times[top]]
+    if not crossings:
+        return None
+    contact = crossings[0][0]
+    for _ in range(3):  # what was lifted further before does not count
+        falling = (times > contact - np.interp(release, sizes, table)) & (times < contact)
+        highest = float(np.max(sign * angles[falling], initial=0.0))
+        release = highest if highest > release / 2 else release  # or it falls more slowly than this structure
+    since = contact - AFTER * float(np.interp(release, sizes, table))
+    until = np.inf
+    if len(sides) > 1:
+        edges = [*(each[0] for each in crossings), np.inf]
+        peaks = [np.max(np.abs(angles[(times >= a) & (times < b)]), initial=0.0) for a, b in pairwise(edges)]
+        grows = np.flatnonzero(np.array(peaks[1:]) > np.array([release, *peaks[:-2]]) + GROWS * release) + 1
+        crossings = crossings[: grows[0] + 1] if grows.size else crossings
+        until = crossings[-1][0] if grows.size else 2 * crossings[-1][0] - since
+    inside = (times >= since) & (times <= until)
+    if inside.sum() < LEAST_SAMPLES:
+        return None
+    origin = float(times[inside][0])
+    return _Problem(
+        times[inside] - origin, trace.angles[inside] / release, origin, release, level / release, contact - origin,
+        [(when - origin, hidden) for when, hidden in crossings], sides, first, sign * int(first),
+    )  # fmt: skip
+
+
+def _crossings(times: Reals, angles: Reals, hold: float) -> list[tuple[float, bool]]:
+    """Return when the angle changes its sign by more than `hold` on both sides, and whether that is in a gap."""
+    usual = float(np.median(np.diff(times)))
+    found: list[tuple[float, bool]] = []
+    far = np.flatnonzero(np.abs(angles) > hold)
+    for k in np.flatnonzero(np.diff(np.sign(angles[far]))):
+        one, other = far[k], far[k + 1]
+        part = slice(one, other + 1)
+        share = angles[one] / (angles[one] - angles[other])
+        when = float(times[one] + share * (times[other] - times[one]))
+        found.append((when, bool(np.diff(times[part]).max() > GAP * usual)))
+    return found
+
+
+def _starts(problem: _Problem) -> list[Reals]:
+    """Return where a fit may start, best first: the restitution by the times of impacts, then given ones."""
+    side = problem.sides[problem.first]
+    sizes = np.linspace(0.002, 0.98, 80) * side.end
+    table = quarter_cycles(side, sizes)
+    release = min(1.0, FARTHEST * side.end / problem.scale)
+    start = problem.contact - float(np.interp(release * problem.scale, sizes, table))
+    etas = list(STARTS)
+    spans = [
+        (k, (after - when) / 2)
+        for k, ((when, hidden), (after, also)) in enumerate(pairwise(problem.crossings), 1)
+        if not hidden and not also
+    ]
+    if len(spans) > 1:
+        peaks = np.interp([each[1] for each in spans], table, sizes)
+        heights = np.log(peaks * side.lift(peaks))
+        slope = float(np.polyfit([each[0] for each in spans], heights, 1)[0])
+        etas.insert(0, float(np.clip(np.exp(slope / 2), 0.3, 0.995)))
+    return [np.array([release, start, problem.level, 0.0, eta]) for eta in etas]
+
+
+def _common(problems: Sequence[_Problem]) -> tuple[_Problem, Reals]:
+    """Fit one restitution for all impacts to each part of a trace that may be the rocking; return the best."""
+    starts = [(each, x) for each in sorted(problems, key=lambda each: -each.times[-1]) for x in _starts(each)]
+    # Those by the times of impacts first, then those that are nearest to the trace.
+    first = [each for each in starts if each[1][ETA] not in STARTS]
+    rest = sorted((each for each in starts if each[1][ETA] in STARTS), key=lambda each: each[0].distance(each[1]))
+    best, least = starts[0], np.inf
+    for problem, x in [*first, *rest[:FURTHER]]:
+        for count in WINDOWS:  # over ever longer parts of the trace, so that no impact is missed or added
+            impacts = problem.motion(x).impacts + x[START]
+            until = impacts[count - 1] if count <= impacts.size else np.inf
+            x, _, rms = problem.fit(x, until)
+            if until >= problem.times[-1] or rms > POOR:
+                break
+        same = abs(rms - least) < 1e-3 * rms  # two starts lead there
+        if rms < least:
+            best, least = (problem, x), rms
+        if least < FITS or same:
+            break
+    return best
+
+
+def _freed(problem: _Problem, x: Reals, free: Sequence[int]) -> tuple[_Problem, Reals, Reals]:
+    """Fit some of the geometry, too; return the problem that holds it, the parameters, and its covariance."""
+    apart = replace(problem, free=free)
+    x = np.append(x, np.zeros(len(free)))
+    for _ in range(4):  # a valley, along which one fit may not come to its end
+        x, jacobian, _ = apart.fit(x)
+    geometry = np.array(problem.geometry)
+    geometry[list(free)] += x[-len(free) :]
+    misfit = apart.model(x, apart.times) - apart.angles
+    noise = max(_noise_of(misfit), EXACT)
+    factor = noise**2 * max(1.0, _pattern(misfit, noise, len(problem.crossings) * 6))
+    covariance = factor * np.asarray(np.linalg.pinv(jacobian.T @ jacobian))[-len(free) :, -len(free) :]
+    return replace(problem, geometry=tuple(geometry.tolist())), x[: -len(free)], covariance
+
+
+def _each(problem: _Problem, x: Reals, trace: Trace, structure: Structure, free_geometry: bool) -> TraceFit:
+    """Fit a restitution for each impact, and return both fits in the units of the trace. Raises `InputError`."""
+    times, scale = problem.times, problem.scale
+    one = problem.distance(x)
+    if not one < POOR:
+        raise InputError(_is_other(problem, x, one, trace, structure))
+    # Errors of width and height alike, in ln p and ln alpha, which move the mean.
+    size = structure.model("nonlinear").scatter.slenderness / np.sqrt(2)
+    errors = np.array([[0.0, size], [-size / 2, -size]])
+    p = alpha = sides = None
+    if free_geometry:
+        problem, x, covariance = _freed(problem, x, [P, ALPHA])
+        errors, block = np.linalg.cholesky(covariance).T, structure.equivalence.positive
+        values = np.exp(problem.geometry[P:]) * (block.p, block.phi_cr)
+        p, alpha = (
+            Estimated(float(v), float(v * d)) for v, d in zip(values, np.sqrt(np.diag(covariance)), strict=True)
+        )
+    own, count, solve, noise, pattern = _own(problem, x, trace)
+    if len(problem.sides) > 1 and problem.distance(x) > OFF * noise:
+        apart, other, covariance = _freed(problem, x, [SIDES])
+        least = problem.distance(own) ** 2
+        if apart.distance(other) ** 2 - least < 0.1 * (problem.distance(x) ** 2 - least):  # it explains the scatter
+            problem, x = apart, other
+            ratio = float(np.exp(problem.sense * problem.geometry[SIDES]))
+            sides = Estimated(ratio, ratio * float(np.sqrt(covariance[0, 0])))
+            own, count, solve, noise, pattern = _own(problem, x, trace)
+    if not problem.distance(own) < OTHER:
+        raise InputError(_is_other(problem, x, problem.distance(own), trace, structure))
+    covariance = noise**2 * max(1.0, pattern) * solve @ solve.T
+    deviation = np.sqrt(np.diag(covariance))
+    last = ETA + count - 1  # left out: it is that of all that follow, too
+    pooled = pool(own[ETA:last], covariance[ETA:last, ETA:last], MEASURED)
+    w = pooled.weights
+    variance = w @ covariance[ETA:last, ETA:last] @ w + pooled.scatter**2 * (w @ w)
+    for error in errors:
+        geometry = np.array(problem.geometry) + STEP * np.append(0.0, error)
+        moved = solve @ (replace(problem, geometry=tuple(geometry)).model(own, times) - problem.model(own, times))
+        variance += (w @ moved[ETA:last] / STEP) ** 2
+    total, origin = float(times[-1]), problem.origin
+    drift = Estimated(float(own[DRIFT]) * scale / total, float(deviation[DRIFT]) * scale / total)
+    to_zero, part = np.array([1.0, -origin / total]), slice(OFFSET, DRIFT + 1)
+    offset = Estimated(
+        float(to_zero @ own[part]) * scale, float(np.sqrt(to_zero @ covariance[part, part] @ to_zero)) * scale
+    )
+    after = trace.times - origin
+    fitted = (after >= 0) & (after <= total)
+    return TraceFit(
+        trace,
+        Estimated(pooled.mean, float(np.sqrt(variance))),
+        [Estimated(float(own[k]), float(deviation[k])) for k in range(ETA, last + 1)],
+        pooled,
+        problem.sense * int(problem.first) * float(own[RELEASE]) * scale,
+        float(own[START]) + origin,
+        offset,
+        drift,
+        problem.motion(own).impacts[:count] + float(own[START]) + origin,
+        np.where(fitted, problem.model(x, after) * scale, np.nan),
+        np.where(fitted, problem.model(own, after) * scale, np.nan),
+        noise * scale,
+        pattern > PATTERN,
+        sides,
+        p,
+        alpha,
+    )
+
+
+def _is_other(problem: _Problem, x: Reals, off: float, trace: Trace, structure: Structure) -> str:
+    """Say that a trace is not of this structure, and which frequency parameter fits better, if one does."""
+    said = (
+        f"{trace.name}: the best fit is off by {100 * off:.2g} % of the release (root mean square): this is not free "
+        "rocking of this structure. Check its size, and the units of angles and times"
+    )
+    other, y, _ = _freed(problem, x, [P])
+    if other.distance(y) > off / 2:
+        return said
+    p = structure.p * np.exp(other.geometry[P])
+    return f"{said}; p = {p:.3g} rad/s fits better than {structure.p:.3g} rad/s, its own"
+
+
+def _own(problem: _Problem, x: Reals, trace: Trace) -> tuple[Reals, int, Reals, float, float]:
+    """Fit a restitution for each impact that is seen, from one for all.
+
+    Return the parameters, the number of impacts, the inverse of the Jacobian, the noise, and the pattern of residuals.
+    """
+    motion, noise = problem.motion(x), _noise_of(problem.model(x, problem.times) - problem.angles)
+    inside = motion.impacts[:-1] + x[START] < problem.times[-1]
+    count = int(np.count_nonzero(inside & (motion.peaks[1:] > SEEN * noise * problem.scale)))
+    if count < LEAST_IMPACTS:
+        raise InputError(_too_few(trace, count))
+    count = min(count, MOST_IMPACTS)
+    own, jacobian, _ = problem.fit(np.concatenate([x[:ETA], np.full(count, x[ETA])]))
+    rocking = problem.times < problem.motion(own).impacts[count - 1] + own[START]  # a coarse digit may hide in rest
+    misfit = (problem.model(own, problem.times) - problem.angles)[rocking]
+    noise = max(_noise_of(misfit), EXACT)
+    return own, count, np.asarray(np.linalg.pinv(jacobian)), noise, _pattern(misfit, noise, 6 * count)
+
+
+def _noise_of(misfit: Reals) -> float:
+    """Return the noise from the differences of neighbouring residuals, which no slow misfit enters."""
+    return _rms(np.diff(misfit)) / float(np.sqrt(2))
+
+
+def _pattern(misfit: Reals, noise: float, parts: int) -> float:
+    """Return the variance of means of parts of the residual, over that of white noise."""
+    size = max(2, misfit.size // parts)
+    means = misfit[: misfit.size // size * size].reshape(-1, size).mean(axis=1)
+    return float(np.mean(means**2)) * size / noise**2
+
+
+def pool(etas: Reals, covariance: Reals, usual: float) -> Pooled:
+    """Return mean and scatter of restitutions with errors.
+
+    Parameters
+    ----------
+    etas : ndarray, shape (n,)
+        Restitutions of impacts.
+    covariance : ndarray, shape (n, n)
+        Covariance of their errors.
+    usual : float
+        Scatter of other bodies, towards which that of few impacts is drawn.
+    """
+    scatters = np.geomspace(1e-5, 0.5, 400)  # the first is taken for 0
+    inverse = np.linalg.inv(covariance + scatters[:, None, None] ** 2 * np.eye(etas.size))
+    weights = inverse.sum(axis=2) / inverse.sum(axis=(1, 2))[:, None]
+    off = etas - (weights @ etas)[:, None]
+    chi = np.einsum("ki,kij,kj->k", off, inverse, off)
+    likelihood = (np.linalg.slogdet(inverse)[1] - np.log(inverse.sum(axis=(1, 2))) - chi) / 2
+    best = int(np.argmax(likelihood))
+    inside = scatters[likelihood > likelihood[best] - DROP]
+    drawn = likelihood - PRIOR * (np.log(scatters) + (usual / scatters) ** 2 / 2)
+    each = np.exp(drawn - drawn.max())
+    scatter = float(np.sqrt(each.sum() / (each @ scatters**-2)))
+    seen, low, high = (0.0 if each == scatters[0] else float(each) for each in (scatters[best], inside[0], inside[-1]))
+    return Pooled(float(weights[best] @ etas), weights[best], scatter, seen, (low, high))

@@ -1,0 +1,1 @@
+"""`collapse`: the weakest mechanism of an assembly of blocks."""

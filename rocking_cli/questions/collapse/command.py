@@ -1,0 +1,32 @@
+"""`rocking collapse`: find the weakest mechanism of an assembly of blocks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from rocking_cli.cli import options
+from rocking_cli.cli.groups import Output
+
+
+@click.command(short_help="Find the weakest mechanism of an assembly of blocks.")
+@options.structure
+@options.plot("Plot the mechanism and a line of thrust")
+@options.as_json
+@options.grouped(output=Output)
+def command(file: str | Path, output: Output) -> None:
+    """Find the weakest mechanism of an assembly of rigid blocks in each direction, by limit analysis.
+
+    Joints carry no tension. The output gives lambda, the hinges, the blocks that move together and those at rest, a
+    line of thrust, the friction required, and the rotation at which another joint would open.
+
+    \b
+    Example:
+      rocking new assembly > portal.yaml
+      rocking collapse portal.yaml --plot portal.png
+    """
+    from rocking_cli.questions.collapse.verb import collapse
+
+    output.keep_apart(file)
+    output.show(collapse(file, watch=output.watch))

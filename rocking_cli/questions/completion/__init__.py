@@ -1,0 +1,1 @@
+"""`completion`: the script with which a shell completes commands and options."""

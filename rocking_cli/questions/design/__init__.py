@@ -1,0 +1,1 @@
+"""`design`: the values of a field that meet a requirement."""

@@ -1,0 +1,198 @@
+"""Metrics: the quantities, by name, for which a structure can be designed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
+from math import nan
+
+from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.plugins.errors import blame
+from rocking_cli.plugins.registry import leave_out
+from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import LeftOut
+from rocking_cli.studies.neighbours import Neighbourhood, Neighbours, neighbours
+from rocking_cli.text import cut, did_you_mean
+from rocking_cli.verification.check import verify
+from rocking_cli.verification.code import Number, SiteFile, codes
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """The ground motions and the site for which metrics are computed.
+
+    Parameters
+    ----------
+    motions : sequence of GroundMotion
+        The scaled motions; the worst governs.
+    polarities : sequence of int
+        The polarities, 1, -1 or both; the worse governs.
+    around : Neighbourhood
+        How the neighbours of each motion are drawn.
+    site : SiteFile, optional
+        The site of the structure, for metrics of a code.
+    """
+
+    motions: Sequence[GroundMotion]
+    polarities: Sequence[int] = (1,)
+    around: Neighbourhood = field(default_factory=Neighbourhood)
+    site: SiteFile | None = None
+
+    def each(self, structure: Structure) -> list[Neighbours]:
+        """Return the neighbours of every motion, in both polarities if requested and if their effects differ."""
+        model = structure.model("nonlinear")
+        signs = self.polarities[:1] if model.symmetric else self.polarities
+        return [neighbours(model, motion.scaled(sign), self.around) for motion in self.motions for sign in signs]
+
+
+@dataclass(frozen=True)
+class Metric:
+    """A quantity of a structure that can be limited.
+
+    Parameters
+    ----------
+    name : str
+        Name of the metric, as users write it.
+    unit : str
+        Its unit; empty for a pure number.
+    meaning : str
+        Meaning of the metric, in a few words.
+    of_structure : callable, optional
+        Function of a structure and an `Excitation` that returns the metric: NaN if it does not exist, infinity if it
+        is unlimited. Raises `InputError` or `MechanismError` if the structure has none.
+    of_neighbours : callable, optional
+        Returns the metric of the neighbours of a motion instead: a share of histories, or a fractile, which are step
+        functions. An unknown outcome counts as overturning.
+    sited : bool
+        Whether the metric needs a site.
+    codes : sequence of str
+        The codes of practice that have this metric; empty if it needs none.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    of_structure: Callable[[Structure, Excitation | None], float] | None = None
+    of_neighbours: Callable[[Neighbours], float] | None = None
+    sited: bool = False
+    codes: Sequence[str] = ()
+
+    @property
+    def shaken(self) -> bool:
+        """Whether the metric needs ground motions."""
+        return self.of_neighbours is not None
+
+    def value(self, structure: Structure, excitation: Excitation | None) -> float:
+        """Return the metric of a structure."""
+        return self.at(structure, excitation)[0]
+
+    def at(self, structure: Structure, excitation: Excitation | None) -> tuple[float, Neighbours | None]:
+        """Return the metric of a structure, and the neighbours of the motion that governs if it needs motions."""
+        of = self.of_neighbours
+        if of is None:
+            assert self.of_structure is not None
+            return self.of_structure(structure, excitation), None
+        assert excitation is not None
+        worst = max(excitation.each(structure), key=lambda near: (of(near), near.at_most, near.overturned))
+        return of(worst), worst
+
+
+def _lambda(structure: Structure, excitation: Excitation | None) -> float:
+    return min(side.lambda_ for side in structure.statics)
+
+
+def _phi_cr(structure: Structure, excitation: Excitation | None) -> float:
+    found = [side.phi_cr for side in structure.statics]
+    return min((each for each in found if each is not None), default=nan) if None not in found else nan
+
+
+def _p(structure: Structure, excitation: Excitation | None) -> float:
+    return structure.p if structure.why_no_block is None else nan
+
+
+def _ratio(structure: Structure, excitation: Excitation | None) -> float:
+    assert excitation is not None and excitation.site is not None
+    end = verify(structure, excitation.site).conclusion
+    if any(each.what == "mechanism" for each in end.left_out):
+        raise MechanismError("another mechanism starts first, which the verification does not cover")
+    return nan if end.ratio is None else end.ratio
+
+
+def taken_otherwise(structure: Structure, site: SiteFile) -> Sequence[LeftOut]:
+    """Return what a structure has and a code does not count, such as the stiffness of ties."""
+    return [each for each in verify(structure, site).left_out if each.what == "tie"]
+
+
+METRICS: Mapping[str, Metric] = {
+    each.name: each
+    for each in (
+        Metric("lambda", "", "ground acceleration at uplift over g, in the weaker direction", _lambda),
+        Metric("phi_cr", "rad", "critical rotation, the smaller of both directions", _phi_cr),
+        Metric("p", "rad/s", "frequency parameter of the equivalent block, the larger of both directions", _p),
+        Metric("peak_ratio", "", "peak rotation over the critical one that half of the neighbours do not exceed",
+               of_neighbours=lambda near: near.peak_ratio[1]),
+        Metric("overturned", "", "share of the neighbours that overturn, or are of unknown outcome",
+               of_neighbours=lambda near: near.at_most),
+        Metric("ratio", "", "capacity over demand by the code of the site, by what governs in `verify`", _ratio,
+               sited=True),
+    )
+}  # fmt: skip
+"""Every metric but those of codes; one more is one more line here."""
+
+
+def _of_codes(name: str) -> Metric | None:
+    """Return the metric of a name that codes of practice have among their `numbers`; None if none has it."""
+    own: dict[str, Number] = {}
+    for key in codes():
+        try:
+            if (number := codes()[key].numbers.get(name)) is not None:
+                own[key] = number
+        except MechanismError as error:
+            leave_out(error)
+    if not own:
+        return None
+
+    def value(structure: Structure, excitation: Excitation | None) -> float:
+        if one.of_structure is not None:
+            structure.statics  # noqa: B018 - what does not stand is refused with its name
+            with _blamed(first, name):
+                return min(
+                    one.of_structure(structure.mechanism, direction) for direction in structure.mechanism.directions
+                )
+        assert excitation is not None and excitation.site is not None
+        key = excitation.site.site.code
+        of = own[key].of
+        assert of is not None  # else it is of the structure
+        verified = verify(structure, excitation.site).directions.values()
+        with _blamed(key, name):
+            return min((value for direction in verified if (value := of(direction)) is not None), default=nan)
+
+    first, one = next(iter(own.items()))
+    return Metric(name, one.unit, one.meaning, value, sited=one.of_structure is None, codes=tuple(own))
+
+
+def _blamed(code: str, name: str) -> AbstractContextManager[None]:
+    """Turn errors in a number of a code into errors of the code's plugin."""
+    return blame(f"the code {code} failed in its number {name}", type(codes()[code]).__module__)
+
+
+def known_metrics() -> list[str]:
+    """Return the names of all metrics, with those of the installed codes last."""
+    found = dict.fromkeys(METRICS)
+    for key in codes():
+        try:
+            found |= dict.fromkeys(codes()[key].numbers)
+        except MechanismError as error:
+            leave_out(error)
+    return list(found)
+
+
+def metric(name: str) -> Metric:
+    """Return the metric of a name. Raises `InputError` if there is none."""
+    found = METRICS.get(name) or _of_codes(name)
+    if found is None:
+        hint = did_you_mean(name, known_metrics())
+        raise InputError(Problem(f"{cut(repr(name))} is not a metric", hint=hint))
+    return found

@@ -1,0 +1,419 @@
+"""Values of one field of a structure for which it meets a requirement: the least thickness, the largest load."""
+
+from __future__ import annotations
+
+import operator
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import inf, isfinite, isnan, nan
+
+import numpy as np
+
+from rocking_cli.arrays import Bools, Reals
+from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
+from rocking_cli.names import percent
+from rocking_cli.questions.design.metrics import Excitation, Metric, metric, taken_otherwise
+from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import Concluded, Conclusion, LeftOut
+from rocking_cli.studies.neighbours import Neighbours
+from rocking_cli.text import cut
+from rocking_cli.units import UnitError, read, split
+
+OPERATORS: dict[str, Callable[[float, float], bool]] = {
+    "<=": operator.le, ">=": operator.ge, "<": operator.lt, ">": operator.gt,
+}  # fmt: skip
+POINTS = 41  # of the scan
+FINEST = 1e-12  # of the range: how closely an edge is found
+COARSE = 1e-3  # the same for shares of histories, which move by steps
+ROUNDING = 1e-9  # relative: steps against the trend that rounding may make
+_AIM = re.compile(r"\s*([A-Za-z]\w*)\s*(<=|>=|<|>)\s*(\S.*?)\s*")
+
+
+@dataclass(frozen=True)
+class Aim:
+    """A requirement on a metric, such as `lambda >= 0.2`.
+
+    Parameters
+    ----------
+    metric : Metric
+        The quantity that the requirement limits.
+    op : str
+        One of `<`, `<=`, `>`, `>=`.
+    level : float
+        The limit, in the unit of the metric.
+    """
+
+    metric: Metric
+    op: str
+    level: float
+
+    @classmethod
+    def parse(cls, text: str) -> Aim:
+        """Read a requirement such as `lambda >= 0.2`. Raises `InputError` if the text is not one."""
+        found = _AIM.fullmatch(text)
+        if found is None:
+            hint = "write METRIC OP NUMBER, such as `lambda >= 0.2`, with <, <=, > or >="
+            raise InputError(Problem(f"{cut(repr(text))} is not a valid requirement", hint=hint))
+        asked, number = metric(found[1]), found[3]
+        return cls(asked, found[2], _number(number, asked.unit))
+
+    def __str__(self) -> str:
+        return f"{self.metric.name} {self.op} {self.level:.6g}{f' {self.metric.unit}' if self.metric.unit else ''}"
+
+    @property
+    def wants_more(self) -> bool:
+        """Whether the metric must exceed the level."""
+        return self.op[0] == ">"
+
+    def holds(self, value: float) -> bool:
+        """Return whether a value of the metric meets the requirement; NaN does not."""
+        return OPERATORS[self.op](value, self.level)
+
+
+def _number(text: str, unit: str) -> float:
+    """Read a number or a quantity in a unit; a number without a unit may be given in per cent."""
+    plain = text.removesuffix("%").strip()
+    try:
+        if (parts := split(plain)) is not None and not parts[1] and (plain == text.strip() or not unit):
+            value = float(plain) / (1 if plain == text.strip() else 100)
+        else:
+            value = read(text, unit)
+    except UnitError as error:
+        raise InputError(Problem(error.message, hint=error.hint)) from None
+    if not isfinite(value):
+        raise InputError(Problem(f"{cut(repr(text))} is not a finite number"))
+    return value
+
+
+@dataclass(frozen=True)
+class Span:
+    """A field and the range over which it varies, as the user wrote them.
+
+    Parameters
+    ----------
+    field : str
+        Name of the field, with dots for a field inside another one.
+    low, high : str
+        Both ends of the range: numbers or quantities with a unit.
+    """
+
+    field: str
+    low: str
+    high: str
+
+    @classmethod
+    def parse(cls, text: str) -> Span:
+        """Read a text such as `width=0.2m:0.8m`. Raises `InputError` if it is not a range of a field."""
+        name, equals, values = text.partition("=")
+        ends = values.split(":")
+        if not equals or not name.strip() or len(ends) != 2 or not all(each.strip() for each in ends):
+            hint = "write FIELD=LOW:HIGH, such as width=0.2m:0.8m"
+            raise InputError(Problem(f"{cut(repr(text))} is not a valid FIELD=LOW:HIGH", hint=hint))
+        return cls(name.strip(), ends[0].strip(), ends[1].strip())
+
+    def in_unit(self, unit: str) -> tuple[float, float]:
+        """Return both ends as numbers. Raises `InputError` if they are not numbers, or are not increasing."""
+        low, high = _number(self.low, unit), _number(self.high, unit)
+        if not low < high:
+            hint = "give the smaller value first"
+            raise InputError(Problem(f"{self.low}:{self.high} is not increasing", field=self.field, hint=hint))
+        return low, high
+
+
+@dataclass(frozen=True)
+class NotBuilt:
+    """A part of the range in which the metric does not exist.
+
+    Parameters
+    ----------
+    low, high : float
+        The first and the last of the values tried in this part.
+    reason : str
+        Why the metric does not exist at the first of them.
+    """
+
+    low: float
+    high: float
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """The values of a field at which a requirement is met.
+
+    Parameters
+    ----------
+    structure : str
+        Name of the structure.
+    field, unit : str
+        The field that varies, and its unit.
+    aim : Aim
+        The requirement.
+    given : float or None
+        Value of the field in the structure as given.
+    values, metric : ndarray, shape (n,)
+        The scan: values of the field at equal steps, and the metric there; NaN where it does not exist.
+    holds : sequence of (float, float)
+        The ranges in which the requirement is met, as far as the scan can tell.
+    monotone : bool
+        Whether the metric is monotonic over the scan, so that there is at most one range.
+    value : float or None
+        The edge of the range that reaches an end of the scan: the least value from which the requirement is met, or the
+        largest up to which it is met. None if it is met nowhere, everywhere, or at neither end.
+    not_built : sequence of NotBuilt
+        The parts of the scan in which the metric does not exist.
+    behind : sequence of (Neighbours or None)
+        The neighbours of the motion that governs at each value; None of a metric that needs no motions.
+    caution : str
+        A caution about the lambda of the structure as given; empty if there is none.
+    taken_otherwise : sequence of LeftOut
+        What the code does not count of the structure, at either end of the scan.
+    motions : sequence of str
+        Names of the motions, of which the worst governs at each value.
+    """
+
+    structure: str
+    field: str
+    unit: str
+    aim: Aim
+    given: float | None
+    values: Reals
+    metric: Reals
+    holds: Sequence[tuple[float, float]]
+    monotone: bool
+    value: float | None
+    not_built: Sequence[NotBuilt] = ()
+    behind: Sequence[Neighbours | None] = ()
+    caution: str = ""
+    taken_otherwise: Sequence[LeftOut] = ()
+    motions: Sequence[str] = ()
+
+    @property
+    def has_effect(self) -> bool:
+        """Whether the metric differs anywhere over the scan."""
+        there = self.metric[~np.isnan(self.metric)]
+        return there.size < 2 or not np.allclose(there, there[0], rtol=ROUNDING, atol=0.0)
+
+    @property
+    def everywhere(self) -> bool:
+        """Whether the requirement is met at every value of the scan."""
+        return bool(self.met.all())
+
+    @property
+    def met(self) -> Bools:
+        """Whether the requirement is met at each value of the scan."""
+        return np.array([self.aim.holds(each) for each in self.metric.tolist()])
+
+    @property
+    def conclusion(self) -> Conclusion:
+        """Whether the requirement is met at any value; unknown if it may be where outcomes are unknown."""
+        if self.holds:
+            what = Concluded.SATISFIED
+        elif any(each is not None and each.unknown and not each.half_overturn for each in self.behind):
+            what = Concluded.UNKNOWN
+        else:
+            what = Concluded.NOT_SATISFIED
+        return Conclusion(concluded=what, motions=self.motions)
+
+    @property
+    def is_least(self) -> bool:
+        """Whether `value` is the least that meets the requirement; otherwise it is the largest that does."""
+        return bool(self.met[-1])
+
+
+def design(
+    structure: Structure,
+    field: str,
+    span: tuple[float, float],
+    aim: Aim,
+    excitation: Excitation | None = None,
+    *,
+    points: int = POINTS,
+    progress: Callable[[int], None] | None = None,
+) -> Design:
+    """Find the values of a field at which a structure meets a requirement.
+
+    Parameters
+    ----------
+    structure : Structure
+        The structure.
+    field : str
+        Path of the numeric field that varies, see `Structure.unit_of`.
+    span : (float, float)
+        Smallest and largest value to try, in the unit of the field.
+    aim : Aim
+        The requirement.
+    excitation : Excitation, optional
+        Ground motions and site, for metrics that need them.
+    points : int
+        Number of values of the scan, at equal steps over the span.
+    progress : callable, optional
+        Called with the number of values of the scan computed since the last call.
+
+    Raises
+    ------
+    InputError
+        If the metric needs ground motions and there are none, or there are too few points.
+
+    Notes
+    -----
+    If one of two consecutive values of the scan meets the requirement and the other does not, the edge between them is
+    found by Brent's method, or by bisection if the metric is a step function. If both or neither meet it, the interval
+    is not searched: a metric that is not monotonic there may hide a range. If a metric of time histories is not
+    monotonic over the scan, edges are values of the scan, because a root would be one of many.
+
+    An unknown outcome meets no requirement: it counts as overturning if the metric must be small, and the metric does
+    not exist if it must be large.
+    """
+    if aim.metric.sited:
+        _check_site(aim.metric, excitation)
+    if aim.metric.shaken and (excitation is None or not excitation.motions or not excitation.around.count):
+        message = f"{aim.metric.name} needs a ground motion with neighbouring motions"
+        raise InputError(Problem(message, hint="give `motions`"))
+    if points < 2:
+        raise InputError(Problem(f"must be at least 2, got {points}", field="points"))
+
+    def metric(value: float) -> float:
+        return _at(structure, field, value, aim, excitation)[0]
+
+    values = np.linspace(*span, points)
+    numbers, reasons, behind = np.full(points, nan), dict[int, str](), list[Neighbours | None]()
+    for k, value in enumerate(values.tolist()):
+        numbers[k], near, reason = _at(structure, field, value, aim, excitation)
+        behind.append(near)
+        if reason is not None:
+            reasons[k] = reason
+        if progress is not None:
+            progress(1)
+    monotone = _is_monotone(numbers)
+
+    def edge(inside: int, outside: int) -> float:
+        ends = float(values[inside]), float(values[outside])
+        if aim.metric.shaken and (not monotone or isnan(numbers[outside])):
+            return ends[0]
+        if aim.metric.shaken or isnan(numbers[outside]):
+            closest = (COARSE if aim.metric.shaken else FINEST) * abs(ends[1] - ends[0])
+            return _last_that_holds(metric, aim, *ends, closest)
+        return _edge(metric, aim, *ends)
+
+    met = [aim.holds(number) for number in numbers.tolist()]
+    holds = _ranges(values, met, edge)
+    whole = all(met)
+    value = None if whole or not holds else holds[-1][0] if met[-1] else holds[0][1] if met[0] else None
+    return Design(
+        structure.name, field, structure.unit_of(field), aim, structure.value_of(field), values, numbers, holds,
+        monotone, value, _not_built(values, reasons), behind, structure.mechanism.own_caution(),
+        _taken_otherwise(structure, field, span, aim, excitation),
+        [each.name for each in excitation.motions] if excitation is not None else [],
+    )  # fmt: skip
+
+
+def _check_site(metric: Metric, excitation: Excitation | None) -> None:
+    """Raise `InputError` if a metric that requires a site has none, or if the site is for another code."""
+    if excitation is None or excitation.site is None:
+        hint = "give the file of a site: `rocking new site` prints one"
+        raise InputError(Problem(f"{metric.name} requires a site", field="`site`", hint=hint))
+    code = excitation.site.site.code
+    if metric.codes and code not in metric.codes:
+        message = f"{metric.name} is a number of {' and '.join(metric.codes)}, but the site is for {code}"
+        raise InputError(Problem(message, hint="every code has a `ratio`"))
+
+
+def _taken_otherwise(
+    structure: Structure, field: str, span: tuple[float, float], aim: Aim, excitation: Excitation | None
+) -> Sequence[LeftOut]:
+    """Return, each once, what the code does not count of the structure, at both ends of the range."""
+    if not aim.metric.sited or excitation is None or excitation.site is None:
+        return []
+    found: dict[LeftOut, None] = {}
+    for value in span:
+        try:
+            found |= dict.fromkeys(taken_otherwise(structure.varied(field, value), excitation.site))
+        except (InputError, MechanismError):  # its reason is among those of `not_built`
+            continue
+    return list(found)
+
+
+def _at(
+    structure: Structure, field: str, value: float, aim: Aim, excitation: Excitation | None
+) -> tuple[float, Neighbours | None, str | None]:
+    """Return the metric at a value, and the neighbours behind it; or NaN, and why it does not exist."""
+    try:
+        number, near = aim.metric.at(structure.varied(field, value), excitation)
+    except InputError as error:
+        return nan, None, "; ".join(str(Problem(problem.message, field=problem.field)) for problem in error.problems)
+    except (MechanismError, SolverError) as error:
+        return nan, None, str(error)
+    if isnan(number):
+        return nan, None, structure.why_no_block or f"{aim.metric.name} does not exist"
+    if near is not None and near.unknown and aim.wants_more:
+        return nan, near, f"{percent(near.unknown)} of the neighbouring motions have an unknown outcome"
+    return number, near, None
+
+
+def _is_monotone(metric: Reals) -> bool:
+    """Return whether a metric is monotonic over the scan; a gap without values counts as not monotonic."""
+    there = np.flatnonzero(~np.isnan(metric))
+    if there.size and there[-1] - there[0] + 1 > there.size:
+        return False
+    metric = metric[there]
+    with np.errstate(invalid="ignore"):
+        steps = np.where(metric[1:] == metric[:-1], 0.0, metric[1:] - metric[:-1])  # two infinities are the same
+    finite = np.abs(metric[np.isfinite(metric)])
+    small = ROUNDING * float(finite.max(initial=0.0))
+    return bool((steps >= -small).all() or (steps <= small).all())
+
+
+def _ranges(values: Reals, met: Sequence[bool], edge: Callable[[int, int], float]) -> list[tuple[float, float]]:
+    """Return the ranges of consecutive values at which the requirement is met, each extended to its edges."""
+    ranges = []
+    for k, here in enumerate(met):
+        if not here or (k and met[k - 1]):
+            continue
+        last = next((j for j in range(k, len(met)) if not met[j]), len(met)) - 1
+        low = edge(k, k - 1) if k else float(values[0])
+        high = edge(last, last + 1) if last + 1 < len(met) else float(values[-1])
+        ranges.append((low, high))
+    return ranges
+
+
+def _edge(at: Callable[[float], float], aim: Aim, inside: float, outside: float) -> float:
+    """Return the edge between a value that meets a requirement and one that does not.
+
+    The metric may be infinite at both values, but not NaN.
+    """
+    from scipy.optimize import brentq
+
+    bound = 1 + abs(aim.level)
+
+    def beyond(x: float) -> float:
+        away = at(x) - aim.level
+        return inf if isnan(away) else min(max(away, -bound), bound)
+
+    for end in (inside, outside):  # reached exactly, where the level itself may count or not
+        if beyond(end) == 0.0:
+            return end
+    closest = FINEST * abs(outside - inside)
+    return float(brentq(beyond, inside, outside, xtol=closest, rtol=4 * np.finfo(float).eps, maxiter=200))
+
+
+def _last_that_holds(at: Callable[[float], float], aim: Aim, inside: float, outside: float, closest: float) -> float:
+    """Return by bisection the last value that meets a requirement, if the metric is a step function or NaN outside."""
+    while abs(outside - inside) > closest:
+        middle = (inside + outside) / 2
+        if middle in (inside, outside):
+            break
+        inside, outside = (middle, outside) if aim.holds(at(middle)) else (inside, middle)
+    return inside
+
+
+def _not_built(values: Reals, reasons: dict[int, str]) -> list[NotBuilt]:
+    """Return the ranges of consecutive values that have no metric, each with the reason at its first value."""
+    found: list[NotBuilt] = []
+    for k in sorted(reasons):
+        if k - 1 in reasons and found:
+            found[-1] = NotBuilt(found[-1].low, float(values[k]), found[-1].reason)
+        else:
+            found.append(NotBuilt(float(values[k]), float(values[k]), reasons[k]))
+    return found

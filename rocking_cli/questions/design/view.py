@@ -1,0 +1,190 @@
+"""View of a design: the values at which a structure meets a requirement, as text and as data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from rocking_cli import names
+from rocking_cli.names import percent
+from rocking_cli.questions.design.metrics import Excitation
+from rocking_cli.questions.design.study import Design
+from rocking_cli.studies.conclusion import Concluded, NextStep
+from rocking_cli.text import one_line
+from rocking_cli.views.column import Column, frame_of, only_shown, table_of
+from rocking_cli.views.conclusion import STEPS, conclusion_data, not_counted
+from rocking_cli.views.neighbours import deviations
+from rocking_cli.views.verdict import unchecked
+from rocking_cli.views.view import ABSENT, Table, View
+
+ROWS = 11  # of the scan in the table, at most
+
+
+def view(found: Design, excitation: Excitation | None = None) -> View:
+    """Show the answer in a sentence, the scan, and remarks."""
+    title = f"{found.structure}: {found.field} for {found.aim}"
+    return View(lambda: data(found), [f"{title}. {answer(found)}", scan(found), *doubts(found, excitation)])
+
+
+def data(found: Design) -> dict[str, Any]:
+    """Return a design as plain data."""
+    every = range(len(found.values))
+    unknown = {each.key: [each.of(k) for k in every] for each in _unknown(found) if found.aim.metric.shaken}
+    return {
+        "structure": found.structure,
+        "field": found.field,
+        "unit": found.unit,
+        "given": found.given,
+        "value": found.value,
+        "metric": found.aim.metric.name,
+        "until": str(found.aim),
+        "holds": [list(each) for each in found.holds],
+        "everywhere": found.everywhere,
+        "conclusion": conclusion_data(found.conclusion),
+        "monotone": found.monotone,
+        "scan": {"values": found.values.tolist(), "metric": found.metric.tolist(), **unknown},
+        "not_built": [{"low": each.low, "high": each.high, "reason": each.reason} for each in found.not_built],
+        "taken_otherwise": not_counted(found.taken_otherwise),
+        "verdict": answer(found),
+    }
+
+
+def columns(found: Design) -> dict[str, list[Any]]:
+    """Return the scan as columns of a table."""
+    return frame_of(_columns(found), range(len(found.values)))
+
+
+def _columns(found: Design) -> list[Column[int]]:
+    """Return the columns of the scan, whose rows are the values tried."""
+    metric = found.aim.metric
+    return [
+        Column(found.field, found.values.item, found.unit, _head(found.field, found.unit), _value),
+        Column(metric.name, found.metric.item, metric.unit),
+        only_shown(_head(metric.name, metric.unit), partial(_metric, found)),
+        *(_unknown(found) if metric.shaken else ()),
+        Column("holds", lambda k: "yes" if found.met[k] else "no", head="holds", text=True),
+    ]
+
+
+def _head(name: str, unit: str) -> str:
+    return f"{name}\n[{unit}]" if unit else name
+
+
+def _unknown(found: Design) -> Iterator[Column[int]]:
+    """Yield the column of the share of unknown outcome, which terminals have only if there is one."""
+    shares = [None if near is None else near.unknown for near in found.behind]
+    yield Column("unknown", shares.__getitem__, head="unknown\noutcome" if any(shares) else None, form=percent)
+
+
+def scan(found: Design) -> Table:
+    """Return the table of the scan; of many values only some."""
+    shown = np.unique(np.linspace(0, len(found.values) - 1, min(ROWS, len(found.values))).round().astype(int))
+    return table_of("", _columns(found), shown.tolist())
+
+
+def answer(found: Design) -> str:
+    """Return the answer in a sentence or two."""
+    aim, low, high = found.aim, _with_unit(found, found.values[0]), _with_unit(found, found.values[-1])
+    if found.everywhere:
+        return f"{aim} holds at every value of {found.field} tried, from {low} to {high}."
+    if found.conclusion.concluded is Concluded.UNKNOWN:
+        return (
+            f"Whether {aim} holds at any value of {found.field} tried, from {low} to {high}, is unknown: if unknown "
+            f"outcomes count as overturning, {_nearest(found)}"
+        )
+    if not found.holds:
+        return f"{aim} holds at no value of {found.field} tried, from {low} to {high}: {_nearest(found)}"
+    if found.value is not None and len(found.holds) == 1 and (found.monotone or not aim.metric.shaken):
+        which, end = ("smallest", high) if found.is_least else ("largest", low)
+        return (
+            f"The {which} {found.field} for which {aim} holds is {_with_unit(found, found.value)}; from there it holds "
+            f"to the end of the range tried, {end}."
+        )
+    ranges = [f"from {_with_unit(found, a)} to {_with_unit(found, b)}" for a, b in found.holds]
+    listed = " and ".join([", ".join(ranges[:-1]), ranges[-1]] if len(ranges) > 1 else ranges)
+    said = f"Judging by the {len(found.values)} values tried, {aim} holds for {found.field} {listed}"
+    if found.value is None:
+        return f"{said}, but at neither end of the range tried, {low} to {high}."
+    way = "upwards" if found.is_least else "downwards"
+    return f"{said}." if len(ranges) == 1 else f"{said}: from {_with_unit(found, found.value)} {way} without a gap."
+
+
+def doubts(found: Design, excitation: Excitation | None) -> list[str]:
+    """Return remarks on the answer."""
+    said = [f"{each} Next: {STEPS[NextStep.YIELD_FORCE]}." for each in not_counted(found.taken_otherwise)]
+    count = len(found.values)
+    if not found.has_effect and not found.aim.metric.shaken:
+        said.append(f"{found.aim.metric.name} is the same at every value tried: {found.field} has no effect on it.")
+    if not found.monotone and np.isfinite(found.metric).any():
+        closer = "the edges given are values tried" if found.aim.metric.shaken else "the edges given lie between them"
+        said.append(
+            f"{found.aim.metric.name} is not monotonic over the range: {count} equally spaced values were tried, "
+            f"{closer}, and intervals whose two ends agree were not searched."
+        )
+    for each in found.not_built:
+        span = _with_unit(found, each.low)
+        span = f"At {span}" if each.low == each.high else f"From {span} to {_with_unit(found, each.high)}"
+        said.append(f"{span} {found.aim.metric.name} could not be computed: {one_line(each.reason)}.")
+    if found.caution:
+        said.append(f"Caution, of the structure as given: {found.caution}")
+    if found.aim.metric.shaken and excitation is not None:
+        said.append(
+            f"One time history is one sample: at each value, {excitation.around.count} neighbouring motions are "
+            f"simulated, {deviations(excitation.around)}. The metric is based on a share of them, which changes in "
+            f"steps of {percent(1 / excitation.around.count)}."
+        )
+        said += _not_known(found)
+        if len(excitation.motions) > 1:
+            said.append(f"At each value, the worst of {len(excitation.motions)} motions governs.")
+    return said
+
+
+def _not_known(found: Design) -> Iterator[str]:
+    """Say at how many values outcomes are unknown, or that the joints are not checked."""
+    shares = [near.unknown for near in found.behind if near is not None]
+    some = [share for share in shares if share]
+    if some:
+        count = (
+            "so the requirement is not met there"
+            if found.aim.wants_more
+            else "they count as overturning, though they may stand"
+        )
+        yield (
+            f"At {len(some)} of the {len(found.values)} values, up to {percent(max(some))} of the neighbouring motions "
+            f"have an unknown outcome, as a joint opens or slides that the model keeps closed: {count}."
+        )
+    if None in shares:
+        yield unchecked()
+
+
+def _nearest(found: Design) -> str:
+    """Return the best value of the metric in the scan, as the end of a sentence."""
+    there = np.flatnonzero(~np.isnan(found.metric))
+    if not there.size:
+        return f"{found.aim.metric.name} could not be computed at any of these values."
+    best = there[(found.metric[there].argmin() if found.aim.op[0] == "<" else found.metric[there].argmax())]
+    value, place = _metric(found, int(best)), _with_unit(found, found.values[best])
+    return f"the {'smallest' if found.aim.op[0] == '<' else 'largest'} {found.aim.metric.name} is {value}, at {place}."
+
+
+def _value(value: float) -> str:
+    return f"{value + 0.0:.6g}"
+
+
+def _with_unit(found: Design, value: float) -> str:
+    return f"{_value(float(value))}{f' {found.unit}' if found.unit else ''}"
+
+
+def _metric(found: Design, k: int) -> str:
+    """Format the metric at a value tried: a share in %, and what most neighbours do if there is no median peak."""
+    value, near = float(found.metric[k]), found.behind[k]
+    if np.isnan(value):
+        return ABSENT
+    if found.aim.metric.name == "overturned":
+        return percent(value)
+    if np.isinf(value):
+        return names.OVERTURNS if near is None or near.half_overturn else names.UNKNOWN
+    return f"{value:.5g}"

@@ -1,0 +1,1 @@
+"""`draw`: a structure at rest and displaced, with dimensions."""

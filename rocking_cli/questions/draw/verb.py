@@ -1,0 +1,74 @@
+"""`rk.draw`: draw a structure at rest and displaced."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from rocking_cli.ask.answer import Answer, drawn
+from rocking_cli.ask.given import StructureLike, structure_of
+from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.views.view import heading
+
+if TYPE_CHECKING:
+    from rocking_cli.io.tables import Columns
+    from rocking_cli.studies.picture import Picture
+
+
+@takes_numbers
+def draw(structure: StructureLike, *, at: float | None = None, watch: Watcher = SILENT) -> Answer[Picture]:
+    """Draw a structure at rest with its dimensions, and displaced in both directions.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        The structure, or its YAML file.
+    at : float, optional
+        Rotation to draw, as a multiple of phi_cr, or of the kinematic limit if there is no phi_cr; at most the
+        kinematic limit. By default 1, or a rotation that is easy to see.
+    watch : Watcher
+        Told what is doubtful about the structure.
+
+    Returns
+    -------
+    Answer of Picture
+        Parts of the structure, its dimensions, and the positions of the parts at any rotation.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+
+    Notes
+    -----
+    Rotations and phi_cr as in DeJong and Dimitrakopoulos (2014), Section 3.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> answer = rk.draw(rk.Block(width=0.7, height=2.8), at=0.5)
+    >>> [length.text for length in answer.sketch.lengths]
+    ['2b = 0.7 m', '2h = 2.8 m', 'R = 1.44 m']
+    """
+    from rocking_cli.questions.draw.view import view
+    from rocking_cli.studies.picture import picture
+
+    if at is not None and not at > 0:
+        raise InputError(Problem(f"must be a multiple of phi_cr above 0, got {at:g}", field="`at`"))
+    ready = structure_of(structure, watch)
+    with ready.named():
+        found = picture(ready.mechanism)
+    if at is not None and at > found.furthest:
+        of = "the limit" if None in found.phi_cr.values() else "phi_cr"
+        what = f"{at:g} times {of} is beyond the kinematic limit of the mechanism"
+        raise InputError(Problem(what, field="`at`", hint=f"at most {found.furthest:.4g} times {of}"))
+    figure = drawn("plotting.structure.draw_structure", found, heading(ready.mechanism), at)
+    return Answer("drawing", found, view(found), partial(_columns, found), figure)
+
+
+def _columns(found: Picture) -> Columns:
+    return {"length": [each.text for each in found.sketch.lengths]}

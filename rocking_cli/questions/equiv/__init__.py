@@ -1,0 +1,1 @@
+"""`equiv`: the equivalent rocking block of a structure."""

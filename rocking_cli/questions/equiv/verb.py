@@ -1,0 +1,90 @@
+"""`rk.equiv`: compute the equivalent rocking block of a structure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Any, overload
+
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.given import StructureLike, structure_figure, structure_of, structures_of
+from rocking_cli.ask.ground_motions import each_of
+from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.several import Answers, answers
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.core import Equivalence
+from rocking_cli.errors import MechanismError
+from rocking_cli.structure import Structure
+
+
+@overload
+def equiv(structures: StructureLike, *, watch: Watcher = ...) -> Answer[Equivalence | None]: ...
+@overload
+def equiv(structures: list[Any] | tuple[Any, ...], *, watch: Watcher = ...) -> Answers[Answer[Equivalence | None]]: ...
+@takes_numbers
+def equiv(
+    structures: StructureLike | Sequence[StructureLike], *, watch: Watcher = SILENT
+) -> Answer[Equivalence | None] | Answers[Answer[Equivalence | None]]:
+    """Compute the equivalent single rocking block of structures, in both directions.
+
+    Parameters
+    ----------
+    structures : Mechanism, str or Path, or a sequence of these
+        The structure, or its YAML file; or several.
+    watch : Watcher
+        Told what is doubtful about the structures, how to read the parameters, and which structures cannot be used.
+
+    Returns
+    -------
+    Answer of Equivalence or None
+        `positive` and `negative` are the blocks; see `equivalent_block`. None if no single block is equivalent; its
+        sentences and `to_dict` give the reason. For a sequence of structures, `Answers` with one for each, by its name.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+    MechanismError
+        If the structure has no critical rotation or no uplift acceleration.
+
+    Notes
+    -----
+    DeJong and Dimitrakopoulos (2014), Section 3: Eq. 9 for phi_cr, Eq. 10 for lambda, Eq. 13 for I_eq, G_eq and B_eq,
+    Eqs. 15 and 20 for kappa1 and kappa2, Eq. 17 for p and theta_cr; eta from kinematics, for a block Housner (1963),
+    unless it is given.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> answer = rk.equiv(rk.Block(width=1.0, height=4.0))
+    >>> round(answer.positive.lambda_, 6)
+    0.25
+    """
+    given = each_of(structures)
+    if not isinstance(structures, list | tuple):
+        return _of_one(structure_of(given[0], watch), watch)
+    ready = structures_of(given, watch)
+    found, refused = dict[str, Answer[Equivalence | None]](), list[MechanismError]()
+    for structure in ready:
+        try:
+            found[structure.name] = answer = _of_one(structure, watch)
+        except MechanismError as error:
+            refused.append(error)
+            if len(refused) == len(ready):
+                raise
+            watch.leave_out(error)
+        else:
+            watch.take(answer)
+    parts = [part for each in found.values() for part in each.view.parts]
+    return answers("equivalent blocks", "structure", found, parts)
+
+
+def _of_one(structure: Structure, watch: Watcher) -> Answer[Equivalence | None]:
+    from rocking_cli.questions.equiv import view as views
+
+    found = structure.equivalence if structure.why_no_block is None else None
+    shown = views.view(structure)
+    for text in views.notes(structure.mechanism):
+        watch.note(text)
+    columns, figure = partial(views.table, [structure]), partial(structure_figure, structure.mechanism)
+    return Answer("equivalent block", found, shown, columns, figure)

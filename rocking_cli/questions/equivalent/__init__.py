@@ -1,0 +1,1 @@
+"""`equivalent`: the equivalent pulses of several structures."""

@@ -1,0 +1,151 @@
+"""View of pulses to which structures are equivalently vulnerable, as text and as data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import isnan
+
+from rocking_cli import names
+from rocking_cli.dynamics.outcome import OneOutcome
+from rocking_cli.dynamics.verdict import CLOSE
+from rocking_cli.questions.equivalent.study import EquivalentResponses, PulsedStructure
+from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
+from rocking_cli.views.response import known_data
+from rocking_cli.views.verdict import unchecked, why_unknown
+from rocking_cli.views.view import View
+
+NEAR, FAR = 0.05, 0.2  # spread over the linear peak up to which structures are equivalent, and so approximately
+
+
+def _peak(outcome: OneOutcome) -> str:
+    if outcome.unknown:
+        return f"{names.UNKNOWN}, >= {outcome.lower_bound:.4g}"
+    return f"{outcome.peak_ratio:.4g}" if outcome.peak_ratio > 0 else outcome.words
+
+
+COLUMNS: tuple[Column[PulsedStructure], ...] = (
+    Column("mechanism", of("mechanism")),
+    Column("name", of("name"), head="", text=True),
+    Column("p", of("block.p"), "rad/s"),
+    Column("lambda", of("block.lambda_")),
+    Column("lambda_lin", of("block.lambda_lin")),
+    Column("ag", of("amplitude"), "g", "a_g [g]"),
+    Column("period", of("pulse.period"), "s", "T [s]"),
+    Column("eta", of("eta"), head="eta"),
+    Column("own_eta", of("own_eta")),
+    Column("peak_ratio", of("history.peak_ratio")),
+    only_shown("peak / phi_cr", of("history"), _peak),
+    Column("overturned", of("history.overturned")),
+)
+
+
+def view(found: EquivalentResponses) -> View:
+    """Show each structure under its own pulse, the linear block that they share, and a verdict."""
+    verdict = " ".join(judge(found))
+    data = {
+        "pulse": found.members[0].pulse.name,
+        "polarity": found.polarity,
+        "kappa": found.kappa,
+        "a": found.a,
+        "omega": found.omega,
+        "direction": found.direction.label,
+        "structures": [{**data_of(COLUMNS, each), **known_data(each.history)} for each in found.members],
+        "linear_peak_ratio": found.alone.peak_ratio,
+        "spread": found.spread,
+        "relative_spread": found.relative_spread,
+        "verdict": verdict,
+    }
+    table = table_of(title(found), COLUMNS, found.members)
+    alone = ["linear block", "", "", f"{found.members[0].eta:.4g}", _peak(found.alone)]
+    cautions = [unchecked(each.name) for each in found.members if each.history.check is None]
+    cautions += [f"Caution: {each.name}: {each.caution}" for each in found.members if each.caution]
+    return View(data, [replace(table, rows=[*table.rows, alone]), verdict, *cautions])
+
+
+def title(found: EquivalentResponses) -> str:
+    """Return the shape of the pulses and their common a and omega, as a heading."""
+    return f"{found.members[0].pulse.title}, a = {found.a:.4g}, omega = {found.omega:.4g}"
+
+
+def table(found: EquivalentResponses) -> dict[str, Sequence[object]]:
+    """Return the columns of a table: p t, and time and rotation of each structure; empty after their end."""
+
+    def padded(values: list[float]) -> list[float]:
+        return values + [float("nan")] * (found.tau.size - len(values))
+
+    columns: dict[str, Sequence[object]] = {"p t": found.tau.tolist()}
+    for each in found.members:
+        columns[f"{each.name} t [s]"] = padded(each.history.time.tolist())
+        columns[f"{each.name} phi/phi_cr"] = padded(each.history.ratio.tolist())
+    columns["linear block phi/phi_cr"] = padded(found.linear.ratio.tolist())
+    return columns
+
+
+def judge(found: EquivalentResponses) -> list[str]:
+    """Whether the structures are equivalently vulnerable, in a few sentences.
+
+    Parameters
+    ----------
+    found : EquivalentResponses
+        The responses.
+    """
+    unknown = [each for each in found.members if each.history.unknown]
+    if unknown:
+        said = [
+            f"The outcome of {each.name} is {names.UNKNOWN} after {each.history.known_to:.4g} s, as "
+            f"{why_unknown(each.history)}."
+            for each in unknown
+        ]
+        known = tuple(each for each in found.members if not each.history.unknown)
+        if len(known) < 2:
+            return [*said, "Whether the structures are equivalently vulnerable to these pulses is not known."]
+        return [*said, f"What follows is about the other {len(known)}.", *judge(replace(found, members=known))]
+    said = []
+    fallen = [each for each in found.members if each.history.fell]
+    peaks = {each.name: each.history.peak_ratio for each in found.members if not each.history.fell}
+    linear = (
+        names.OVERTURNS
+        if found.alone.fell
+        else f"{names.ROCKS} to {found.alone.peak_ratio:.4g} of phi_cr"
+        if found.alone.peak_ratio
+        else names.NO_UPLIFT
+    )
+    if not fallen and not any(peaks.values()) and found.alone.peak_ratio == 0:
+        return [f"The linear block {names.NO_UPLIFT} (a = {found.a:.4g}, uplift needs a > 1), nor does any structure."]
+    if not peaks:
+        said.append(f"All overturn; the linear block {linear}.")
+    elif fallen:
+        who = ", ".join(each.name for each in fallen)
+        said.append(
+            f"Here the equivalence breaks: {who} overturn{'s' if len(fallen) == 1 else ''}, the rest do not; "
+            f"the linear block {linear}."
+        )
+    else:
+        part = "" if isnan(found.relative_spread) else f", {100 * found.relative_spread:.2g} % of that"
+        said.append(
+            f"The linear block {linear}; the peaks of the structures lie within {found.spread:.3g} of one another"
+            f"{part}."
+        )
+        if isnan(found.relative_spread):
+            what = f"{names.OVERTURNS} and none of the structures does" if found.alone.fell else (
+                f"{names.NO_UPLIFT} and a structure does"
+            )  # fmt: skip
+            said.append(f"The linear block {what}: here the equivalence breaks.")
+        elif found.relative_spread > FAR:
+            far = max(peaks, key=lambda name: abs(peaks[name] - found.alone.peak_ratio))
+            said.append(f"Here the equivalence breaks: {far} is the farthest from the linear block.")
+        else:
+            how = "" if found.relative_spread <= NEAR else "approximately "
+            said.append(f"They are {how}equivalently vulnerable to these pulses.")
+    if peaks and max(peaks.values()) > CLOSE:
+        said.append(
+            f"Above {CLOSE:g} of the critical rotation, small differences decide the outcome: do not rely on the "
+            "equivalence there."
+        )
+    if not found.one_eta:
+        said.append(
+            "The coefficients of restitution differ, but equivalence requires the same value for all: set it with "
+            "`eta`."
+        )
+    return said

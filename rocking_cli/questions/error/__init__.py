@@ -1,0 +1,1 @@
+"""`error`: the errors of the equivalent block."""

@@ -1,0 +1,81 @@
+"""Plot of the error of the equivalent block: free period against amplitude, overturning time against acceleration."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from rocking_cli.plotting import style
+from rocking_cli.questions.error.study import Linearisation, preferred
+
+Reals = NDArray[np.float64]
+PREFERRED, OTHER = {"linestyle": "-", "linewidth": 2.0}, {"linestyle": "--", "linewidth": 1.3}
+TALLEST = 0.5  # error shown at most, either way
+
+
+def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearisation], title: str) -> Figure:
+    """Plot the errors of the equivalent block, a row of panels for each direction.
+
+    Parameters
+    ----------
+    curves : sequence of Linearisation
+        The ratios over their ranges, one for each direction that differs.
+    asked : sequence of Linearisation
+        The same directions at the amplitudes and accelerations to mark.
+    title : str
+        Heading.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    bold = preferred(asked) or 2  # where there is nothing between them, the one that is right at uplift
+    figure = style.new_figure(2.9 * len(curves) + 0.3)
+    panels = figure.subplots(len(curves), 2, squeeze=False, sharey="col")
+    for (left, right), curve, marks in zip(panels, curves, asked, strict=True):
+        _line(left, curve.amplitude, curve.period_ratio, "either kappa", style.LINES["nonlinear"])
+        _dots(left, marks.amplitude, marks.period_ratio)
+        left.set_xlim(0.0, 1.0)
+        for kappa in (1, 2):
+            ratio = getattr(curve, f"overturning_ratio{kappa}")
+            _line(
+                right,
+                curve.acceleration,
+                ratio,
+                rf"$\kappa_{kappa}$",
+                style.LINES[f"linear{kappa}"] | (PREFERRED if kappa == bold else OTHER),
+            )
+            _dots(right, marks.acceleration, getattr(marks, f"overturning_ratio{kappa}"))
+        right.set_xscale("log")
+        right.set_xticks([1, 2, 5, 10], ["1", "2", "5", "10"])
+        right.minorticks_off()
+        right.set_xlim(1.0, curve.acceleration.max())
+        ratios = np.concatenate([curve.overturning_ratio1, curve.overturning_ratio2])
+        cut = f"not drawn: beyond {100 * TALLEST:g} %" if (np.abs(ratios - 1) > TALLEST).any() else None
+        right.legend(**style.LEGEND, loc="lower right", title=cut, title_fontsize=style.TICK, alignment="left")
+        if len(curves) > 1:
+            left.set_title(f"{curve.direction.label} direction", fontsize=style.LABEL, loc="left")
+        for axes, x, y in (
+            (left, r"amplitude $\phi/\phi_{cr}$", "error of the free period"),
+            (right, r"constant acceleration $a/\lambda$", "error of the overturning time"),
+        ):
+            axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
+            style.in_percent(axes.yaxis)
+            style.tidy(axes, x, y)
+    figure.suptitle(style.plain(style.fitted(title)), fontsize=style.TITLE, x=0.01, ha="left", color=style.INK)
+    return figure
+
+
+def _line(axes: Axes, x: Reals, ratio: Reals, label: str, look: Mapping[str, Any]) -> None:
+    error = np.where(np.abs(ratio - 1) <= TALLEST, ratio - 1, np.nan)
+    axes.plot(x, error, label=label, **look)
+
+
+def _dots(axes: Axes, x: Reals, ratio: Reals) -> None:
+    shown = np.abs(ratio - 1) <= TALLEST
+    axes.plot(x[shown], ratio[shown] - 1, "o", color=style.INK, markersize=4)

@@ -1,0 +1,161 @@
+"""View of the errors of the equivalent block of a structure, as text and as data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import inf, isfinite, isnan
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rocking_cli.core import Equivalence, Mechanism
+from rocking_cli.core.advice import SMALL, Grade
+from rocking_cli.names import percent
+from rocking_cli.questions.error.study import Errors, Linearisation, errors, preferred, velocity_ratios
+from rocking_cli.views.column import Column, of, only_shown, table_of
+from rocking_cli.views.verdict import uplift_in_words
+from rocking_cli.views.view import ABSENT, View, heading
+
+NEVER = "infinite (it never uplifts)"
+KEPT = 1e-9  # an error of the uplift acceleration that is none
+PREFERRED = {None: None, 0: "either", 1: "kappa1", 2: "kappa2"}
+
+
+class ErrorRow(NamedTuple):
+    """An error: of what, at which amplitude or acceleration, and the ratio to the structure with each kappa."""
+
+    what: str
+    at: str
+    ratio1: float
+    ratio2: float
+
+
+def _percent(ratio: float) -> str:
+    if isnan(ratio):
+        return ABSENT
+    if ratio == inf:
+        return "no uplift"
+    error = 100 * (ratio - 1)
+    return f"{error:+.0f} %" if abs(error) >= 99.95 else f"{error:+.3g} %"
+
+
+ERRORS: tuple[Column[ErrorRow], ...] = (
+    only_shown("error of", of("what"), text=True),
+    only_shown("at", of("at"), text=True),
+    only_shown("kappa1", of("ratio1"), _percent),
+    only_shown("kappa2", of("ratio2"), _percent),
+)
+
+
+def view(
+    mechanism: Mechanism, equivalence: Equivalence, curves: Sequence[Linearisation], asked: Sequence[Linearisation]
+) -> View:
+    """Show the errors at the given values, and a verdict that also uses the curves."""
+    verdict = trust(list(curves), list(asked))
+    data = {
+        "mechanism": mechanism.mechanism,
+        "name": mechanism.name,
+        "symmetric": equivalence.symmetric,
+        "directions": {each.direction.label: _data(each, mechanism.gravity) for each in asked},
+        "prefer": PREFERRED[preferred(list(asked))],
+        "grades": {f"kappa{kappa}": errors(list(asked), kappa).grade.key for kappa in (1, 2)},
+        "verdict": verdict,
+    }
+    title = heading(mechanism)
+    titles = [title] if len(asked) == 1 else [f"{title}, {each.direction.label} direction" for each in asked]
+    tables = [table_of(where, ERRORS, rows(each, mechanism.gravity)) for where, each in zip(titles, asked, strict=True)]
+    return View(data, [*tables, verdict])
+
+
+def rows(each: Linearisation, gravity: float) -> Iterator[ErrorRow]:
+    """Yield the errors of a direction."""
+    yield ErrorRow("uplift acceleration", "", each.uplift_ratio1, each.uplift_ratio2)
+    ratios = velocity_ratios(each.block, gravity)
+    yield ErrorRow("overturning velocity", f"v_imp = {each.block.v_imp:.4g} m/s", *ratios)
+    for r, ratio in zip(each.amplitude, each.period_ratio, strict=True):
+        yield ErrorRow("free period", f"phi/phi_cr = {r:g}", ratio, ratio)
+    for a, *both in zip(each.acceleration, each.overturning_ratio1, each.overturning_ratio2, strict=True):
+        yield ErrorRow("overturning time", f"a/lambda = {a:g}", *both)
+
+
+def _data(each: Linearisation, gravity: float) -> dict[str, Any]:
+    def of_both(one: float, two: float) -> dict[str, float | None]:
+        return {"kappa1": one if one < inf else None, "kappa2": two if two < inf else None}
+
+    periods = zip(each.amplitude, each.period, each.period_ratio, strict=True)
+    times = zip(each.acceleration, each.overturning, each.overturning_ratio1, each.overturning_ratio2, strict=True)
+    return {
+        "uplift_ratio": of_both(each.uplift_ratio1, each.uplift_ratio2),
+        "v_imp": each.block.v_imp,
+        "v_imp_ratio": of_both(*velocity_ratios(each.block, gravity)),
+        "free_period": [{"amplitude": r, "period": T, "ratio": ratio} for r, T, ratio in periods],
+        "overturning_time": [{"acceleration": a, "time": t, "ratio": of_both(*both)} for a, t, *both in times],
+    }
+
+
+def trust(curves: Sequence[Linearisation], asked: Sequence[Linearisation]) -> str:
+    """Say which kappa to use, what error to expect, and when to use the nonlinear history instead.
+
+    Parameters
+    ----------
+    curves : sequence of Linearisation
+        The ratios over their ranges, increasing, one for each direction that differs.
+    asked : sequence of Linearisation
+        The same directions at the amplitudes and accelerations of interest.
+
+    Returns
+    -------
+    str
+        Some sentences; of two directions the larger error counts.
+    """
+    prefer = preferred(asked)
+    order = (1, 2) if prefer == 1 else (2, 1)
+    one, two = (_on(kappa, errors(asked, kappa)) for kappa in order)
+    amplitudes = ", ".join(f"{r:g}" for r in asked[0].amplitude.tolist())
+    accelerations = ", ".join(f"{a:g}" for a in asked[0].acceleration.tolist())
+    worse = ", in the worse of the two directions" if len(asked) > 1 else ""
+    where = f"At phi/phi_cr = {amplitudes} and {accelerations} times the uplift acceleration{worse}"
+    said = [f"{where}: {one}; {two}."]
+    if prefer is None:
+        said.append("Rely on neither at these amplitudes: use the nonlinear time history of `rocking respond`.")
+    elif prefer == 0:
+        said.append("Either kappa is adequate at these amplitudes.")
+    else:
+        said.append(f"Prefer kappa{prefer} at these amplitudes.")
+    if prefer is not None and min(errors(asked, kappa).grade for kappa in (1, 2)) is Grade.ESTIMATE:
+        said.append("Base decisions on the nonlinear time history of `rocking respond`.")
+    return " ".join([*said, *_ranges(curves, order[0])])
+
+
+def _on(kappa: int, found: Errors) -> str:
+    """Describe what the block with a kappa is good for, with its errors."""
+    uplift = "kept" if abs(found.uplift) < KEPT else uplift_in_words(found.uplift)
+    overturning = f"off by {percent(found.overturning)}" if isfinite(found.overturning) else NEVER
+    numbers = (
+        f"uplift acceleration {uplift}, free period off by {percent(found.period)}, overturning time {overturning}"
+    )
+    good = {
+        Grade.AGREES: f"kappa{kappa} agrees",
+        Grade.ESTIMATE: f"kappa{kappa} is good for a first estimate",
+        Grade.DISREGARD: f"disregard kappa{kappa}",
+    }[found.grade]
+    return f"{good} ({numbers})"
+
+
+def _ranges(curves: Sequence[Linearisation], kappa: int) -> list[str]:
+    """Return sentences on the ranges in which errors are no longer small."""
+    said = []
+    far = [each.amplitude[np.abs(each.period_ratio - 1) > SMALL] for each in curves]
+    if any(values.size for values in far):
+        wide = np.concatenate(far)
+        where = f"for phi/phi_cr from {wide.min():.2g} to {wide.max():.2g}"
+        if any(values.size == each.amplitude.size for values, each in zip(far, curves, strict=True)):
+            where = "at every amplitude"
+        said.append(f"The free period is off by more than {percent(SMALL)} {where}.")
+    slow = [each.acceleration[np.abs(getattr(each, f"overturning_ratio{kappa}") - 1) > SMALL] for each in curves]
+    if any(values.size for values in slow):
+        where = f"for accelerations below {np.concatenate(slow).max():.3g} times uplift"
+        if any(values.size == each.acceleration.size for values, each in zip(slow, curves, strict=True)):
+            where = "at every acceleration"
+        said.append(f"The overturning time with kappa{kappa} is off by more than {percent(SMALL)} {where}.")
+    return said

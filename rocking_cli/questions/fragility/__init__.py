@@ -1,0 +1,1 @@
+"""`fragility` and `results`: many histories, kept in a store, and the curves fitted to them."""

@@ -1,0 +1,358 @@
+"""Fit the runs of a study: fragility curves, surfaces and annual rates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import TypeVar
+
+import numpy as np
+
+from rocking_cli.arrays import Bools, Integers, Reals
+from rocking_cli.processing.intensity import parse_measure
+from rocking_cli.questions.fragility.curves import (
+    FragilityCurve,
+    Surface,
+    exact_step,
+    fit_capacities,
+    fit_curve,
+    fit_surface,
+)
+from rocking_cli.questions.fragility.definition import LAMBDA, UPLIFT, Definition, Limit, implies
+from rocking_cli.questions.fragility.hazard_curve import HazardCurve, Rate, annual_rate
+from rocking_cli.questions.fragility.observed import Observations
+from rocking_cli.questions.fragility.plan import Plan
+from rocking_cli.questions.fragility.store import Store
+from rocking_cli.questions.fragility.tally import Cells, Counted, Onset, Tally, count, intensities
+
+MOST_UNKNOWN = 0.02  # share of runs of which it is not known whether they exceed, up to which one curve is enough
+
+
+@dataclass(frozen=True)
+class UnknownRuns:
+    """Number of runs of a structure with unknown outcome.
+
+    Parameters
+    ----------
+    structure : str
+        Name of the structure.
+    runs : int
+        Number of runs that can be used.
+    unknown : int or None
+        Number of those with unknown outcome; None if the joints are not known, so that nothing was checked.
+    checked : bool
+        Whether the joints are known in all runs.
+    """
+
+    structure: str
+    runs: int
+    unknown: int | None
+    checked: bool
+
+    @property
+    def share(self) -> float | None:
+        """Share of the runs that have an unknown outcome; None if nothing was checked."""
+        return None if self.unknown is None else self.unknown / self.runs
+
+
+@dataclass(frozen=True, eq=False)
+class _FittedTwice:
+    """A fit in which undecided runs count as exceeding, with a second fit in which they count as not exceeding."""
+
+    structure: str
+    limit: Limit
+    left_out: int = field(default=0, kw_only=True)
+    unknown: int | None = field(default=0, kw_only=True)
+
+    @property
+    def total(self) -> int:
+        """Number of runs, or of capacities, that were fitted."""
+        raise NotImplementedError
+
+    @property
+    def share(self) -> float | None:
+        """Share of undecided runs, not known to exceed the limit state or not; None if nothing was checked."""
+        return None if self.unknown is None else self.unknown / max(self.total, 1)
+
+    @property
+    def is_band(self) -> bool:
+        """Whether so many runs are undecided that the result is the band between both fits, not one of them."""
+        return self.share is not None and self.share > MOST_UNKNOWN
+
+
+@dataclass(frozen=True, eq=False)
+class Fragility(_FittedTwice):
+    """Fragility of one structure for one limit state, as a function of one intensity measure.
+
+    Parameters
+    ----------
+    structure, measure : str
+        Names of the structure and of the measure.
+    limit : str or float
+        The limit state: a word, or a ratio of rotations.
+    seen : Observations
+        The runs; in incremental dynamic analysis all levels above the first that exceeds count as exceeding.
+    curve : FragilityCurve
+        The fit.
+    rate : Rate or None
+        Annual rate of exceeding the limit state; None if the hazard is not known.
+    left_out : int
+        Number of runs left out because their intensity is not positive, or not known, so that it has no logarithm.
+    unknown : int or None
+        Number of undecided runs (in incremental dynamic analysis: capacities). Here they count as exceeding. None if
+        the joints of the structure are not known, so that nothing was checked.
+    lower : Fragility or None
+        The fit in which undecided runs count as not exceeding; None if there are none.
+    """
+
+    measure: str
+    seen: Observations
+    curve: FragilityCurve
+    rate: Rate | None
+    lower: Fragility | None = None
+
+    @property
+    def total(self) -> int:
+        """Number of runs, or of capacities, that were fitted."""
+        return self.curve.runs
+
+
+@dataclass(frozen=True, eq=False)
+class Bivariate(_FittedTwice):
+    """Fragility of one structure for one limit state, as a function of two measures; other fields as in `Fragility`.
+
+    Runs are counted in cells: `runs` and `exceeding` are the numbers of runs, and of those that exceed, at `x1` and
+    `x2`.
+    """
+
+    measures: tuple[str, str]
+    x1: Reals
+    x2: Reals
+    runs: Integers
+    exceeding: Integers
+    surface: Surface
+    lower: Bivariate | None = None
+
+    @property
+    def total(self) -> int:
+        """Number of runs that were fitted."""
+        return self.surface.runs
+
+
+Fitted = TypeVar("Fitted", Fragility, Bivariate)
+
+
+def counted(store: Store, plan: Plan, definition: Definition, progress: Counted) -> dict[str, Tally]:
+    """Count the finished runs of each structure of a store, for the limit states and measures of its study.
+
+    Parameters
+    ----------
+    store : Store
+        Open to read.
+    plan : Plan
+        The plan of its runs.
+    definition : Definition
+        The definition of its study.
+    progress : callable
+        Called with the number of runs read since the last call.
+    """
+    measures = [*definition.fitted_measures, *(one for pair in definition.bivariate for one in pair)]
+    limits, ladders = definition.limit_states, definition.method == "ida"
+    return {
+        name: count(store, plan, name, limits, measures, ladders=ladders, counted=progress) for name in plan.structures
+    }
+
+
+def fitted(
+    found: Mapping[str, Tally], definition: Definition, hazard: HazardCurve | None, progress: Callable[[int], None]
+) -> tuple[list[Fragility], list[Bivariate]]:
+    """Fit all curves and surfaces that a study requests, for the structures that have runs.
+
+    Parameters
+    ----------
+    found : mapping of str to Tally
+        The runs of each structure.
+    definition : Definition
+        The definition of the study.
+    hazard : HazardCurve or None
+        Annual rates at which intensities are exceeded.
+    progress : callable
+        Called with the number of fits made since the last call.
+    """
+    lines: list[Fragility] = []
+    planes: list[Bivariate] = []
+    for structure, runs in found.items():
+        if not runs.runs.any():
+            continue
+        for curve in curves(runs, structure, definition, hazard):
+            lines.append(curve)
+            progress(1)
+        for surface in surfaces(runs, structure, definition):
+            planes.append(surface)
+            progress(1)
+    return lines, planes
+
+
+def outcomes(found: Mapping[str, Tally]) -> list[UnknownRuns]:
+    """Return the number of runs of unknown outcome of each structure that has runs."""
+    return [
+        UnknownRuns(name, int(tally.runs.sum()), tally.unknown_if_checked, tally.checked)
+        for name, tally in found.items()
+        if tally.runs.any()
+    ]
+
+
+def curves(
+    tally: Tally, structure: str, definition: Definition, hazard: HazardCurve | None
+) -> Iterator[Fragility]:  # fmt: skip
+    """Yield the fragility curves of a structure: each limit state over each measure that is positive in some run."""
+    over = definition.hazard.measure if definition.hazard is not None else None
+    for measure in definition.fitted_measures:
+        cells = tally.over(measure)
+        x = cells.intensities(measure)
+        if not (x > 0).any():  # or not known, either
+            continue
+        runs, found = tally.ladders is None, []
+        for limit in definition.limit_states:
+            unknown = _undecided_runs(cells, limit, x > 0) if runs else _undecided_ladders(tally, limit)
+            fit = partial(_curve, x=x, structure=structure, measure=measure, limit=limit, definition=definition)
+            found.append(_twice(fit, cells, unknown))
+        for each in _consistent(found, cells.onset(measure)):
+            yield _with_rate(each, hazard) if hazard is not None and measure == over else each
+
+
+def _twice(fit: Callable[[Cells], Fitted], cells: Cells, unknown: int) -> Fitted:
+    """Return a fit in which undecided runs exceed; if there are any, with the one in which they do not."""
+    upper, tally = fit(cells), cells.tally
+    if unknown:
+        assert tally.lower is not None
+        upper = replace(upper, unknown=unknown, lower=fit(replace(cells, tally=tally.lower)))
+    return upper if tally.unknown_if_checked is not None else replace(upper, unknown=None)
+
+
+def _consistent(found: Sequence[Fragility], onset: Onset | None) -> Iterator[Fragility]:
+    """Yield the curves of one structure over one measure with what is exact, and so that none is above an implied one.
+
+    Parameters
+    ----------
+    found : sequence of Fragility
+        The curves as fitted, one for each limit state.
+    onset : Onset, optional
+        The intensity at which the structure uplifts, if it is known.
+    """
+    floor: dict[Limit, FragilityCurve] = {}
+    if onset is not None and onset.exact and any(each.limit == UPLIFT for each in found):
+        found = [_exact(each, onset.at) if each.limit == UPLIFT else each for each in found]
+    elif onset is not None:
+        floor = {LAMBDA: exact_step(FragilityCurve("none", "", 1.0, 0, 0), onset.at, "")}
+
+    def below(curve: FragilityCurve, weaker: Mapping[Limit, FragilityCurve]) -> FragilityCurve:
+        known = floor | {limit: each for limit, each in weaker.items() if each.kind != "none"}
+        return curve if curve.kind == "none" else replace(curve, implied=known)
+
+    for each in found:
+        weaker = [other for other in found if implies(each.limit, other.limit)]
+        lower = each.lower
+        if lower is not None:
+            under = {other.limit: (other.lower or other).curve for other in weaker}
+            lower = replace(lower, curve=below(lower.curve, under))
+        curve = below(each.curve, {other.limit: other.curve for other in weaker})
+        yield replace(each, curve=curve, lower=lower)
+
+
+def _exact(found: Fragility, at: float) -> Fragility:
+    """Return the curve of uplift as the step that it is."""
+    place = f"{at:.4g} {parse_measure(found.measure).unit}".strip()
+    why = f"a motion uplifts the structure exactly if its {found.measure} exceeds {place}, so no curve is fitted"
+    return replace(found, curve=exact_step(found.curve, at, why))
+
+
+def _with_rate(found: Fragility, hazard: HazardCurve) -> Fragility:
+    """Return a result and its lower fit with their annual rates."""
+    lower = None if found.lower is None else _with_rate(found.lower, hazard)
+    rate = annual_rate(found.curve, hazard) if found.curve.kind != "none" else None
+    return replace(found, rate=rate, lower=lower)
+
+
+def _curve(
+    cells: Cells, x: Reals, structure: str, measure: str, limit: Limit, definition: Definition
+) -> Fragility:  # fmt: skip
+    """Fit the curve of one limit state over one measure; `x` holds the intensities of the cells."""
+    tally, confidence, there = cells.tally, definition.confidence, x > 0
+    level = cells.level[there] if tally.decided_by_level(measure) else None
+    record, weight = tally.one(cells.record[there]), tally.weight(cells.record[there])
+    exceeding = cells.exceeding(limit) if tally.ladders is None else cells.of(tally.ladders.above(limit))
+    seen = Observations.of(x[there], exceeding[there], record, level=level, runs=cells.runs[there], weight=weight)
+    if tally.ladders is None:
+        curve = fit_curve(seen, confidence=confidence)
+    elif parse_measure(measure).power == 0:
+        why = f"{measure} is the same at every level, so that no record has a capacity in it"
+        curve = FragilityCurve("none", why, confidence, seen.runs, seen.exceedances, records=seen.records)
+    else:
+        tried = np.unique(x[there]) if level is not None else None
+        lower, upper, of = _capacities(tally, measure, limit, cells)
+        curve = fit_capacities(
+            lower, upper, tally.one(of), levels=tried, confidence=confidence, weight=tally.weight(of)
+        )
+    return Fragility(structure, limit, measure, seen, curve, None, left_out=int(cells.runs[~there].sum()))
+
+
+def _undecided_runs(cells: Cells, limit: Limit, there: Bools) -> int:
+    """Return the number of runs in some cells that are not known to exceed a limit state or not."""
+    if cells.tally.lower is None:
+        return 0
+    known = replace(cells, tally=cells.tally.lower)
+    return int((cells.exceeding(limit) - known.exceeding(limit))[there].sum())
+
+
+def _undecided_ladders(tally: Tally, limit: Limit) -> int:
+    """Return the number of ladders (levels of one record) whose first exceeding level is not known."""
+    if tally.lower is None:
+        return 0
+    assert tally.ladders is not None and tally.lower.ladders is not None
+    return int((tally.ladders.first[limit] != tally.lower.ladders.first[limit]).sum())
+
+
+def _capacities(tally: Tally, measure: str, limit: Limit, cells: Cells) -> tuple[Reals, Reals, Integers]:
+    """Return the bounds of the capacity of each ladder, 0 or infinity if no level bounds it, and its record."""
+    assert tally.ladders is not None
+    first, last = tally.ladders.first[limit], tally.ladders.below(limit)
+    levels = len(tally.plan.levels)
+    known = (first < levels) | (last >= 0)  # a ladder none of whose runs could be followed says nothing
+    sample, record, _, _ = np.nonzero(known)
+    began, last = first[known].astype(np.int64), last[known]
+    if cells.together:
+        sample = np.zeros_like(sample)
+
+    def at(level: Integers) -> Reals:
+        return intensities(tally.plan, measure, sample + tally.samples.start, record, np.clip(level, 0, levels - 1))
+
+    lower, upper = np.where(last >= 0, at(last), 0.0), np.where(began < levels, at(began), np.inf)
+    sound = lower < upper  # else it does not grow with the level, or is not known
+    return lower[sound], upper[sound], record[sound]
+
+
+def surfaces(tally: Tally, structure: str, definition: Definition) -> Iterator[Bivariate]:
+    """Yield the fragility surfaces of a structure."""
+    for measures in definition.bivariate:
+        cells = tally.over(*measures)
+        one, other = (cells.intensities(measure) for measure in measures)
+        there = (one > 0) & (other > 0)
+        for limit in definition.limit_states if there.any() else []:
+            fit = partial(_surface, x1=one, x2=other, structure=structure, measures=(measures[0], measures[1]),
+                          limit=limit, definition=definition)  # fmt: skip
+            yield _twice(fit, cells, _undecided_runs(cells, limit, there))
+
+
+def _surface(
+    cells: Cells, x1: Reals, x2: Reals, structure: str, measures: tuple[str, str], limit: Limit, definition: Definition
+) -> Bivariate:  # fmt: skip
+    """Fit the surface of one limit state over two measures; `x1` and `x2` hold the intensities of the cells."""
+    there = (x1 > 0) & (x2 > 0)
+    x1, x2, runs, exceeding = x1[there], x2[there], cells.runs[there], cells.exceeding(limit)[there]
+    record, weight = cells.tally.one(cells.record[there]), cells.tally.weight(cells.record[there])
+    surface = fit_surface(x1, x2, exceeding, record, runs=runs, confidence=definition.confidence, weight=weight)
+    return Bivariate(
+        structure, limit, measures, x1, x2, runs, exceeding, surface, left_out=int(cells.runs[~there].sum())
+    )

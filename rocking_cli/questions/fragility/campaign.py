@@ -1,0 +1,363 @@
+"""Run a study: read its records and structures, and simulate the runs that its store lacks."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from importlib.metadata import version
+from math import isclose, isnan, nan
+from typing import Any
+
+from rocking_cli import __version__
+from rocking_cli.core import Mechanism, NoEquivalentBlock, both_statics, equivalent_block
+from rocking_cli.core.mechanism import why_none
+from rocking_cli.core.registry import Registry
+from rocking_cli.dynamics.model import NO_REBOUND, check_elements
+from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.processing.intensity import all_measures, parse_measure
+from rocking_cli.questions.fragility.definition import SLIDING, Definition
+from rocking_cli.questions.fragility.plan import Plan, Trial, complete, weaker
+from rocking_cli.questions.fragility.sources import KeptMotions
+from rocking_cli.questions.fragility.store import Store
+from rocking_cli.questions.fragility.study import Sample, Study, digest
+from rocking_cli.questions.fragility.tally import ONSET, accelerations, rotations
+from rocking_cli.questions.fragility.work_units import carry_out, unit_size, units
+from rocking_cli.questions.fragility.workers import Workers
+from rocking_cli.studies.fragility.quantities import FACT, PGA, PGV, asked_for
+
+Progress = Callable[[int, int], None]
+"""Called with how many runs have finished since the last call, and how many of these failed."""
+SAME = 1e-9  # relative difference of parameters that come from the same mechanics, on whatever machine
+MOST = 10  # changes of samples named
+Examined = Callable[[int], None]
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A study and its store, ready to run.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    plan : Plan
+        The plan of its runs.
+    motions : KeptMotions
+        Its ground motions.
+    finished, failed : int
+        Number of runs in the store, and of those among them that could not be simulated.
+    mended : tuple of str
+        Names of records that could not be used when the study was started, and now can.
+    """
+
+    study: Study
+    plan: Plan
+    motions: KeptMotions
+    finished: int
+    failed: int
+    mended: tuple[str, ...]
+
+
+def prepare(
+    study: Study, store: Store, examined: Examined | None = None, *, rank_measures: bool = False
+) -> Prepared:  # fmt: skip
+    """Read the records and structures of a study, and start its store or check the study against it.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    store : Store
+        Open to write.
+    examined : callable, optional
+        Called with the number of records and structures examined since the last call.
+    rank_measures : bool
+        Whether to compute and store the values of all installed measures, and not only of those that the study
+        requests.
+
+    Raises
+    ------
+    InputError
+        If anything on which the runs depend has changed since the store was started; the error lists every change. If
+        no structure or no record can be used.
+    """
+    known = store.plan() if not store.empty else None
+    plan, motions = survey(study, examined, known)
+    given, records = study.definition, plan.records
+    bad = {each.name for each in known.records if each.reason is not None} if known is not None else set()
+    mended = [k for k, record in enumerate(records) if record.reason is None and record.name in bad]
+    facts = {"description": study.description(), "versions": versions(study), "hash": digest(study.description())}
+    asked = {
+        "name": study.name,
+        "definition": given.model_dump(mode="json", exclude_unset=True, by_alias=True),
+        # As plain data, so that the store does not need the file.
+        "hazard": study.hazard and [study.hazard.intensity.tolist(), study.hazard.annual_rate.tolist()],
+        "weights": [source.entry.weight for source in study.sources],
+    }
+    if known is None:
+        _refuse_useless(plan)
+    else:
+        _refuse_changes(store, facts, known, plan)
+    every = [str(each) for each in all_measures()] if rank_measures else []
+    told = examined if examined is not None and _measures(study, rank_measures=rank_measures) else lambda count: None
+    plan = measured(study, plan, motions, [*given.asked_measures, *every], told, origins=rank_measures)
+    asked |= {ONSET: accelerations(study, plan)}
+    if known is None:
+        asked |= _displacements(study, plan, {})
+        store.begin(plan, {**facts, **asked, "libraries": libraries()})
+    else:
+        asked |= _displacements(study, plan, store.facts().get(FACT, {}))
+        for k in mended:
+            store.replace_record(k, records[k])
+        store.note(asked)
+        store.keep(plan.measured)
+        store.commit()
+    finished, failed = store.count()
+    return Prepared(study, plan, motions, finished, failed, tuple(records[k].name for k in mended))
+
+
+def steps(study: Study, *, rank_measures: bool = False) -> int:
+    """Return the number of steps of which `prepare` reports the progress: structures, records and measured records."""
+    return len(study.samples) + len(study.sources) * (1 + _measures(study, rank_measures=rank_measures))
+
+
+def _measures(study: Study, *, rank_measures: bool) -> bool:
+    """Return whether intensity measures other than PGA and PGV of the records are needed."""
+    bases = (parse_measure(name).base for name in study.definition.asked_measures)
+    return rank_measures or any(base is None or str(base) not in (PGA, PGV) for base in bases)
+
+
+def survey(study: Study, examined: Examined | None = None, known: Plan | None = None) -> tuple[Plan, KeptMotions]:
+    """Examine the records and structures of a study.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    examined : callable, optional
+        Called with the number of records and structures examined since the last call.
+    known : Plan, optional
+        The plan in the store: for records that could be used, only the checksum is computed again.
+
+    Returns
+    -------
+    plan : Plan
+        All runs.
+    motions : KeptMotions
+        The ground motions; those that were read stay in memory as far as there is room.
+    """
+    tell = examined if examined is not None else lambda count: None
+    before = {each.name: each for each in known.records} if known is not None else {}
+    motions = KeptMotions(study.sources)
+    records, trials = [], []
+    for k, source in enumerate(study.sources):
+        records.append(motions.examine(k, before.get(source.name)))
+        tell(1)
+    for sample in study.samples:
+        trials.append(_trial(study, sample))
+        tell(1)
+    given = study.definition
+    etas = given.eta if given.eta is not None else [nan]
+    levels = given.levels.levels()
+    plan = Plan(trials, records, etas, given.levels.measure, levels, given.polarities, sets=study.sets)
+    if known is not None and _of_one_kind(known, plan):
+        plan = replace(plan, measured=known.measured)
+    return measured(study, plan, motions, ()), motions
+
+
+def measured(
+    study: Study,
+    plan: Plan,
+    motions: KeptMotions,
+    measures: Sequence[str],
+    told: Examined = lambda count: None,
+    *,
+    origins: bool = False,
+) -> Plan:
+    """Return the plan with the values that its levels and some measures need, and with data of earthquakes."""
+    mechanisms = [sample.mechanism for sample in study.samples]
+    return complete(plan, mechanisms, study.definition.model, motions, measures, told, origins=origins)
+
+
+def _of_one_kind(one: Plan, other: Plan) -> bool:
+    """Return whether two plans have the same records, samples and levels in order, so that values carry over."""
+    return (
+        [each.name for each in one.records] == [each.name for each in other.records]
+        and [(each.structure, each.number) for each in one.trials]
+        == [(each.structure, each.number) for each in other.trials]
+        and (one.measure, list(one.levels)) == (other.measure, list(other.levels))
+    )
+
+
+def run(prepared: Prepared, store: Store, workers: Workers, progress: Progress | None = None) -> None:
+    """Simulate the runs that the store lacks, and add them to it.
+
+    Parameters
+    ----------
+    prepared : Prepared
+        The result of `prepare`.
+    store : Store
+        Open to write.
+    workers : Workers
+        The processes or threads that simulate; results do not depend on them.
+    progress : callable, optional
+        See `Progress`.
+    """
+    study, plan, given = prepared.study, prepared.plan, prepared.study.definition
+    size = unit_size(plan.total - prepared.finished, workers.count)
+    checked = SLIDING in given.limit_states
+    to_do = units(
+        plan, study.samples, prepared.motions, given.model, store.finished, size, checked=checked, opening=given.opening
+    )
+    for rows in workers.map(carry_out, to_do):
+        store.add(rows)
+        if progress is not None:
+            progress(len(rows), rows.failed)
+
+
+def versions(study: Study) -> dict[str, str]:
+    """Return the versions of this program and of the packages of the structures' mechanisms."""
+    registry = Registry()
+    plugins = {f"mechanism {each.mechanism}": registry.package_of(each.mechanism) for each in study.structures}
+    return {"rocking-cli": __version__, **plugins}
+
+
+def libraries() -> dict[str, str]:
+    """Return the versions of Python and libraries that may affect the last bits of results, to compare two stores."""
+    return {
+        "python": platform.python_version(),
+        **{name: version(name) for name in ("numpy", "scipy")},
+    }
+
+
+def _trial(study: Study, sample: Sample) -> Trial:
+    structure = study.structures[sample.structure]
+    start = Trial(structure.name or structure.mechanism, sample.number, sample.drawn)
+    mechanism = sample.mechanism
+    try:
+        if study.definition.model == "nonlinear":
+            check_elements(mechanism)
+        p, lambda_, rotations = _mechanics(mechanism, study.definition)
+        least = min(mechanism.eta(side) for side in mechanism.directions)
+        if study.definition.eta is None and isnan(least):
+            raise InputError(NO_REBOUND)
+        if study.definition.eta is None and mechanism.rocks_both_ways and least <= 0:
+            raise InputError(f"its kinematics give a restitution of {least:.4g}: {why_none(least)}")
+    except RockingError as error:
+        return replace(start, reason=str(error))
+    return replace(
+        start,
+        p=p,
+        lambda_=lambda_,
+        gravity=mechanism.gravity,
+        phi_cr_positive=rotations[0],
+        phi_cr_negative=rotations[1],
+    )
+
+
+def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, tuple[float, float]]:
+    """Return p, lambda and the reference rotations of a structure, with or without an equivalent block.
+
+    Raises `NoEquivalentBlock` if there is none and the study needs one.
+    """
+    try:
+        found = equivalent_block(mechanism)
+    except NoEquivalentBlock as error:
+        needs = [f"the model {asked.model}"] if asked.model != "nonlinear" else []
+        needs = needs or [name for name in asked.asked_measures if parse_measure(name).needs]
+        if needs:
+            raise NoEquivalentBlock(f"{' and '.join(needs)} cannot be had of it: {error}") from error
+        sides = both_statics(mechanism)
+        return 0.0, min(side.lambda_ for side in sides), (sides[0].reference, sides[1].reference)
+    return *weaker(found, asked.model), (found.positive.phi_cr, found.negative.phi_cr)
+
+
+def _displacements(study: Study, plan: Plan, known: dict[str, Any]) -> dict[str, Any]:
+    """Return the rotations at which the top reaches the displacements among the limit states; empty without any."""
+    limits = asked_for(study.definition.limit_states)
+    return {FACT: rotations(study.samples, plan.trials, limits, known)} if limits else {}
+
+
+def _refuse_useless(plan: Plan) -> None:
+    for what, those in (("structure", plan.trials), ("record", plan.records)):
+        if all(each.reason is not None for each in those):
+            reasons = dict.fromkeys(each.reason or "" for each in those)
+            raise InputError(*(Problem(f"no {what} can be used: {reason}") for reason in list(reasons)[:10]))
+
+
+def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, now: Plan) -> None:
+    """Raise `InputError` with every difference between the study in the store and the present one."""
+    changes = [*differences(store.fact("description"), facts["description"])]
+    changes += [f"version of {package}" for package in differences(store.fact("versions"), facts["versions"])]
+    before = {record.name: record for record in known.records}
+    for record in now.records:
+        old = before.get(record.name)
+        if old is not None and old.reason is None and old.checksum != record.checksum:
+            changes.append(f"the record {record.name} has changed, or cannot be read any more")
+    if not changes:  # the same fields: a mechanism may still make something else of them
+        changes = [change for pair in zip(known.trials, now.trials, strict=True) for change in _other_mechanics(*pair)][
+            :MOST
+        ]
+    if changes:
+        hint = "give `restart` to run everything again, or `store` OTHER.db to keep both"
+        *others, last = [Problem(change, field="changed since the store was created") for change in changes]
+        raise InputError(*others, replace(last, hint=hint))
+
+
+def _other_mechanics(before: Trial, now: Trial) -> list[str]:
+    """Return sentences on what a mechanism of the same version and fields computes differently than before."""
+    name = f"sample {now.number} of {now.structure}"
+    if (before.reason is None) != (now.reason is None):
+        return [f"{name} {'can be run now' if now.reason is None else f'cannot be run any more: {now.reason}'}"]
+    pairs = {each.name: (getattr(before, each.name), getattr(now, each.name)) for each in fields(Trial)}
+    pairs |= {f"drawn {key}": (value, now.drawn.get(key, nan)) for key, value in before.drawn.items()}
+    return [
+        f"{key.rstrip('_')} of {name} was {old:.10g}, is now {new:.10g}"
+        for key, (old, new) in pairs.items()
+        if isinstance(old, float) and not isclose(old, new, rel_tol=SAME)
+    ]
+
+
+def differences(before: Any, now: Any, where: str = "") -> list[str]:
+    """Return sentences on the places where two pieces of plain data differ, with both values."""
+    if isinstance(before, dict) and isinstance(now, dict):
+        return [
+            difference
+            for key in [*before, *(key for key in now if key not in before)]
+            for difference in differences(before.get(key), now.get(key), f"{where}.{key}".lstrip("."))
+        ]
+    if isinstance(before, list) and isinstance(now, list) and len(before) == len(now):
+        inside = [
+            difference
+            for k, (one, other) in enumerate(zip(before, now, strict=True))
+            for difference in differences(one, other, f"{where}[{k + 1}]")
+        ]
+        if len(inside) > 1 and all(isinstance(entry, int | float) for entry in (*before, *now)):
+            return [f"{where} was {_ends(before)}, is now {_ends(now)}"]
+        return inside
+    if isinstance(before, list) and isinstance(now, list):
+        gone = [entry for entry in before if entry not in now]
+        new = [entry for entry in now if entry not in before]
+        parts = [f"without {_told(gone)}"] if gone else []
+        parts += [f"with {_told(new)}"] if new else []
+        return [f"{where} is now {' and '.join(parts) or 'another number of the same'}"]
+    if isinstance(before, float) and isinstance(now, float) and isclose(before, now, rel_tol=SAME):
+        return []
+    return [] if before == now else [f"{where} was {_one(before)}, is now {_one(now)}"]
+
+
+def _ends(values: list[Any]) -> str:
+    """Describe a list of numbers by its length and its smallest and largest value."""
+    return f"{len(values)} numbers from {min(values)} to {max(values)}"
+
+
+def _told(values: list[Any]) -> str:
+    named = ", ".join(_one(each) for each in values[:3])
+    return named + (f" and {len(values) - 3} more" if len(values) > 3 else "")
+
+
+def _one(value: Any) -> str:
+    if isinstance(value, dict):
+        return str(value.get("name", value))
+    return "absent" if value is None else str(value)

@@ -1,0 +1,565 @@
+"""Fragility curves and surfaces: the probability that a limit state is exceeded, as a function of intensity."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+
+from rocking_cli.arrays import Bools, Integers, Reals
+from rocking_cli.questions.fragility.goodness import Goodness, goodness_of_brackets, goodness_of_runs
+from rocking_cli.questions.fragility.observed import SAME, Observations, few_records, one_of_each
+from rocking_cli.studies.fit import (
+    Counts,
+    Estimate,
+    Fit,
+    Link,
+    fit_brackets,
+    fit_outcomes,
+    separable,
+    standardised,
+    too_few,
+    totals,
+)
+
+Kind = Literal["lognormal", "logistic", "step", "none"]
+LINKS: dict[Kind, Link] = {"lognormal": "probit", "logistic": "logit"}
+REJECTED = 0.05  # p-value below which a curve is rejected
+WIDEST = 5.0  # dispersion beyond which the limit state does not depend on the measure: exp(5) is 150
+LIKELIER = 1e-6  # of a log-likelihood: less is rounding
+_DECREASING = (
+    "no increasing curve exists: fewer runs count as exceeding the limit at higher intensities, so no curve fits this "
+    "measure"
+)
+TINY = 1e-300  # stands for an intensity of zero, which has no logarithm
+NOTICEABLE = 0.001  # of a probability: a curve that is cut by less is not said to be
+
+
+@dataclass(frozen=True)
+class Cut:
+    """By which limit state a curve is cut, the largest difference of the curve or its band, and at which intensity."""
+
+    by: str | float
+    most: float
+    at: float
+
+
+@dataclass(frozen=True, eq=False)
+class FittedToRuns:
+    """A fit to runs by maximum likelihood, or the reason why there is none.
+
+    Parameters
+    ----------
+    kind : str
+        The form of the fit; `none` without one.
+    why : str
+        A sentence on why this kind was chosen, or why there is no fit.
+    confidence : float
+        Confidence level of all intervals and bands.
+    runs, exceedances : int
+        Number of runs, or of capacities, and how many of them exceed.
+    fit : Fit or None
+        The coefficients, with their covariance.
+    records : int
+        Number of different records.
+    """
+
+    kind: Kind
+    why: str
+    confidence: float
+    runs: int
+    exceedances: int
+    fit: Fit | None = None
+    records: int = 0
+
+    @property
+    def warning(self) -> str:
+        """Warning that there are too few records for reliable intervals; empty if there are enough."""
+        return few_records(self.records) if self.fit is not None else ""
+
+
+@dataclass(frozen=True, eq=False)
+class FragilityCurve(FittedToRuns):
+    """A fragility curve, or the reason why none could be fitted; other fields as in `FittedToRuns`.
+
+    Parameters
+    ----------
+    kind : str
+        `lognormal`: P = Phi(ln(x/median)/dispersion), fitted in 1 and ln x. `logistic`: P = 1/(1 + exp(-(x - median)
+        /scale)), fitted in 1 and x. `step`: no run exceeds up to one intensity, all exceed from another one on. `none`:
+        no curve.
+    step : Estimate or None
+        Intensity at which the step is placed, and the interval in which it lies.
+    goodness : Goodness or None
+        Goodness-of-fit test of the kind that was chosen.
+    aic : dict of str to float, or None
+        Akaike's criterion of the kinds that were fitted; it ignores the dependence between runs of one record.
+    implied : mapping of limit state to FragilityCurve
+        Curves of limit states that are exceeded whenever this one is. Probability, band and median are cut by them: no
+        structure overturns that does not uplift.
+    """
+
+    step: Estimate | None = None
+    goodness: Goodness | None = None
+    aic: dict[Kind, float] | None = None
+    implied: Mapping[str | float, FragilityCurve] = field(default_factory=dict)
+
+    @property
+    def own(self) -> FragilityCurve:
+        """The curve as it was fitted, without its cuts."""
+        return replace(self, implied={})
+
+    @property
+    def steps(self) -> list[Estimate]:
+        """The step of this curve and those of the curves that cut it: below each, the probability is zero."""
+        return [each.step for each in (self, *self.implied.values()) if each.step is not None]
+
+    @property
+    def median(self) -> Estimate | None:
+        """Intensity of probability one half, in the unit of x; its interval is where the band crosses one half."""
+        medians = [each._median for each in (self, *self.implied.values())]
+        found = [each for each in medians if each is not None]
+        if medians[0] is None:
+            return None
+        # The smallest of increasing curves crosses one half where the last of them does.
+        return Estimate(*(max(getattr(each, end) for each in found) for end in ("value", "low", "high")))
+
+    @property
+    def _median(self) -> Estimate | None:
+        """Median of the fit itself."""
+        if self.fit is None:
+            return self.step
+        a, b = self.fit.coefficients
+        low, high = _root_interval(self.fit)
+        if self.kind == "logistic":
+            return Estimate(float(-a / b), low, high)
+        with np.errstate(over="ignore"):  # an end that the data hardly bound
+            return Estimate(float(np.exp(-a / b)), float(np.exp(low)), float(np.exp(high)))
+
+    @property
+    def dispersion(self) -> Estimate | None:
+        """Standard deviation of the logarithm of the capacity; None unless the curve is lognormal, or above 5."""
+        found = self._inverse_slope() if self.kind == "lognormal" else None
+        return found if found is None or found.value <= WIDEST else None
+
+    @property
+    def scale(self) -> Estimate | None:
+        """Scale of a logistic curve, in the unit of x; None for other kinds."""
+        return self._inverse_slope() if self.kind == "logistic" else None
+
+    @property
+    def unbounded(self) -> bool:
+        """Whether the upper confidence limit of the median is infinite: the band then covers nearly everything."""
+        return self.fit is not None and self._median is not None and not np.isfinite(self._median.high)
+
+    def _inverse_slope(self) -> Estimate:
+        assert self.fit is not None
+        slope = self.fit.intervals[1]
+        return Estimate(1 / slope.value, 1 / slope.high, 1 / slope.low if slope.low > 0 else np.inf)
+
+    def probability(self, x: Reals) -> Reals:
+        """Return the probability of exceedance at intensities of any shape; NaN if there is no curve."""
+        x = np.asarray(x, dtype=np.float64)
+        if self.fit is not None:
+            found = self.fit.probability(self._design(x)).reshape(x.shape)
+        elif self.step is not None:
+            known = self.step.low == self.step.high  # by the uplift acceleration, which a motion must exceed
+            found = np.heaviside(x - self.step.value, 0.0 if known else 0.5)
+        else:
+            return np.full(x.shape, np.nan)
+        return np.asarray(np.min([found, *(each.probability(x) for each in self.implied.values())], axis=0))
+
+    def band(self, x: Reals) -> tuple[Reals, Reals]:
+        """Return pointwise confidence limits of the probability at intensities; 0 and 1 within a step's interval."""
+        x = np.asarray(x, dtype=np.float64)
+        if self.fit is not None:
+            found = [each.reshape(x.shape) for each in self.fit.band(self._design(x))]
+        elif self.step is not None:
+            below = x <= self.step.low
+            found = [((x >= self.step.high) & ~below).astype(np.float64), (~below).astype(np.float64)]
+        else:
+            return np.full(x.shape, np.nan), np.full(x.shape, np.nan)
+        low, high = np.min([found, *(each.band(x) for each in self.implied.values())], axis=0)
+        return low, high
+
+    def cut(self, x: Reals) -> Cut | None:
+        """Return the largest cut of the curve or its band at some intensities (n,); None if it is nowhere noticeable.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+            The intensities.
+        """
+        if not self.implied:
+            return None
+        own, others = self.own, list(self.implied)
+        lines = np.array([[each.probability(x), *each.band(x)] for each in (own, *self.implied.values())])
+        above = lines[0] - lines[1:]
+        if above.max() <= NOTICEABLE:
+            return None
+        k, line, place = (int(each) for each in np.unravel_index(above.argmax(), above.shape))
+        return Cut(others[k], float(above[k, line, place]), float(x[place]))
+
+    def _design(self, x: Reals) -> Reals:
+        return _design(self.kind, x.ravel())
+
+
+def fit_curve(observations: Observations, *, confidence: float = 0.95) -> FragilityCurve:
+    """Fit a fragility curve to runs at any intensities: a cloud, or stripes.
+
+    Parameters
+    ----------
+    observations : Observations
+        The runs.
+    confidence : float
+        Confidence level of the intervals and the band.
+
+    Returns
+    -------
+    FragilityCurve
+        Of kind `none` if there is nothing to fit. Of kind `step` if all runs that exceed lie above all that do not, as
+        the likelihood then increases without bound with the slope. Of kind `logistic` if the lognormal curve does not
+        increase, or if it is rejected at 5 % and the logistic curve is likelier. Otherwise of kind `lognormal`. The
+        logistic curve is a function of the intensity itself: as a function of its logarithm, it would differ by less
+        than 0.01 from the lognormal curve and be rejected with it.
+    """
+    seen = observations
+    bare = FragilityCurve("none", "", confidence, seen.runs, seen.exceedances, records=seen.records)
+    if not 0 < bare.exceedances < bare.runs:
+        return replace(bare, why=f"{'none' if not bare.exceedances else 'all'} of the {bare.runs} runs exceed")
+    special = _step_or_none(bare, *seen.sides)
+    if special is not None:
+        return special
+    if few := too_few(seen.counts, 2):
+        return replace(bare, why=few)
+    curves: dict[Kind, FragilityCurve] = {}
+    refused: dict[Kind, str] = {}
+    for kind, link in LINKS.items():
+        design = _design(kind, seen.x)
+        fit = fit_outcomes(link, design, seen.counts, seen.exceeding, confidence)
+        if isinstance(fit, str):
+            refused[kind] = fit
+        else:
+            goodness = goodness_of_runs(fit, design, seen)
+            curves[kind] = replace(bare, kind=kind, fit=fit, goodness=goodness)
+    kind, why = _choice(curves) if "lognormal" in curves else ("none", refused["lognormal"])
+    aic = {kind: curve.fit.aic for kind, curve in curves.items() if curve.fit is not None}
+    return replace(curves.get(kind, bare), why=why, aic=aic)
+
+
+def fit_capacities(
+    lower: Reals,
+    upper: Reals,
+    record: Integers | None = None,
+    *,
+    levels: Reals | None = None,
+    confidence: float = 0.95,
+    weight: Reals | None = None,
+) -> FragilityCurve:
+    """Fit a lognormal curve to the capacities of records: incremental dynamic analysis.
+
+    Parameters
+    ----------
+    lower, upper : ndarray, shape (n,)
+        For each record the last level that does not exceed the limit state, 0 if the first one does; and the first that
+        does, infinite if none does. All that is known of the capacity is that it lies between them.
+    record : ndarray of int, shape (n,), optional
+        The record of each capacity, if a record has several (two polarities, several samples), which are not
+        independent.
+    levels : ndarray, shape (m,), optional
+        The levels that were simulated, if they are the same for all; without them the goodness of fit is not tested.
+    confidence : float
+        Confidence level of the intervals and the band.
+    weight : ndarray, shape (n,), optional
+        Relative weight of each capacity; equal unless given.
+
+    Returns
+    -------
+    FragilityCurve
+        Lognormal by maximum likelihood of the brackets; a step if one capacity agrees with all of them; or none.
+    """
+    ends = one_of_each(np.concatenate([lower, upper, np.zeros(0) if levels is None else levels]))
+    lower, upper, tried = np.split(ends, [lower.size, 2 * lower.size])
+    ends = ends[: 2 * lower.size]
+    who = np.unique(np.arange(lower.size) if record is None else record, return_inverse=True)[1]
+    bounds, place = np.unique(ends, return_inverse=True)
+    pairs, place = np.unique(place[: lower.size] * bounds.size + place[lower.size :], return_inverse=True)
+    cells, cell = np.unique(who * pairs.size + place, return_inverse=True)
+    each = np.ones(lower.size) if weight is None else weight * lower.size / weight.sum()
+    seen = Counts(cells // pairs.size, cells % pairs.size, totals(cell, each), weight is not None)
+    above = np.isfinite(upper)
+    bare = FragilityCurve("none", "", confidence, lower.size, int(above.sum()), records=seen.records)
+    if not bare.exceedances:
+        return replace(bare, why=f"none of the {_capacities(bare)} exceeds at any level")
+    if not (lower > 0).any():
+        return replace(bare, why=f"all of the {_capacities(bare)} exceed at their first level: take lower ones")
+    highest, lowest = upper[above].max(), lower[lower > 0].min()
+    if highest <= lowest:  # no capacity lies between two levels
+        why = f"every capacity lies below {highest:.4g} or above {lowest:.4g}: levels beyond these are needed"
+        return replace(bare, why=why)
+    special = _step_or_none(bare, lower[lower > 0], upper[above])
+    if special is not None:
+        return special
+    with np.errstate(divide="ignore"):
+        logs = np.log(bounds[pairs // bounds.size]), np.log(bounds[pairs % bounds.size])
+    fit = too_few(seen, 2, "capacities") or fit_brackets(*logs, seen, confidence)
+    if isinstance(fit, str):
+        return replace(bare, why=fit)
+    goodness = goodness_of_brackets(fit, *logs, seen, None if levels is None else np.log(np.unique(tried)))
+    curve = replace(bare, kind="lognormal", fit=fit, goodness=goodness, aic={"lognormal": fit.aic})
+    return replace(curve, why=f"capacities are taken as lognormal; {_tested(curve)}")
+
+
+def _capacities(bare: FragilityCurve) -> str:
+    """Describe the capacities of a curve: the number of ladders and of records."""
+    return f"{bare.runs} ladders of {bare.records} records" if bare.runs > bare.records else f"{bare.runs} records"
+
+
+def _design(kind: Kind, x: Reals) -> Reals:
+    return np.column_stack([np.ones(x.size), x if kind == "logistic" else np.log(np.maximum(x, TINY))])
+
+
+def _step_or_none(bare: FragilityCurve, below: Reals, above: Reals) -> FragilityCurve | None:
+    """Return a step, or kind `none`, if runs that exceed and others share at most one intensity; else None."""
+    if below.min() == above.max() == below.max() == above.min():
+        return replace(bare, why=f"all runs have the intensity {above[0]:.4g}: other levels are needed")
+    if above.max() <= below.min():
+        return replace(bare, why=_DECREASING)
+    if below.max() > above.min():
+        return None
+    low, high = float(below.max()), float(above.min())
+    if low < high:
+        step = Estimate(float(np.sqrt(low * high)), low, high)
+        why = (
+            f"no run exceeds the limit up to {low:.4g} and all runs do from {high:.4g}, so the dispersion cannot be "
+            "estimated"
+        )
+        return replace(bare, kind="step", step=step, why=f"{why}; add levels between these two")
+    under, over = below[below < low], above[above > low]
+    if not (under.size and over.size):
+        side = "none exceeds below" if under.size else "all exceed above"
+        why = f"both outcomes occur at {low:.4g} only and {side} it: a slope needs levels on either side"
+        return replace(bare, why=why)
+    step = Estimate(low, float(under.max()), float(over.min()))
+    why = f"both outcomes occur at {low:.4g} only, none exceeds up to {step.low:.4g} and all do from {step.high:.4g} on"
+    return replace(bare, kind="step", step=step, why=f"{why}: estimating the dispersion needs levels between them")
+
+
+def _choice(curves: dict[Kind, FragilityCurve]) -> tuple[Kind, str]:
+    """Choose the kind of curve, and say why."""
+    lognormal, logistic = curves["lognormal"], curves.get("logistic")
+    if _slope(lognormal) <= 0:
+        if logistic is None or _slope(logistic) <= 0:
+            return "none", _DECREASING
+        return "logistic", f"the lognormal does not increase; {_tested(logistic)}"
+    if not _rejected(lognormal):
+        return "lognormal", f"lognormal is the default; {_tested(lognormal)}"
+    if logistic is None or _slope(logistic) <= 0 or _likelihood(logistic) < _likelihood(lognormal) + LIKELIER:
+        return "lognormal", f"lognormal is the default, and logistic is no likelier; {_tested(lognormal)}"
+    assert lognormal.goodness is not None
+    why = f"the lognormal is rejected (p = {lognormal.goodness.p_value:.2g}) and logistic is likelier"
+    return "logistic", f"{why}; {_tested(logistic)}"
+
+
+def _slope(curve: FragilityCurve) -> float:
+    assert curve.fit is not None
+    return float(curve.fit.coefficients[1])
+
+
+def _likelihood(curve: FragilityCurve) -> float:
+    assert curve.fit is not None
+    return curve.fit.log_likelihood
+
+
+def _rejected(curve: FragilityCurve) -> bool:
+    goodness = curve.goodness
+    return goodness is not None and goodness.p_value is not None and goodness.p_value < REJECTED
+
+
+def _tested(curve: FragilityCurve) -> str:
+    """Describe the result of the goodness-of-fit test of a curve."""
+    assert curve.goodness is not None and curve.fit is not None
+    p = curve.goodness.p_value
+    if p is None:
+        said = f"whether the data fit a {curve.kind} curve is not tested: {curve.goodness.why}"
+    elif _rejected(curve):
+        said = f"do not rely on this curve: the goodness-of-fit test rejects a {curve.kind} curve (p = {p:.2g})"
+    else:
+        said = f"the goodness-of-fit test does not reject a {curve.kind} curve (p = {p:.2g})"
+    if curve.fit.intervals[1].low <= 0:
+        said += f"; at {100 * curve.confidence:g} % {_why_open(curve)}"
+    return said
+
+
+def _why_open(curve: FragilityCurve) -> str:
+    """Say why the standard errors do not bound the slope of a curve."""
+    from scipy.special import chdtrc
+
+    assert curve.fit is not None
+    if curve.fit.ladders:
+        return f"{curve.records} records are too few to bound it"
+    part = curve.exceedances / curve.runs
+    flat = curve.runs * (part * np.log(part) + (1 - part) * np.log1p(-part))
+    if curve.records == curve.runs and chdtrc(1, 2 * (curve.fit.log_likelihood - flat)) < 1 - curve.confidence:
+        return "its bounds are open: the outcomes are all but separate, and standard errors fail there"
+    return "its increase cannot be told from none"
+
+
+def _root_interval(fit: Fit) -> tuple[float, float]:
+    """Return the u at which the band of a + b u contains one half [Fieller 1954, J. R. Statist. Soc. B 16, 175-185]."""
+    a, b = fit.coefficients
+    squared = fit.quantile**2 * fit.covariance
+    leading, middle, constant = b * b - squared[1, 1], a * b - squared[0, 1], a * a - squared[0, 0]
+    if leading <= 0:  # the slope may be none: the band then contains one half for ever, on one side or both
+        return -np.inf, np.inf
+    root = np.sqrt(max(middle * middle - leading * constant, 0.0))
+    return float((-middle - root) / leading), float((-middle + root) / leading)
+
+
+def exact_step(fitted: FragilityCurve, at: float, why: str) -> FragilityCurve:
+    """Return a curve as a step whose place is known exactly, whatever was fitted."""
+    step = Estimate(at, at, at)
+    return replace(fitted, kind="step", why=why, fit=None, step=step, goodness=None, aic=None)
+
+
+ADDS = 0.05  # p-value below which a second measure adds something
+PARALLEL = 1e-4  # 1 - |correlation| of two measures that are one
+
+
+@dataclass(frozen=True, eq=False)
+class Surface(FittedToRuns):
+    """Probability of exceedance as a function of two intensities, P = Phi(c0 + c1 ln x1 + c2 ln x2); `lognormal`.
+
+    Other fields are as in `FittedToRuns`; `why` also says how the two measures compare.
+
+    Parameters
+    ----------
+    aic : dict of str to float or None
+        Akaike's criterion with `both`, and with the `first` and the `second` measure alone.
+    p_values : tuple of float or None
+        P-values of the gain from adding the first measure to the second, and the second to the first: by the likelihood
+        ratio, or if records repeat by the robust standard error.
+    """
+
+    aic: dict[str, float] | None = None
+    p_values: tuple[float, float] | None = None
+
+    @property
+    def coefficients(self) -> list[Estimate] | None:
+        """The coefficients c0, c1 and c2 with their confidence intervals; None without a fit."""
+        return None if self.fit is None else self.fit.intervals
+
+    def probability(self, x1: Reals, x2: Reals) -> Reals:
+        """Return the probability of exceedance at positive intensities of one shape; NaN without a fit."""
+        x1, x2 = np.broadcast_arrays(x1, x2)
+        if self.fit is None:
+            return np.full(x1.shape, np.nan)
+        return self.fit.probability(_plane(x1.ravel(), x2.ravel())).reshape(x1.shape)
+
+
+def fit_surface(
+    x1: Reals,
+    x2: Reals,
+    exceeding: Bools | Reals | Integers,
+    record: Integers,
+    *,
+    runs: Integers | None = None,
+    confidence: float = 0.95,
+    weight: Reals | None = None,
+) -> Surface:
+    """Fit the probability of exceedance as a function of two intensity measures.
+
+    Parameters
+    ----------
+    x1, x2 : ndarray, shape (n,)
+        Intensities, positive.
+    exceeding : ndarray, shape (n,)
+        Whether the run exceeds the limit state, or the number of equal runs that do.
+    record : ndarray of int, shape (n,)
+        The record of each run.
+    runs : ndarray of int, shape (n,), optional
+        Number of equal runs; one unless given.
+    confidence : float
+        Confidence level of the intervals.
+    weight : ndarray, shape (n,), optional
+        Relative weight of each run; equal unless given.
+
+    Returns
+    -------
+    Surface
+        Of kind `none` if a line in the plane of the logarithms separates the outcomes, or the measures are
+        proportional.
+    """
+    who = np.unique(record, return_inverse=True)[1]
+    number = np.ones(x1.size) if runs is None else runs.astype(np.float64)
+    seen, beyond = Counts(who, np.arange(x1.size), number), np.asarray(exceeding, dtype=np.float64)
+    bare = Surface("none", "", confidence, int(number.sum()), int(beyond.sum()), records=seen.records)
+    if not 0 < bare.exceedances < bare.runs:
+        return replace(bare, why=f"{'none' if not bare.exceedances else 'all'} of the {bare.runs} runs exceed")
+    if weight is not None:
+        each = weight * number.sum() / (weight * number).sum()
+        number, beyond = number * each, beyond * each
+        seen = Counts(seen.record, seen.term, number, weighted=True)
+    design = _plane(x1, x2)
+    if (np.ptp(design[:, 1:], axis=0) < SAME).any():
+        return replace(bare, why="one of the measures is the same in all runs: take a curve over the other one")
+    if bare.runs <= design.shape[1]:
+        return replace(bare, why=f"{bare.runs} runs cannot tell {design.shape[1]} coefficients")
+    correlation = float(np.corrcoef(design[:, 1], design[:, 2])[0, 1])
+    if 1 - abs(correlation) < PARALLEL:
+        return replace(
+            bare, why="the two measures are in proportion (of their logarithms): take a curve over either one"
+        )
+    standard, some, none = standardised(design)[0], beyond > 0, beyond < number  # both where outcomes are mixed
+    rows = np.concatenate([standard[some], standard[none]])
+    if separable(rows, np.arange(len(rows)) < some.sum()):
+        why = "a line in the plane of the two measures separates what exceeds from what does not"
+        return replace(bare, why=f"{why}: the likelihood has no maximum, more runs near the line are needed")
+    if few := too_few(seen, 3):
+        return replace(bare, why=few)
+    fits = [
+        fit_outcomes("probit", design[:, columns], seen, beyond, confidence) for columns in ([0, 1, 2], [0, 1], [0, 2])
+    ]
+    for fit in fits:
+        if isinstance(fit, str):
+            return replace(bare, why=fit)
+    both, first, second = (fit for fit in fits if isinstance(fit, Fit))
+    if (both.coefficients[1:] <= 0).all():
+        return replace(bare, why="no surface increases: fewer runs exceed the limit as either measure increases")
+    p_values = (_gain(both, second, 1, seen.repeated), _gain(both, first, 2, seen.repeated))
+    aic = {"both": both.aic, "first": first.aic, "second": second.aic}
+    why = _words(both, p_values, aic)
+    return replace(bare, kind="lognormal", why=why, fit=both, aic=aic, p_values=p_values)
+
+
+def _plane(x1: Reals, x2: Reals) -> Reals:
+    return np.column_stack([np.ones(x1.size), np.log(x1), np.log(x2)])
+
+
+def _gain(both: Fit, alone: Fit, column: int, clustered: bool) -> float:
+    """Return the p-value of adding a measure; with repeated records by the standard error, as no chi-square holds."""
+    from scipy.special import chdtrc, stdtr
+
+    if clustered:
+        error = float(np.sqrt(both.covariance[column, column]))
+        return 2 * float(stdtr(both.degrees, -abs(both.coefficients[column]) / error))
+    return float(chdtrc(1, 2 * (both.log_likelihood - alone.log_likelihood)))
+
+
+def _words(both: Fit, p_values: tuple[float, float], aic: dict[str, float]) -> str:
+    said = [
+        f"the {name} measure {'adds to' if p < ADDS else 'adds nothing detectable to'} the {other} (p = {p:.2g})"
+        for name, other, p in (("second", "first", p_values[1]), ("first", "second", p_values[0]))
+    ]
+    if max(p_values) >= ADDS:
+        alike = min(p_values) >= ADDS  # neither adds to the other: then the likelier one
+        better = "first" if (aic["first"] <= aic["second"] if alike else p_values[0] < ADDS) else "second"
+        said.append(f"a curve over the {better} measure alone is sufficient")
+    falls = [name for name, c in zip(("first", "second"), both.coefficients[1:], strict=True) if c < 0]
+    said += [
+        f"at a fixed value of the other measure, fewer runs exceed the limit as the {name} one increases"
+        for name in falls
+    ]
+    return "; ".join(said)

@@ -1,0 +1,385 @@
+"""The definition of a fragility study in its YAML file: the fields, and the rules between them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from typing import Annotated, Any, Literal, TypeVar
+
+import numpy as np
+from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationError
+from pydantic_core import PydanticCustomError
+
+from rocking_cli.core import Mechanism
+from rocking_cli.core.fields import Name, Restitution
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.errors import InputError
+from rocking_cli.io.yaml_file import Document, Place
+from rocking_cli.names import OPENING
+from rocking_cli.processing.entry import Entry, FloorItem, Steps
+from rocking_cli.processing.reading import Reading, reading_of
+from rocking_cli.processing.steps import parse_steps
+from rocking_cli.questions.fragility.distributions import Distribution, Positive, in_units_of_fields
+from rocking_cli.questions.fragility.hazard_curve import wrong_points
+from rocking_cli.questions.fragility.observed import SAME
+from rocking_cli.studies.file_part import Part, Sound, problems_of
+from rocking_cli.studies.fragility.quantities import PGA, is_quantity, metres, no_levels, spelled, spelt
+from rocking_cli.studies.fragility.quantities import SCALE as SCALE
+
+UPLIFT, OVERTURNING, SLIDING = "uplift", "overturning", "sliding"
+LAMBDA = "lambda"  # what a motion reaches that uplifts a structure, though no limit state to be asked of
+MOST = 100_000  # levels or samples: more is a slip of the keyboard
+
+
+def _measure(value: object) -> object:
+    """Return the standard spelling of a measure given in any case and spacing."""
+    if not isinstance(value, str):
+        return value
+    try:
+        return spelled(value)
+    except InputError as error:
+        (problem,) = error.problems
+        said = {"reason": problem.message, "hint": problem.hint}
+        raise PydanticCustomError("unit", "{reason}", said) from None
+
+
+def _level_measure(value: object) -> object:
+    """Return the measure of levels: the factor on the records, or a measure proportional to a power of this factor."""
+    if isinstance(value, str) and value.strip().lower() == SCALE:
+        return SCALE
+    found = _measure(value)
+    if isinstance(found, str) and (why := no_levels(found)):
+        raise ValueError(why)
+    return found
+
+
+def _spelled(value: object) -> object:
+    """Return an entry of a list with measures in their standard spelling; other entries unchanged."""
+    if isinstance(value, list):
+        return [_spelled(each) for each in value]
+    if isinstance(value, str) and value.strip().lower() == SCALE:
+        return SCALE
+    try:
+        return _measure(value)
+    except ValueError:
+        return value
+
+
+def _limit(value: object) -> object:
+    """Read a limit state: a word, a ratio of rotations, or a displacement of the top, converted to mm."""
+    if isinstance(value, int | float) and not isinstance(value, bool) and 0 < value < float("inf"):
+        return float(value)
+    if value in (UPLIFT, OVERTURNING, SLIDING):
+        return value
+    if isinstance(value, str) and is_quantity(value):
+        return spelt(value)
+    known = "uplift, overturning, sliding, a positive number or a displacement such as 25 mm"
+    raise ValueError(f"must be {known}, got {value!r}")
+
+
+def _right(given: dict[str, Any], name: str, sound: Sound) -> list[Any]:
+    """Return the valid entries of a list, with measures and limit states in their standard spelling."""
+    values = given.get(name)
+    entries = enumerate(values if isinstance(values, list) else [])
+    own = _limit if name == "limit_states" else _spelled
+    return [own(each) for k, each in entries if sound(name, k)]
+
+
+def _pair(values: list[str]) -> list[str]:
+    """Refuse a measure paired with itself: a surface over the two is a curve."""
+    if values[0] == values[1]:
+        raise ValueError(f"{values[0]} is paired with itself")
+    return values
+
+
+def _file(value: object) -> object:
+    """Expand an entry that is plain text to a mapping with the text as its `file`."""
+    return {"file": value} if isinstance(value, str) else value
+
+
+Intensity = Annotated[float, Field(ge=1e-6, le=1e6)]
+Measure = Annotated[str, BeforeValidator(_measure)]
+LevelMeasure = Annotated[str, BeforeValidator(_level_measure)]
+Limit = Annotated[str | float, BeforeValidator(_limit)]
+
+
+def implies(limit: Limit, other: Limit) -> bool:
+    """Return whether every run that exceeds a limit state exceeds another one as well."""
+    if limit == other or other in (OVERTURNING, SLIDING):
+        return False
+    if other == UPLIFT or limit == OVERTURNING:
+        return True
+    if isinstance(limit, float) and isinstance(other, float):
+        return limit > other
+    moved, less = metres(limit), metres(other)
+    return moved is not None and less is not None and moved > less
+
+
+class StructureEntry(Part):
+    """A structure of the study."""
+
+    file: str = Field(description="its YAML file")
+    name: Name | None = Field(None, description="what to call it here")
+    vary: dict[str, Distribution] = Field({}, description="distributions of some of its fields")
+
+
+class RecordEntry(Entry, Part):
+    """Ground motions of the study: files that a pattern stands for, a list of records, or a pulse."""
+
+    pulse: str | None = Field(None, description="a pulse, such as sine:0.6g:0.8s")
+    vertical: str | None = Field(None, description="the file of the vertical component")
+    level: Intensity | None = Field(None, description="the one level whose set of records it belongs to")
+
+    @classmethod
+    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+        """Check that an entry has exactly one source, and only the fields that suit it."""
+        there = {name for name in given if given.get(name) is not None}
+        if len(there & {"file", "pulse"}) != 1:
+            yield (), "give a file or a pulse"
+        elif "pulse" in there and there - {"pulse", "floor", "weight", "level"}:
+            yield (), "units, dt, channel, vertical and the like describe a file"
+        pair = bool(there & {"with", "other"})
+        if "azimuth" in there and not pair:
+            yield ("azimuth",), "is between two components: give the file of the second with `with`"
+        if there & {"with_channel", "other_channel"} and not pair:
+            yield ("with_channel",), "is of a second component: give its file with `with`"
+        if pair and "azimuth" not in there:
+            yield (), "azimuth is missing: 0 for the record, 90 for that of `with`, or what is between them"
+
+
+class Levels(Part):
+    """Intensities to which every record is scaled."""
+
+    measure: LevelMeasure = Field(description="what the levels are of")
+    values: list[Intensity] | None = Field(None, min_length=1, max_length=MOST, description="the levels")
+    least: Intensity | None = Field(None, description="the smallest")
+    most: Intensity | None = Field(None, description="the largest")
+    count: int | None = Field(None, ge=2, le=MOST, description="how many")
+    spacing: Literal["even", "log"] = Field("even", description="steps of equal size, or of equal ratio")
+    scaled: bool = Field(True, description="false: sets of records are used as they are, and a level names its set")
+
+    @classmethod
+    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+        """Check that levels are either listed or given as a range, and differ by more than rounding."""
+        values: Any = given.get("values")
+        least, most, count = ranged = [given.get(name) for name in ("least", "most", "count")]
+        listed = values is not None
+        if any((each is None) != listed for each in ranged):
+            yield (), "give values, or least, most and count"
+        if listed:
+            for one, other in pairwise(sorted(_right(given, "values", sound))):
+                if not _apart(one, other):
+                    same = f"{one} is given twice" if one == other else f"{one} and {other} differ by rounding alone"
+                    yield ("values",), same
+        if least is None or most is None or not (sound("least") and sound("most")):
+            return
+        if least >= most:
+            yield ("most",), f"must be more than least ({least:g}), got {most:g}"
+        elif count is not None and sound("count") and sound("spacing"):
+            levels = _spaced(least, most, count, given.get("spacing", "even"))
+            if not all(_apart(one, other) for one, other in pairwise(levels)):
+                yield ("most",), f"is too close to least for {count} distinct levels"
+
+    def levels(self) -> list[float]:
+        """Return the levels, increasing."""
+        if self.values is not None:
+            return sorted(self.values)
+        assert self.least is not None and self.most is not None and self.count is not None
+        return _spaced(self.least, self.most, self.count, self.spacing)
+
+
+def _spaced(least: float, most: float, count: int, spacing: str) -> list[float]:
+    between = np.geomspace if spacing == "log" else np.linspace
+    return [float(each) for each in between(least, most, count)]
+
+
+def _apart(one: float, other: float) -> bool:
+    """Return whether `other` is above `one` by more than rounding."""
+    return other > one * (1 + SAME)
+
+
+class HazardEntry(Part):
+    """Annual rates at which intensities are exceeded at the site."""
+
+    measure: Measure = Field("PGA", description="of the intensities")
+    file: str | None = Field(None, description="CSV of two columns: intensity, annual rate of exceedance")
+    points: list[Annotated[list[Positive], Field(min_length=2, max_length=2)]] | None = Field(
+        None, min_length=2, description="[intensity, annual rate] of each point"
+    )
+
+    @classmethod
+    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+        """Check that the hazard has exactly one source, and that its points are in order."""
+        points = given.get("points")
+        if (given.get("file") is None) == (points is None):
+            yield (), "give a file or points"
+        right = [k for k in range(len(points) if isinstance(points, list) else 0) if sound("points", k)]
+        if points is not None and len(right) > 1:
+            for k, message in wrong_points(*np.array([points[k] for k in right], dtype=np.float64).T):
+                yield ("points", right[k]), message
+
+
+class Sampling(Part):
+    """How samples of the structures are drawn."""
+
+    samples: int = Field(1, ge=1, le=MOST, description="how many structures are drawn from the distributions")
+    sampling: Literal["random", "latin hypercube"] = Field("latin hypercube", description="how they are drawn")
+    seed: int = Field(0, ge=0, lt=2**63, description="of the random numbers")
+
+
+class Common(Part):
+    """Processing and floor of all records."""
+
+    processing: Steps = Field([], description="corrections of every record, in their order, after its own")
+    floor: FloorItem = Field(None, description="the floor of a building that the structures stand on")
+
+    @property
+    def reading(self) -> Reading:
+        """How every record is read and processed, unless its entry states otherwise."""
+        return Reading(reading_of({"floor": self.floor}).options, parse_steps(self.processing))
+
+
+class Definition(Sampling, Common):
+    """The content of a study file."""
+
+    name: Name | None = Field(None, description="what to call the study")
+    structures: list[Annotated[StructureEntry, BeforeValidator(_file)]] = Field(
+        min_length=1, description="what is shaken"
+    )
+    records: list[Annotated[RecordEntry, BeforeValidator(_file)]] = Field(min_length=1, description="what shakes it")
+    method: Literal["cloud", "stripes", "ida"] = Field(description="how records and intensities are combined")
+    levels: Levels = Field(
+        Levels(measure="scale", values=[1.0]), description="intensities to which every record is scaled"
+    )
+    polarities: list[Literal[1, -1]] = Field([1], min_length=1, max_length=2, description="-1 reverses the records")
+    eta: list[Restitution] | None = Field(
+        None, min_length=1, description="restitutions, instead of the structures' own"
+    )
+    model: ModelName = Field("nonlinear", description="equation of motion")
+    opening: float = Field(
+        OPENING, ge=0, le=1, description="largest opening of a joint over D_cr up to which a run holds"
+    )
+    limit_states: list[Limit] = Field([UPLIFT, OVERTURNING], min_length=1, description="what is asked of the motions")
+    measures: list[Measure] | None = Field(None, min_length=1, description="intensities that curves are fitted over")
+    bivariate: list[Annotated[list[Measure], Field(min_length=2, max_length=2), AfterValidator(_pair)]] = Field(
+        [], description="pairs of intensities that surfaces are fitted over"
+    )
+    confidence: float = Field(0.95, gt=0.5, lt=1, description="of intervals and bands")
+    hazard: HazardEntry | None = Field(None, description="how often intensities are exceeded at the site")
+
+    @classmethod
+    def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+        """Check that the levels suit the method, the samples what varies, and the model the requested measures."""
+        method, levels, structures = (given.get(name) for name in ("method", "levels", "structures"))
+        scaled = isinstance(levels, dict) and sound("levels", "measure") and _spelled(levels["measure"]) != SCALE
+        if method == "cloud" and scaled:
+            yield ("levels",), f"a cloud scales records by factors: `measure: {SCALE}`"
+        yield from _wrong_sets(given, sound)
+        if method in ("stripes", "ida") and "levels" not in given:
+            yield ("levels",), "is missing: every record is scaled to levels of intensity"
+        entries = structures if isinstance(structures, list) else []
+        vary = [entry.get("vary") for entry in entries if isinstance(entry, dict)]
+        varied = {name for each in vary if isinstance(each, dict) for name in each}
+        if varied and "samples" not in given:
+            yield ("samples",), "is missing: how many structures are drawn from the distributions"
+        if not varied and sound("structures") and sound("samples") and given.get("samples", 1) > 1:
+            yield ("samples",), "nothing varies: add `vary` to at least one structure"
+        if given.get("eta") is not None and "restitution" in varied:
+            yield ("eta",), "cannot be combined with a structure that varies its restitution: give one of the two"
+        if checks_sliding(given) and sound("model") and given.get("model", "nonlinear") != "nonlinear":
+            yield ("limit_states",), "sliding requires `model: nonlinear`: linear models do not give the joint forces"
+        for name in ("polarities", "eta", "limit_states", "measures", "bivariate"):
+            values = _right(given, name, sound)
+            for k, value in enumerate(values):
+                if value in values[:k] and value not in values[k + 1 :]:
+                    yield (name,), f"{' and '.join(value) if isinstance(value, list) else value} is given twice"
+
+    @property
+    def fitted_measures(self) -> list[str]:
+        """Measures of the curves: those requested, otherwise that of the levels; and that of the hazard."""
+        found: list[str] = list(self.measures or [])
+        if not found:
+            found = [PGA if self.levels.measure == SCALE else self.levels.measure]
+        return list(dict.fromkeys([*found, *([self.hazard.measure] if self.hazard is not None else [])]))
+
+    @property
+    def asked_measures(self) -> list[str]:
+        """All measures that the study names, each once: those of levels, curves, surfaces and hazard."""
+        asked = [self.levels.measure, *self.fitted_measures, *(one for pair in self.bivariate for one in pair)]
+        return [name for name in dict.fromkeys(asked) if name != SCALE]
+
+
+def _wrong_sets(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
+    """Yield an error for each record whose set or level does not suit the levels and the method of the study."""
+    entries, levels = given.get("records"), given.get("levels")
+    entries = entries if isinstance(entries, list) else []
+    of_sets = [k for k, each in enumerate(entries) if isinstance(each, dict) and each.get("level") is not None]
+    if isinstance(levels, dict) and levels.get("scaled") is False:
+        if levels.get("measure") == SCALE:
+            yield ("levels", "scaled"), f"levels of the measure {SCALE} are factors: leave scaled out"
+        if sound("records") and len(of_sets) < len(entries):
+            yield ("levels", "scaled"), "records are used as they are, so each needs the `level` whose set it is of"
+    if not of_sets:
+        return
+    if given.get("method") != "stripes" and sound("method"):
+        yield ("records", of_sets[0], "level"), "sets of records for levels are of `method: stripes`"
+    if not (isinstance(levels, dict) and sound("levels")):
+        return
+    known = Levels.model_validate(levels).levels()
+    for k in of_sets:
+        level = entries[k]["level"] if sound("records", k) else None
+        if level is not None and not any(abs(level - each) <= SAME * abs(each) for each in known):
+            shown = ", ".join(f"{level:g}" for level in known[:10]) + (", ..." if len(known) > 10 else "")
+            yield ("records", k, "level"), f"{level:g} is not one of the levels {shown}"
+
+
+def checks_sliding(given: dict[str, Any]) -> bool:
+    """Return whether the data of a study file names sliding as a limit state, so that every run is checked."""
+    asked = given.get("limit_states")
+    return isinstance(asked, list) and SLIDING in asked
+
+
+HINT = "see the example in docs/fragility.md"
+PARTS = (("file", "name"), ("file", "vertical"), ("file",), ("pulse",))  # of an entry, each worth a look by itself
+Piece = TypeVar("Piece", bound=BaseModel)
+
+
+def definition_of(document: Document, load: Callable[[str], Mechanism]) -> Definition | None:
+    """Return the definition of a study; errors in it are added to the problems of the document, and make it None.
+
+    Parameters
+    ----------
+    document : Document
+        The content of the study.
+    load : callable
+        Returns the structure of a file that the study names.
+    """
+    of_units = in_units_of_fields(document, load)
+    document.problems += of_units
+    try:
+        return Definition.model_validate(document.data)
+    except ValidationError as error:
+        document.problems += problems_of(document, Definition, error, owner="the study", lister=HINT, known=of_units)
+    return None
+
+
+def usable_entries(document: Document, field: str, model: type[Piece]) -> list[tuple[int, Piece]]:
+    """Return the entries of a list with their places; of an invalid entry one part that is valid by itself, if any."""
+    found = []
+    entries = document.data.get(field)
+    for k, entry in enumerate(entries if isinstance(entries, list) else []):
+        given = _file(entry)
+        if not isinstance(given, dict):
+            continue
+        parts = [given, *({name: given.get(name) for name in names} for names in PARTS)]
+        usable = [each for each in (usable_part(model, part) for part in parts) if each is not None]
+        found += [(k, each) for each in usable[:1]]
+    return found
+
+
+def usable_part(model: type[Piece], data: Any) -> Piece | None:
+    """Return a part of the file that is valid by itself, whatever is wrong elsewhere; None if it is invalid."""
+    try:
+        return model.model_validate(data)
+    except ValidationError:
+        return None

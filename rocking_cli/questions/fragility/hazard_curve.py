@@ -1,0 +1,208 @@
+"""The annual rate at which a limit state is exceeded, from a fragility curve and a hazard curve."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from rocking_cli.arrays import Reals
+from rocking_cli.questions.fragility.curves import FragilityCurve
+from rocking_cli.questions.fragility.observed import SAME
+from rocking_cli.studies.points_file import read_points
+
+NODES = 16  # of Gauss's rule in a piece
+PIECE = 0.05  # of ln x: a curve of dispersion 0.02 is still smooth in it
+LIFE = 50.0  # years
+
+
+@dataclass(frozen=True, eq=False)
+class HazardCurve:
+    """Annual rate at which an intensity is exceeded at a site: straight lines in log-log between points.
+
+    Parameters
+    ----------
+    intensity : ndarray, shape (n,)
+        Intensities, positive and increasing, in the measure and the unit of the fragility curve.
+    annual_rate : ndarray, shape (n,)
+        Rates of exceedance at these intensities, positive and never increasing [1/year].
+    """
+
+    intensity: Reals
+    annual_rate: Reals
+
+    def rate(self, x: Reals) -> Reals:
+        """Return the annual rate of exceeding the intensity x [1/year]; NaN outside the points."""
+        logs = np.log(self.intensity), np.log(self.annual_rate)
+        return np.exp(np.interp(np.log(x), *logs, left=np.nan, right=np.nan))
+
+
+def wrong_points(intensity: Reals, rate: Reals) -> list[tuple[int, str]]:
+    """Return the invalid points of a hazard curve, counted from 0, each with a message."""
+    found = []
+    for k, (x, value) in enumerate(zip(intensity, rate, strict=True)):
+        if not 0 < x < math.inf:
+            found.append((k, f"the intensity is {x:g}, it must be positive"))
+        elif not 0 < value < math.inf:
+            found.append((k, f"the annual rate is {value:g}, it must be positive"))
+        elif k and x <= intensity[k - 1]:
+            found.append((k, f"the intensity {x:g} does not exceed the {intensity[k - 1]:g} before it"))
+        elif k and value > rate[k - 1]:
+            found.append((k, f"the annual rate {value:g} is above the {rate[k - 1]:g} at the lower intensity"))
+    return found or ([(intensity.size, "at least two are needed")] if intensity.size < 2 else [])
+
+
+def read_hazard(path: Path) -> HazardCurve:
+    """Read a hazard curve from a file of two columns.
+
+    Parameters
+    ----------
+    path : Path
+        A file whose lines each have an intensity and an annual rate, separated by a comma. One heading, blank lines,
+        and lines that begin with # are skipped.
+
+    Returns
+    -------
+    HazardCurve
+
+    Raises
+    ------
+    InputError
+        With file and line.
+    """
+    columns = "two are needed with a comma between: intensity, annual rate"
+    intensity, rate, _ = read_points(path, "hazard curve", columns, wrong_points)
+    return HazardCurve(intensity, rate)
+
+
+@dataclass(frozen=True)
+class Rate:
+    """Annual rate at which a limit state is exceeded.
+
+    Parameters
+    ----------
+    rate : float
+        The integral of P(x) |d rate(x)| over the hazard curve; beyond its last point, P keeps its value there [1/year].
+    low, high : float
+        The rates with the confidence limits of the curve in place of the curve: at least as wide as the confidence
+        level asks, because all points reach their limit at once. The hazard curve counts as exact [1/year].
+    above : float
+        Upper bound of the additional rate from intensities beyond the last point, if P is one there [1/year].
+    below : float
+        Additional rate from intensities below the first point, if the first slope of the hazard curve continues;
+        infinite for a curve that does not vanish at zero intensity [1/year].
+    """
+
+    rate: float
+    low: float
+    high: float
+    above: float
+    below: float
+
+    @property
+    def return_period(self) -> float:
+        """Return period of the exceedance [years]; infinite at a rate of zero."""
+        return 1 / self.rate if self.rate > 0 else math.inf
+
+    @property
+    def in_50_years(self) -> float:
+        """Probability of at least one exceedance in 50 years, as events of a Poisson process."""
+        return -math.expm1(-LIFE * self.rate)
+
+
+def annual_rate(curve: FragilityCurve, hazard: HazardCurve) -> Rate:
+    """Compute the annual rate of exceedance from a fragility curve and a hazard curve.
+
+    Parameters
+    ----------
+    curve : FragilityCurve
+        A curve over the measure of the hazard curve, in the same unit, and not of kind `none`.
+    hazard : HazardCurve
+        The hazard curve of the site.
+
+    Notes
+    -----
+    The integral is by Gauss's rule in pieces of ln x. For a lognormal curve and one power law, rate = k0 x^-k, it is
+    rate(median) exp(k^2 dispersion^2/2) [Cornell et al. 2002, J. Struct. Eng. 128, 526-533].
+    """
+    last = float(hazard.annual_rate[-1])
+    if curve.step is not None and not curve.implied:
+        first, end = hazard.intensity[[0, -1]]  # below the first point its rate, beyond the last one none
+        at, low, high = (
+            0.0 if x > end * (1 + SAME) else float(hazard.rate(np.clip([x], first, end))[0])
+            for x in (curve.step.value, curve.step.high, curve.step.low)
+        )
+        above = last if curve.step.value > hazard.intensity[-1] * (1 + SAME) else 0.0
+        return Rate(at, low, high, above, _beyond(hazard, curve.step.value))
+    end = hazard.intensity[-1:]
+    jumps = [x for step in curve.steps for x in (step.low, step.value, step.high)]
+    low, rate, high = (
+        _integral(hazard, probability, jumps) + float(probability(end)[0]) * last
+        for probability in (lambda x: curve.band(x)[0], curve.probability, lambda x: curve.band(x)[1])
+    )
+    return Rate(rate, low, high, (1 - float(curve.probability(end)[0])) * last, _below(curve, hazard))
+
+
+def _integral(hazard: HazardCurve, probability: Callable[[Reals], Reals], jumps: Sequence[float]) -> float:
+    """Return the integral of P |d rate| between the first and the last point of the hazard curve [1/year]."""
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    logs = np.log(hazard.intensity)
+    ends = np.concatenate(
+        [
+            np.linspace(start, stop, max(1, math.ceil((stop - start) / PIECE)), endpoint=False)
+            for start, stop in pairwise(logs)
+        ]
+        + [logs[-1:]]
+    )
+    ends = np.union1d(ends, [x for x in np.log(jumps) if logs[0] < x < logs[-1]])  # P is smooth between them
+    half, middle = np.diff(ends)[:, None] / 2, (ends[:-1, None] + ends[1:, None]) / 2
+    at = middle + half * nodes
+    slope = -np.diff(np.log(hazard.annual_rate)) / np.diff(logs)  # k of each power law
+    k = slope[np.searchsorted(logs, middle, side="right") - 1]
+    x = np.exp(at)
+    return float((half * weights * probability(x) * k * hazard.rate(x)).sum())
+
+
+def _first_slope(hazard: HazardCurve) -> float:
+    """Return the exponent k of the power law between the first two points."""
+    (x0, x1), (rate0, rate1) = hazard.intensity[:2], hazard.annual_rate[:2]
+    return float(np.log(rate0 / rate1) / np.log(x1 / x0))
+
+
+def _beyond(hazard: HazardCurve, at: float) -> float:
+    """Return the rate that a step below the first point adds, if the first power law continues [1/year]."""
+    if at >= hazard.intensity[0]:
+        return 0.0
+    first = float(hazard.annual_rate[0])
+    return first * float((hazard.intensity[0] / at) ** _first_slope(hazard)) - first
+
+
+def _below(curve: FragilityCurve, hazard: HazardCurve) -> float:
+    """Return the rate that intensities below the first point add, if the first power law continues [1/year].
+
+    Of curves that cut each other, it is that of the smallest.
+    """
+    return min(_below_alone(each, hazard) for each in (curve.own, *curve.implied.values()))
+
+
+def _below_alone(curve: FragilityCurve, hazard: HazardCurve) -> float:
+    """Return this rate of a single curve."""
+    if curve.step is not None:
+        return _beyond(hazard, curve.step.value)
+    from scipy.special import log_ndtr, ndtr
+
+    k = _first_slope(hazard)
+    if k == 0:
+        return 0.0
+    if curve.dispersion is None or curve.median is None:
+        return math.inf  # a logistic curve stays positive down to no shaking, where the power law is infinite
+    beta = curve.dispersion.value
+    z = math.log(hazard.intensity[0] / curve.median.value) / beta
+    # The integral of Phi(z) k rate d ln x from none to the first point, by parts and by completing the square.
+    with np.errstate(over="ignore"):
+        whole = np.exp(k * beta * z + (k * beta) ** 2 / 2 + log_ndtr(z + k * beta))
+    return float(hazard.annual_rate[0] * max(whole - ndtr(z), 0.0))

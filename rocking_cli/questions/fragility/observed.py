@@ -1,0 +1,226 @@
+"""Observed runs: those at one intensity, the share that exceeds, and the number of records behind it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from rocking_cli.arrays import Bools, Integers, Reals
+from rocking_cli.studies.fit import Counts, totals
+
+SAME = 1e-9  # relative difference of intensities that are one: rounding is far below it, shaking far above
+A_STRIPE = 5  # records at one intensity, on average, from which on intensities are looked at one by one
+STRIPES = 50  # of them at most: more are looked at in tenths
+GROUPS = 10  # of runs otherwise
+FEW = 20  # records below which intervals may hold less, or more, often than they say
+HELD = {5: (89, 100), 10: (90, 98)}  # of so many records, how often those of 95 % did: docs/make_coverage.py
+
+
+@dataclass(frozen=True, eq=False)
+class Observations:
+    """Number of runs that exceed a limit state, by record and intensity; `of` counts them.
+
+    Parameters
+    ----------
+    x : ndarray, shape (m,)
+        The different intensities, positive and increasing.
+    counts : Counts
+        Number of runs of each record at each intensity: n cells.
+    exceeding : ndarray, shape (n,)
+        Number of runs of each cell that exceed.
+    whole : (int, int), optional
+        Number of runs and of those that exceed, without weights, if the cells hold weighted numbers.
+    """
+
+    x: Reals
+    counts: Counts
+    exceeding: Reals
+    whole: tuple[int, int] | None = None
+
+    @classmethod
+    def of(
+        cls,
+        x: Reals,
+        exceeding: Bools | Reals | Integers,
+        record: Integers,
+        *,
+        level: Integers | None = None,
+        runs: Reals | Integers | None = None,
+        weight: Reals | None = None,
+    ) -> Observations:
+        """Count runs, given one by one or as numbers of equal runs.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+            Intensities, positive. Those that differ only by rounding are merged.
+        exceeding : ndarray, shape (n,)
+            Whether the run exceeds the limit state, or the number of equal runs that do.
+        record : ndarray of int, shape (n,)
+            The record of each run: runs of one record are not independent.
+        level : ndarray of int, shape (n,), optional
+            The level to which the record was scaled, if the level alone decides the intensity.
+        runs : ndarray, shape (n,), optional
+            Number of equal runs; one unless given.
+        weight : ndarray, shape (n,), optional
+            Relative weight of each run; equal unless given. Weights are scaled to an average of one.
+        """
+        levels, place = np.unique(one_of_each(x if level is None else _of_levels(x, level)), return_inverse=True)
+        names, who = np.unique(record, return_inverse=True)
+        cells, cell = np.unique(place * names.size + who, return_inverse=True)
+        alike = np.ones(x.size) if runs is None else runs.astype(np.float64)
+        beyond = exceeding.astype(np.float64)
+        if weight is None:
+            counts = Counts(cells % names.size, cells // names.size, totals(cell, alike))
+            return cls(levels, counts, totals(cell, beyond))
+        each = weight * alike.sum() / (weight * alike).sum()
+        counts = Counts(cells % names.size, cells // names.size, totals(cell, alike * each), weighted=True)
+        return cls(levels, counts, totals(cell, beyond * each), (int(alike.sum()), int(beyond.sum())))
+
+    @property
+    def runs(self) -> int:
+        """Number of runs."""
+        return self.whole[0] if self.whole is not None else int(self.counts.number.sum())
+
+    @property
+    def exceedances(self) -> int:
+        """Number of runs that exceed the limit state."""
+        return self.whole[1] if self.whole is not None else int(self.exceeding.sum())
+
+    @property
+    def records(self) -> int:
+        """Number of different records."""
+        return self.counts.records
+
+    @property
+    def repeated(self) -> bool:
+        """Whether a record has several runs."""
+        return self.counts.repeated
+
+    @cached_property
+    def sides(self) -> tuple[Reals, Reals]:
+        """The intensities of runs that do not exceed the limit state, and those of runs that do."""
+        place = self.counts.term
+        return self.x[np.unique(place[self.exceeding < self.counts.number])], self.x[
+            np.unique(place[self.exceeding > 0])
+        ]
+
+    @property
+    def stripes(self) -> bool:
+        """Whether so many records share each intensity that every intensity can be a group of its own."""
+        return self.x.size <= STRIPES and A_STRIPE * self.x.size <= self.counts.record.size
+
+    @cached_property
+    def group(self) -> Integers:
+        """The group of each cell, from the lowest: a stripe, or a tenth of the cells in order of intensity."""
+        place = self.counts.term
+        if self.stripes:
+            return place
+        tenth = np.searchsorted(place, place) * GROUPS // place.size  # one intensity stays together
+        return np.unique(tenth, return_inverse=True)[1].astype(np.int64)
+
+    def group_of(self, x: Reals, record: Integers, level: Integers | None = None) -> Integers:
+        """Return the group of each run that `of` counted, from its intensity, record and level."""
+        place = np.searchsorted(self.x, one_of_each(x if level is None else _of_levels(x, level)))
+        who = np.unique(record, return_inverse=True)[1]
+        cells = self.counts.term * self.records + self.counts.record  # growing
+        return np.asarray(self.group[np.searchsorted(cells, place * self.records + who)])
+
+    def parts(self, confidence: float) -> ObservedParts:
+        """Return the share of the runs that exceeds, in each group.
+
+        Parameters
+        ----------
+        confidence : float
+            Confidence level of the intervals.
+
+        Returns
+        -------
+        ObservedParts
+
+        Notes
+        -----
+        Wilson's interval with as many trials as records: the variance between records of the mean of their runs is at
+        most p(1 - p), that of one trial. Records with different numbers n of runs count as (sum n)^2/sum n^2 records.
+        As for bands, the quantile is Student's with one degree of freedom less than records if records repeat, so that
+        a single record bounds nothing; otherwise it is the normal one.
+        """
+        from scipy.special import ndtri, stdtrit
+
+        number = self.counts.number
+        group = self.group
+        runs = np.bincount(group, number)
+        exceeding = np.bincount(group, self.exceeding)
+        keys, which = np.unique(group * self.records + self.counts.record, return_inverse=True)
+        records = np.bincount(keys // self.records)
+        trials = runs**2 / np.bincount(keys // self.records, weights=np.bincount(which, number) ** 2)
+        level = (1 + confidence) / 2
+        several = np.maximum(records - 1, 1)
+        quantile = stdtrit(several, level) if self.repeated else np.full(runs.size, ndtri(level))
+        part = exceeding / runs
+        z2 = quantile**2 / trials
+        middle = (part + z2 / 2) / (1 + z2)
+        half = np.sqrt(z2 * (part * (1 - part) + z2 / 4)) / (1 + z2)
+        alone = self.repeated & (records == 1)
+        return ObservedParts(
+            np.bincount(group, self.x[self.counts.term] * number) / runs,
+            part,
+            np.where(alone, 0.0, np.clip(middle - half, 0.0, part)),
+            np.where(alone, 1.0, np.clip(middle + half, part, 1.0)),
+            np.rint(runs).astype(np.int64),
+            np.rint(exceeding).astype(np.int64),
+            records,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class ObservedParts:
+    """Observed shares of runs that exceed, each an ndarray with one entry for each group of runs.
+
+    Parameters
+    ----------
+    x : ndarray
+        Mean intensity of the group.
+    part, low, high : ndarray
+        The share that exceeds, and its confidence interval.
+    runs, exceeding, records : ndarray of int
+        Number of runs, of those that exceed, and of different records.
+    """
+
+    x: Reals
+    part: Reals
+    low: Reals
+    high: Reals
+    runs: Integers
+    exceeding: Integers
+    records: Integers
+
+
+def one_of_each(x: Reals) -> Reals:
+    """Replace intensities that differ only by rounding by the least of them."""
+    order = np.argsort(x, kind="stable")
+    rising = x[order]
+    new = np.concatenate([[True], ~(rising[1:] <= rising[:-1] * (1 + SAME))])
+    result = np.empty_like(rising)
+    result[order] = rising[new][np.cumsum(new) - 1]
+    return result
+
+
+def _of_levels(x: Reals, level: Integers) -> Reals:
+    """Return the intensity of the level of each run, taken from the first run of that level."""
+    _, first, which = np.unique(level, return_index=True, return_inverse=True)
+    return np.asarray(x[first][which])
+
+
+def few_records(records: int) -> str:
+    """Return a warning that intervals and bands rest on few records; empty if there are enough."""
+    if records >= FEW:
+        return ""
+    trials = max([each for each in HELD if each <= records], default=min(HELD))
+    low, high = HELD[trials]
+    return (
+        f"only {records} distinct record{'s' * (records != 1)}: intervals and bands are a rough guide: in trials with "
+        f"{trials} records those that should hold in 95 % of cases held in {low} to {high} %"
+    )

@@ -1,0 +1,464 @@
+"""The runs of a study, numbered: which structure, record, restitution, level and polarity each number stands for.
+
+What a study requests and its store does not hold yet is measured: values of records, samples and runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import nan, prod
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rocking_cli.arrays import Bools, Integers, Reals
+from rocking_cli.core import Equivalence, EquivalentBlock, Mechanism, NoEquivalentBlock, equivalent_block
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.processing.intensity import Measure, Reference, RunMeasure, parse_measure
+from rocking_cli.questions.fragility.observed import SAME
+from rocking_cli.questions.fragility.sources import KeptMotions, Record
+from rocking_cli.studies.fragility.quantities import PGA, PGV, SCALE
+from rocking_cli.studies.under_pulses import uplift
+
+EVERY = -1
+
+
+@dataclass(frozen=True, eq=False)
+class Sets:
+    """The levels at which the records of a study are run; each field is an ndarray with an entry for each record.
+
+    Parameters
+    ----------
+    level : ndarray of int
+        Index of the one level at which the record is run; -1 for a record that is run at all levels.
+    weight : ndarray
+        Relative weight of the record, positive.
+    one : ndarray of int
+        Index of the first entry that is the same record, in another set or another direction.
+    scaled : bool
+        Whether records are scaled to their levels; otherwise they are used as they are, and a level only names its set.
+    """
+
+    level: Integers
+    weight: Reals
+    one: Integers
+    scaled: bool = True
+
+    @classmethod
+    def of(
+        cls,
+        levels: Sequence[float],
+        at: Sequence[float | None],
+        weights: Sequence[float],
+        files: Sequence[str],
+        *,
+        scaled: bool = True,
+    ) -> Sets:
+        """Build sets from the level (if any), the weight and the file of each record."""
+        values = np.array(levels)
+        places = [EVERY if each is None else int(np.argmin(np.abs(values - each))) for each in at]
+        first = {file: len(files) - 1 - k for k, file in enumerate(reversed(files))}
+        return cls(
+            np.array(places, dtype=np.int64),
+            np.array(weights, dtype=np.float64),
+            np.array([first[file] for file in files], dtype=np.int64),
+            scaled,
+        )
+
+    @classmethod
+    def plain(cls, records: int) -> Sets:
+        """Build sets in which every record is run at every level with equal weight."""
+        return cls.of([0.0], [None] * records, [1.0] * records, [str(k) for k in range(records)])
+
+    @property
+    def weighted(self) -> bool:
+        """Whether the records have different weights."""
+        return bool(np.ptp(self.weight) > SAME * self.weight.max()) if self.weight.size else False
+
+    def there(self, record: int, levels: int) -> Bools:
+        """Return a mask of the levels at which a record is run."""
+        return np.ones(levels, dtype=bool) if self.level[record] == EVERY else np.arange(levels) == self.level[record]
+
+
+def described(description: dict[str, Any], weights: Sequence[float]) -> Sets:
+    """Build the sets of a store from the description of its study and the weights last requested."""
+    records, levels = description["records"], description["levels"]
+    return Sets.of(
+        levels["values"],
+        [each.get("level") for each in records],
+        weights,
+        [each.get("file", each["name"]) for each in records],
+        scaled=levels.get("scaled", True),
+    )
+
+
+class Value(NamedTuple):
+    """One value as a store keeps it. Indices on which the value does not depend are None; a missing value is None."""
+
+    measure: str
+    sample: int | None
+    record: int | None
+    level: int | None
+    value: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Values measured for a study, by name; NaN where there is none.
+
+    Parameters
+    ----------
+    of_record : mapping of str to ndarray, shape (records,)
+        Measures of the unscaled motions, by their standard spelling.
+    of_sample : mapping of str to ndarray, shape (samples,)
+        Fields of `Reference` that trials lack.
+    of_run : mapping of str to ndarray, shape (samples, records, levels)
+        Measures that are not proportional to a power of the factor on the record.
+    """
+
+    of_record: Mapping[str, Reals] = field(default_factory=dict)
+    of_sample: Mapping[str, Reals] = field(default_factory=dict)
+    of_run: Mapping[str, Reals] = field(default_factory=dict)
+
+    def __bool__(self) -> bool:
+        return bool(self.of_record or self.of_sample or self.of_run)
+
+    def values(self) -> Iterator[Value]:
+        """Yield all values that are not NaN, one at a time."""
+        for name, values in self.of_record.items():
+            yield from (Value(name, None, k, None, value) for (k,), value in _there(values))
+        for name, values in self.of_sample.items():
+            yield from (Value(name, k, None, None, value) for (k,), value in _there(values))
+        for name, values in self.of_run.items():
+            yield from (Value(name, s, r, k, value) for (s, r, k), value in _there(values))
+
+    @classmethod
+    def of(cls, values: Iterator[Value], shape: tuple[int, int, int]) -> Measured:
+        """Collect single values of a study with a given number of samples, records and levels.
+
+        Raises
+        ------
+        ValueError
+            If the indices of a value are not those of a record, a sample or a run.
+        IndexError
+            If an index is out of range.
+        """
+        samples, records, levels = shape
+        kinds: tuple[tuple[dict[str, Reals], tuple[int, ...]], ...] = (
+            ({}, (records,)),
+            ({}, (samples,)),
+            ({}, (samples, records, levels)),
+        )
+        patterns = ((False, True, False), (True, False, False), (True, True, True))
+        for value in values:
+            places = (value.sample, value.record, value.level)
+            arrays, size = kinds[patterns.index(tuple(place is not None for place in places))]
+            if value.measure not in arrays:
+                arrays[value.measure] = np.full(size, np.nan)
+            place = tuple(place for place in places if place is not None)
+            if min(place) < 0:
+                raise IndexError(place)
+            arrays[value.measure][place] = np.nan if value.value is None else value.value
+        return cls(*(arrays for arrays, _ in kinds))
+
+
+def _there(values: Reals) -> Iterator[tuple[Any, float]]:
+    """Return the index and the value of every entry that is not NaN."""
+    places = np.argwhere(~np.isnan(values)).tolist()
+    return zip((tuple(place) for place in places), values[~np.isnan(values)].tolist(), strict=True)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One sample of a structure in a study, with its parameters.
+
+    Parameters
+    ----------
+    structure : str
+        The structure's name.
+    number : int
+        Number of the sample, from 0.
+    drawn : dict of str to float
+        The sampled fields, by name.
+    reason : str or None
+        Why the sample cannot be simulated; None if it can.
+    p : float
+        Frequency parameter [rad/s], 0 if there is no equivalent block. This and all further fields are 0 if the sample
+        cannot be simulated.
+    lambda_ : float
+        Uplift acceleration of the model over g.
+    gravity : float
+        Gravitational acceleration [m/s2].
+    phi_cr_positive, phi_cr_negative : float
+        Critical rotations [rad]; the kinematic limit if there is no critical rotation.
+    """
+
+    structure: str
+    number: int
+    drawn: dict[str, float]
+    reason: str | None = None
+    p: float = 0.0
+    lambda_: float = 0.0
+    gravity: float = 0.0
+    phi_cr_positive: float = 0.0
+    phi_cr_negative: float = 0.0
+
+
+def weaker(equivalence: Equivalence, model: ModelName) -> tuple[float, float]:
+    """Return p and lambda of the direction that uplifts first, the reference of dimensionless measures."""
+    block = weaker_block(equivalence, model)
+    return block.p, uplift(block, model)
+
+
+def weaker_block(equivalence: Equivalence, model: ModelName) -> EquivalentBlock:
+    """Return the equivalent block of the direction that uplifts first."""
+    return min((equivalence.positive, equivalence.negative), key=lambda each: uplift(each, model))
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """All runs of a study, numbered with the polarity changing fastest, then level, restitution, record and sample.
+
+    Parameters
+    ----------
+    trials : sequence of Trial
+        The samples of the structures.
+    records : sequence of Record
+        The ground motions.
+    etas : sequence of float
+        Coefficients of restitution; NaN for the one of the structure.
+    measure : str
+        Measure of the levels, or "scale" for factors on the records.
+    levels : sequence of float
+        The levels.
+    polarities : sequence of int
+        The polarities: 1, -1 or both.
+    measured : Measured
+        Values measured beyond the peaks of the records.
+    sets : Sets, optional
+        The levels and the weight of each record; without it every record is run at all levels, with equal weight.
+    """
+
+    trials: Sequence[Trial]
+    records: Sequence[Record]
+    etas: Sequence[float]
+    measure: str
+    levels: Sequence[float]
+    polarities: Sequence[int]
+    measured: Measured = field(default_factory=Measured)
+    sets: Sets | None = None
+
+    @property
+    def of_sets(self) -> Sets:
+        """The levels at which each record is run, and its weight."""
+        return self.sets if self.sets is not None else Sets.plain(len(self.records))
+
+    @property
+    def structures(self) -> list[str]:
+        """Names of the structures, in the order of the study."""
+        return list(dict.fromkeys(trial.structure for trial in self.trials))
+
+    @property
+    def shape(self) -> tuple[int, int, int, int, int]:
+        """Numbers of samples, records, restitutions, levels and polarities."""
+        return len(self.trials), len(self.records), len(self.etas), len(self.levels), len(self.polarities)
+
+    @property
+    def block(self) -> int:
+        """Number of runs of one sample under one record; their numbers are consecutive."""
+        return prod(self.shape[2:])
+
+    @property
+    def total(self) -> int:
+        """Number of runs that can be simulated: without samples and records that cannot be used."""
+        _, _, etas, levels, polarities = self.shape
+        usable = sum(each.reason is None for each in self.trials)
+        places = [k for k, each in enumerate(self.records) if each.reason is None]
+        rungs = sum(int(self.of_sets.there(k, levels).sum()) for k in places)
+        return usable * rungs * etas * polarities
+
+    @property
+    def size(self) -> int:
+        """Number of all combinations, whether or not they can be simulated."""
+        return prod(self.shape)
+
+    def name(self, run: int) -> str:
+        """Describe a run in words."""
+        if not 0 <= run < self.size:
+            return f"run {run}, which the study does not have"
+        sample, record, _, level, polarity = (int(place[0]) for place in self.places(np.array([run])))
+        trial = self.trials[sample]
+        return (
+            f"run {run} ({trial.structure}, sample {trial.number}, {self.records[record].name}, "
+            f"level {self.levels[level]:.6g}, polarity {self.polarities[polarity]:+d})"
+        )
+
+    def places(self, runs: Integers) -> tuple[Integers, Integers, Integers, Integers, Integers]:
+        """Return the indices of sample, record, restitution, level and polarity of runs."""
+        sample, record, eta, level, polarity = np.unravel_index(runs, self.shape)
+        return sample, record, eta, level, polarity
+
+    def reference(self, sample: Integers) -> Reference:
+        """Return the reference values of dimensionless measures for samples given by their indices."""
+        columns = np.array([(each.p, each.lambda_, each.gravity) for each in self.trials])[sample]
+        p = np.where(columns[:, 0] > 0, columns[:, 0], np.nan)
+        steps = self.measured.of_sample.get("v_imp", np.full(len(self.trials), nan))
+        return Reference(p, columns[:, 1], columns[:, 2], steps[sample])
+
+    def of_records(self, measure: str) -> Reals:
+        """Return a measure of the unscaled motions, shape (records,); NaN where it is not known."""
+        if measure in (PGA, PGV):
+            return np.array([each.pga if measure == PGA else each.pgv for each in self.records])
+        return self.measured.of_record.get(measure, np.full(len(self.records), nan))
+
+    def intensities(
+        self, measure: str, sample: Integers, record: Integers, level: Integers, factor: float | Reals
+    ) -> Reals:
+        """Return the intensity of runs, from their indices and the factors on the records; NaN if not known."""
+        asked = parse_measure(measure)
+        if asked.base is None or asked.power is None:
+            table = self.measured.of_run.get(str(asked), np.full((len(self.trials), len(self.records), 1), nan))
+            return np.asarray(table[sample, record, np.minimum(level, table.shape[2] - 1)])
+        value = self.of_records(str(asked.base))[record] * np.power(factor, asked.power)
+        return np.asarray(asked.relative(value, self.reference(sample)), dtype=np.float64)
+
+    def factors(self, sample: Integers, record: Integers, level: Integers) -> Reals:
+        """Return the factors that scale records to levels, for indices of one shape."""
+        wanted = np.array(self.levels)[level]
+        if self.sets is not None and not self.sets.scaled:
+            return np.ones(wanted.shape)
+        if self.measure == SCALE:
+            return wanted
+        power = parse_measure(self.measure).power
+        assert power is not None
+        ratio = wanted / self.intensities(self.measure, sample, record, level, 1.0)
+        return np.asarray(ratio if power == 1 else ratio ** (1 / power))
+
+
+V_IMP = "v_imp"
+ORIGIN = ("magnitude", "distance")
+"""What records may state of their earthquake, kept beside measures so that these can be checked against it."""
+Told = Callable[[int], None]
+"""Called with how many records have been gone through since the last call."""
+
+
+def complete(
+    plan: Plan,
+    mechanisms: Sequence[Mechanism],
+    model: ModelName,
+    motions: KeptMotions,
+    asked: Iterable[str],
+    told: Told = lambda count: None,
+    *,
+    origins: bool = False,
+) -> Plan:
+    """Return a plan with all values that some measures need; values that are known are not measured again.
+
+    Parameters
+    ----------
+    plan : Plan
+        All runs, with what was measured for them.
+    mechanisms : sequence of Mechanism
+        The mechanisms of the plan's trials.
+    model : {"nonlinear", "linear1", "linear2"}
+        The equation of motion.
+    motions : KeptMotions
+        The motions of the plan's records.
+    asked : iterable of str
+        Names of the measures; the factor on the records is ignored.
+    told : callable, optional
+        Called with the number of records measured since the last call; see `Told`.
+    origins : bool
+        Whether to keep what the records state of their earthquake, too.
+
+    Raises
+    ------
+    InputError
+        If a record cannot be read any more, or is beyond the range of numbers.
+    PluginError
+        If the plugin of a measure fails.
+    """
+    measures = [parse_measure(each) for each in dict.fromkeys(asked) if each != SCALE]
+    plan = _with_samples(plan, mechanisms, model, measures)
+    bases = {str(each.base): each.base for each in measures if each.base is not None}
+    of_run = {str(each): each for each in measures if isinstance(each, RunMeasure)}
+    if plan.measure != SCALE:  # without these no run has a factor
+        base = parse_measure(plan.measure).base
+        assert base is not None
+        bases[str(base)] = base
+    names = [name for name in bases if name not in (PGA, PGV)] + list(ORIGIN if origins else ())
+    new = {name: _copied(plan.measured.of_record, name, len(plan.records)) for name in names}
+    samples, records, _, levels, _ = plan.shape
+    runs = {name: _copied(plan.measured.of_run, name, samples, records, levels) for name in of_run}
+    usable = np.array([trial.reason is None for trial in plan.trials])
+    for k, record in enumerate(plan.records):
+        told(1)
+        if record.reason is not None:
+            continue
+        for name, values in new.items():
+            if np.isnan(values[k]):
+                value = bases[name].value(motions[k].of_ground) if name in bases else getattr(motions[k].origin, name)
+                values[k] = nan if value is None else value
+    plan = replace(plan, measured=replace(plan.measured, of_record={**plan.measured.of_record, **new}))
+    plan = _without_unscalable(plan)
+    for k, record in enumerate(plan.records):
+        if record.reason is None:
+            for name, values in runs.items():
+                if np.isnan(values[usable, k]).any():
+                    values[:, k] = _of_runs(plan, of_run[name], motions, k, usable)
+    return replace(plan, measured=replace(plan.measured, of_run={**plan.measured.of_run, **runs}))
+
+
+def _copied(known: Mapping[str, Reals], name: str, *shape: int) -> Reals:
+    """Return a copy of the known values of a name, or an array of NaN."""
+    return np.array(known[name]) if name in known else np.full(shape, np.nan)
+
+
+def _with_samples(plan: Plan, mechanisms: Sequence[Mechanism], model: ModelName, measures: Sequence[Measure]) -> Plan:
+    """Return a plan with the velocity steps that just overturn the samples, if a measure needs them."""
+    if not any(V_IMP in each.needs for each in measures):
+        return plan
+    values = _copied(plan.measured.of_sample, V_IMP, len(plan.trials))
+    for k, (trial, mechanism) in enumerate(zip(plan.trials, mechanisms, strict=True)):
+        if trial.reason is None and np.isnan(values[k]):
+            try:
+                values[k] = weaker_block(equivalent_block(mechanism), model).v_imp
+            except NoEquivalentBlock:
+                continue
+    return replace(plan, measured=replace(plan.measured, of_sample={**plan.measured.of_sample, V_IMP: values}))
+
+
+def _without_unscalable(plan: Plan) -> Plan:
+    """Return a plan with a reason at each record that no factor scales to the levels."""
+    if plan.measure == SCALE:
+        return plan
+    base = parse_measure(plan.measure).base
+    values = plan.of_records(str(base))
+    why = f"its {base} is not above zero: it cannot be scaled to levels of {plan.measure}"
+    records = [
+        record if record.reason is not None or value > 0 else replace(record, reason=f"{record.name}: {why}")
+        for record, value in zip(plan.records, values, strict=True)
+    ]
+    known = dict(plan.measured.of_record)
+    if str(base) in known:  # to be measured anew when it is put right
+        known[str(base)] = np.where(values > 0, values, nan)
+    return replace(plan, records=records, measured=replace(plan.measured, of_record=known))
+
+
+def _of_runs(plan: Plan, measure: RunMeasure, motions: KeptMotions, k: int, usable: Bools) -> Reals:
+    """Return a measure of the runs of a record, shape (samples, levels); equal samples are computed once."""
+    samples, _, _, levels, _ = plan.shape
+    values = np.full((samples, levels), np.nan)
+    known: dict[tuple[float, ...], float] = {}
+    for sample in np.flatnonzero(usable).tolist():
+        place = np.full(levels, sample)
+        factors = plan.factors(place, np.full(levels, k), np.arange(levels))
+        of = plan.reference(np.array([sample]))
+        structure = [float(np.asarray(number)[0]) for number in (of.p, of.lambda_, of.gravity, of.v_imp)]
+        for level, factor in enumerate(factors.tolist()):
+            key = (factor, *structure)
+            if key not in known:
+                known[key] = measure.value(motions[k].of_ground.scaled(factor), Reference(*structure))
+            values[sample, level] = known[key]
+    return values

@@ -1,0 +1,280 @@
+"""Ranking of intensity measures: how well each predicts the peak rotation, and whether it is sufficient.
+
+Terms are those of Luco and Cornell (2007) and Padgett, Nielson and DesRoches (2008). Over the runs that rock without
+overturning, ln(peak phi/phi_cr) = a + b ln(measure) is fitted by least squares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import nan, sqrt
+
+import numpy as np
+
+from rocking_cli.arrays import Integers, Reals
+from rocking_cli.processing.intensity import RunMeasure, all_measures, parse_measure
+from rocking_cli.questions.fragility.assess import Fragility, counted, curves
+from rocking_cli.questions.fragility.definition import Definition, Limit
+from rocking_cli.questions.fragility.plan import ORIGIN, V_IMP, Plan
+from rocking_cli.questions.fragility.store import STANDS, Store
+from rocking_cli.questions.fragility.tally import samples_of
+from rocking_cli.studies.fragility.quantities import PGA, PGV
+
+TREND = 0.05  # p-value below which residuals have a trend
+OF_MOTION = ("Tm", "D5-95")
+"""What residuals are tested against if not all records state magnitude and distance."""
+STRAIGHT = ("magnitude",)  # it is a logarithm already
+FEWEST = 3  # runs, and records
+SAME = 1e-9  # of a logarithm: measures that differ by no more than a factor are one
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """How well one measure predicts the peak rotation of one structure.
+
+    Parameters
+    ----------
+    measure : str
+        Name of the measure.
+    efficiency : float
+        Standard deviation of ln(peak phi/phi_cr) about the line, with two degrees of freedom less than runs.
+    practicality : float
+        Slope of the line.
+    runs, records : int
+        Number of runs that rock without overturning, and of their records.
+    trends : dict of str to float
+        For each quantity against which the residuals, averaged for each record, are tested: the p-value of their slope;
+        NaN if it cannot be computed.
+    dispersions : dict of limit state to float
+        Dispersion of the fragility curve of each limit state over the measure; NaN if it is not lognormal, or a band.
+    """
+
+    measure: str
+    efficiency: float
+    practicality: float
+    runs: int
+    records: int
+    trends: Mapping[str, float]
+    dispersions: Mapping[Limit, float]
+
+    @property
+    def proficiency(self) -> float:
+        """Efficiency over practicality; NaN if the rotation does not increase with the measure."""
+        return self.efficiency / self.practicality if self.practicality > 0 else nan
+
+    @property
+    def sufficient(self) -> bool | None:
+        """Whether the residuals show no trend; None if no trend could be tested."""
+        known = [p for p in self.trends.values() if p == p]
+        return min(known) >= TREND if known else None
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """The ranked measures of one structure.
+
+    Parameters
+    ----------
+    structure : str
+        Name of the structure.
+    measures : tuple of Ranked
+        The measures, the most efficient first.
+    against : tuple of str
+        Names of the quantities against which residuals are tested.
+    alike : dict of str to str
+        Measures that are proportional to another one in every run, with the name of that one.
+    left_out : dict of str to str
+        Measures that cannot be ranked, and why.
+    unknown : int or None
+        Runs of unknown outcome, which are left out; None if the joints of the structure are not known.
+    """
+
+    structure: str
+    measures: tuple[Ranked, ...]
+    against: tuple[str, ...]
+    alike: Mapping[str, str]
+    left_out: Mapping[str, str]
+    unknown: int | None = 0
+
+
+@dataclass(frozen=True, eq=False)
+class FittedLine:
+    """A straight line through points, by least squares: intercept, slope, and the deviation of the points from it.
+
+    `p_value` is that of Student's test of no slope, with two degrees of freedom less than points.
+    """
+
+    intercept: float
+    slope: float
+    deviation: float
+    p_value: float
+
+
+def line(x: Reals, y: Reals) -> FittedLine | None:
+    """Fit a straight line by least squares; return None for fewer than three points, or if all x are equal."""
+    from scipy.special import stdtr
+
+    free = x.size - 2
+    spread = x - x.mean() if x.size else x
+    squares = float(spread @ spread)
+    if free < 1 or squares <= (SAME * x.size) ** 2:
+        return None
+    slope = float(spread @ y) / squares
+    rest = y - y.mean() - slope * spread
+    deviation = sqrt(float(rest @ rest) / free)
+    error = deviation / sqrt(squares)
+    p_value = 2 * float(stdtr(free, -abs(slope) / error)) if error > 0 else 0.0
+    return FittedLine(float(y.mean()) - slope * float(x.mean()), slope, deviation, p_value)
+
+
+def candidates(plan: Plan, definition: Definition) -> list[str]:
+    """Return the measures that can be ranked: those of the study and all installed ones whose values are known."""
+    asked = [*definition.asked_measures, *(str(each) for each in all_measures())]
+    return [each for each in dict.fromkeys(asked) if _known(plan, each)]
+
+
+def _known(plan: Plan, name: str) -> bool:
+    measure = parse_measure(name)
+    if isinstance(measure, RunMeasure):
+        return name in plan.measured.of_run
+    base = str(measure.base)
+    if V_IMP in measure.needs and V_IMP not in plan.measured.of_sample:
+        return False
+    return base in (PGA, PGV) or base in plan.measured.of_record
+
+
+def covariates(plan: Plan) -> dict[str, Reals]:
+    """Return, by name, the data of each record against which residuals are tested; empty if the data have gaps."""
+    usable = np.array([record.reason is None for record in plan.records])
+
+    def of(names: Iterable[str]) -> dict[str, Reals]:
+        found = {}
+        for name in names:
+            values = plan.of_records(name)
+            if not (np.isfinite(values[usable]).all() and (values[usable] > 0).all()):
+                return {}
+            found[name] = values if name in STRAIGHT else np.log(np.where(usable, values, 1.0))
+        return found
+
+    return of(ORIGIN) or of(OF_MOTION)
+
+
+def rank(
+    store: Store,
+    plan: Plan,
+    definition: Definition,
+    progress: Callable[[int], None] = lambda count: None,
+    against: Mapping[str, Reals] | None = None,
+) -> list[Ranking]:
+    """Rank the measures of each structure of a store that has runs.
+
+    Parameters
+    ----------
+    store : Store
+        Open to read.
+    plan : Plan
+        The plan of its runs.
+    definition : Definition
+        The definition of its study.
+    progress : callable, optional
+        Called with the number of runs read since the last call.
+    against : mapping of str to ndarray, shape (records,), optional
+        Quantities against which residuals are tested, a value for each record; those of `covariates` unless given.
+    """
+    names = candidates(plan, definition)
+    against = covariates(plan) if against is None else against
+    asked = definition.model_copy(update={"measures": names, "bivariate": [], "hazard": None})
+    rankings = []
+    for structure, tally in counted(store, plan, asked, progress).items():
+        if tally.runs.any():
+            fitted = {(curve.measure, curve.limit): curve for curve in curves(tally, structure, asked, None)}
+            ranking = _rank(store, plan, structure, names, fitted, against)
+            rankings.append(replace(ranking, unknown=tally.unknown_if_checked))
+    return rankings
+
+
+def _rank(
+    store: Store,
+    plan: Plan,
+    structure: str,
+    names: Sequence[str],
+    fitted: Mapping[tuple[str, Limit], Fragility],
+    against: Mapping[str, Reals],
+) -> Ranking:
+    """Rank the measures of one structure."""
+    runs, y = rocking(store, plan, structure)
+    sample, record, _, level, _ = plan.places(runs)
+    factors, one = plan.factors(sample, record, level), plan.of_sets.one[record]  # alike in several sets
+    ranked: list[Ranked] = []
+    alike: dict[str, str] = {}
+    left_out: dict[str, str] = {}
+    logs: dict[str, Reals] = {}
+    for name in names:
+        x = plan.intensities(name, sample, record, level, factors)
+        there = x > 0
+        if not there.any():
+            left_out[name] = "not known of it, or nowhere above zero"
+            continue
+        log = np.log(np.where(there, x, 1.0))
+        twin = next(
+            (other for other, its in logs.items() if there.all() and its.size and np.ptp(log - its) <= SAME), None
+        )
+        if twin is not None:
+            alike[name] = twin
+            continue
+        served = serves(name, log[there], y[there], one[there], against)
+        if served is None:
+            left_out[name] = "the same in all runs that rock and stand, or these are fewer than three"
+            continue
+        logs[name] = log if there.all() else np.zeros(0)
+        limits = {limit: _dispersion(each) for (measure, limit), each in fitted.items() if measure == name}
+        ranked.append(Ranked(name, *served, limits))
+    order = sorted(ranked, key=lambda each: each.efficiency)
+    return Ranking(structure, tuple(order), tuple(against), alike, left_out)
+
+
+def serves(
+    measure: str, x: Reals, y: Reals, record: Integers, against: Mapping[str, Reals]
+) -> tuple[float, float, int, int, dict[str, float]] | None:
+    """Return efficiency, practicality, number of runs, number of records and trends of a measure; None without a line.
+
+    Parameters
+    ----------
+    measure : str
+        Name of the measure; its residuals are not tested against the measure itself.
+    x, y : ndarray, shape (n,)
+        Logarithms of the measure and of the peak rotation of runs.
+    record : ndarray of int, shape (n,)
+        The record of each run.
+    against : mapping of str to ndarray, shape (records,)
+        Quantities against which residuals are tested.
+    """
+    fit = line(x, y)
+    if fit is None:
+        return None
+    residuals = y - fit.intercept - fit.slope * x
+    records, place, count = np.unique(record, return_inverse=True, return_counts=True)
+    means = np.bincount(place, weights=residuals) / count  # runs of a record are not independent
+    trends = {}
+    for name, values in against.items():
+        of = line(values[records], means) if name != measure else None
+        trends[name] = nan if of is None else of.p_value
+    return fit.deviation, fit.slope, int(x.size), int(records.size), trends
+
+
+def rocking(store: Store, plan: Plan, structure: str) -> tuple[Integers, Reals]:
+    """Return the numbers of a structure's runs that rock without overturning, and their ln(peak phi/phi_cr)."""
+    samples = samples_of(plan, structure)
+    each = len(plan.records) * plan.block
+    ids, peaks = [np.zeros(0, dtype=np.int64)], [np.zeros(0)]
+    for found in store.endings(samples.start * each, samples.stop * each):
+        rocks = found.uplifts & (found.outcome == STANDS) & (found.peak_ratio > 0)
+        ids.append(found.id[rocks])
+        peaks.append(np.log(found.peak_ratio[rocks]))
+    return np.concatenate(ids), np.concatenate(peaks)
+
+
+def _dispersion(found: Fragility) -> float:
+    spread = None if found.is_band else found.curve.dispersion
+    return spread.value if spread is not None else nan

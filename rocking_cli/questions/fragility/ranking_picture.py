@@ -1,0 +1,51 @@
+"""Plot of a ranking of intensity measures: their efficiency, and the trends of their residuals."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from rocking_cli.plotting import style
+from rocking_cli.questions.fragility.ranking import TREND, Ranking
+
+LEAST = 1e-4  # p-values below it are drawn at it
+
+
+def draw_ranking(ranking: Ranking) -> Figure:
+    """Draw the measures of a structure, the most efficient on top.
+
+    Parameters
+    ----------
+    ranking : Ranking
+        The ranking, with at least one measure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    shown = ranking.measures
+    figure = style.new_figure(1.4 + 0.26 * len(shown))
+    panels = figure.subplots(1, 1 + bool(ranking.against), sharey=True, squeeze=False)[0]
+    filled = " (filled: residuals show no trend)" if ranking.against else ""
+    style.heading(panels[0], f"{ranking.structure}: which measure predicts best{filled}")
+    places = np.arange(len(shown))
+    for place, each in zip(places, shown, strict=True):
+        face = style.INK if each.sufficient else "white"
+        panels[0].plot(each.efficiency, place, "o", color=style.INK, markerfacecolor=face, markersize=6)
+    panels[0].set_xlim(left=0.0)
+    panels[0].set_xlabel(r"efficiency: dispersion of $\ln(\phi/\phi_{cr})$", fontsize=style.LABEL)
+    panels[0].set_yticks(places, [each.measure for each in shown], parse_math=False)
+    panels[0].invert_yaxis()
+    if ranking.against:
+        for k, name in enumerate(ranking.against):
+            values = np.array([each.trends[name] for each in shown])
+            look = style.distinct(k) | {"linestyle": ""}
+            panels[1].plot(np.maximum(values, LEAST), places, **look, label=name)
+        panels[1].axvline(TREND, color=style.INK, linewidth=style.MEDIUM, linestyle="--")
+        panels[1].set_xlim(LEAST / 1.3, 1.3)
+        panels[1].set_xlabel(f"p-value of no trend; trend if below {TREND:g}", fontsize=style.LABEL)
+        style.logarithmic(panels[1].xaxis, (1.0,))
+        panels[1].legend(loc="best", fontsize=style.TICK, frameon=True)
+    for axes in panels:
+        style.tidy(axes)
+    return figure

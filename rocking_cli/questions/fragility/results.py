@@ -1,0 +1,239 @@
+"""`rk.results`: read the curves and runs of a fragility study from its store."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.questions.fragility.assess import Bivariate, Fragility, UnknownRuns
+from rocking_cli.questions.fragility.definition import Definition
+from rocking_cli.questions.fragility.plan import Plan
+from rocking_cli.questions.fragility.quantiles import Quantiles
+from rocking_cli.questions.fragility.ranking import Ranking
+from rocking_cli.questions.fragility.store import Store
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.io.tables import Columns
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StudyAnswer(Answer[list[Fragility]]):
+    """Fragility curves of a study, and what else its store holds.
+
+    Parameters
+    ----------
+    store : Path
+        The store.
+    plan : Plan
+        Structures, samples, records and levels.
+    definition : Definition
+        The study.
+    surfaces : sequence of Bivariate
+        Fits to two measures.
+    quantiles : sequence of Quantiles
+        Quantiles of the peak rotation at each intensity.
+    rankings : sequence of Ranking
+        Rankings of the intensity measures, if requested.
+    failed : int
+        Number of runs that could not be simulated.
+    complete : bool
+        Whether all runs are finished, and all records, samples and runs could be used.
+    """
+
+    store: Path = field(kw_only=True)
+    plan: Plan = field(kw_only=True)
+    definition: Definition = field(kw_only=True)
+    surfaces: list[Bivariate] = field(kw_only=True)
+    quantiles: list[Quantiles] = field(kw_only=True)
+    rankings: list[Ranking] = field(kw_only=True)
+    failed: int = field(kw_only=True)
+    complete: bool = field(kw_only=True)
+
+
+@takes_numbers
+def results(
+    store: str | Path,
+    *,
+    quantiles: bool = False,
+    rank_measures: bool = False,
+    curves: str | Path | None = None,
+    nrml: str | Path | None = None,
+    watch: Watcher = SILENT,
+) -> StudyAnswer:
+    """Summarise the fragility curves and runs of a study, from its store.
+
+    Parameters
+    ----------
+    store : str or Path
+        The store, which may be that of a study that is still running.
+    quantiles : bool
+        Whether the quantiles of the peak rotation are shown in words too.
+    rank_measures : bool
+        Whether to rank the intensity measures, by how well they predict the outcome.
+    curves, nrml : str or Path, optional
+        Files to write: the curves, one row per intensity (.csv or .parquet), and the curves for OpenQuake (.xml).
+    watch : Watcher
+        Told how far the counting, the fits and the ranking are.
+
+    Returns
+    -------
+    StudyAnswer
+        One curve per structure, limit state and measure; `frames["curves"]` has their points. If the outcome of some
+        runs is unknown, as a joint opens that the model keeps closed, these exceed the limit in the fit and do not in
+        its `lower`.
+
+    Raises
+    ------
+    InputError
+        If the file is not a store of this version, or is damaged.
+    """
+    from rocking_cli.questions.fragility.quantiles import all_quantiles
+    from rocking_cli.questions.fragility.quantiles_view import with_quantiles
+    from rocking_cli.questions.fragility.ranking import rank
+    from rocking_cli.questions.fragility.ranking_view import added
+    from rocking_cli.questions.fragility.view import left_out, view
+
+    place = Path(store)
+    with Store.reading(place) as kept:
+        plan, definition = kept.plan(), _definition(kept)
+        finished, failed = kept.count()
+        fits, surfaces, outcomes = _fitted(kept, plan, definition, watch)
+        spread = list(all_quantiles(kept, plan, definition))
+        shown = view(kept, plan, definition, finished, failed, fits, surfaces, outcomes)
+        shown = with_quantiles(shown, spread, outcomes, in_words=quantiles)
+        rankings: list[Ranking] = []
+        if rank_measures:
+            with watch.progress(plan.size, "runs ranked") as counted:
+                rankings = rank(kept, plan, definition, counted)
+            shown = added(shown, rankings)
+    answer = StudyAnswer(
+        "fragility",
+        fits,
+        shown,
+        partial(_columns, place),
+        partial(_figure, definition, fits),
+        partial(_blocks, place),
+        {"curves": partial(_curve_columns, fits)},
+        store=place,
+        plan=plan,
+        definition=definition,
+        surfaces=surfaces,
+        quantiles=spread,
+        rankings=rankings,
+        failed=failed,
+        complete=finished == plan.total and not failed and not left_out(plan),
+    )
+    if curves is not None:
+        from rocking_cli.io.tables import write_table
+
+        write_table(Path(curves), curve_blocks(answer, watch))
+    if nrml is not None:
+        write_nrml(answer, Path(nrml), watch)
+    return answer
+
+
+def curve_blocks(answer: StudyAnswer, watch: Watcher = SILENT) -> Iterator[Columns]:
+    """Return the curves of a study as columns, in blocks of rows, with a warning of each fit that has none."""
+    from rocking_cli.questions.fragility.table import curve_blocks as blocks
+    from rocking_cli.questions.fragility.view import edges
+
+    for each in answer.result:
+        for name, fit in edges([each]):
+            if fit.curve.kind == "none":
+                watch.warn(f"{each.structure}, {name} against {each.measure}: no curve: {fit.curve.why}")
+    return blocks(answer.result)
+
+
+def write_nrml(answer: StudyAnswer, file: Path, watch: Watcher = SILENT) -> None:
+    """Write the curves that OpenQuake can read, and name the others. Raises `InputError` if there are none."""
+    from rocking_cli.io.files import write_whole
+    from rocking_cli.questions.fragility.nrml import chosen, nrml
+
+    model = chosen(answer.result)
+    for each in model.left_out:
+        watch.warn(f"not in {file}: {each}")
+    for each in model.doubts:
+        watch.warn(each)
+    with Store.reading(answer.store) as store:
+        version, study, name = store.fact("versions")["rocking-cli"], store.fact("hash"), store.fact("name")
+    document = nrml(model, name, f"{answer.sentences[0]}; rocking-cli {version}, study {study[:12]}")
+    write_whole(file, lambda stream: stream.write(document))
+    watch.note(f"wrote {file}")
+
+
+def _curve_columns(curves: list[Fragility]) -> Columns:
+    from rocking_cli.questions.fragility.table import curve_blocks as blocks
+
+    return _whole(blocks(curves))
+
+
+def _definition(store: Store) -> Definition:
+    """Return the definition of the study of a store."""
+    from pydantic import ValidationError
+
+    try:
+        return Definition.model_validate(store.fact("definition"))
+    except ValidationError:
+        hint = "run `rocking fragility STUDY.yaml`: it names the problem and keeps the runs"
+        raise InputError(
+            Problem("the definition of its study is not valid in this version", str(store.path), hint=hint)
+        ) from None
+
+
+def _fitted(
+    store: Store, plan: Plan, definition: Definition, watch: Watcher
+) -> tuple[list[Fragility], list[Bivariate], list[UnknownRuns]]:
+    """Count the runs of a store, and fit the curves of its study."""
+    from rocking_cli.questions.fragility import assess
+    from rocking_cli.questions.fragility.hazard_curve import HazardCurve
+
+    points = store.fact("hazard")
+    hazard = HazardCurve(*np.array(points)) if points is not None else None
+    with watch.progress(plan.size, "runs counted") as advance:
+        counted = assess.counted(store, plan, definition, advance)
+    fits = len(definition.limit_states) * (len(definition.fitted_measures) + len(definition.bivariate))
+    with watch.progress(fits * len(counted), "fits") as advance:
+        return *assess.fitted(counted, definition, hazard, advance), assess.outcomes(counted)
+
+
+def _blocks(place: Path) -> Iterator[Columns]:
+    """Yield the runs of a store as columns, in blocks of rows."""
+    from rocking_cli.questions.fragility.table import run_blocks
+
+    with Store.reading(place) as store:
+        yield from run_blocks(store, store.plan(), _definition(store).asked_measures)
+
+
+def _columns(place: Path) -> Columns:
+    return _whole(_blocks(place))
+
+
+def _whole(parts: Iterable[Columns]) -> Columns:
+    """Join blocks of rows."""
+    blocks = list(parts)
+    return {name: [value for block in blocks for value in block[name]] for name in blocks[0]}
+
+
+def _figure(definition: Definition, curves: list[Fragility]) -> Figure:
+    from rocking_cli.questions.fragility.picture import LabelledCurve, draw_curves
+    from rocking_cli.questions.fragility.view import limit_name
+    from rocking_cli.studies.fragility.quantities import label
+
+    measure = definition.fitted_measures[0]
+    lines = [
+        LabelledCurve.of(f"{curve.structure}, {limit_name(curve.limit)}", curve)
+        for curve in curves
+        if curve.measure == measure
+    ]
+    return draw_curves(lines, label(measure), "")

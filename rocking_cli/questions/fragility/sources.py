@@ -1,0 +1,172 @@
+"""The ground motions of a study: their files, checksums and samples."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import OrderedDict
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.doubts import doubts
+from rocking_cli.excitation.measures import measure
+from rocking_cli.excitation.pulses import COARSE, parse_pulse
+from rocking_cli.excitation.pulses.base import SAMPLING
+from rocking_cli.processing.reading import Reading
+from rocking_cli.questions.fragility.definition import RecordEntry
+
+KEPT = 32_000_000  # samples of records held in memory at most, a quarter of a gigabyte
+
+
+@dataclass(frozen=True)
+class Source:
+    """One ground motion of a study.
+
+    Parameters
+    ----------
+    name : str
+        Name of the motion: the file as the study names it, or the pulse's specification; with the set if it is in one.
+    entry : RecordEntry
+        The entry of the study file.
+    reading : Reading
+        How to read and process the record.
+    file : str
+        The name without the set.
+    path, vertical : Path, optional
+        The files of the record and of its vertical component.
+    """
+
+    name: str
+    entry: RecordEntry
+    reading: Reading
+    file: str
+    path: Path | None = None
+    vertical: Path | None = None
+
+    def checksum(self) -> str:
+        """Return the SHA-256 of its files, or of the pulse and its sampling. Raises `InputError` without a file."""
+        found = hashlib.sha256()
+        other = Path(self.reading.other) if self.reading.other is not None else None
+        for path in (self.path, self.vertical, other):
+            if path is None:
+                continue
+            try:
+                with path.open("rb") as file:
+                    found.update(hashlib.file_digest(file, "sha256").digest())
+            except OSError as error:
+                raise InputError(Problem(f"cannot be read: {error.strerror or error}", str(path))) from None
+        if self.path is None:
+            assert self.entry.pulse is not None
+            pulse = parse_pulse(self.entry.pulse).specification
+            found.update(f"{pulse}, {COARSE} a period: {SAMPLING}".encode())
+        return found.hexdigest()
+
+    def read(self) -> GroundMotion:
+        """Read the motion, unscaled. Raises `InputError` if it cannot be read."""
+        if self.path is None:
+            assert self.entry.pulse is not None
+            return self.reading.on_floor(parse_pulse(self.entry.pulse).sampled(COARSE))
+        motion = self.reading.read(self.path)
+        if self.vertical is not None:
+            motion = replace(motion, vertical=self.reading.vertical(self.vertical))
+        return motion
+
+
+@dataclass(frozen=True)
+class Record:
+    """A ground motion of a study as its store keeps it: checksum, peaks and sampling.
+
+    Parameters
+    ----------
+    name, checksum : str
+        See `Source`; the checksum of a file that cannot be read is empty.
+    reason : str or None
+        Why the motion cannot be used; None if it can.
+    dt : float
+        Sampling interval [s]; this and all further fields are 0 if the motion cannot be used.
+    npts : int
+        Number of samples.
+    pga, pgv : float
+        Peak acceleration [standard gravity] and peak velocity [m/s].
+    doubts : int
+        Number of doubts about the motion; `rocking record` lists them.
+    """
+
+    name: str
+    checksum: str
+    reason: str | None = None
+    dt: float = 0.0
+    npts: int = 0
+    pga: float = 0.0
+    pgv: float = 0.0
+    doubts: int = 0
+
+
+def examine(source: Source) -> tuple[Record, GroundMotion | None]:
+    """Read a ground motion and measure it; if it cannot be used, return None for it, and a record with the reason."""
+    checksum = ""
+    try:
+        checksum = source.checksum()
+        motion = source.read()
+        measured = measure(motion.of_ground)
+    except InputError as error:
+        return Record(source.name, checksum, reason=str(error).splitlines()[0]), None
+    if measured.pga == 0:
+        return Record(source.name, checksum, reason=f"{source.name}: zero throughout: there is nothing to scale"), None
+    doubtful = (
+        len(doubts(motion.of_ground, measured)) if source.path is not None else 0
+    )  # what a formula gives is meant
+    found = Record(source.name, checksum, None, motion.dt, motion.npts, measured.pga, measured.pgv, doubtful)
+    return found, motion
+
+
+class KeptMotions:
+    """The ground motions of a study, of which the ones used last are kept in memory.
+
+    Parameters
+    ----------
+    sources : iterable of Source
+        The motions.
+    """
+
+    def __init__(self, sources: Iterable[Source]) -> None:
+        self._sources = list(sources)
+        self._checksums: dict[int, str] = {}
+        self._kept: OrderedDict[int, GroundMotion] = OrderedDict()
+        self._size = 0
+
+    def examine(self, k: int, known: Record | None) -> Record:
+        """Return the record of a motion; if it is known and usable, only its checksum is computed again."""
+        source = self._sources[k]
+        if known is not None and known.reason is None:
+            try:
+                checksum = source.checksum()
+            except InputError:  # it cannot be read any more
+                checksum = ""
+            record = replace(known, checksum=checksum)
+        else:
+            record, motion = examine(source)
+            if motion is not None:
+                self._keep(k, motion)
+        self._checksums[k] = record.checksum
+        return record
+
+    def __getitem__(self, k: int) -> GroundMotion:
+        """Return a motion by its index. Raises `InputError` if its file has changed."""
+        if k in self._kept:
+            self._kept.move_to_end(k)
+            return self._kept[k]
+        source = self._sources[k]
+        if source.checksum() != self._checksums[k]:
+            raise InputError(Problem("has changed while the study ran", source.name, hint="start the study again"))
+        return self._keep(k, source.read())
+
+    def _keep(self, k: int, motion: GroundMotion) -> GroundMotion:
+        self._kept[k] = motion
+        self._size += motion.npts
+        while self._size > KEPT and len(self._kept) > 1:
+            _, dropped = self._kept.popitem(last=False)
+            self._size -= dropped.npts
+        return motion

@@ -1,0 +1,107 @@
+"""Show, draw and write the contents of the store of a fragility study."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rocking_cli.cli import terminal
+from rocking_cli.cli.groups import save, write_table
+from rocking_cli.cli.watching import OnTerminal
+from rocking_cli.text import numbered
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.questions.fragility.results import StudyAnswer
+
+
+@dataclass(frozen=True)
+class StudyOutput:
+    """What to write of a study: plots, a file for OpenQuake, the tables of runs and of curves; or one JSON object."""
+
+    plot: str | None
+    nrml: Path | None
+    as_json: bool
+    out: Path | None = None
+    curves: Path | None = None
+
+
+def show_study(answer: StudyAnswer, shown: StudyOutput, watch: OnTerminal) -> None:
+    """Show what a study found, write its runs and curves and draw them; tell the watcher if it is not complete."""
+    from rocking_cli.questions.fragility.results import curve_blocks, write_nrml
+
+    if shown.out is not None:
+        assert answer.blocks is not None
+        write_table(shown.out, answer.blocks())
+    if shown.curves is not None:
+        write_table(shown.curves, curve_blocks(answer, watch))
+    if shown.plot is not None:
+        _draw_all(Path(shown.plot), answer)
+    terminal.show(answer.view, as_json=shown.as_json)
+    if shown.nrml is not None:  # last: curves that OpenQuake cannot read have been shown
+        write_nrml(answer, shown.nrml, watch)
+    if answer.failed:
+        terminal.error(f"{answer.failed} runs could not be simulated and are left out of the curves")
+    watch.left_out += not answer.complete
+
+
+def _draw_all(folder: Path, answer: StudyAnswer) -> None:
+    """Draw the curves of each structure, the comparison of structures, the data behind them, surfaces and rankings."""
+    from rocking_cli.questions.fragility.picture import LabelledCurve, draw_curves, draw_surface
+    from rocking_cli.questions.fragility.quantiles_picture import draw_quantiles
+    from rocking_cli.questions.fragility.ranking_picture import draw_ranking
+    from rocking_cli.questions.fragility.view import limit_name
+    from rocking_cli.studies.fragility.quantities import label
+
+    definition, curves = answer.definition, answer.result
+    drawn: dict[str, Figure] = {}
+
+    def add(name: str, figure: Figure) -> None:
+        drawn[numbered(re.sub(r"[^\w>.]+", "-", name).strip("-").replace(">", "over"), ".png", drawn)] = figure
+
+    structures = list(dict.fromkeys(each.structure for each in curves))
+    for measure in definition.fitted_measures:
+        these = [each for each in curves if each.measure == measure]
+        for structure in structures:
+            lines = [LabelledCurve.of(limit_name(each.limit), each) for each in these if each.structure == structure]
+            add(f"{structure} {measure}", draw_curves(lines, label(measure), structure))
+        for limit in definition.limit_states if len(structures) > 1 else []:
+            lines = [LabelledCurve.of(each.structure, each) for each in these if each.limit == limit]
+            add(f"{limit_name(limit)} {measure}", draw_curves(lines, label(measure), limit_name(limit)))
+    if definition.method == "ida":
+        for structure in structures:
+            add(f"{structure} ida", _increments(answer, structure))
+    for found in answer.quantiles:
+        add(f"{found.structure} {found.measure} quantiles", draw_quantiles(found, label(found.measure)))
+    for surface in answer.surfaces:
+        name = f"{surface.structure}, {limit_name(surface.limit)}"
+        one, other = surface.measures
+        add(f"{name} {one} {other}", draw_surface(surface, (label(one), label(other)), name))
+    for ranking in answer.rankings:
+        if ranking.measures:
+            add(f"{ranking.structure} which measure serves", draw_ranking(ranking))
+    with terminal.progress(len(drawn), "pictures") as advance:
+        for file, figure in drawn.items():
+            save(folder / file, figure)
+            advance(1)
+    terminal.note(f"wrote {len(drawn)} plots to {folder}")
+
+
+def _increments(answer: StudyAnswer, structure: str) -> Figure:
+    import numpy as np
+
+    from rocking_cli.questions.fragility.definition import SCALE
+    from rocking_cli.questions.fragility.picture import draw_ida
+    from rocking_cli.questions.fragility.store import Store
+    from rocking_cli.questions.fragility.tally import peaks
+    from rocking_cli.studies.fragility.quantities import label
+
+    plan, measure = answer.plan, answer.definition.levels.measure
+    across = "factor on the records" if measure == SCALE else label(measure)
+    usable = [k for k, each in enumerate(plan.records) if each.reason is None]
+    with Store.reading(answer.store) as store:
+        found = peaks(store, plan, structure)
+    return draw_ida(np.array(plan.levels), found, across, structure, np.unique(plan.of_sets.one[usable]).size)

@@ -1,0 +1,122 @@
+"""Tables of a study as columns: its runs, and its curves with a row for each intensity."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli import names
+from rocking_cli.processing.intensity import parse_measure
+from rocking_cli.questions.fragility.assess import Fragility
+from rocking_cli.questions.fragility.curves import FragilityCurve
+from rocking_cli.questions.fragility.plan import Plan
+from rocking_cli.questions.fragility.store import FAILED, SLIDE, STANDS, UNKNOWN, RunRows, Store
+from rocking_cli.studies.fragility.quantities import ALWAYS, label
+
+POINTS = 101  # of a curve
+WIDEST = 30.0  # ratio of the least and the largest intensity from which on steps are of equal ratio
+WORDS = ("structure", "limit_state", "measure", "unit", "kind")
+NUMBERS = ("median", "dispersion", "scale", "x", "probability", "low", "high")
+OTHER = tuple(f"lower_{name}" for name in ("median", "dispersion", "scale", "probability", "low", "high"))
+"""Columns of the fit in which runs of unknown outcome do not exceed, beside those of that in which they do."""
+COLUMNS = (*NUMBERS, "unknown", *OTHER)
+
+
+def curve_blocks(curves: Sequence[Fragility]) -> Iterator[Mapping[str, Sequence[object] | NDArray[Any]]]:
+    """Yield the curves as tables, one after the other, from the least intensity of the data to the largest.
+
+    Yields
+    ------
+    mapping of str to sequence
+        The columns. `dispersion` belongs to lognormal curves, `scale` to logistic ones; each is NaN for the others.
+        `unknown` is the share of undecided runs, NaN if nothing was checked: they count as exceeding in the curve
+        itself, and as not exceeding in columns whose names begin with `lower_`.
+    """
+    drawn = [each for each in curves if any(fit.curve.kind != "none" for fit in (each, each.lower or each))]
+    if not drawn:
+        yield {**{name: np.array([], dtype=str) for name in WORDS}, **{name: np.array([]) for name in COLUMNS}}
+    for each in drawn:
+        x, share = _intensities(each), each.share
+        words = (each.structure, f"{each.limit}", each.measure, parse_measure(each.measure).unit, each.curve.kind)
+        unknown = np.full(x.size, np.nan if share is None else share)
+        one, other = (_fit(found.curve, x) for found in (each, each.lower or each))
+        numbers = [*one[:3], x, *one[3:], unknown, *other]
+        columns = zip(COLUMNS, numbers, strict=True)
+        yield {**{name: [word] * x.size for name, word in zip(WORDS, words, strict=True)}, **dict(columns)}
+
+
+def _fit(curve: FragilityCurve, x: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+    """Return median, dispersion, scale, probability and confidence band at intensities; NaN where missing."""
+    same = [np.nan if one is None else one.value for one in (curve.median, curve.dispersion, curve.scale)]
+    return [*(np.full(x.size, value) for value in same), curve.probability(x), *curve.band(x)]
+
+
+def _intensities(found: Fragility) -> NDArray[np.float64]:
+    """Return the intensities of a curve's rows, with the ends of the interval of a step, and both sides of it."""
+    least, most = float(found.seen.x.min()), float(found.seen.x.max())
+    between = np.geomspace if most > WIDEST * least else np.linspace
+    x: NDArray[np.float64] = between(least, most, POINTS)
+    steps = [step for curve in (found.curve, (found.lower or found).curve) for step in curve.steps]
+    return np.union1d(x, [end for step in steps for end in (step.low, step.value, step.high)])
+
+
+ROWS = 100_000  # runs of a block
+HEADINGS = {
+    "known_to": "known to [s]", "lower_bound": "phi/phi_cr at least", "opening": "opening/D_cr", SLIDE: "sliding [s]",
+}  # fmt: skip
+"""Headings of the columns that not every store has."""
+
+
+def run_blocks(store: Store, plan: Plan, measures: Sequence[str] = ()) -> Iterator[Mapping[str, Sequence[object]]]:
+    """Yield the finished runs as blocks of a table, in the order of their numbers.
+
+    Parameters
+    ----------
+    store : Store
+        Open to read.
+    plan : Plan
+        The plan of its runs.
+    measures : sequence of str
+        Measures with a column, in addition to those that every table has.
+
+    Yields
+    ------
+    mapping of str to sequence
+        The columns by heading, with units; the first block is yielded even if it is empty.
+    """
+    end, asked = int(np.prod(plan.shape)), tuple(dict.fromkeys([*ALWAYS, *measures]))
+    for first in range(0, end, ROWS):
+        rows = store.runs(first, min(first + ROWS, end))
+        if len(rows) or first == 0:
+            yield _of_runs(plan, rows, asked)
+
+
+def _of_runs(plan: Plan, rows: RunRows, measures: Sequence[str]) -> dict[str, Sequence[object]]:
+    sample, record, _, level, polarity = plan.places(rows.id)
+    trials, records = [plan.trials[k] for k in sample], [plan.records[k] for k in record]
+    return {
+        "run": rows.id.tolist(),
+        "structure": [each.structure for each in trials],
+        "sample": [each.number for each in trials],
+        "record": [each.name for each in records],
+        "level": np.array(plan.levels)[level].tolist(),
+        "polarity": np.array(plan.polarities)[polarity].tolist(),
+        "eta": rows.eta.tolist(),
+        "scale": rows.scale.tolist(),
+        **{label(name): plan.intensities(name, sample, record, level, rows.scale).tolist() for name in measures},
+        "outcome": [
+            "failed" if code == FAILED
+            else names.outcome(uplifts=uplifts, overturned=code != STANDS, unknown=code == UNKNOWN)
+            for code, uplifts in zip(rows.outcome.tolist(), np.isfinite(rows.uplift_time).tolist(), strict=True)
+        ],
+        "fell_to": np.where(np.abs(rows.outcome) == 1, rows.outcome, 0).tolist(),
+        "phi/phi_cr": rows.peak_ratio.tolist(),
+        "phi positive [rad]": rows.peak_positive.tolist(),
+        "phi negative [rad]": rows.peak_negative.tolist(),
+        "uplift [s]": rows.uplift_time.tolist(),
+        "overturning [s]": rows.overturning_time.tolist(),
+        **{HEADINGS[name]: getattr(rows, name).tolist() for name in rows.columns if name in HEADINGS},
+    }  # fmt: skip

@@ -1,0 +1,561 @@
+"""Counts of the runs of a structure, made while runs are read, so that memory does not increase with their number.
+
+Thresholds of a structure are the PGA at which it uplifts, and the rotations at which its top has moved a distance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass
+from math import isclose
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.arrays import Bools, Integers, Reals
+from rocking_cli.core import Direction, Mechanism, both_statics, equivalent_block
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.processing.intensity import parse_measure
+from rocking_cli.questions.fragility.definition import OVERTURNING, SLIDING, UPLIFT, Limit
+from rocking_cli.questions.fragility.observed import SAME
+from rocking_cli.questions.fragility.plan import Plan, Trial
+from rocking_cli.questions.fragility.store import FAILED, STANDS, Endings, Store
+from rocking_cli.questions.fragility.study import RESTITUTION, Sample, Study
+from rocking_cli.studies.fragility.quantities import PGA, asked_for, kept, metres, of_the_motion, proportional
+from rocking_cli.studies.movements import is_held, top
+from rocking_cli.studies.under_pulses import uplift
+
+Places = NDArray[np.int32]
+UNSEEN = float(np.finfo(np.float64).max)
+"""The peak of a run of unknown outcome: more than any that was seen, less than that of one that overturns."""
+ROUNDING = 1e-9  # of a rotation
+Counted = Callable[[int], None]
+"""Called with how many numbers of runs have been looked at since the last call."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tally:
+    """Number of runs of a structure, and of those that exceed limit states, under each record at each level.
+
+    Parameters
+    ----------
+    plan : Plan
+        The plan of the study's runs.
+    samples : range
+        Indices of the structure's samples.
+    runs : ndarray of int, shape (s, records, levels)
+        Number of usable runs of each sample; of all samples together (s is 1) if the measures do not differ between
+        them.
+    exceeding : dict of limit state to ndarray of int, shape (s, records, levels)
+        Number of these runs that exceed, with undecided runs counted as exceeding.
+    ladders : Ladders or None
+        The level at which each ladder first exceeds; only in incremental dynamic analysis.
+    unknown : int
+        Number of runs of unknown outcome.
+    checked : bool
+        Whether the joints of all runs are known; if not, no outcome is unknown because of a joint.
+    lower : Tally or None
+        The counts with undecided runs as not exceeding; None if no outcome is unknown.
+    uplift : (float or None, float or None), optional
+        Uplift accelerations over g of both directions, if the PGA of the motions decides whether they uplift.
+    """
+
+    plan: Plan
+    samples: range
+    runs: Integers
+    exceeding: dict[Limit, Integers]
+    ladders: Ladders | None
+    unknown: int = 0
+    checked: bool = True
+    lower: Tally | None = None
+    uplift: Pair | None = None
+
+    @property
+    def unknown_if_checked(self) -> int | None:
+        """Number of runs of unknown outcome; None if there are none because joints were not checked."""
+        return self.unknown if self.unknown or self.checked else None
+
+    def one(self, record: Integers) -> Integers:
+        """Return the index of the first entry that is the same record, as sets of several levels may share a record."""
+        return np.asarray(self.plan.of_sets.one[record])
+
+    def weight(self, record: Integers) -> Reals | None:
+        """Weight of each run; None if all weights are equal."""
+        sets = self.plan.of_sets
+        return np.asarray(sets.weight[record]) if sets.weighted else None
+
+    def over(self, *measures: str) -> Cells:
+        """Return the non-empty cells of runs that have the same intensity in some measures."""
+        together = not any(_differs_between_samples(self.plan, self.samples, measure) for measure in measures)
+        runs = self.runs.sum(axis=0, keepdims=True) if together else self.runs
+        there = np.nonzero(runs)
+        return Cells(self, there, runs[there], together)
+
+    def decided_by_level(self, measure: str) -> bool:
+        """Return whether all runs of a level have the same intensity in a measure."""
+        if measure == self.plan.measure:
+            return True
+        return proportional(measure, self.plan.measure) and not _drawn_otherwise(self.plan, self.samples)
+
+
+@dataclass(frozen=True, eq=False)
+class Ladders:
+    """Ladders: for each sample, record, restitution and polarity, the runs that differ only in their level.
+
+    Parameters
+    ----------
+    first : dict of limit state to ndarray of int, shape (samples, records, etas, polarities)
+        Index of the level at which the ladder first exceeds; the number of levels if it never does.
+    there : ndarray of bool, shape (samples, records, etas, levels, polarities)
+        The runs that can be used.
+    """
+
+    first: dict[Limit, Places]
+    there: Bools
+
+    def below(self, limit: Limit) -> Integers:
+        """Return the last level of each ladder that does not exceed, below the first that does; -1 if there is none."""
+        levels = np.arange(self.there.shape[3])[:, None]
+        lower = self.there & (levels < self.first[limit][..., None, :])
+        return np.asarray(np.where(lower, levels, -1).max(axis=3))
+
+    def above(self, limit: Limit) -> Integers:
+        """Return the number of runs of each sample, record and level at or above the first level that exceeds."""
+        levels = np.arange(self.there.shape[3])[:, None]
+        return np.asarray((self.there & (levels >= self.first[limit][..., None, :])).sum(axis=(2, 4)))
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Cells of equal runs: those of one record, one level and, if samples differ, one sample.
+
+    Parameters
+    ----------
+    tally : Tally
+        The counts from which the cells are made.
+    place : tuple of ndarray of int, each of shape (n,)
+        Indices of sample, record and level of each cell; if samples are counted together, the first stands for all.
+    runs : ndarray of int, shape (n,)
+        Number of runs in each cell.
+    together : bool
+        Whether samples are counted together.
+    """
+
+    tally: Tally
+    place: tuple[Integers, ...]
+    runs: Integers
+    together: bool
+
+    @property
+    def record(self) -> Integers:
+        """Index of the record of each cell."""
+        return self.place[1]
+
+    @property
+    def level(self) -> Integers:
+        """Index of the level of each cell."""
+        return self.place[2]
+
+    def of(self, table: Integers) -> Integers:
+        """Look up the entries of the cells in a table indexed by sample, record and level."""
+        summed = table.sum(axis=0, keepdims=True) if self.together else table
+        return np.asarray(summed[self.place])
+
+    def exceeding(self, limit: Limit) -> Integers:
+        """Return the number of runs of each cell that exceed a limit state."""
+        return self.of(self.tally.exceeding[limit])
+
+    def intensities(self, measure: str) -> Reals:
+        """Return the intensity of each cell in a measure."""
+        return intensities(self.tally.plan, measure, self.place[0] + self.tally.samples.start, self.record, self.level)
+
+    def onset(self, measure: str) -> Onset | None:
+        """Return the intensity at which the structure uplifts; None if it is not known, or runs contradict it."""
+        known = onset(self.tally.plan, self.tally.samples, self.tally.uplift, measure)
+        if known is None or UPLIFT not in self.tally.exceeding:
+            return known
+        x, uplifted = self.intensities(measure), self.exceeding(UPLIFT)
+        early = (x < known.at * (1 - SAME)) & (uplifted > 0)
+        late = (x > known.at * (1 + SAME)) & (uplifted < self.runs)
+        return None if early.any() or (known.exact and late.any()) else known
+
+
+def intensities(plan: Plan, measure: str, sample: Integers, record: Integers, level: Integers) -> Reals:
+    """Return the intensity of runs; exactly the level if the levels are of this measure."""
+    if measure == plan.measure:
+        return np.asarray(np.array(plan.levels)[level])
+    return plan.intensities(measure, sample, record, level, plan.factors(sample, record, level))
+
+
+def samples_of(plan: Plan, structure: str) -> range:
+    """Return the indices of a structure's samples."""
+    places = [k for k, trial in enumerate(plan.trials) if trial.structure == structure]
+    return range(places[0], places[-1] + 1)
+
+
+def count(
+    store: Store,
+    plan: Plan,
+    structure: str,
+    limits: Sequence[Limit],
+    measures: Sequence[str],
+    *,
+    ladders: bool = False,
+    counted: Counted = lambda numbers: None,
+) -> Tally:
+    """Count the finished runs of a structure.
+
+    Parameters
+    ----------
+    store : Store
+        Open to read.
+    plan : Plan
+        The plan of its runs.
+    structure : str
+        Name of the structure.
+    limits : sequence of limit states
+        The limit states to count.
+    measures : sequence of str
+        Measures in which their intensities will be requested; `Tally.over` gives no others.
+    ladders : bool
+        Whether to find the level at which each ladder first exceeds.
+    counted : callable, optional
+        Called with the number of runs read since the last call.
+    """
+    samples = samples_of(plan, structure)
+    reach = {limit: table[samples.start : samples.stop] for limit, table in kept(store.fact, limits).items()}
+    trials = plan.trials[samples.start : samples.stop]
+    phi_cr = np.array([(each.phi_cr_positive, each.phi_cr_negative) for each in trials])
+    _, records, etas, levels, polarities = plan.shape
+    apart = any(_differs_between_samples(plan, samples, measure) for measure in measures)
+    shape = (len(samples) if apart else 1, records, levels)
+    runs, unknown = np.zeros(shape, dtype=np.int64), 0
+    there = np.zeros((len(samples), records, etas, levels, polarities) if ladders else 0, dtype=bool)
+    rungs = (len(samples), records, etas, polarities)
+    upper, lower = _Counts(limits, shape, rungs if ladders else None, levels), None
+    checked = True
+    each = records * plan.block
+    start = samples.start * each
+    for found in store.endings(start, samples.stop * each, counted):
+        found = found.select(found.outcome != FAILED)
+        sample, record, eta, level, polarity = plan.places(found.id)
+        sample = sample - samples.start
+        cell = np.ravel_multi_index((sample if apart else np.zeros_like(sample), record, level), shape)
+        ladder = np.ravel_multi_index((sample, record, eta, polarity), rungs)
+        _add(runs, cell)
+        if ladders:
+            there.ravel()[found.id - start] = True
+        checked &= bool(found.checked.all())
+        doubtful = int(found.unknown.sum())
+        unknown += doubtful
+        if doubtful and lower is None:  # so far the two are the same
+            lower = deepcopy(upper)
+        for limit in limits:
+            rotations = reach[limit][sample] if limit in reach else None
+            upper.add(limit, exceeds(found, limit, rotations), cell, ladder, level)
+            if lower is not None:
+                known = known_to_exceed(found, limit, rotations, phi_cr[sample])
+                lower.add(limit, known, cell, ladder, level)
+
+    uplifts = store.facts().get(ONSET, {}).get(structure)
+
+    def tally(counts: _Counts, of_known: Tally | None) -> Tally:
+        found = Ladders(counts.first, there) if ladders else None
+        return Tally(plan, samples, runs, counts.exceeding, found, unknown, checked, of_known, uplifts)
+
+    checked |= store.fact("description")["model"] != "nonlinear"  # of an equivalent block there are no joints
+    return tally(upper, tally(lower, None) if lower is not None else None)
+
+
+class _Counts:
+    """Numbers of exceeding runs and first levels of ladders, while they are counted; see `Tally` and `Ladders`."""
+
+    def __init__(
+        self, limits: Sequence[Limit], shape: tuple[int, ...], rungs: tuple[int, ...] | None, levels: int
+    ) -> None:
+        self.exceeding = {limit: np.zeros(shape, dtype=np.int64) for limit in limits}
+        self.first = {limit: np.full(rungs, levels, dtype=np.int32) for limit in limits if rungs is not None}
+
+    def add(self, limit: Limit, beyond: Bools, cell: Integers, ladder: Integers, level: Integers) -> None:
+        """Count the runs of a block that exceed a limit state."""
+        _add(self.exceeding[limit], cell[beyond])
+        if self.first:
+            np.minimum.at(self.first[limit].ravel(), ladder[beyond], level[beyond].astype(np.int32))
+
+
+def exceeds(found: Endings, limit: Limit, reach: Reals | None = None) -> Bools:
+    """Return which runs exceed a limit state or may exceed it because their outcome is unknown.
+
+    Parameters
+    ----------
+    found : Endings
+        The endings of n runs.
+    limit : limit state
+        The limit state.
+    reach : ndarray, shape (n, 2), optional
+        For a displacement, the positive and the negative rotation of each run at which the top reaches it [rad].
+    """
+    return np.asarray(found.unknown | _exceeds(found, limit, reach, found.peak_ratio))
+
+
+def known_to_exceed(found: Endings, limit: Limit, reach: Reals | None, phi_cr: Reals) -> Bools:
+    """Return which runs are known to exceed a limit state, even if their outcome is unknown.
+
+    A run of unknown outcome is known by its uplift, its first slip, or its peak until the first joint would fail.
+
+    Parameters
+    ----------
+    found, limit, reach
+        See `exceeds`.
+    phi_cr : ndarray, shape (n, 2)
+        Critical rotations of each run [rad].
+    """
+    known = _exceeds(found, limit, reach, np.where(found.unknown, found.lower_bound, found.peak_ratio))
+    if reach is None:
+        return known
+    # The bound is of one direction, which must have come as far later on, too.
+    bound = found.lower_bound[:, None] * phi_cr
+    with np.errstate(invalid="ignore"):
+        could = found.peaks >= bound * (1 - ROUNDING)
+        surely = (bound > reach) | ~could
+    return np.asarray(np.where(found.unknown, could.any(axis=1) & surely.all(axis=1), known))
+
+
+def _exceeds(found: Endings, limit: Limit, reach: Reals | None, ratio: Reals) -> Bools:
+    """Return which runs exceed a limit state, by their peaks over phi_cr if the limit state is a ratio."""
+    if limit == SLIDING:
+        return found.slides
+    overturned = found.overturned
+    if reach is not None:
+        return np.asarray(overturned | (found.peaks > reach).any(axis=1))  # NaN, where it overturned, exceeds nothing
+    if isinstance(limit, str):
+        return overturned if limit == OVERTURNING else found.uplifts
+    with np.errstate(invalid="ignore"):
+        return np.asarray(overturned | (ratio > limit))
+
+
+def peaks(store: Store, plan: Plan, structure: str) -> Reals:
+    """Return the peak phi/phi_cr of each complete ladder, shape (m, levels); NaN where a run overturns.
+
+    Peaks of unknown outcome are infinite.
+    """
+    table = endings_of(store, plan, structure)
+    ladders = np.moveaxis(table, 3, -1).reshape(-1, table.shape[3])
+    complete = ladders[~np.isnan(ladders).any(axis=1)]
+    return np.where(np.isinf(complete), np.nan, np.where(complete == UNSEEN, np.inf, complete))
+
+
+def endings_of(store: Store, plan: Plan, structure: str) -> Reals:
+    """Return how the runs of a structure end, shape (samples, records, etas, levels, polarities).
+
+    Each entry is the peak phi/phi_cr; 0 without uplift, infinite if the run overturns, `UNSEEN` if the outcome is
+    unknown, NaN if there is no run that could be simulated.
+    """
+    samples = samples_of(plan, structure)
+    table = np.full((len(samples), *plan.shape[1:]), np.nan)
+    start = samples.start * len(plan.records) * plan.block
+    for found in store.endings(start, start + table.size):
+        found = found.select(found.outcome != FAILED)
+        rocks = np.where(found.uplifts, np.maximum(found.peak_ratio, np.finfo(np.float64).tiny), 0.0)
+        ends = np.where(found.unknown, UNSEEN, np.inf)
+        table.ravel()[found.id - start] = np.where(found.outcome == STANDS, rocks, ends)
+    return table
+
+
+def _differs_between_samples(plan: Plan, samples: range, measure: str) -> bool:
+    """Return whether samples under one record at one level have different values of a measure."""
+    of_motion = of_the_motion(measure) and of_the_motion(plan.measure)
+    return measure != plan.measure and not of_motion and _drawn_otherwise(plan, samples)
+
+
+def _drawn_otherwise(plan: Plan, samples: range) -> bool:
+    """Return whether samples differ in more than restitution, so that their relative intensities differ."""
+    return any(set(plan.trials[k].drawn) - {RESTITUTION} for k in samples)
+
+
+def _add(table: Integers, cell: Integers) -> None:
+    """Add one to a table for each cell given; the cells of one call lie close together in the table."""
+    if cell.size:
+        low = int(cell.min())
+        found = np.bincount(cell - low)
+        table.ravel()[low : low + found.size] += found
+
+
+Pair = tuple[float | None, float | None]
+"""Values in the positive and the negative direction; None where a structure never gets there."""
+
+WAY = 512  # rotations from rest to the end of a mechanism at which it is looked how far the top has moved
+CLOSER = 32  # of a step, in each look at it from closer by
+LOOKS = 10  # which are as many as leave no more than rounding
+
+
+def rotations(
+    samples: Sequence[Sample], trials: Sequence[Trial], limits: Sequence[str], known: Mapping[str, Sequence[Pair]]
+) -> dict[str, Sequence[Pair]]:
+    """Return the rotations of each sample at which its top reaches the displacements of limit states.
+
+    Parameters
+    ----------
+    samples : sequence of Sample
+        The structures.
+    trials : sequence of Trial
+        The trials of these samples; samples that cannot be simulated are skipped.
+    limits : sequence of str
+        Limit states such as `25 mm`.
+    known : mapping of str to sequence of pair
+        Rotations found before, which are kept.
+
+    Returns
+    -------
+    dict of str to sequence of pair
+        The rotations of all samples, by limit state, including the known ones.
+    """
+    missing = [limit for limit in limits if limit not in known]
+    wanted = [value for value in map(metres, missing) if value is not None]
+    found: dict[tuple[object, ...], list[Pair]] = {}
+    table: list[list[Pair]] = []
+    for sample, trial in zip(samples, trials, strict=True) if missing else ():
+        key = (sample.structure, *sample.geometry)
+        if trial.reason is None and key not in found:
+            found[key] = of_a_structure(sample.mechanism, wanted)
+        table.append(found.get(key, [(None, None)] * len(wanted)))
+    return {**known, **{limit: [row[k] for row in table] for k, limit in enumerate(missing)}}
+
+
+def held(study: Study) -> list[str]:
+    """Return a sentence on each structure whose top is held sideways although limit states are on its displacement."""
+    limits = asked_for(study.definition.limit_states)
+    return [
+        f"{structure.name or structure.mechanism}: its top is held to the side and a hinge moves more, but limits "
+        f"such as {limits[0]} are of the top: use a ratio of rotations instead"
+        for structure in (study.structures if limits else ())
+        if is_held(structure)
+    ]
+
+
+def of_a_structure(mechanism: Mechanism, displacements: Sequence[float]) -> list[Pair]:
+    """Return, for each displacement [m], the rotations of either sign at which the top first reaches it."""
+    _, spot = top(mechanism)
+    sides: dict[Direction, list[float | None]] = {}
+    for direction in Direction:
+        if direction not in mechanism.directions:  # it never turns there
+            sides[direction] = [None] * len(displacements)
+            continue
+
+        def moved(phi: Reals, side: Direction = direction) -> Reals:
+            return np.abs((mechanism.followed(phi, side)(spot).z - spot.at).real)
+
+        end = float(np.nextafter(mechanism.limit(direction), 0.0))
+        phi = np.linspace(0.0, end, WAY + 1)
+        at = moved(phi)
+        sides[direction] = [first_reached(moved, phi, at, each) for each in displacements]
+    return list(zip(sides[Direction.POSITIVE], sides[Direction.NEGATIVE], strict=True))
+
+
+def first_reached(moved: Callable[[Reals], Reals], phi: Reals, at: Reals, wanted: float) -> float | None:
+    """Return the first rotation at which a displacement is reached, even if it decreases again; None if it never is.
+
+    Parameters
+    ----------
+    moved : callable
+        The displacement [m] over rotations (n,).
+    phi, at : ndarray, shape (n,)
+        Rotations from rest on [rad], and the displacements there.
+    wanted : float
+        The displacement [m].
+    """
+    for k in range(1, len(phi)):
+        if at[k] >= wanted:
+            return _crossing(moved, phi[k - 1], phi[k], wanted)
+        turns_back = k + 1 < len(phi) and at[k - 1] <= at[k] > at[k + 1]
+        if turns_back and (peak := _peak(moved, phi[k - 1], phi[k + 1], wanted)) is not None:
+            return _crossing(moved, phi[k - 1], peak, wanted)
+    return None
+
+
+def _crossing(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float) -> float:
+    """Find by successive refinement where between two rotations a displacement is first reached."""
+    for _ in range(LOOKS):
+        fine = np.linspace(low, high, CLOSER + 1)
+        k = max(int(np.argmax(moved(fine) >= wanted)), 1)
+        low, high = float(fine[k - 1]), float(fine[k])
+    return high
+
+
+def _peak(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float) -> float | None:
+    """Return a rotation between two others at which a displacement is reached, although at neither of these.
+
+    None if there is no such rotation.
+    """
+    for _ in range(LOOKS):
+        fine = np.linspace(low, high, CLOSER + 1)
+        at = moved(fine)
+        k = int(np.argmax(at))
+        if at[k] >= wanted:
+            return float(fine[k])
+        low, high = float(fine[max(k - 1, 0)]), float(fine[min(k + 1, CLOSER)])
+    return None
+
+
+ONSET = "uplift"
+"""Name under which a store keeps the uplift accelerations of its structures."""
+
+
+class Onset(NamedTuple):
+    """Intensity up to which no motion uplifts a structure, and whether every motion uplifts it beyond."""
+
+    at: float
+    exact: bool
+
+
+def accelerations(study: Study, plan: Plan) -> dict[str, Pair]:
+    """Return the uplift accelerations over g of each structure, in its first sample that can be simulated.
+
+    Empty if a motion has a vertical component or is that of a floor: its horizontal PGA then does not decide.
+    """
+    if any(source.vertical is not None or source.reading.floor is not None for source in study.sources):
+        return {}
+    found: dict[str, Pair] = {}
+    for sample, trial in zip(study.samples, plan.trials, strict=True):
+        if trial.reason is None and trial.structure not in found:
+            found[trial.structure] = _of_both(sample.mechanism, study.definition.model)
+    return found
+
+
+def _of_both(mechanism: Mechanism, model: ModelName) -> Pair:
+    if model == "nonlinear":
+        one, other = (side.lambda_ for side in both_statics(mechanism))
+    else:
+        block = equivalent_block(mechanism)
+        one, other = uplift(block.positive, model), uplift(block.negative, model)
+    return (one, other) if mechanism.rocks_both_ways else (max(one, other), None)
+
+
+def onset(plan: Plan, samples: range, pair: Pair | None, measure: str) -> Onset | None:
+    """Return at which intensity a structure uplifts; None if that is not known over a measure.
+
+    Parameters
+    ----------
+    plan : Plan
+        The plan of the study's runs.
+    samples : range
+        Indices of the structure's samples.
+    pair : (float or None, float or None), optional
+        Its uplift accelerations over g, as the store keeps them.
+    measure : str
+        The measure: PGA, or PGA over the uplift acceleration.
+    """
+    asked = parse_measure(measure)
+    if pair is None or str(asked.base) != PGA or asked.power != 1:
+        return None
+    usable = [k for k in samples if plan.trials[k].reason is None]
+    accelerations = np.array([plan.trials[k].lambda_ * plan.trials[k].gravity for k in usable])
+    if np.ptp(accelerations) > SAME * accelerations.max():  # a property varies on which it depends
+        return None
+    pga = accelerations[:1] / STANDARD_GRAVITY
+    at = float(asked.relative(pga, plan.reference(np.array(usable[:1])))[0])
+    one, other = pair
+    return Onset(at, one is not None and other is not None and isclose(one, other, rel_tol=SAME))

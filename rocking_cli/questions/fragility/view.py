@@ -1,0 +1,429 @@
+"""View of a fragility study: its planned runs and its results, as text and as data."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict
+from math import isinf
+from operator import itemgetter
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from rocking_cli.names import UNKNOWN, percent
+from rocking_cli.questions.fragility.definition import LAMBDA
+from rocking_cli.studies.fragility.quantities import kept, label, metres
+from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
+from rocking_cli.views.view import Table, View, number
+
+if TYPE_CHECKING:  # fits need scipy, and what would be run needs no fit
+    from rocking_cli.questions.fragility.assess import Bivariate, Fragility, UnknownRuns
+    from rocking_cli.questions.fragility.curves import Cut, FragilityCurve, Surface
+    from rocking_cli.questions.fragility.definition import Definition, Limit
+    from rocking_cli.questions.fragility.hazard_curve import Rate
+    from rocking_cli.questions.fragility.plan import Plan
+    from rocking_cli.questions.fragility.store import Store
+    from rocking_cli.questions.fragility.study import Study
+    from rocking_cli.studies.fit import Estimate
+
+Fitted = TypeVar("Fitted", "Fragility", "Bivariate")
+PLANNED: tuple[Column[tuple[str, str]], ...] = (
+    only_shown("", itemgetter(0), text=True),
+    only_shown("number", itemgetter(1)),
+)
+Named = tuple[str, Any]
+"""A fit, and the name of its row."""
+FINE = 200  # intensities at which it is looked whether a curve is cut
+
+
+def planned(study: Study, plan: Plan) -> View:
+    """Show the runs that a study would simulate."""
+    _, _, etas, levels, polarities = plan.shape
+    samples, records = ([each.reason is None for each in those] for those in (plan.trials, plan.records))
+    counts = {
+        "structures": len(study.structures),
+        "samples": sum(samples),
+        "records": sum(records),
+        "eta": etas,
+        "levels": levels,
+        "polarities": polarities,
+    }
+    rows = [(name, f"{count}") for name, count in counts.items()]
+    for name, usable in (("records", records), ("samples", samples)):
+        if not all(usable):
+            place = list(counts).index(name) + 1
+            rows.insert(place, (f"{name} left out", f"{len(usable) - sum(usable)}"))
+    table = table_of(study.name, PLANNED, [*rows, ("runs", f"{plan.total:,}")])
+    return View({"study": study.name, **counts, "runs": plan.total, "left_out": left_out(plan)}, [table])
+
+
+def left_out(plan: Plan) -> list[str]:
+    """Return a sentence on each record and sample that cannot be used, with the reason."""
+    records = [f"the record {each.name} is left out: {each.reason}" for each in plan.records if each.reason is not None]
+    return records + [
+        f"sample {each.number} of {each.structure} is left out: {each.reason}"
+        for each in plan.trials
+        if each.reason is not None
+    ]
+
+
+def without_block(plan: Plan) -> list[str]:
+    """Return a sentence on each structure without an equivalent block, on the meaning of phi_cr there."""
+    found = dict.fromkeys(each.structure for each in plan.trials if each.reason is None and not each.p)
+    return [
+        f"{structure}: no equivalent single block exists, and therefore no p. In a direction without a critical "
+        "rotation, phi_cr stands for the kinematic limit, and reaching it counts as overturning."
+        for structure in found
+    ]
+
+
+def out_of_reach(store: Store, plan: Plan, definition: Definition) -> list[str]:
+    """Return a sentence on each structure whose top never reaches the displacement of a limit state."""
+    found: dict[tuple[str, str], list[bool]] = {}
+    for limit, table in kept(store.fact, definition.limit_states).items():
+        for trial, pair in zip(plan.trials, table.tolist(), strict=True):
+            if trial.reason is None:
+                found.setdefault((trial.structure, limit), []).append(all(map(isinf, pair)))
+    return [
+        f"{structure}: its top never moves by {limit}"
+        + ("" if all(never) else f" in {sum(never)} of {len(never)} samples")
+        + ", whatever its rotation: this limit is then exceeded only by overturning."
+        for (structure, limit), never in found.items()
+        if any(never)
+    ]
+
+
+def view(
+    store: Store,
+    plan: Plan,
+    definition: Definition,
+    finished: int,
+    failed: int,
+    curves: Sequence[Fragility],
+    surfaces: Sequence[Bivariate],
+    outcomes: Sequence[UnknownRuns] = (),
+) -> View:
+    """Show the results of a study: the curves and surfaces fitted to the runs of a store.
+
+    Parameters
+    ----------
+    store : Store
+        Open to read.
+    plan : Plan
+        The plan of its runs.
+    definition : Definition
+        The definition of its study.
+    finished, failed : int
+        Number of runs in the store, and of those among them that could not be simulated.
+    curves, surfaces : sequence
+        The curves and surfaces fitted to the runs.
+    outcomes : sequence of UnknownRuns
+        Number of runs of unknown outcome of each structure.
+    """
+    name, confidence = store.fact("name"), definition.confidence
+    bad = sum(each.reason is not None for each in plan.records)
+    good = len(plan.records) - bad
+    records = f"{good} record{'s' * (good != 1)}" + (f" ({bad} more cannot be used)" if bad else "")
+    so_far = "" if finished == plan.total else f" of {plan.total:,}, so far"
+    doubtful = sum(each.unknown or 0 for each in outcomes)
+    of_them = f" ({doubtful:,} of {UNKNOWN} outcome)" if doubtful else ""
+    parts: list[Table | str] = [
+        f"{name}: {definition.method}, {records}, {finished:,} runs{so_far}{of_them}, seed {definition.seed}"
+    ]
+    parts += sets_in_words(plan)
+    for structure, measure in dict.fromkeys((each.structure, each.measure) for each in curves):
+        these = [each for each in curves if (each.structure, each.measure) == (structure, measure)]
+        parts += _curves(structure, measure, these, definition)
+    for structure, measures in dict.fromkeys((each.structure, each.measures) for each in surfaces):
+        those = [each for each in surfaces if (each.structure, each.measures) == (structure, measures)]
+        parts += _surfaces(structure, measures, those, confidence)
+    parts += [*without_block(plan), *out_of_reach(store, plan, definition)]
+    parts += (notes := [*_unknown_in_words(outcomes), *_unchecked_in_words(outcomes)])
+    parts += (nowhere := _nowhere(plan, definition, curves) if finished else [])
+    data = {
+        "study": name,
+        "store": str(store.path),
+        "hash": store.fact("hash"),
+        "versions": store.fact("versions"),
+        "libraries": store.fact("libraries"),
+        "seed": store.fact("description")["seed"],
+        "runs": plan.total,
+        "finished": finished,
+        "failed": failed,
+        "outcomes": [{**asdict(each), "share": each.share} for each in outcomes],
+        "notes": notes,
+        "left_out": left_out(plan),
+        "without_block": without_block(plan),
+        "out_of_reach": out_of_reach(store, plan, definition),
+        "without_curve": nowhere,
+        "records": _records(plan),
+        "curves": [_data(each, fit_columns(), {"measure": each.measure}) for each in curves],
+        "surfaces": [_data(each, plane_columns(), {"measures": list(each.measures)}) for each in surfaces],
+    }
+    return View(data, parts)
+
+
+def sets_in_words(plan: Plan) -> list[str]:
+    """Return sentences on sets of records for levels and on weights, if there are any."""
+    sets, said = plan.of_sets, []
+    usable = np.array([each.reason is None for each in plan.records])
+    if (sets.level >= 0).any():
+        counts = [int((usable & ((sets.level == k) | (sets.level < 0))).sum()) for k in range(len(plan.levels))]
+        few, many = min(counts), max(counts)
+        each = f"{few}" if few == many else f"{few} to {many}"
+        used = "scaled to the level" if sets.scaled else "not scaled to the level"
+        said.append(f"Each level has its own set of records: {each} per level, {used}.")
+    if sets.weighted:
+        low, high = float(sets.weight.min()), float(sets.weight.max())
+        said.append(
+            f"Records have weights from {low:.3g} to {high:.3g}. Intervals, bands and tests treat each record as one "
+            "cluster."
+        )
+    return said
+
+
+def _records(plan: Plan) -> list[dict[str, Any]]:
+    """Return each record as plain data, with the level of its set, if any, and its weight."""
+    sets = plan.of_sets
+    return [
+        {**asdict(each), "level": plan.levels[sets.level[k]] if sets.level[k] >= 0 else None, "weight": weight}
+        for k, (each, weight) in enumerate(zip(plan.records, sets.weight.tolist(), strict=True))
+    ]
+
+
+def _nowhere(plan: Plan, definition: Definition, curves: Sequence[Fragility]) -> list[str]:
+    """Return a sentence on each measure that is not positive in any run of a structure, so that no curve exists."""
+    known = {(each.structure, each.measure) for each in curves}
+    return [
+        f"{structure}: no run has a {measure} above zero, so no curve can be fitted."
+        for structure in dict.fromkeys(each.structure for each in plan.trials if each.reason is None)
+        for measure in definition.fitted_measures
+        if (structure, measure) not in known
+    ]
+
+
+def _curves(structure: str, measure: str, curves: Sequence[Fragility], definition: Definition) -> Iterator[Table | str]:
+    """Yield the table and remarks of the curves of a structure over one measure."""
+    shown = list(edges(curves))
+    width = "dispersion" if all(each.curve.scale is None for _, each in shown) else "dispersion\nor scale"
+    rated = any(each.rate is not None for _, each in shown)
+    columns = fit_columns(f"{100 * definition.confidence:g} %", width, rated=rated)
+    yield ""
+    yield table_of(f"{structure}, over {label(measure)}", columns, shown)
+    for name, each in shown:
+        yield f"{name}: {each.curve.why}.{_senseless(each.curve)}{_cut_in_words(each)}{_in_years(each.rate)}"
+    yield from _undecided(curves, capacities=definition.method == "ida")
+    yield from _left_out(measure, curves[0].left_out)
+    yield from _warnings([each.curve for _, each in shown])
+
+
+def _surfaces(
+    structure: str, measures: tuple[str, str], surfaces: Sequence[Bivariate], confidence: float
+) -> Iterator[Table | str]:
+    """Yield the table and remarks of the surfaces of a structure over two measures."""
+    one, other = measures
+    shown = list(edges(surfaces))
+    columns = plane_columns(f"{100 * confidence:g} %")
+    yield ""
+    yield table_of(f"{structure}: P = Phi(c0 + c1 ln({one}) + c2 ln({other}))", columns, shown)
+    for name, each in shown:
+        yield f"{name}: {each.surface.why}."
+    yield from _undecided(surfaces, capacities=False)
+    yield from _left_out(" or ".join(measures), surfaces[0].left_out)
+    yield from _warnings([each.surface for _, each in shown])
+
+
+def edges(found: Sequence[Fitted]) -> Iterator[tuple[str, Fitted]]:
+    """Yield all fits with their names; both edges of a band."""
+    for each in found:
+        name = limit_name(each.limit)
+        if each.is_band and each.lower is not None:
+            yield f"{name}, upper", each
+            yield f"{name}, lower", each.lower
+        else:
+            yield name, each
+
+
+def _undecided(found: Sequence[Fragility | Bivariate], *, capacities: bool) -> Iterator[str]:
+    """Yield sentences on how many runs or capacities may or may not exceed a limit state, and how they count."""
+    for each in found:
+        if not each.unknown:
+            continue
+        share = f"({percent(each.share or 0.0)})"
+        many = each.unknown != 1
+        if capacities:
+            said = f"{each.unknown:,} of {each.total:,} capacities {share} {'are' if many else 'is'} {UNKNOWN}"
+        else:
+            does = "exceed" if many else "exceeds"
+            said = f"whether {each.unknown:,} of {each.total:,} runs {share} {does} the limit is {UNKNOWN}"
+        counted = f"{'these count' if many else 'this one counts'} as exceeding"
+        how = (
+            "the result is the band between the two curves, down to 0 without a lower one" if each.is_band else counted
+        )
+        yield f"{limit_name(each.limit)}: {said}; {how}."
+    if any(each.is_band for each in found):
+        yield (
+            f"An upper curve counts runs of {UNKNOWN} outcome as exceeding the limit, a lower one as not exceeding it. "
+            f"A lower curve may be flat or missing just because more outcomes are {UNKNOWN} at higher intensities; "
+            "this does not mean that stronger motions are safer."
+        )
+
+
+def _unknown_in_words(outcomes: Sequence[UnknownRuns]) -> list[str]:
+    """Return a sentence on each structure with runs of unknown outcome."""
+    return [
+        f"{each.structure}: {each.unknown:,} of {each.runs:,} runs ({percent(each.share or 0.0)}) "
+        f"{'are' if each.unknown != 1 else 'is'} of {UNKNOWN} outcome, because a joint opens or slides that the model "
+        "keeps closed. They are known to exceed a limit only if they exceed it before the first joint opens or slides; "
+        "until more is known, use the upper curves."
+        for each in outcomes
+        if each.unknown
+    ]
+
+
+def _unchecked_in_words(outcomes: Sequence[UnknownRuns]) -> list[str]:
+    """Return a sentence on the structures whose joints were not checked; empty without any."""
+    unchecked = [each.structure for each in outcomes if not each.checked]
+    if not unchecked:
+        return []
+    return [
+        f"Caution: the joints of {' and '.join(unchecked)} are not checked: the mechanism does not say which of them "
+        "stay closed."
+    ]
+
+
+def _left_out(measure: str, runs: int) -> Iterator[str]:
+    """Yield a sentence on the number of runs that are left out of a fit over a measure."""
+    if runs:
+        yield (
+            f"{runs:,} run{'s have' if runs > 1 else ' has'} no {measure} above zero and "
+            f"{'are' if runs > 1 else 'is'} left out of this fit."
+        )
+
+
+def _warnings(fitted: Sequence[FragilityCurve | Surface]) -> Iterator[str]:
+    """Yield each warning of some fits once; they are shown with the numbers that they concern."""
+    for warning in dict.fromkeys(each.warning for each in fitted if each.warning):
+        yield f"Warning: {warning}."
+
+
+def _senseless(curve: FragilityCurve) -> str:
+    """Say that a dispersion is not shown because it is too large; empty if it is not."""
+    from rocking_cli.questions.fragility.curves import WIDEST
+
+    if curve.kind != "lognormal" or curve.dispersion is not None:
+        return ""
+    return f" Its dispersion is above {WIDEST:g}: this limit state does not depend on the measure."
+
+
+def cut_of(found: Fragility) -> Cut | None:
+    """Return by how much a curve is cut, over the intensities of its runs."""
+    least, most = float(found.seen.x.min()), float(found.seen.x.max())
+    return found.curve.cut(np.geomspace(least, most, FINE))
+
+
+def _cut_in_words(found: Fragility) -> str:
+    """Say by which limit state a curve is cut; empty if it is not."""
+    cut = cut_of(found)
+    if cut is None:
+        return ""
+    by = (
+        "lambda, up to which nothing uplifts" if cut.by == LAMBDA else f"that of {limit_name(cut.by)}, which it implies"
+    )
+    return f" Curve and band are cut by {by}: by up to {cut.most:.2g} at {cut.at:.3g}."
+
+
+def _in_years(rate: Rate | None) -> str:
+    if rate is None or rate.rate == 0:
+        return ""
+    return (
+        f" Exceeded once in {rate.return_period:,.0f} years (annual rate {rate.low:.3g} to {rate.high:.3g}), "
+        f"{100 * rate.in_50_years:.2g} % in 50 years."
+    )
+
+
+def limit_name(limit: Limit) -> str:
+    """Return a limit state in words."""
+    if isinstance(limit, float):
+        return f"> {limit:g} phi_cr"
+    return limit if metres(limit) is None else f"top > {limit}"
+
+
+def _estimate(estimate: Estimate | None) -> dict[str, float] | None:
+    return None if estimate is None else asdict(estimate)
+
+
+def _with_interval(estimate: Mapping[str, float]) -> str:
+    """Format a number above its confidence interval."""
+    value, low, high = estimate.values()
+    return f"{value:.4g}\n{'exact' if low == high else f'{low:.3g} - {high:.3g}'}"
+
+
+def fit_columns(interval: str = "", width: str = "", *, rated: bool = False) -> list[Column[Named]]:
+    """Return the columns of a curve by its name, with the headings of its intervals; a rate is shown if there is one.
+
+    Some columns of a table stand for several of the data.
+    """
+    return [
+        only_shown("limit state", lambda row: row[0], text=True),
+        Column("kind", of_fit("curve.kind"), head="curve", text=True),
+        Column("why", of_fit("curve.why")),
+        Column("median", lambda row: _estimate(row[1].curve.median), head=f"median\n{interval}", form=_with_interval),
+        Column("dispersion", lambda row: _estimate(row[1].curve.dispersion)),
+        Column("scale", lambda row: _estimate(row[1].curve.scale)),
+        only_shown(f"{width}\n{interval}", lambda row: _estimate(row[1].curve.dispersion or row[1].curve.scale),
+                   _with_interval),
+        Column("confidence", of_fit("curve.confidence")),
+        Column("goodness", lambda row: None if (found := row[1].curve.goodness) is None else asdict(found),
+               head="fit p", form=lambda found: number(found["p_value"], 2)),
+        Column("aic", of_fit("curve.aic")),
+        Column("runs", of_fit("curve.runs")),
+        Column("exceedances", of_fit("curve.exceedances")),
+        Column("distinct_records", of_fit("curve.records")),
+        Column("warning", lambda row: row[1].curve.warning or None),
+        Column("cut", lambda row: None if (cut := cut_of(row[1])) is None else asdict(cut)),
+        Column("annual_rate", lambda row: None if row[1].rate is None else asdict(row[1].rate),
+               head="rate\n[1/year]" if rated else None, form=lambda rate: number(rate["rate"], 3)),
+    ]  # fmt: skip
+
+
+def _coefficient(k: int) -> Callable[[Named], Any]:
+    return lambda row: _estimate((row[1].surface.coefficients or [None] * 3)[k])
+
+
+def plane_columns(interval: str = "") -> list[Column[Named]]:
+    """Return the columns of a surface by its name, with the headings of its intervals."""
+    return [
+        only_shown("limit state", lambda row: row[0], text=True),
+        *(only_shown(f"c{k}\n{interval}", _coefficient(k), _with_interval) for k in range(3)),
+        Column("kind", of_fit("surface.kind")),
+        Column("why", of_fit("surface.why")),
+        Column("coefficients", lambda row: [asdict(each) for each in row[1].surface.coefficients or []]),
+        Column("aic", of_fit("surface.aic")),
+        Column("p_values", of_fit("surface.p_values")),
+        Column("runs", of_fit("surface.runs")),
+        Column("exceedances", of_fit("surface.exceedances")),
+        Column("distinct_records", of_fit("surface.records")),
+        Column("warning", lambda row: row[1].surface.warning or None),
+    ]  # fmt: skip
+
+
+def of_fit(name: str) -> Callable[[Named], Any]:
+    """Return a function that reads an attribute of a named fit."""
+    read = of(name)
+    return lambda row: read(row[1])
+
+
+def _data(found: Fragility | Bivariate, columns: Sequence[Column[Named]], over: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a fit as plain data, with what it is over, its undecided runs and its lower edge."""
+    return {
+        "structure": found.structure,
+        "limit_state": found.limit,
+        **over,
+        **data_of(columns, ("", found)),
+        "left_out": found.left_out,
+        "unknown": found.unknown,
+        "unknown_share": found.share,
+        "band": found.is_band,
+        "lower": None if found.lower is None else data_of(columns, ("", found.lower)),
+    }

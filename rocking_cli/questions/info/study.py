@@ -1,0 +1,134 @@
+"""The installation: packages, plugins and compiled kernels on this machine, and which of them work."""
+
+from __future__ import annotations
+
+import os
+import platform
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, requires, version
+from typing import Any
+
+from rocking_cli.core.hung.ties import Laws
+from rocking_cli.core.registry import Registry
+from rocking_cli.dynamics import ways
+from rocking_cli.errors import RockingError
+from rocking_cli.excitation.pulses import PulseShapes
+from rocking_cli.excitation.records.registry import Readers
+from rocking_cli.plugins.registry import Plugins
+from rocking_cli.processing.intensity import IntensityMeasures
+from rocking_cli.verification.code import Codes
+
+OURS = "rocking-cli"
+WITHOUT = ("dev", "docs", "bench", "release")
+"""Extras that add nothing to a command."""
+
+
+@dataclass(frozen=True)
+class Plugin:
+    """An installed mechanism, record reader, pulse shape, measure of intensity or code of practice.
+
+    Parameters
+    ----------
+    name, package : str
+        Name of the plugin, and the distribution and version that it comes from.
+    broken : str or None
+        Why the plugin cannot be used; None if it can.
+    """
+
+    name: str
+    package: str
+    broken: str | None
+
+
+@dataclass(frozen=True)
+class Installation:
+    """The parts of `rocking` as installed on this machine.
+
+    Parameters
+    ----------
+    version, python, platform : str
+        Versions of this package and of the interpreter, and the platform.
+    libraries : mapping of str to str or None
+        Version of every required package; None if it is missing.
+    extras : mapping of str to mapping
+        For each extra of this package, the versions of its packages in the same way.
+    plugins : mapping of str to tuple of Plugin
+        Plugins by kind: `mechanisms`, `records`, `pulses`, `measures` and `codes`; `laws` only if other packages
+        provide some.
+    slow_kernels : str or None
+        Why Python runs the kernels, which takes some sixty times longer; None if the shipped machine code is used.
+    processors, threads : int
+        Number of processors of the machine, and of threads that this process may use.
+    """
+
+    version: str
+    python: str
+    platform: str
+    libraries: Mapping[str, str | None]
+    extras: Mapping[str, Mapping[str, str | None]]
+    plugins: Mapping[str, tuple[Plugin, ...]]
+    slow_kernels: str | None
+    processors: int
+    threads: int
+
+
+def examine() -> Installation:
+    """Return what is installed; a broken package or plugin is noted and raises no error."""
+    libraries, extras = _packages()
+    return Installation(
+        version(OURS),
+        f"{platform.python_implementation()} {platform.python_version()}",
+        platform.platform(),
+        libraries,
+        extras,
+        {
+            "mechanisms": _plugins(Registry()),
+            "records": _plugins(Readers()),
+            "pulses": _plugins(PulseShapes()),
+            "measures": _plugins(IntensityMeasures()),
+            "codes": _plugins(Codes()),
+            **({"laws": laws} if (laws := _plugins(Laws())) else {}),
+        },
+        _why_slow(),
+        os.cpu_count() or 1,
+        len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1,
+    )
+
+
+def _why_slow() -> str | None:
+    if os.environ.get(ways.CHOSEN) == ways.PYTHON:
+        return f"{ways.CHOSEN} is {ways.PYTHON}"
+    fault = ways.fault_of_shipped()
+    return None if fault is None else str(fault)
+
+
+def _packages() -> tuple[dict[str, str | None], dict[str, dict[str, str | None]]]:
+    """Return the versions of the packages that this one requires, and of those of each of its extras."""
+    needed: dict[str, str | None] = {}
+    extras: dict[str, dict[str, str | None]] = {}
+    for line in requires(OURS) or []:
+        name, extra = re.match(r"[\w.-]+", line), re.search(r"extra == ['\"]([\w-]+)", line)
+        if name is not None and (extra is None or extra[1] not in WITHOUT):
+            (needed if extra is None else extras.setdefault(extra[1], {}))[name[0]] = _version(name[0])
+    return needed, extras
+
+
+def _version(name: str) -> str | None:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return None
+
+
+def _plugins(installed: Plugins[Any]) -> tuple[Plugin, ...]:
+    return tuple(Plugin(name, installed.package_of(name), _broken(installed, name)) for name in installed)
+
+
+def _broken(installed: Plugins[Any], name: str) -> str | None:
+    try:
+        installed[name]
+    except RockingError as error:
+        return str(error)
+    return None

@@ -1,0 +1,1 @@
+"""`margin`: how close ground motions are to overturning a structure."""

@@ -1,0 +1,176 @@
+"""The margin of a ground motion: scale factors at which it uplifts a structure, and at which it overturns it.
+
+Overturning comes and goes as the factor on a motion increases, so that no least factor would be the same in two
+computations. Instead, the share of neighbouring motions that overturn is computed at each factor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from math import inf
+
+import numpy as np
+
+from rocking_cli.arrays import Reals
+from rocking_cli.dynamics.model import Model
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import LEAST_SHARE, Conclusion, NeighbourShare
+from rocking_cli.studies.engines import respond
+from rocking_cli.studies.neighbours import Draws, Neighbourhood, follow, least_uplift
+from rocking_cli.studies.response import concluded
+
+LEVELS = (LEAST_SHARE, 0.5, 0.9)
+SAME = 1e-9  # relative difference of factors that are one
+FACTORS: Reals = np.geomspace(0.2, 5.0, 60)
+
+
+@dataclass(frozen=True, eq=False)
+class Margin:
+    """The share of neighbours that overturn, as a function of the scale factor on a ground motion.
+
+    Parameters
+    ----------
+    around : Neighbourhood
+        How the neighbours of each factor were drawn.
+    uplift : float or None
+        The least factor that uplifts the structure, exact except for the vertical component; None if none does.
+    factors : ndarray, shape (n,)
+        Scale factors, increasing; 1, the motion itself, is one of them.
+    overturned : ndarray, shape (n,)
+        The share of the neighbours at each factor that overturns; of two polarities, the larger.
+    unknown : ndarray, shape (n,)
+        The additional share of unknown outcome: at most the sum of both overturns, under the worse polarity.
+    checked : bool
+        Whether the joints of the structure are known; if not, no outcome is unknown.
+    """
+
+    around: Neighbourhood
+    uplift: float | None
+    factors: Reals
+    overturned: Reals
+    unknown: Reals
+    checked: bool = True
+
+    @property
+    def at_most(self) -> Reals:
+        """The share that overturns if all neighbours of unknown outcome do, shape (n,)."""
+        return self.overturned + self.unknown
+
+    @property
+    def share(self) -> NeighbourShare:
+        """The share of neighbours that overturns at a factor of 1."""
+        one = np.searchsorted(self.factors, 1.0)
+        return NeighbourShare(float(self.overturned[one]), float(self.at_most[one]), self.around.count)
+
+    def first(self, level: float, *, unknown: bool = False) -> float | None:
+        """Return the least factor at which a share `level` overturns, or is unknown if so asked; None without one."""
+        reached = self._shares(unknown) >= level
+        return float(self.factors[reached.argmax()]) if reached.any() else None
+
+    def last_below(self, level: float, *, unknown: bool = False) -> float | None:
+        """Return the largest factor at which less than a share `level` overturns (or is unknown); None without one."""
+        below = self._shares(unknown) < level
+        return float(self.factors[np.flatnonzero(below)[-1]]) if below.any() else None
+
+    def always(self, level: float, *, unknown: bool = False) -> float | None:
+        """Return the least factor from which on a share of `level` or more overturns (or is unknown), or None."""
+        last = self.last_below(level, unknown=unknown)
+        above = self.factors if last is None else self.factors[self.factors > last]
+        return float(above[0]) if above.size else None
+
+    def _shares(self, unknown: bool) -> Reals:
+        return self.at_most if unknown else self.overturned
+
+    def islands(self, level: float) -> list[tuple[float, float]]:
+        """Return the first and last factor of each range in which at least a share `level` overturns."""
+        edges = np.diff(np.concatenate([[False], self.overturned >= level, [False]]).astype(np.int8))
+        starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
+        return [(float(self.factors[i]), float(self.factors[j])) for i, j in zip(starts, ends, strict=True)]
+
+
+def margin(
+    model: Model,
+    motion: GroundMotion,
+    polarities: Sequence[int] = (1, -1),
+    *,
+    around: Neighbourhood | None = None,
+    factors: Reals = FACTORS,
+    threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> Margin:
+    """Compute the share of overturning as a function of the factor on a motion.
+
+    Parameters
+    ----------
+    model : Model
+        A model of the structure; the nonlinear one is the structure itself.
+    motion : GroundMotion
+        The ground motion at a factor of 1.
+    polarities : sequence of int
+        The polarities, 1, -1 or both; of both, the worse governs.
+    around : Neighbourhood, optional
+        How to draw the neighbours of each factor.
+    factors : ndarray, shape (n,)
+        Factors on the motion, positive and increasing; 1 is added.
+    threads : int, optional
+        Number of threads; by default one for each processor.
+    progress : callable, optional
+        Called with the number of histories done since the last call; their total is the product of the numbers of
+        factors (with 1), neighbours and polarities.
+
+    Raises
+    ------
+    InputError
+        If the number of neighbours is 0, or the factors are not positive and increasing.
+    SolverError
+        If a motion cannot be followed.
+    """
+    around = (around or Neighbourhood()).of(model)
+    if not around.count:
+        raise InputError(Problem("neighbouring motions are needed: at least 1", field="`neighbours`"))
+    if not (factors.ndim == 1 and factors.size and np.isfinite(factors).all() and (np.diff([0.0, *factors]) > 0).all()):
+        raise InputError("scale factors must be positive and in ascending order")
+    factors = np.union1d(factors[np.abs(factors - 1) > SAME], 1.0)
+    # The same neighbours at every factor: what differs between two factors is the factor.
+    draws, overturned, at_most = around.drawn(model), np.zeros(factors.size), np.zeros(factors.size)
+    for k, sign in enumerate(polarities):
+        # What overturns each time cannot overturn more often; a symmetric structure has the same shares under the
+        # motion reversed.
+        left = overturned < (0.0 if k and model.symmetric else 1.0)
+        if progress is not None:
+            progress(int((~left).sum()) * around.count)
+        some = factors[left]
+        repeated = Draws(*(np.concatenate([values] * some.size) if some.size else values[:0] for values in draws))
+        outcomes = follow(
+            model, motion, repeated, scale=some.repeat(around.count), polarity=sign, threads=threads, progress=progress
+        )
+        fell, doubtful = (of.reshape(some.size, around.count).mean(axis=1) for of in (outcomes.fell, outcomes.unknown))
+        overturned[left] = np.maximum(overturned[left], fell)
+        at_most[left] = np.maximum(at_most[left], fell + doubtful)
+    at_most = np.maximum(at_most, overturned)
+    uplifts = [least_uplift(model, motion.scaled(sign)) for sign in polarities]
+    least = min((uplift for uplift in uplifts if uplift is not None), default=None)
+    return Margin(around, least, factors, overturned, at_most - overturned, checked=model.joints is not None)
+
+
+def conclusion(structure: Structure, motion: GroundMotion, polarities: Sequence[int], found: Margin) -> Conclusion:
+    """Return what is concluded at a factor of 1, with the share and the factor from which a tenth may overturn.
+
+    Parameters
+    ----------
+    structure : Structure
+        The structure, with the model of the margin.
+    motion : GroundMotion
+        The ground motion at a factor of 1.
+    polarities : sequence of int
+        The polarities, 1, -1 or both.
+    found : Margin
+        The margin.
+    """
+    runs = {sign: respond(structure, motion.scaled(sign), models=["nonlinear"]) for sign in polarities}
+    from_factor = found.first(LEAST_SHARE, unknown=True)
+    ratio = inf if from_factor is None else from_factor
+    return replace(concluded(runs, {}, motion.name), share=found.share, ratio=ratio)

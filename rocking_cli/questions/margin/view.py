@@ -1,0 +1,199 @@
+"""View of margins to overturning, as text and as data."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.core import Mechanism
+from rocking_cli.names import peaks_over, percent
+from rocking_cli.questions.margin.study import LEVELS, Margin
+from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import Conclusion
+from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.views.cautions import cautions_of
+from rocking_cli.views.column import Column, of, only_shown, rounded, table_of
+from rocking_cli.views.conclusion import conclusion_data, of_margin
+from rocking_cli.views.neighbours import deviations
+from rocking_cli.views.verdict import unchecked
+from rocking_cli.views.view import FEW, Table, View, heading, number
+
+MAY = "overturn or unknown"  # name of the row that governs
+
+
+class MarginRow(NamedTuple):
+    """A motion: name, scale factor on the record as read, PGA with this factor [g], margin, and what is concluded."""
+
+    name: str
+    factor: float
+    pga: float
+    margin: Margin
+    conclusion: Conclusion
+
+
+class _Line(NamedTuple):
+    """A line of a motion: what governs, with unknown outcomes as overturning, or what is known to overturn."""
+
+    name: str
+    pga: str
+    uplift: str
+    share: float
+    margin: Margin
+    unknown: bool
+
+
+def _lines(rows: Sequence[MarginRow]) -> Iterator[_Line]:
+    """Yield the line of each motion that governs, and below it, if outcomes are unknown, what is known to overturn."""
+    for name, _, pga, found, _ in rows:
+        doubt = bool(found.unknown.any())
+        governing = f"{name}: {MAY}" if doubt else name
+        yield _Line(governing, number(pga, 3), number(found.uplift, 3), found.share.highest, found, unknown=True)
+        if doubt:
+            yield _Line("  known to overturn", "", "", found.share.lowest, found, unknown=False)
+
+
+def _at_level(find: Callable[..., float | None], level: float) -> Callable[[_Line], float | None]:
+    return lambda line: find(line.margin, level, unknown=line.unknown)
+
+
+COLUMNS: tuple[Column[_Line], ...] = (
+    only_shown("motion", of("name"), text=True),
+    only_shown("PGA\n[g]", of("pga")),
+    only_shown("uplift\nat", of("uplift")),
+    only_shown("overturn\nat 1", of("share"), percent),
+    *(only_shown(f"{percent(level)}\nfirst\nat", _at_level(Margin.first, level), rounded(3)) for level in LEVELS),
+    *(only_shown(f"{percent(level)}\nalways\nfrom", _at_level(Margin.always, level), rounded(3)) for level in LEVELS),
+)
+
+
+def view(
+    structure: Structure, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood, end: Conclusion
+) -> View:
+    """Show the margins of a structure under some motions, what is concluded of all of them first."""
+    mechanism, over = structure.mechanism, peaks_over([side.phi_cr is None for side in structure.statics])
+    around = rows[0].margin.around if rows else around  # with the deviations of the structure
+    either = {
+        "1": "motions as given",
+        "-1": "motions reversed",
+        "both": "motions as given and reversed (the worse of the two counts)",
+    }[polarity]
+    parts: list[Table | str] = [
+        f"{heading(mechanism)}. {of_margin(end, over)}",
+        f"Scale factors on {either}; at each, {around.count} neighbouring motions, {deviations(around)}. 'First at' is "
+        "the smallest factor at which so many of them overturn the structure; 'always from' the smallest from which on "
+        "no factor tried (up to 5) has fewer.",
+        table_of("", COLUMNS, _lines(rows)),
+    ]
+    if any(row.margin.unknown.any() for row in rows):
+        parts.append(f"The row '{MAY}' governs; the row below it alone does not prove that the structure stands.")
+    parts += [f"{row.name}: {in_words(row.margin, row.pga)}" for row in rows] if len(rows) <= FEW else []
+    parts += [f"Caution: {text}" for text in cautions_of(mechanism)]
+    if not all(row.margin.checked for row in rows):
+        parts.append(unchecked(why=mechanism.unchecked))
+    return View(_data(mechanism, rows, polarity, around) | {"conclusion": conclusion_data(end)}, parts)
+
+
+def _data(mechanism: Mechanism, rows: Sequence[MarginRow], polarity: str, around: Neighbourhood) -> dict[str, Any]:
+    return {
+        "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
+        "model": "nonlinear",
+        "polarity": polarity,
+        "neighbours": asdict(around),
+        "motions": [
+            {
+                "name": row.name,
+                "scale": row.factor,
+                "pga": row.pga,
+                "conclusion": conclusion_data(row.conclusion),
+                **margin_data(row.margin),
+                "verdict": in_words(row.margin, row.pga),
+            }
+            for row in rows
+        ],
+    }
+
+
+def margin_data(found: Margin) -> dict[str, Any]:
+    """Return a margin as plain data: the shares, and the factors at which they pass each level."""
+    return {
+        "uplift": found.uplift,
+        "overturned": found.share.lowest,
+        "factors": found.factors.tolist(),
+        "shares": found.overturned.tolist(),
+        "unknown": found.unknown.tolist() if found.checked else None,
+        "levels": {
+            f"{100 * level:g}": {
+                "first": found.first(level),
+                "last_below": found.last_below(level),
+                "first_or_unknown": found.first(level, unknown=True),
+                "last_below_or_unknown": found.last_below(level, unknown=True),
+                "islands": found.islands(level),
+            }
+            for level in LEVELS
+        },
+    }
+
+
+def in_words(found: Margin, pga: float) -> str:
+    """Describe a margin in a few sentences, of which the first one governs: unknown outcomes count as overturning.
+
+    Parameters
+    ----------
+    found : Margin
+        The margin, with at least one factor.
+    pga : float
+        Peak ground acceleration at a factor of 1 [standard gravity].
+    """
+    doubt = bool(found.unknown.any())
+    at = partial(_at, pga)
+    does = "overturn the structure, or have an unknown outcome," if doubt else "overturn the structure"
+    said = _reached(found, found.at_most, does, pga)
+    if not doubt:
+        return said
+    first = float(found.factors[(found.unknown > 0).argmax()])
+    said += (
+        f" From a factor of {at(first)} on, some outcomes are unknown, as the model no longer holds (see `rocking "
+        "respond`): there, the structure may overturn."
+    )
+    known = [f"{percent(level)} from {at(least)}" for level in LEVELS if (least := found.first(level)) is not None]
+    if known:
+        return f"{said} Shares known to overturn it: {', '.join(known)}."
+    few = f"At no factor tried are {percent(LEVELS[0])} or more known to overturn it"
+    return f"{said} {few}; this does not prove that it stands."
+
+
+def _reached(found: Margin, shares: NDArray[np.float64], does: str, pga: float) -> str:
+    """Return in words at which factors the shares of neighbours that do something first reach each level."""
+    at = partial(_at, pga)
+    low, high = found.factors[[0, -1]]
+    reached = [(level, float(found.factors[(shares >= level).argmax()])) for level in LEVELS if (shares >= level).any()]
+    if not reached:
+        return (
+            f"At no scale factor from {low:.2g} to {high:.2g} (PGA from {low * pga:.3g} g to {high * pga:.3g} g) do "
+            f"{percent(LEVELS[0])} or more of the neighbouring motions {does.removesuffix(',')}."
+        )
+    (level, first), *others = reached
+    parts = [f"{percent(level)} of the neighbouring motions first {does} at a factor of {at(first, 'PGA ')}"]
+    parts += [f"{percent(level)} at {at(first)}" for level, first in others]
+    parts += [f"{percent(level)} at none up to {high:.2g}" for level in LEVELS[len(reached) :]]
+    said = f"At least {', '.join(parts[:-1])} and {parts[-1]}"
+    if found.factors.size > 2:
+        said += f"; the factors tried are {percent(float(np.median(found.factors[1:] / found.factors[:-1])) - 1)} apart"
+    for level, first in reached:
+        above = found.factors > first
+        least = float(shares[above].min(initial=1.0))
+        if least < level:
+            factor = float(found.factors[above][shares[above].argmin()])
+            again = f"only {percent(least)} do" if least else "none does"
+            said += f". A stronger motion is not always worse: at a factor of {at(factor)} {again}"
+            break
+    return f"{said}."
+
+
+def _at(pga: float, factor: float, what: str = "") -> str:
+    return f"{factor:.3g} ({what}{factor * pga:.3g} g)"

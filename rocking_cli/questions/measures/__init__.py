@@ -1,0 +1,1 @@
+"""`measures`: the measures of intensity that are installed."""

@@ -1,0 +1,1 @@
+"""`mechanisms`: the mechanisms that are installed, and their fields."""

@@ -1,0 +1,142 @@
+"""`rocking mechanisms`: list, describe or check the installed mechanisms."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from rocking_cli.cli import complete, options, terminal
+from rocking_cli.errors import InputError, MechanismError
+
+if TYPE_CHECKING:
+    from rocking_cli.core import Mechanism
+    from rocking_cli.core.contract import Verdict
+    from rocking_cli.core.registry import Registry
+
+PARTS = ("loads", "ties", "interlock", "strength", "crushing", "uncertainty")
+"""Additions to any mechanism, with fields of their own."""
+LOADS = "The plugin can be loaded, and is a mechanism."
+MADE = "The file that `rocking new` prints is a structure."
+
+
+@click.command(short_help="List, describe or check the installed mechanisms.")
+@click.argument("name", required=False, shell_complete=complete.plugins(complete.MECHANISMS))
+@click.argument("file", required=False, type=click.Path())
+@click.option(
+    "--check",
+    "checked",
+    is_flag=True,
+    help="Check NAME against the contract of mechanisms, on its examples or on FILE.",
+)
+@options.as_json
+def command(name: str | None, file: str | None, checked: bool, as_json: bool) -> None:
+    """List the installed mechanisms and the package of each; with NAME, show the fields of one.
+
+    NAME may also be `loads`, `ties`, `interlock`, `strength`, `crushing` or `uncertainty`, which can be added to any
+    mechanism.
+
+    With --check, the command compares the coefficients of the mechanism with its bodies and their motion, and prints
+    which checks pass and which fail, with the traceback of an error in the mechanism. The exit code is 3 if a check
+    fails. FILE is a structure on which to check the mechanism.
+
+    \b
+    Example:
+      rocking mechanisms
+      rocking mechanisms arch
+      rocking mechanisms --check arch
+    """
+    from rocking_cli.core.registry import Registry
+
+    if checked and name is None:
+        raise click.UsageError("--check needs the NAME of a mechanism.")
+    if file is not None and not checked:
+        raise click.UsageError("FILE requires --check.")
+    registry = Registry()
+    if name is not None and checked:
+        check(name, file, registry, as_json)
+    elif name in PARTS and name not in registry:
+        from rocking_cli.views.mechanisms import part
+
+        terminal.show(part(str(name)), as_json=as_json)
+    elif name is not None:
+        from rocking_cli.views.mechanisms import view
+
+        terminal.show(view(registry[name], registry.package_of(name)), as_json=as_json)
+    else:
+        _all(registry, as_json)
+
+
+def _all(registry: Registry, as_json: bool) -> None:
+    from rocking_cli.views.mechanisms import InstalledMechanism, installed
+
+    found = []
+    for name in registry:
+        try:
+            title: str | None = registry[name].title
+        except MechanismError as error:  # one broken plugin must not hide the others
+            terminal.warning(str(error))
+            terminal.debug_traceback(error)
+            title = None
+        found.append(InstalledMechanism(name, title, registry.package_of(name)))
+    terminal.show(installed(found), as_json=as_json)
+
+
+def check(name: str, file: str | None, registry: Registry, as_json: bool) -> None:
+    """Print which checks of the contract a mechanism passes; exit with the code of `MechanismError` if one fails.
+
+    Parameters
+    ----------
+    name : str
+        Name of the mechanism.
+    file : str or None
+        A structure of the mechanism; without one, its examples are checked.
+    registry : Registry
+        Registry of mechanisms.
+    as_json : bool
+        Whether to print one JSON object.
+
+    Raises
+    ------
+    InputError
+        If the mechanism does not exist, or the file is not a structure of it.
+    """
+    from rocking_cli.views.mechanisms import checked
+
+    verdicts = _verdicts(name, file, registry)
+    package = registry.package_of(name)
+    failed = [each for each in verdicts if not each.passed]
+    terminal.show(checked(name, package, file, verdicts), as_json=as_json)
+    if not as_json:
+        passes = f"fails {len(failed)} of {len(verdicts)} checks" if failed else f"passes all {len(verdicts)} checks"
+        terminal.note(f"{name} ({package}), {file or 'its examples'}: {passes}")
+    if failed:
+        click.get_current_context().exit(MechanismError.exit_code)
+
+
+def _verdicts(name: str, file: str | None, registry: Registry) -> list[Verdict]:
+    from rocking_cli.core.structure_file import load_structure, parse_structure
+    from rocking_cli.testing import contract, verdict
+    from rocking_cli.views.template import template
+
+    found: list[Mechanism] = []
+
+    def make() -> None:
+        if file is None:
+            text = template(registry[name])
+            found.append(parse_structure(text, f"rocking new {name}", name, registry))
+        else:
+            found.append(load_structure(file, registry))
+
+    if name not in registry:
+        registry[name]  # raises, with a guess
+    loads = verdict("loads", LOADS, lambda: registry[name])
+    if not loads.passed:
+        return [loads]
+    if file is None:
+        made = verdict("makes_a_structure", MADE, make)
+        return [loads, made, *(contract(found[0]) if found else [])]
+    make()
+    if found[0].mechanism != name:
+        raise InputError(f"{file} is a structure of the mechanism {found[0].mechanism}, not of {name}")
+    return [loads, *contract(found[0])]

@@ -1,0 +1,1 @@
+"""`new`: a file or a plugin to start from."""

@@ -1,0 +1,1 @@
+"""`overturning`: the pulses that overturn a structure."""

@@ -1,0 +1,288 @@
+"""Views of overturning maps, and of the least pulses that overturn, as text and as data."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from rocking_cli.arrays import Reals
+from rocking_cli.core import Mechanism
+from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.names import OVERTURNS, UNKNOWN, percent
+from rocking_cli.questions.overturning.study import FALLS, Comparison, OverturningMap, Region
+from rocking_cli.studies.under_pulses import PulsedModel
+from rocking_cli.views.column import only_shown, rounded, table_of
+from rocking_cli.views.verdict import unchecked
+from rocking_cli.views.view import ABSENT, Table, View, number
+
+ROWS = 9  # of a table: the curves themselves are in --out and --json
+FROM_KINEMATICS = " (from kinematics, not measured)"
+NO_JOINTS = (
+    "The equivalent block has no joints, so whether those of the structure stay closed is not checked here: the real "
+    "outcome may differ. Next: choose the nonlinear model, which checks them."
+)
+
+
+def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionless: bool) -> View:
+    """Show an overturning map of a structure, or of the linear block if there is none.
+
+    Parameters
+    ----------
+    found : OverturningMap
+        The map.
+    mechanism : Mechanism, optional
+        The structure.
+    dimensionless : bool
+        Whether to show the map against omega and a; otherwise against the period in s and the amplitude in g.
+    """
+    unit = 1.0 if dimensionless else found.accelerations[0] / found.a[0]
+    what, amplitude = ("omega", "a") if dimensionless else ("T [s]", "a_g [g]")
+    curves = {
+        "overturns\nfrom": found.least(*FALLS),
+        "without\nimpact from": found.least(Region.WITHOUT_IMPACT),
+        "survives\nagain at": found.safe_again,
+    }
+    doubtful = found.least(Region.UNKNOWN)
+    if some_unknown := not np.isnan(doubtful).all():
+        curves["unknown\nfrom"] = doubtful
+    across = (found.omega if dimensionless else found.periods).tolist()
+    columns = [
+        only_shown(what, across.__getitem__, rounded(3), text=True),
+        *(only_shown(head, (unit * curve).item, rounded(3)) for head, curve in curves.items()),
+    ]
+    source = "" if found.structure.eta_given else FROM_KINEMATICS
+    shares = ", ".join(f"{region.label} {100 * share:.1f} %" for region, share in found.shares.items() if share)
+    parts: list[Table | str] = [
+        f"{map_title(found)}{source}: amplitudes {amplitude} against {what}",
+        table_of("", columns, spaced(len(across))),
+        f"Shares of the pulses on the map: {shares}.",
+    ]
+    if some_unknown:
+        parts.append(
+            "The outcome is unknown where a joint opens or slides so far that the model no longer holds: the structure "
+            "may stand or overturn there. Next: `rocking respond` with such a pulse names the joint and the time."
+        )
+    if not (found.outcome.peak_ratio != 0).any():
+        parts.append(
+            f"No pulse on the map causes uplift: the largest has a = {found.a.max():.4g}, and uplift requires a > 1."
+        )
+    step = unit * (found.a[1] - found.a[0])
+    parts.append(f"Amplitudes are read from the map, whose step is {step:.2g}{'' if dimensionless else ' g'}.")
+    if not np.isnan(found.safe_again).all():
+        parts.append(
+            "Stronger is not always worse: 'survives again at' is the largest amplitude that does not overturn the "
+            "structure although a smaller one does."
+        )
+    if mechanism is not None:
+        parts += _joints([found.structure], [mechanism])
+    return View(_map_data(found, mechanism, dimensionless=dimensionless), parts)
+
+
+def map_title(found: OverturningMap) -> str:
+    """Return the structure, the pulse and the model of a map, as a heading."""
+    shaken = found.structure
+    return f"{shaken.name}, {_pulse(found)}, {shaken.model.name}, eta = {shaken.eta:.4g}"
+
+
+def _pulse(found: OverturningMap | Comparison) -> str:
+    """Return shape and polarity of the pulses, for a heading."""
+    turned = {(1,): "", (-1,): " reversed", (1, -1): " of either polarity"}[found.polarities]
+    return f"{found.shape.title}{turned}"
+
+
+def _polarity(found: OverturningMap | Comparison) -> int | str:
+    return found.polarities[0] if len(found.polarities) == 1 else "both"
+
+
+def map_table(found: OverturningMap, mechanism: Mechanism | None) -> dict[str, Sequence[object]]:
+    """Return the columns of a map, with a row for each point; with periods and accelerations for a structure."""
+    rows, columns = np.indices(found.regions.shape)
+    row, column = rows.ravel(), columns.ravel()
+    result: dict[str, Sequence[object]] = {"omega": found.omega[column].tolist(), "a": found.a[row].tolist()}
+    if mechanism is not None:
+        result |= {
+            "period [s]": found.periods[column].tolist(),
+            "acceleration [g]": found.accelerations[row].tolist(),
+        }
+    outcome = found.outcome
+    before = zip(outcome.fell.ravel().tolist(), outcome.impact_count.ravel().tolist(), strict=True)
+    result |= {
+        "outcome": [Region(region).label for region in found.regions.ravel().tolist()],
+        "peak phi/phi_cr": np.where(outcome.unknown, np.nan, outcome.peak_ratio).ravel().tolist(),
+        "impacts before overturning": [count if falls else "" for falls, count in before],
+    }
+    if found.structure.may_open:
+        result |= {
+            "known to [s]": outcome.known_to.ravel().tolist(),
+            "peak phi/phi_cr, at least": np.where(outcome.unknown, outcome.lower_bound, np.nan).ravel().tolist(),
+        }
+    return result
+
+
+def _map_data(found: OverturningMap, mechanism: Mechanism | None, *, dimensionless: bool) -> dict[str, Any]:
+    shaken = found.structure
+    here = mechanism is not None
+    return {
+        "structure": _structure(shaken, mechanism) if mechanism is not None else None,
+        "pulse": found.shape.name,
+        "model": shaken.model.name,
+        "eta": shaken.eta,
+        "polarity": _polarity(found),
+        "dimensionless": dimensionless,
+        "shares": {
+            region.name.lower(): share if shaken.checked or region is not Region.UNKNOWN else None
+            for region, share in found.shares.items()
+        },
+        "omega": found.omega.tolist(),
+        "period": found.periods.tolist() if here else None,
+        "a": found.a.tolist(),
+        "acceleration": found.accelerations.tolist() if here else None,
+        "least_a": {
+            "overturning": numbers(found.least(*FALLS)),
+            "after_impact": numbers(found.least(Region.AFTER_IMPACT)),
+            "without_impact": numbers(found.least(Region.WITHOUT_IMPACT)),
+            "overturning_or_unknown": numbers(found.least(*FALLS, Region.UNKNOWN)) if shaken.checked else None,
+        },
+        "largest_safe_a_above": numbers(found.safe_again),
+    }
+
+
+def _structure(shaken: PulsedModel, mechanism: Mechanism) -> dict[str, Any]:
+    """Return a structure as plain data, with the quantities that make its pulses dimensionless."""
+    return {
+        "mechanism": mechanism.mechanism,
+        "name": shaken.name,
+        "direction": shaken.direction.label,
+        "p": shaken.p,
+        "lambda": shaken.lambda_,
+    }
+
+
+def numbers(values: Reals) -> list[float | None]:
+    """Return values for JSON, with null for NaN."""
+    return [None if value != value else value for value in values.tolist()]
+
+
+def spaced(count: int, most: int = ROWS) -> list[int]:
+    """Return the indices of a few columns, including the first and the last."""
+    return sorted({round(place) for place in np.linspace(0, count - 1, min(most, count)).tolist()})
+
+
+def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
+    """Show the least amplitudes that overturn each of several structures, and which overturns first."""
+    firsts = _firsts(found)
+
+    def first(k: int) -> str | None:
+        if found.undecided[k]:
+            return UNKNOWN
+        return "several equal" if len(firsts[k]) > 1 else firsts[k][0] if firsts[k] else None
+
+    columns = [
+        only_shown("T [s]", found.periods.item, rounded(3), text=True),
+        *(
+            only_shown(each.name.replace(" ", "\n"), partial(_span, *ends))
+            for each, *ends in zip(found.structures, found.possible, found.least, strict=True)
+        ),
+        only_shown("overturns first", first, text=True),
+    ]
+    parts: list[Table | str] = [
+        f"Least a_g [g] that overturns: {comparison_title(found)}",
+        table_of("", columns, spaced(found.periods.size)),
+    ]
+    counts = Counter(tuple(together) for together in firsts if together)
+    shares = [
+        f"{' and '.join(tied)}{' together' * (len(tied) > 1)} at {percent(counts[tied] / len(firsts))}"
+        for tied in sorted(counts, key=lambda tied: len(tied) > 1)
+    ]
+    if found.undecided.any():
+        shares.append(f"{UNKNOWN} at {percent(float(found.undecided.mean()))}")
+    if shares:
+        parts.append(f"Overturned by the smallest amplitude: {', '.join(shares)} of the periods.")
+    if found.doubtful.any():
+        parts.append(
+            "Two numbers: the smallest amplitude whose outcome is unknown, as a joint opens or slides so far that the "
+            "model no longer holds, and the smallest that is known to overturn the structure. Overturning starts "
+            "between the two; after >=, it starts at no smaller amplitude, if at all."
+        )
+    if np.isnan(found.possible).any():
+        parts.append(f"{ABSENT}: no amplitude up to {found.top:.4g} g {OVERTURNS} the structure.")
+    low = [each.name for each in found.structures if found.top * STANDARD_GRAVITY <= each.unit]
+    if low:
+        parts.append(f"{found.top:.4g} g, the largest amplitude tried, does not uplift {', '.join(low)}.")
+    parts += _joints(found.structures, mechanisms)
+    return View(_comparison_data(found, mechanisms), parts)
+
+
+def comparison_title(found: Comparison) -> str:
+    """Return the pulses and the model of a comparison, as a heading."""
+    return f"{_pulse(found)}, {found.structures[0].model.name}"
+
+
+def _firsts(found: Comparison) -> list[list[str]]:
+    """Return the names of the structures that overturn first at each period: none, one, or several that are equal."""
+    return [
+        [each.name for each, goes in zip(found.structures, column, strict=True) if goes]
+        for column in found.firsts.T.tolist()
+    ]
+
+
+def comparison_table(found: Comparison) -> dict[str, Sequence[object]]:
+    """Return the columns of the curves, with a row for each period."""
+    curves: dict[str, Sequence[object]] = {"period [s]": found.periods.tolist()}
+    for each, least, possible in zip(found.structures, found.least, found.possible, strict=True):
+        curves[f"{each.name} [g]"] = least.tolist()
+        if each.may_open:
+            curves[f"{each.name}, overturns or unknown [g]"] = possible.tolist()
+    firsts = [f"tie: {', '.join(names)}" if len(names) > 1 else "".join(names) for names in _firsts(found)]
+    undecided = zip(firsts, found.undecided.tolist(), strict=True)
+    return curves | {"first": [UNKNOWN if open_ else first for first, open_ in undecided]}
+
+
+def _comparison_data(found: Comparison, mechanisms: Sequence[Mechanism]) -> dict[str, Any]:
+    each = zip(found.structures, mechanisms, found.least, found.possible, strict=True)
+    return {
+        "pulse": found.shape.name,
+        "model": found.structures[0].model.name,
+        "polarity": _polarity(found),
+        "largest_tried": found.top,
+        "period": found.periods.tolist(),
+        "structures": [
+            {
+                **_structure(shaken, mechanism),
+                "eta": shaken.eta,
+                "least": numbers(least),
+                "least_or_unknown": numbers(possible) if shaken.checked else None,
+            }
+            for shaken, mechanism, least, possible in each
+        ],
+        "first": [names[0] if len(names) == 1 else None for names in _firsts(found)],
+        "tied": [names if len(names) > 1 else None for names in _firsts(found)],
+        "undecided": found.undecided.tolist(),
+    }
+
+
+def _joints(structures: Sequence[PulsedModel], mechanisms: Sequence[Mechanism]) -> list[str]:
+    """Return sentences on joints of structures that are not checked; empty if all are."""
+    linear, several = structures[0].model.is_linear, len(structures) > 1
+    left_out = linear and any(len(each.bodies()) > 1 for each in mechanisms)
+    return [
+        *([NO_JOINTS] if left_out else []),
+        *(
+            unchecked(each.name if several else "", mechanism.unchecked)
+            for each, mechanism in zip(structures, mechanisms, strict=True)
+            if not each.checked
+        ),
+        *(f"Caution: {each.name}: {text}" for each in mechanisms if (text := each.own_caution())),
+    ]
+
+
+def _span(possible: Reals, least: Reals, k: int) -> str:
+    """Format the least amplitude that overturns: a number, the range in which it lies, or a lower bound."""
+    low, high = possible[k], least[k]
+    if np.isnan(low) or low >= high:
+        return number(high, 3)
+    return f">= {low:.3g}" if np.isnan(high) else f"{low:.3g} to {high:.3g}"

@@ -1,0 +1,1 @@
+"""`pulse`: the response to a pulse."""

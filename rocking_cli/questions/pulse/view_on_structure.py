@@ -1,0 +1,238 @@
+"""View of the response of a structure to a pulse, as text and as data."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from math import nan
+from operator import itemgetter
+from typing import Any, NamedTuple
+
+from rocking_cli import names
+from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core.advice import Grade, grade, uplift_error
+from rocking_cli.dynamics.exact import ClosedForm, ExactResponse
+from rocking_cli.dynamics.history import History
+from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.names import percent
+from rocking_cli.questions.pulse.study_on_structure import KAPPAS, Answer, SampledHistory, outcome, scaled
+from rocking_cli.questions.pulse.view import (
+    CONDITIONS,
+    YES_NO,
+    after_impacts,
+    closed_data,
+    how_far_off,
+    impacts_before,
+    why_not_valid,
+)
+from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import Concluding
+from rocking_cli.studies.contact import Contacts
+from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
+from rocking_cli.views.conclusion import conclusion_data
+from rocking_cli.views.response import known_data, model_heads, not_checked, pulse_data
+from rocking_cli.views.restitution import restitution_data, restitution_used
+from rocking_cli.views.verdict import NO_JOINTS, ends, joints_in_words, uplift_in_words
+from rocking_cli.views.view import Table, View, heading, in_degrees, number
+
+DIRECTIONS: tuple[Column[Mapping[str, Any]], ...] = (
+    only_shown("direction", itemgetter("direction"), text=True),
+    only_shown("omega", itemgetter("omega"), rounded(5)),
+    only_shown("a\nkappa1", itemgetter("a1"), rounded(5)),
+    only_shown("a\nkappa2", itemgetter("a2"), rounded(5)),
+    only_shown("eta", itemgetter("eta"), rounded(5)),
+)
+
+
+class _Beside(NamedTuple):
+    """A closed form, and the exact response that it approximates."""
+
+    closed: ClosedForm
+    exact: ExactResponse
+
+
+def _condition(place: int, name: str) -> Column[_Beside]:
+    return only_shown(f"condition {place}", lambda each: each.closed.conditions[name], YES_NO.__getitem__)
+
+
+CLOSED: tuple[Column[_Beside], ...] = (
+    only_shown("D0* (Eq. 42)", of("closed.D0"), number),
+    only_shown("max ratio (Eq. 41)", of("closed.max_ratio"), number),
+    only_shown("  minus exact first rebound", lambda each: each.closed.off(each.exact.first_rebound), rounded(3)),
+    only_shown("  minus exact peak", lambda each: each.closed.off(each.exact.peak_ratio), rounded(3)),
+    only_shown("overturns after one impact", of("closed.overturns"), YES_NO.__getitem__),
+    *(_condition(place, name) for place, name in enumerate(CONDITIONS, start=1)),
+)
+EXACT = {True: "exact", False: "sampled"}
+
+
+def view(
+    structure: Structure,
+    pulse: Pulse,
+    answers: Concluding[int, Mapping[str, Answer]],
+    closed: Mapping[str, ClosedForm],
+) -> View:
+    """Show the responses of the models of a structure to a pulse.
+
+    Parameters
+    ----------
+    structure : Structure
+        The structure.
+    pulse : Pulse
+        The pulse as given.
+    answers : Concluding, of int to mapping of str to Answer
+        The responses of the models under each polarity to be analysed, 1 or -1.
+    closed : mapping of str to ClosedForm
+        Eqs. 41-42 with each kappa, shown with the responses in the first polarity; empty if they do not apply.
+    """
+    mechanism, equivalence = structure.mechanism, structure.equivalence
+    blocks = {"positive": equivalence.positive, "negative": equivalence.negative}
+    seen = {label: scaled(mechanism, block, pulse) for label, block in blocks.items()}
+    polarity, first = next(iter(answers.items()))
+    exact = {name: each for name, each in first.items() if isinstance(each, ExactResponse)}
+    each = {
+        str(sign): {
+            "responses": {
+                name: data_of(_columns(found), answer) | known_data(outcome(answer)) for name, answer in found.items()
+            }
+        }
+        for sign, found in answers.items()
+    }
+    data = {
+        "structure": {"mechanism": mechanism.mechanism, "name": mechanism.name},
+        "pulse": {**pulse_data(pulse), "polarity": polarity if len(answers) == 1 else "both"},
+        "restitution": restitution_data(structure),
+        "conclusion": conclusion_data(answers.conclusion),
+        "directions": seen,
+        "closed_form": {name: closed_data(form, exact[name]) for name, form in closed.items()} or None,
+        **(each.popitem()[1] if len(each) == 1 else {"polarities": each}),
+    }
+    sides = {"both": seen["positive"]} if equivalence.symmetric else seen
+    rows = [{"direction": label, **values} for label, values in sides.items()]
+    parts: list[Table | str] = [table_of(f"{heading(mechanism)}, {pulse}", DIRECTIONS, rows)]
+    for sign, found in answers.items():
+        title = f"Polarity {sign}: {'as given' if sign > 0 else 'reversed'}"
+        parts += ["", _answer_table(title, found), _verdict(found, mechanism)]
+    unfit = uplift_error(equivalence)
+    if grade(unfit) is Grade.DISREGARD:
+        parts.append(f"Disregard linear1: its uplift acceleration is {uplift_in_words(unfit)}.")
+    parts.append("")
+    if not closed:
+        parts.append(_why_no_closed_form(mechanism, pulse))
+    elif any(form.conditions["uplift"] for form in closed.values()):
+        parts += _closed_parts(closed, exact)
+    else:
+        parts.append(f"No closed form: by the equivalent blocks, the structure {names.NO_UPLIFT} (a <= 1).")
+    runs = [found for each in answers.values() for found in map(outcome, each.values()) if isinstance(found, History)]
+    return View(data, [*parts, restitution_used(structure), *not_checked(mechanism, runs)])
+
+
+def _columns(answers: Mapping[str, Answer], *, unknown: bool = False) -> list[Column[Answer]]:
+    """Return the columns of a response; beside an unknown outcome of the structure, tables have none of its blocks."""
+
+    def value(name: str) -> Callable[[Answer], Any]:
+        return lambda answer: getattr(outcome(answer), name)
+
+    def exactly(name: str) -> Callable[[Answer], Any]:
+        return lambda answer: getattr(answer, name) if isinstance(answer, ExactResponse) else None
+
+    def end(answer: Answer) -> str | None:
+        found = outcome(answer)
+        if unknown and not found.unknown:
+            return None
+        said = names.outcome(uplifts=found.lifted, overturned=found.fell, unknown=found.unknown)
+        return f"{said}\n{after_impacts(found)}" if found.fell else said  # one that is still rocking rocks
+
+    def bound(answer: Answer) -> float | None:
+        return outcome(answer).lower_bound if outcome(answer).unknown else None
+
+    def way(answer: Answer) -> str | None:
+        return Direction(outcome(answer).fell_to).label if outcome(answer).fell else None
+
+    until, least = ("known until", "lower bound of peak / phi_cr") if unknown else (None, None)
+    over = partial(_over_nonlinear, answers=answers)
+    return [
+        Column("exact", lambda answer: isinstance(answer, ExactResponse), "", "pulse", EXACT.__getitem__),
+        only_shown("outcome", end),
+        only_shown(until, value("known_to"), rounded(5), "s"),
+        Column("peak_ratio", value("peak_ratio"), "", "peak rotation / phi_cr", rounded(5)),
+        Column("over_nonlinear", over, "", "  over that of nonlinear", rounded(5)),
+        only_shown(least, bound, rounded(5)),
+        Column("peak_positive", value("peak_positive"), "deg", "peak rotation, clockwise", in_degrees),
+        Column("peak_negative", value("peak_negative"), "deg", "peak rotation, anticlockwise", in_degrees),
+        Column("first_excursion", exactly("first_excursion"), "", "first excursion", rounded(5)),
+        Column("first_rebound", exactly("first_rebound"), "", "first rebound", rounded(5)),
+        Column("uplift_time", value("uplift_time"), "s", "uplift", rounded(5)),
+        Column("first_impact", value("first_impact"), "s", "first impact", rounded(5)),
+        Column("overturned", value("overturned")),
+        Column("overturning_time", value("overturning_time"), "s", "overturning time", rounded(5)),
+        Column("overturning_direction", way),
+        Column("impacts_before_overturning", lambda answer: impacts_before(outcome(answer))),
+        Column("samples_per_period", lambda each: each.per_period if isinstance(each, SampledHistory) else None),
+    ]
+
+
+def _over_nonlinear(answer: Answer, answers: Mapping[str, Answer]) -> float:
+    """Return the peak of a model over that of the nonlinear one; NaN if either does not exist or is unknown."""
+    best = outcome(answers["nonlinear"])
+    if outcome(answer) is best or best.unknown or not best.peak_ratio > 0:
+        return nan
+    return outcome(answer).peak_ratio / best.peak_ratio
+
+
+def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
+    unknown = any(outcome(each).unknown for each in answers.values())
+    heads = model_heads(answers, unknown=unknown)
+    return table_across(title, _columns(answers, unknown=unknown), heads, list(answers.values()))
+
+
+def _verdict(answers: Mapping[str, Answer], mechanism: Mechanism) -> str:
+    """Return sentences on the nonlinear history, and on how the linear models compare."""
+    sampled = answers["nonlinear"]
+    assert isinstance(sampled, SampledHistory)
+    nonlinear, joints = sampled.history, ""
+    if nonlinear.check is not None or nonlinear.unknown:
+        joints = joints_in_words(nonlinear, Contacts(mechanism).check(nonlinear, sampled.motion).assumed_friction)
+    if nonlinear.unknown:
+        return f"{joints} {NO_JOINTS}"
+    said = f"The structure {ends(nonlinear)}{f', {after_impacts(nonlinear)}' if nonlinear.fell else ''}."
+    if not nonlinear.lifted:
+        return said
+    said += f" {joints}".rstrip()
+    for name in KAPPAS:
+        linear, over = outcome(answers[name]), _over_nonlinear(answers[name], answers)
+        if over >= 0:
+            off = over - 1
+            said += f" By {name} its peak is {percent(abs(off))} {'higher' if off > 0 else 'lower'}."
+        elif linear.fell != nonlinear.fell:
+            said += f" By {name} it {names.outcome(uplifts=linear.lifted, overturned=linear.fell)}."
+    return said
+
+
+def _closed_parts(closed: Mapping[str, ClosedForm], exact: Mapping[str, ExactResponse]) -> Iterator[Table | str]:
+    """Yield the closed form, its conditions, and a sentence on how far to trust it."""
+    rows = [_Beside(form, exact[name]) for name, form in closed.items()]
+    yield table_across("Closed form of a full sine", CLOSED, list(closed), rows, {})
+    for place, condition in enumerate(CONDITIONS.values(), start=1):
+        yield f"{place}: {condition}"
+    for name, form in closed.items():
+        yield f"{name}: {_trust(form, exact[name])}"
+
+
+def _trust(closed: ClosedForm, exact: ExactResponse) -> str:
+    if not closed.conditions["uplift"]:
+        return f"it {names.NO_UPLIFT} (a <= 1)."
+    use = "all conditions are met, so the closed form can be used"
+    said = use if closed.valid else f"do not use the closed form here, because {why_not_valid(closed)}"
+    return f"{said}{how_far_off(closed, exact)}."
+
+
+def _why_no_closed_form(mechanism: Mechanism, pulse: Pulse) -> str:
+    if not mechanism.rocks_both_ways:
+        return "No closed form and no exact solution: both require a structure that rocks through to the other side."
+    if pulse.name != "sine":
+        said = "No closed form: Eqs. 41-42 apply to a full sine."
+        if not pulse.segments():
+            said += " This pulse has no exact solution either: the linear models are simulated under the sampled pulse."
+        return said
+    return "No closed form: Eqs. 41-42 apply to a structure with the same properties in both directions."

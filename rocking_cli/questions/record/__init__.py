@@ -1,0 +1,1 @@
+"""`record`: what is in a record."""

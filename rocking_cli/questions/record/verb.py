@@ -1,0 +1,401 @@
+"""`rk.record`: how strong ground motions are, and what is doubtful about them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Unpack
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking_cli.ask.answer import Answer, drawn
+from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, done, motion_of, signs_of, unprocessed
+from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.several import Answers, answers, are_several, of_motions
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.excitation.measures import Measures
+from rocking_cli.excitation.pulse_fit import PulseFit
+from rocking_cli.processing.intensity import Measure
+from rocking_cli.processing.listed import Listed
+from rocking_cli.questions.record.view import Examined
+from rocking_cli.views.view import View
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.ask.given import StructureLike
+    from rocking_cli.io.tables import Columns
+    from rocking_cli.processing.listed import Scaled
+    from rocking_cli.processing.oscillator import ResponseSpectrum
+    from rocking_cli.structure import Structure
+
+PATIENCE = 1.0  # s without a word
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RecordAnswer(Answer[Measures]):
+    """Measures of a ground motion, of the first polarity if there are two.
+
+    Parameters
+    ----------
+    examined : tuple of Examined
+        The record, its measures, doubts and fitted pulses, in each polarity.
+    motions : tuple of GroundMotion
+        The corrected and scaled motion in each polarity.
+    """
+
+    examined: tuple[Examined, ...] = field(kw_only=True)
+    motions: tuple[GroundMotion, ...] = field(kw_only=True)
+
+
+@of_motions
+@takes_numbers
+def record(
+    motion: Motion | Motions | Sequence[Motion],
+    *,
+    polarity: str | int = "1",
+    structure: StructureLike | None = None,
+    fit_pulse: bool = False,
+    measures: str | None = None,
+    spectrum: bool = False,
+    period: tuple[float, float] | None = None,
+    damping: float | None = None,
+    out: str | Path | None = None,
+    watch: Watcher = SILENT,
+    **options: Unpack[MotionArguments],
+) -> RecordAnswer | Answers[RecordAnswer]:
+    """Measure the strength of ground motions, and check them for defects.
+
+    Parameters
+    ----------
+    motion : GroundMotion, Pulse, str or Path, or a sequence of these
+        The motion, its file, or a pulse as text; a pattern such as `records/*.AT2`, or a sequence, gives several.
+    polarity : {"1", "-1", "both"}
+        Polarity of the motion: as given, reversed, or one after the other.
+    structure : Mechanism, str or Path, optional
+        Structure, to check the sampling interval and for relative measures.
+    fit_pulse : bool
+        Whether to fit a sine, a Ricker and a near-fault pulse; the plot shows the best.
+    measures : str, optional
+        Names of intensity measures to compute as well, such as "Sa(1.0), CAV", or "all".
+    spectrum : bool
+        Whether to compute the response spectrum, for `frames["spectrum"]` and the plot.
+    period : (float, float), optional
+        Shortest and longest period of the spectrum [s]; by default 0.02 and 10.
+    damping : float, optional
+        Damping ratio of the spectrum; by default 0.05.
+    out : str or Path, optional
+        Where each record is written as a clean file of time and acceleration: a file that ends in .csv, or a folder,
+        created if missing, that receives NAME.csv.
+    watch : Watcher
+        Told what is doubtful about the records, how far the fits are, and which of several motions cannot be used.
+    **options
+        How the motion is read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
+
+    Returns
+    -------
+    RecordAnswer
+        Peaks, Arias intensity, durations and mean period; `examined` has all else. For several motions, `Answers` with
+        one for each, by its name.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+
+    Notes
+    -----
+    The measures are exact for straight lines between the samples; the intensity is that of Arias (1970), pi/(2 g) times
+    the integral of the squared acceleration.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> round(rk.record("ricker:0.6g:0.5s").pga, 6)
+    0.6
+    """
+    from rocking_cli.questions.record.view import parts
+
+    if not spectrum and (period is not None or damping is not None):
+        raise InputError("`period` and `damping` require a response spectrum: give `spectrum`")
+    motions, signs = Motions.of(motion, options), signs_of(polarity)
+    if not motions:
+        raise InputError("no ground motion is given: give `motion`")
+    motions.check()
+    places = _clean_places(Path(out), motions, signs) if out is not None else {}
+    ready = None
+    if structure is not None:
+        from rocking_cli.ask.given import structure_of
+
+        ready = structure_of(structure, watch)
+
+    def one(read: Scaled) -> RecordAnswer:
+        seen, scaled = _examine(read, signs, ready, watch, measures, fit_pulse=fit_pulse)
+        if spectrum:
+            seen = [
+                each._replace(spectrum=_spectrum(own, period, damping)) for each, own in zip(seen, scaled, strict=True)
+            ]
+        return _answer(seen, scaled, read)
+
+    found = dict[str, RecordAnswer]()
+    for k, source in enumerate(motions.sources):
+        try:
+            answer = one(motions.read(source))
+        except InputError as error:
+            if not found and k == motions.count - 1:
+                raise
+            watch.leave_out(error)
+            continue
+        for sign, own in zip(signs, answer.motions, strict=True):
+            if (k, sign) in places:
+                _write_clean(places[k, sign], own, watch)
+        watch.take(answer)
+        found[_unique(answer.examined[0], found)] = answer
+    if not are_several(motion, motions):
+        return answer
+    examined = [seen for each in found.values() for seen in each.examined]
+    kept = {"spectrum": partial(_spectra_table, examined)} if spectrum else {}
+    figure = _spectra_figure(examined) if spectrum else None
+    return answers("records", "motion", found, list(parts(examined, 100)), figure, kept)
+
+
+def _examine(
+    read: Scaled,
+    signs: Sequence[int],
+    ready: Structure | None,
+    watch: Watcher,
+    measures: str | None,
+    *,
+    fit_pulse: bool,
+) -> tuple[list[Examined], list[GroundMotion]]:
+    """Return what is found of a motion in each polarity, and the motions; warn of what is doubtful."""
+    from rocking_cli.excitation.doubts import coarse_for, doubts
+    from rocking_cli.excitation.measures import measure
+    from rocking_cli.excitation.records.opening import name_of
+
+    p = ready.p if ready is not None else None
+    if any(each.startswith("from ") for each in read.motion.processing):
+        watch.note(f"{read.motion.name}{done(read.motion)}")
+    found = doubts(read.motion.of_ground, measure(read.motion.of_ground))
+    found += coarse_for(read.motion, p) if p is not None else []
+    scaled = [read.motion.scaled(sign * read.factor) for sign in signs]
+    examined = [
+        Examined(
+            name_of(read.file) if read.file is not None else read.motion.name,
+            f"{read.motion.name}, reversed" if len(signs) > 1 and sign < 0 else read.motion.name,
+            read.motion,
+            sign * read.factor,
+            measure(one),
+            found,
+            p * read.motion.dt if p is not None else None,
+            _fit(one, watch) if fit_pulse else [],
+            _measured(one, measures, ready),
+        )
+        for sign, one in zip(signs, scaled, strict=True)
+    ]
+    for doubt in found:
+        watch.warn(f"{read.motion.name}: {doubt.text}")
+    return examined, scaled
+
+
+def _answer(examined: Sequence[Examined], scaled: Sequence[GroundMotion], read: Scaled) -> RecordAnswer:
+    from rocking_cli.questions.record.view import data, parts
+
+    first, own = examined[0], examined[0].measures
+    said = f"{first.label}: PGA {own.pga:.3g} g, PGV {own.pgv:.3g} m/s."
+    with_spectra = first.spectrum is not None
+    return RecordAnswer(
+        "record",
+        own,
+        View(lambda: data(first), [*parts(examined, 100), said]),
+        partial(_columns, scaled[0]),
+        _spectra_figure(examined) if with_spectra else partial(_figure, scaled[0], first, read),
+        tables={"spectrum": partial(_spectra_table, examined)} if with_spectra else {},
+        examined=tuple(examined),
+        motions=tuple(scaled),
+    )
+
+
+def _clean_places(out: Path, motions: Motions, signs: Sequence[int]) -> dict[tuple[int, int], Path]:
+    """Return the clean file of each record, by its place and polarity; in a folder, named after record and channel.
+
+    All are checked: they can be written, no file that is read is among them, and files that are not clean records are
+    kept.
+    """
+    from rocking_cli.excitation.record_csv import is_record_csv
+    from rocking_cli.excitation.records.opening import name_of
+    from rocking_cli.io.files import check_writable, folder, keep_apart
+
+    paths: dict[tuple[int, int], Path] = {}
+    alone = out.suffix.lower() == ".csv" and not out.is_dir()
+    if alone and (motions.count > 1 or len(signs) > 1):
+        raise InputError("`out` FILE.csv takes one record: give one motion and one polarity, or a folder")
+    if alone:
+        paths[0, signs[0]] = out
+    else:
+        folder(str(out))
+    for k, record in enumerate(motions.sources if not alone else ()):
+        if not isinstance(record, Listed):
+            continue
+        own = record.reading(motions.reading).channel
+        suffix = "-" + re.sub(r"\W+", "-", own.strip()) if own is not None else ""
+        for sign in signs:
+            turned = "-reversed" if len(signs) > 1 and sign < 0 else ""
+            path = out / f"{Path(name_of(record.path)).stem}{suffix}{turned}.csv"
+            if path in paths.values():
+                what = "two records would be written to the same file"
+                raise InputError(Problem(what, str(path), hint="write them one by one"))
+            paths[k, sign] = path
+    for path in paths.values():
+        keep_apart([("`out`", path)], [str(each.path) for each in motions.records])
+        if not alone and path.exists() and not is_record_csv(path):
+            what = "`out` would overwrite a file that rocking did not write"
+            raise InputError(Problem(what, str(path), hint="move it, or name another folder"))
+        check_writable(path)
+    return paths
+
+
+def _write_clean(path: Path, motion: GroundMotion, watch: Watcher) -> None:
+    from rocking_cli.excitation.record_csv import write_record_csv
+    from rocking_cli.io.files import write_whole
+
+    write_whole(path, partial(write_record_csv, motion=motion))
+    watch.note(f"wrote {path.resolve()}")
+
+
+def _unique(record: Examined, taken: Iterable[str]) -> str:
+    """Return the name of a record, with its file or a number if it is taken."""
+    known = set(taken)
+    more = (f"{record.label} ({k})" for k in range(2, len(known) + 3))
+    names = (record.label, f"{record.label} ({record.file})", *more)
+    return next(name for name in names if name not in known)
+
+
+def _spectra(examined: Sequence[Examined]) -> dict[str, ResponseSpectrum]:
+    spectra: dict[str, ResponseSpectrum] = {}
+    for each in examined:
+        if each.spectrum is not None:
+            spectra[_unique(each, spectra)] = each.spectrum
+    return spectra
+
+
+def _spectra_table(examined: Sequence[Examined]) -> Columns:
+    from rocking_cli.questions.record.response_spectrum_view import table
+
+    return table(_spectra(examined))
+
+
+def _spectra_figure(examined: Sequence[Examined]) -> Callable[[], Figure]:
+    return drawn("questions.record.response_spectrum_picture.draw_response_spectra", _spectra(examined))
+
+
+def _fit(motion: GroundMotion, watch: Watcher) -> list[PulseFit]:
+    """Fit the best pulse of each shape by each criterion; report progress if that takes long."""
+    from rocking_cli.excitation.pulse_fit import CRITERIA, FITTED, fit_pulses
+
+    fits: list[PulseFit] = []
+    since = perf_counter()
+    for fit in fit_pulses(motion):
+        fits.append(fit)
+        if perf_counter() - since > PATIENCE:
+            watch.note(f"{motion.name}: {len(fits)} of {len(CRITERIA) * len(FITTED)} pulses fitted")
+            since = perf_counter()
+    return fits
+
+
+def _measured(motion: GroundMotion, names: str | None, structure: Structure | None) -> dict[Measure, float]:
+    """Compute the measures given by name; `all` without a structure means those that need none."""
+    if names is None:
+        return {}
+    from rocking_cli.processing.intensity import ALL, parse_measures
+    from rocking_cli.questions.record.study import intensities, reference_of
+
+    asked = parse_measures(names)
+    if structure is None and names.strip().lower() == ALL:
+        asked = [each for each in asked if not each.is_relative]
+    return intensities(motion, asked, reference_of(structure) if structure is not None else None)
+
+
+def _spectrum(motion: GroundMotion, period: tuple[float, float] | None, damping: float | None) -> ResponseSpectrum:
+    from rocking_cli.processing import oscillator
+
+    periods = oscillator.periods_between(*(period or (oscillator.SHORTEST, oscillator.LONGEST)))
+    return oscillator.response_spectrum(motion, periods, oscillator.DAMPING if damping is None else damping)
+
+
+def _columns(motion: GroundMotion) -> Columns:
+    return {"t [s]": np.arange(motion.npts) * motion.dt, "a_g [g]": motion.acceleration / STANDARD_GRAVITY}
+
+
+def _figure(motion: GroundMotion, examined: Examined, read: Scaled) -> Figure:
+    """Draw the fitted pulses, or the record before and after its corrections, or the record alone."""
+    from rocking_cli.processing.steps import Trim
+    from rocking_cli.questions.record.picture import draw_before_and_after, draw_pulses, draw_record
+
+    if examined.pulses:
+        return draw_pulses(motion, _best(examined.pulses), examined.measures.t_95 or motion.duration)
+    if read.reading is not None and (before := unprocessed(read)) is not None:
+        start = sum(step.start for step in read.reading.steps if isinstance(step, Trim))
+        return draw_before_and_after(before.scaled(examined.factor), motion, start)
+    return draw_record(motion, examined.measures)
+
+
+def _best(fits: Sequence[PulseFit]) -> list[PulseFit]:
+    """Return the fitted pulse that captures most, by each criterion, velocity first."""
+    by_criterion = {fit.criterion: fit for fit in sorted(fits, key=lambda fit: fit.captured)}
+    return [by_criterion["velocity"], by_criterion["acceleration"]]
+
+
+@takes_numbers
+def response_spectrum(
+    motion: Motion, periods: ArrayLike | None = None, *, damping: float = 0.05, scale: float = 1.0
+) -> Answer[ResponseSpectrum]:
+    """Compute the response spectrum of a ground motion: the peak responses of linear oscillators.
+
+    Parameters
+    ----------
+    motion : GroundMotion, Pulse, str or Path
+        The motion, its file, or a pulse as text.
+    periods : array_like, shape (n,), optional
+        Undamped periods of the oscillators [s]; by default 200 from 0.02 to 10 s at equal ratios.
+    damping : float
+        Damping ratio of the oscillators, from 0 to below 1.
+    scale : float
+        Scale factor on the motion.
+
+    Returns
+    -------
+    Answer of ResponseSpectrum
+        `periods`, and at each of them the displacement `sd` [m], the pseudo-velocity `sv` [m/s] and the
+        pseudo-acceleration `sa` [standard gravity].
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a file cannot be used.
+
+    Notes
+    -----
+    The spectrum is exact for straight lines between the samples, during the motion and after it.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> rk.response_spectrum("sine:0.2g:0.8s", [0.8]).sa.round(2).tolist()
+    [0.54]
+    """
+    from rocking_cli.processing.oscillator import response_spectrum as respond_linearly
+    from rocking_cli.questions.record import response_spectrum_view as views
+
+    scaled = motion_of(motion).scaled(scale)
+    found = respond_linearly(scaled, periods, damping)
+    named = {scaled.name: found}
+    figure = drawn("questions.record.response_spectrum_picture.draw_response_spectra", named)
+    return Answer("response spectrum", found, views.view(scaled.name, found), partial(views.table, named), figure)

@@ -1,0 +1,168 @@
+"""View of records and their intensity, as text and as data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from textwrap import wrap
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rocking_cli.questions.record import response_spectrum_view as spectra
+from rocking_cli.views import processing
+from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
+from rocking_cli.views.view import ABSENT, Table, number
+
+if TYPE_CHECKING:
+    from rocking_cli.excitation.base import Doubt, GroundMotion
+    from rocking_cli.excitation.measures import Measures
+    from rocking_cli.excitation.pulse_fit import PulseFit
+    from rocking_cli.processing.intensity import Measure
+    from rocking_cli.processing.oscillator import ResponseSpectrum
+
+HEADING = 14  # characters of a line of a record's name above its column, where blanks in it allow
+SHORT = 9  # characters of a line of a heading above a quantity
+LEFT = 26  # characters that labels and units take of a table
+BESIDE = 3  # blanks between columns
+
+
+class Examined(NamedTuple):
+    """A record as read, its scale factor, and measures, doubts, p dt and pulses of the scaled record.
+
+    `label` is its name, with "reversed" for the second of both polarities. `p_dt` is the frequency parameter of a
+    structure times the sampling interval. `asked` are measures requested by name, `spectrum` is its response spectrum.
+    """
+
+    file: str
+    label: str
+    motion: GroundMotion
+    factor: float
+    measures: Measures
+    doubts: list[Doubt]
+    p_dt: float | None
+    pulses: list[PulseFit]
+    asked: Mapping[Measure, float] = {}
+    spectrum: ResponseSpectrum | None = None
+
+
+def _channel(record: Examined) -> str | None:
+    """Return the channel of a record from a file with several; readers put it into the name of the motion."""
+    return record.motion.name.partition(f"{Path(record.file).name} channel ")[2] or None
+
+
+def _folded(name: str, width: int = HEADING) -> str:
+    """Break a name at blanks into lines of a column's width."""
+    return "\n".join(wrap(name, width, break_long_words=False, break_on_hyphens=False))
+
+
+AS_READ: tuple[Column[Examined], ...] = (
+    Column("file", of("file")),
+    Column("name", of("motion.name")),
+    Column("format", of("motion.format"), head="format", form=_folded),
+    Column("channel", _channel, head="channel"),
+    Column("unit", of("motion.unit"), head="unit in the file"),
+    Column("origin", lambda record: record.motion.origin._asdict()),
+    only_shown("earthquake", lambda record: record.motion.origin.event or None, _folded),
+    only_shown("station", lambda record: record.motion.origin.station or None, _folded),
+    only_shown("magnitude", of("motion.origin.magnitude"), number),
+    only_shown("distance", of("motion.origin.distance"), unit="km"),
+    Column("npts", of("motion.npts"), head="points"),
+    Column("dt", of("motion.dt"), "s", "dt", number),
+    Column("duration", of("motion.duration"), "s", "duration", number),
+    only_shown("processed", lambda record: "\n".join(record.motion.processing) or None),
+    Column("factor", of("factor"), head="scaled by", form=number),
+)
+MEASURED: tuple[Column[Examined], ...] = (
+    Column("pga", of("measures.pga"), "g", "PGA"),
+    Column("pgv", of("measures.pgv"), "m/s", "PGV"),
+    Column("pgd", of("measures.pgd"), "m", "PGD"),
+    Column("arias_intensity", of("measures.arias"), "m/s", "Arias intensity"),
+    Column("significant_duration", of("measures.significant_duration"), "s", "5-95 % duration"),
+    Column("t_5", of("measures.t_5"), "s", "5 % of Arias at"),
+    Column("t_95", of("measures.t_95"), "s", "95 % of Arias at"),
+    Column("mean_acceleration", of("measures.mean"), "g", "mean acceleration", rounded(2)),
+    Column("final_velocity", of("measures.final_velocity"), "m/s"),
+    Column("final_displacement", of("measures.final_displacement"), "m"),
+    Column("p_dt", of("p_dt"), head="p dt", form=rounded(2)),
+)
+
+
+def data(record: Examined) -> dict[str, Any]:
+    """Return a record as plain data."""
+    found = data_of(AS_READ, record) | processing.data(record.motion) | data_of(MEASURED, record)
+    found["warnings"] = [doubt._asdict() for doubt in record.doubts]
+    if record.pulses:
+        from rocking_cli.questions.record.pulse_fits import fits_data
+
+        found["pulses"] = fits_data(record.pulses)
+    if record.asked:
+        found["measures"] = {str(measure): value for measure, value in record.asked.items()}
+    if record.spectrum is not None:
+        found["spectrum"] = spectra.data(record.spectrum)
+    return found
+
+
+def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | str]:
+    """Yield tables with a column for each record, as many as the width requires, then the pulses of each record.
+
+    If a table has room for one record only, the name is its title. Without a width, as in a pipe, several records are
+    one table with a row for each.
+    """
+    columns = _columns(records)
+    if width is None and len(records) > 1:
+        yield _long(records, columns)
+    else:
+        yield from _side_by_side(records, columns, width)
+    for record in records:
+        if record.pulses:
+            from rocking_cli.questions.record import pulse_fits
+
+            yield from pulse_fits.parts(record.label, record.pulses)
+    yield from (spectra.peaks(each.label, each.spectrum) for each in records if each.spectrum is not None)
+
+
+def _side_by_side(
+    records: Sequence[Examined], columns: Sequence[Column[Examined]], width: int | None
+) -> Iterator[Table]:
+    """Yield tables with a column for each record."""
+    names = [_folded(record.label) for record in records]
+    fitting = len(records)
+    if width is not None:
+        widest = max(HEADING, *(len(line) for name in names for line in name.split("\n")))
+        fitting = max((width - LEFT) // (widest + BESIDE), 1)
+    for start in range(0, len(records), fitting):
+        part = slice(start, start + fitting)
+        title, headings = ("", names[part])
+        if len(headings) == 1:
+            title, headings = records[start].label, ["value"]
+        yield table_across(title, columns, headings, records[part])
+
+
+def _long(records: Sequence[Examined], columns: Sequence[Column[Examined]]) -> Table:
+    """Return a table with a row for each record, none of which has a line break."""
+    whole = table_of("", [only_shown("record", of("label"), text=True), *map(_narrow, columns)], records)
+    return replace(whole, rows=[[cell.replace("\n", " ") for cell in row] for row in whole.rows])
+
+
+def _narrow(column: Column[Examined]) -> Column[Examined]:
+    """Return a column with its unit in the heading, which is folded."""
+    unit = f"\n[{column.unit}]" if column.unit else ""
+    return replace(column, head=f"{_folded(column.head or '', SHORT)}{unit}")
+
+
+def _columns(records: Sequence[Examined]) -> list[Column[Examined]]:
+    """Return the columns that tables show: those that say something of any record, and the measures asked for."""
+    silent = {"channel": ABSENT, "processed": ABSENT, "scaled by": "1", "p dt": ABSENT}  # says nothing if all are this
+    silent |= dict.fromkeys(("earthquake", "station", "magnitude", "distance"), ABSENT)
+    said = [
+        column
+        for column in (*AS_READ, *MEASURED)
+        if column.head is not None
+        and (column.head not in silent or any(column.cell(each) != silent[column.head] for each in records))
+    ]
+    return said + [only_shown(str(each), partial(_asked, each), unit=each.unit) for each in records[0].asked]
+
+
+def _asked(measure: Measure, record: Examined) -> float:
+    return record.asked[measure]

@@ -1,0 +1,1 @@
+"""`report`: the assessment of a structure, as a page."""

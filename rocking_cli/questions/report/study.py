@@ -1,0 +1,400 @@
+"""The assessment of one structure under any number of ground motions: all results that a report shows."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from hashlib import sha256
+from importlib.metadata import version
+from math import pi
+
+import numpy as np
+
+from rocking_cli.core import Mechanism
+from rocking_cli.core.registry import Registry
+from rocking_cli.dynamics.history import RTOL, TAIL, History
+from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.verdict import CLOSE, disagree
+from rocking_cli.errors import InputError, SolverError
+from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
+from rocking_cli.excitation.doubts import coarse_for, doubts
+from rocking_cli.excitation.measures import Measures, measure
+from rocking_cli.excitation.pulse_fit import PulseFit, fit_pulses
+from rocking_cli.excitation.pulses import Pulse
+from rocking_cli.excitation.records.opening import name_of, original
+from rocking_cli.processing.listed import Scaled
+from rocking_cli.questions.error.study import Linearisation, compare
+from rocking_cli.questions.margin.study import LEVELS, Margin, margin
+from rocking_cli.questions.overturning.study import OverturningMap, Region, overturning_map
+from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import Conclusion, worst
+from rocking_cli.studies.engines import respond
+from rocking_cli.studies.neighbours import Neighbourhood
+from rocking_cli.studies.picture import Picture, picture
+from rocking_cli.studies.response import Question, Response, response_of
+from rocking_cli.studies.under_pulses import parse_shape, pulsed_model
+
+AMPLITUDES, ACCELERATIONS = (0.25, 0.5, 0.75), (1.5, 2.0, 4.0)  # at which the error of the block is said
+FITTED = ("sine", "ricker")  # the pulses with an amplitude and a period and nothing else: a map has these two axes
+LARGE = 2.0  # a factor on a record that asks for a word of caution
+NEAR = 1.25  # a factor on the motion within which the opposite outcome of some neighbours makes a result a close one
+POINTS = 80  # of each side of a map
+OMEGAS, TALLEST = (1.0, 10.0), 10.0  # omega_g/p of a map, and a_g/(g lambda) up to which it goes at least
+BEYOND = 1.15  # times a mark, that a map goes further
+PACKAGES = ("numpy", "scipy", "matplotlib")
+
+
+@dataclass(frozen=True)
+class File:
+    """An input file as the user gave it: its name and its content, with a checksum of the content."""
+
+    name: str
+    content: bytes
+
+    @property
+    def checksum(self) -> str:
+        """SHA-256, in hexadecimal."""
+        return sha256(self.content).hexdigest()
+
+    @property
+    def text(self) -> str:
+        """The content as text."""
+        return self.content.decode("utf-8", errors="replace")
+
+
+@dataclass(frozen=True)
+class TitleBlock:
+    """Heading of a report: the project, its place and author, and how and when the report was made.
+
+    Parameters
+    ----------
+    command, date : str
+        The command that wrote the report, and the date.
+    project, place, author : str, optional
+        As the user gave them.
+    logo : str, optional
+        Address of a picture to show in the heading.
+    """
+
+    command: str
+    date: str
+    project: str | None = None
+    place: str | None = None
+    author: str | None = None
+    logo: str | None = None
+
+    @property
+    def known(self) -> dict[str, str]:
+        """The given ones of project, place and author, by name."""
+        given = {"project": self.project, "place": self.place, "author": self.author}
+        return {name: text for name, text in given.items() if text}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MotionResult(Response):
+    """A ground motion and the response of the structure to it, and to its best pulse, with all that a report shows.
+
+    Parameters
+    ----------
+    file : File or None
+        File of the record; None for a pulse.
+    measured : Measures
+        Intensity measures of the scaled motion, on the floor if the structure stands on one.
+    doubts : tuple of Doubt
+        Doubtful properties of the motion as read.
+    margin : Margin
+        The scale factors at which the motion uplifts and overturns the structure.
+    fits : tuple of PulseFit
+        The pulses fitted to the motion, the best first; a motion that is a pulse has this pulse alone.
+    """
+
+    given: Scaled
+    file: File | None
+    measured: Measures
+    doubts: tuple[Doubt, ...]
+    margin: Margin
+    fits: tuple[PulseFit, ...]
+
+    @property
+    def polarity(self) -> int:
+        """The polarity that governs; the first one if none does."""
+        return self.conclusion.polarity or next(iter(self.runs))
+
+    @property
+    def motion(self) -> GroundMotion:
+        """The scaled motion in the polarity that governs."""
+        return self.scaled(self.polarity)
+
+    def scaled(self, polarity: int) -> GroundMotion:
+        """Return the scaled motion in one polarity, under the name of the motion as given."""
+        return replace(self.given.motion.scaled(polarity * self.given.factor), name=self.given.motion.name)
+
+    @property
+    def pga_of_ground(self) -> float:
+        """Peak acceleration of the scaled ground motion, below the floor if there is one [standard gravity]."""
+        return abs(self.given.factor) * self.given.motion.of_ground.pga_g
+
+    @property
+    def scaled_much(self) -> bool:
+        """Whether the scale factor exceeds `LARGE` in size, for which a report has a caution."""
+        return abs(self.given.factor) > LARGE
+
+    @property
+    def close(self) -> bool:
+        """Whether the outcome is known, and a small change of the motion or of the model could give another outcome."""
+        best = self.histories["nonlinear"]
+        if best.unknown:
+            return False
+        if disagree(self.histories) or self.neighbours[self.polarity].sensitive or best.peak_ratio > CLOSE:
+            return True
+        near = (self.margin.factors > 1 / NEAR) & (self.margin.factors < NEAR)
+        falls, may_fall = self.margin.overturned[near], self.margin.at_most[near]
+        return bool((falls < LEVELS[-1]).any() if best.fell else (may_fall >= LEVELS[0]).any())
+
+    @property
+    def unknown(self) -> bool:
+        """Whether the outcome in the governing polarity is unknown; no polarity overturns the structure then."""
+        return self.histories["nonlinear"].unknown
+
+    @property
+    def histories(self) -> Mapping[ModelName, History]:
+        """The histories of the polarity that governs."""
+        return self.runs[self.polarity]
+
+
+@dataclass(frozen=True, eq=False)
+class PulseMap:
+    """Overturning map of one pulse shape, with the pulses of the ground motions marked on it.
+
+    Parameters
+    ----------
+    found : OverturningMap
+        The map, by the nonlinear model, of the worse polarity.
+    marks : tuple of (str, PulseFit)
+        Name of each motion whose pulse has this shape, and the pulse.
+    """
+
+    found: OverturningMap
+    marks: tuple[tuple[str, PulseFit], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Assessment:
+    """All results that a report shows.
+
+    Parameters
+    ----------
+    structure : Structure
+        The structure.
+    file : File
+        The file of the structure.
+    picture : Picture
+        The drawing of the structure.
+    curves, asked : tuple of Linearisation
+        Error of the equivalent block over the whole range, and at the amplitudes of the table; empty if there is none.
+    no_error : str
+        Why there is no such error; empty if there is one.
+    results : tuple of MotionResult
+        The response to each ground motion.
+    maps : tuple of PulseMap
+        One map for each pulse shape; empty if no history can be computed or there is no equivalent block.
+    title : TitleBlock
+        The heading of the report.
+    versions : mapping of str to str
+        Versions of the software, by package.
+    """
+
+    structure: Structure
+    file: File
+    picture: Picture
+    curves: tuple[Linearisation, ...]
+    asked: tuple[Linearisation, ...]
+    no_error: str
+    results: tuple[MotionResult, ...]
+    maps: tuple[PulseMap, ...]
+    title: TitleBlock
+    versions: Mapping[str, str]
+
+    @property
+    def conclusion(self) -> Conclusion | None:
+        """The worst conclusion of all motions; None without a motion."""
+        if not self.results:
+            return None
+        each = [result.conclusion for result in self.results]
+        return replace(worst(each), motions=[one.motion for one in each])
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism of the structure."""
+        return self.structure.mechanism
+
+    @property
+    def has_block(self) -> bool:
+        """Whether the structure has an equivalent block."""
+        return self.structure.why_no_block is None
+
+    @property
+    def name(self) -> str:
+        """Name of the structure."""
+        return self.structure.name
+
+
+def gather(
+    structure: Structure,
+    file: File,
+    given: Sequence[Scaled],
+    polarities: Sequence[int],
+    *,
+    title: TitleBlock,
+    around: Neighbourhood | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> Assessment:
+    """Compute all results that a report shows.
+
+    Parameters
+    ----------
+    structure : Structure
+        The structure.
+    file : File
+        The file of the structure.
+    given : sequence of Scaled
+        The ground motions; may be empty.
+    polarities : sequence of int
+        The polarities to simulate: 1, -1 or both.
+    title : TitleBlock
+        The heading of the report.
+    around : Neighbourhood, optional
+        How to draw the neighbours of each motion; at least one neighbour.
+    progress : callable, optional
+        Called with the number of steps done since the last call; `steps(given)` is their total.
+
+    Raises
+    ------
+    RockingError
+        Any error that the studies raise.
+    """
+    done = progress or (lambda count: None)
+    mechanism = structure.mechanism
+    curves, asked, why = _error_of_block(structure)
+    done(1)
+    results = []
+    for each in given:
+        results.append(_result(structure, each, polarities, around or Neighbourhood()))
+        done(1)
+    maps = _maps(structure, results)
+    done(1)
+    return Assessment(
+        structure=structure,
+        file=file,
+        picture=picture(mechanism),
+        curves=tuple(curves),
+        asked=tuple(asked),
+        no_error=why,
+        results=tuple(results),
+        maps=tuple(maps),
+        title=title,
+        versions=versions(mechanism),
+    )
+
+
+def _error_of_block(structure: Structure) -> tuple[Sequence[Linearisation], Sequence[Linearisation], str]:
+    """Return the error of the equivalent block over its range and at some amplitudes, or why it does not exist."""
+    if why := structure.why_no_block or structure.refuses("linear models"):
+        return [], [], why.removeprefix(f"{structure.name}: ")
+    try:
+        return *compare(structure, AMPLITUDES, ACCELERATIONS), ""
+    except SolverError as error:  # the rest of the report stands without it
+        return [], [], str(error)
+
+
+def versions(mechanism: Mechanism) -> dict[str, str]:
+    """Return the versions of this package, of the mechanism's package, of Python and of the packages for computing."""
+    registry, name = Registry(), mechanism.mechanism
+    return {
+        "rocking-cli": version("rocking-cli"),
+        f"mechanism {name}": registry.package_of(name) if name in registry else "not installed as a plugin",
+        "Python": platform.python_version(),
+        **{package: version(package) for package in PACKAGES},
+    }
+
+
+def steps(given: Sequence[Scaled]) -> int:
+    """Return the number of steps of which `gather` reports the progress."""
+    return len(given) + 2
+
+
+def _result(structure: Structure, given: Scaled, polarities: Sequence[int], around: Neighbourhood) -> MotionResult:
+    ground = given.motion.of_ground
+    doubtful = [] if given.pulse is not None else doubts(ground, measure(ground))
+    doubtful = [*doubtful, *(coarse_for(given.motion, structure.p) if given.pulse is None else [])]
+    asked = Question(tuple(polarities), release=None, tail=TAIL, rtol=RTOL, around=around)
+    found = response_of(structure, structure.default_models, given, asked)
+    scaled = given.motion.scaled(given.factor)
+    fits = _fits(given, scaled)
+    if fits:
+        alone = fits[0].alone(scaled)
+        runs = {sign: respond(structure, alone.scaled(sign), models=["nonlinear"]) for sign in polarities}
+        found = replace(found, to_pulse=Response(given=None, first=alone, runs=runs, neighbours={}, contacts={}))
+    return MotionResult(
+        **vars(found),
+        file=file_of_motion(given),
+        measured=measure(scaled),
+        doubts=tuple(doubtful),
+        margin=margin(structure.model("nonlinear"), scaled, polarities, around=around),
+        fits=fits,
+    )
+
+
+def file_of_motion(given: Scaled) -> File | None:
+    """Return the file of a ground motion; None for a pulse."""
+    return None if given.file is None else File(name_of(str(given.file)), original(str(given.file)))
+
+
+def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:
+    """Return the pulses fitted to a scaled motion, the best first; none if it is too short or too weak to be fitted."""
+    if given.pulse is not None:
+        pulse = replace(given.pulse, amplitude=given.pulse.amplitude * abs(given.factor))
+        return (PulseFit(pulse, 0.0, 1 if given.factor > 0 else -1, "acceleration", 1.0),)
+    try:
+        fits = list(fit_pulses(scaled, FITTED, ("velocity",)))
+    except InputError:
+        return ()
+    return tuple(sorted(fits, key=lambda fit: -fit.captured))
+
+
+def _maps(structure: Structure, results: Sequence[MotionResult]) -> list[PulseMap]:
+    """Compute a map for each shape among the best pulses of the motions; for the sine if no motion has a pulse."""
+    if structure.why_no_block or structure.refuses("sizes") or min(structure.etas) <= 0:
+        return []  # nothing measures a pulse here, or no history can be computed
+    marks: dict[Pulse, list[tuple[str, PulseFit]]] = {}
+    for result in results:
+        if result.fits:
+            best = result.fits[0]
+            marks.setdefault(replace(best.pulse, amplitude=1.0, period=1.0), []).append(
+                (result.given.motion.name, best)
+            )
+    marks = marks or {parse_shape("sine"): []}
+    return [PulseMap(_map(structure, shape, each), tuple(each)) for shape, each in marks.items()]
+
+
+def _map(structure: Structure, shape: Pulse, marks: Sequence[tuple[str, PulseFit]]) -> OverturningMap:
+    """Return the map of a pulse shape that shows all marked pulses."""
+    under = pulsed_model(structure, "nonlinear", shape, (1, -1))
+    usual = [2 * pi / (omega * under.p) for omega in OMEGAS]
+    pulses = [fit.pulse for _, fit in marks]
+    periods = [*usual, *(pulse.period / BEYOND for pulse in pulses), *(pulse.period * BEYOND for pulse in pulses)]
+    strongest = max([TALLEST, *(BEYOND * pulse.amplitude / under.unit for pulse in pulses)])
+    omega = under.period(np.linspace(min(periods), max(periods), POINTS))
+    a = np.linspace(strongest / POINTS, strongest, POINTS)
+    return overturning_map(under, shape, omega, a, polarities=(1, -1))
+
+
+def amplitude_in_g(fit: PulseFit) -> float:
+    """Return the amplitude a_p of a fitted pulse [standard gravity]."""
+    return fit.pulse.amplitude / STANDARD_GRAVITY
+
+
+def share(found: OverturningMap) -> float:
+    """Return the share of the area of a map in which the structure overturns."""
+    return sum(found.shares[region] for region in (Region.AFTER_IMPACT, Region.WITHOUT_IMPACT))

@@ -1,0 +1,1 @@
+"""`respond`: the response to a ground motion or a release."""

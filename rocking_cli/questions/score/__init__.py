@@ -1,0 +1,1 @@
+"""`score`: stated shares of overturning against tests."""

@@ -1,0 +1,1 @@
+"""`select`: records whose mean spectrum matches a target."""

@@ -1,0 +1,255 @@
+"""View of a set of records selected to fit a spectrum, as text and as data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.questions.select.study import RecordSet
+from rocking_cli.questions.select.subsets import STARTS
+from rocking_cli.questions.select.target_spectrum import TargetSpectrum
+from rocking_cli.text import cut
+from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_of
+from rocking_cli.views.view import Table, View
+
+NAME = 40  # characters of an event or a station in the table
+LISTED = 5  # records that are left out, in words
+SPANS = 4  # of periods, in a sentence
+
+
+@dataclass(frozen=True)
+class ShownSet:
+    """A selected set of records, its target, and the files of the candidates.
+
+    Parameters
+    ----------
+    found : RecordSet
+        The set.
+    target : TargetSpectrum
+        The target spectrum.
+    files : sequence of (str or None)
+        File of each candidate.
+    unusable : sequence of str
+        Files that could not be used; their errors have been reported.
+    """
+
+    found: RecordSet
+    target: TargetSpectrum
+    files: Sequence[str | None]
+    unusable: Sequence[str] = ()
+
+
+class _Chosen(NamedTuple):
+    """A record of a set: its file, the motion as read, and its factor."""
+
+    file: str | None
+    motion: GroundMotion
+    factor: float
+
+
+class _Extreme(NamedTuple):
+    """The smallest or the largest ratio of the mean to the target, its period and its limit."""
+
+    what: str
+    ratio: str
+    period: float
+    limit: float
+
+
+def _shortened(name: str) -> str:
+    return cut(name, NAME)
+
+
+RECORDS: tuple[Column[_Chosen], ...] = (
+    Column("file", of("file")),
+    Column("name", of("motion.name"), head="record", text=True),
+    Column("event", of("motion.origin.event"), head="earthquake", form=_shortened, text=True),
+    Column("station", of("motion.origin.station"), head="station", form=_shortened, text=True),
+    Column("magnitude", of("motion.origin.magnitude")),
+    Column("distance", of("motion.origin.distance"), "km"),
+    Column("factor", of("factor"), head="factor"),
+    Column("pga", lambda row: row.factor * row.motion.of_ground.pga_g, "g", "PGA as\nscaled [g]", rounded(3)),
+)
+ENDS: tuple[Column[_Extreme], ...] = (
+    only_shown("", of("what"), text=True),
+    only_shown("ratio", of("ratio")),
+    only_shown("at [s]", of("period"), rounded(3)),
+    only_shown("limit", of("limit")),
+)
+
+
+def view(results: ShownSet) -> View:
+    """Show the records and their factors, the range of the mean over the target, and remarks."""
+    parts: list[Table | str] = [
+        table_of(title(results), RECORDS, _chosen(results)),
+        table_of("Mean over the target", ENDS, _ends(results)),
+        verdict(results),
+        search(results),
+    ]
+    parts += [said for said in (_left_out(results), _silent(results)) if said]
+    return View(lambda: data(results), parts)
+
+
+def data(results: ShownSet) -> dict[str, Any]:
+    """Return a set as plain data."""
+    found, wanted = results.found, results.found.wanted
+    ratio = found.ratio
+    return {
+        "target": results.target.name,
+        "band": list(wanted.band),
+        "within": list(wanted.within),
+        "damping": wanted.damping,
+        "seed": wanted.seed,
+        "one_per": wanted.one_per,
+        "silent": found.silent,
+        "exact": found.exact,
+        "fits": found.fits,
+        "least": float(ratio.min()),
+        "most": float(ratio.max()),
+        "records": [data_of(RECORDS, each) for each in _chosen(results)],
+        "spectrum": {
+            "period": found.candidates.periods.tolist(),
+            "target": found.candidates.target.tolist(),
+            "mean": found.mean.tolist(),
+        },
+        "left_out": [
+            *({"file": file, "name": None, "why": "it cannot be used"} for file in results.unusable),
+            *(
+                {"file": results.files[k], "name": found.candidates.motions[k].name, "why": _why(found, needed)}
+                for k, needed in found.left_out.items()
+            ),
+        ],
+        "verdict": verdict(results),
+    }
+
+
+def table(results: ShownSet) -> dict[str, Sequence[object]]:
+    """Return the columns of the spectra: the target, the mean, and each scaled record."""
+    found = results.found
+    names = [each.motion.name for each in _chosen(results)]
+    return {
+        "period [s]": found.candidates.periods.tolist(),
+        "target Sa [g]": found.candidates.target.tolist(),
+        "mean Sa [g]": found.mean.tolist(),
+        **{f"Sa of {name} [g]": each.tolist() for name, each in zip(names, found.spectra, strict=True)},
+    }
+
+
+def title(results: ShownSet) -> str:
+    """Return the number of records and the target, as a heading."""
+    count = len(results.found.chosen)
+    return f"{count} record{'s' * (count > 1)} for {results.target.name}"
+
+
+def verdict(results: ShownSet) -> str:
+    """Return sentences on whether the mean lies within the limits, its extremes, and the periods outside."""
+    found, wanted = results.found, results.found.wanted
+    periods, ratio = found.candidates.periods, found.ratio
+    low, high = wanted.within
+    least, most = int(ratio.argmin()), int(ratio.argmax())
+    count = len(found.chosen)
+    whose = "The spectrum" if count == 1 else f"The mean of the {count} spectra"
+    where = f"at {periods.size} periods from {wanted.band[0]:g} to {wanted.band[1]:g} s"
+    range_ = (
+        f"between {ratio_in_words(float(ratio[least]), wanted.within)} times the target, at {periods[least]:.3g} s, "
+        f"and {ratio_in_words(float(ratio[most]), wanted.within)} times, at {periods[most]:.3g} s"
+    )
+    if found.fits:
+        return f"{whose} fits: {where} it lies {range_}, within the limits of {low:g} and {high:g}."
+    missed = [
+        f"{side} {limit:g} times the target {_spans(periods, mask)}"
+        for side, limit, mask in (("below", low, found.too_low), ("above", high, found.too_high))
+        if mask.any()
+    ]
+    best = "No set fits" if found.exact else "No set within the limits was found"
+    nearest = "record" if count == 1 else "set"
+    return (
+        f"{best}. {whose} of the nearest {nearest} lies {range_}: that is {', and '.join(missed)}. More records to "
+        "choose from, a larger set, a narrower band or wider limits on the factors may help."
+    )
+
+
+def search(results: ShownSet) -> str:
+    """Return a sentence on how the set was found, and so how good it is."""
+    found = results.found
+    if found.exact:
+        one = "the only possible set" if found.sets == 1 else f"the best of all {found.sets:,} sets"
+        return f"This is {one}."
+    count = f"{found.sets:,}" if found.sets < 1e6 else f"{found.sets:.3g}".replace("e+0", "e").replace("e+", "e")
+    return (
+        f"This is the best set found by {STARTS} searches among {count} sets, which are too many to try all; another "
+        "seed may find a better one."
+    )
+
+
+def ratio_in_words(value: float, within: tuple[float, float]) -> str:
+    """Format a ratio with three digits, or more if needed to show on which side of the limits it is."""
+    for digits in range(3, 10):
+        shown = f"{value:#.{digits}g}"
+        if all((float(shown) < limit) == (value < limit * (1 - 1e-9)) for limit in within[:1]) and all(
+            (float(shown) > limit) == (value > limit * (1 + 1e-9)) for limit in within[1:]
+        ):
+            break
+    return shown
+
+
+def _chosen(results: ShownSet) -> list[_Chosen]:
+    found = results.found
+    pairs = zip(found.chosen.tolist(), found.factors.tolist(), strict=True)
+    return [_Chosen(results.files[k], found.candidates.motions[k], factor) for k, factor in pairs]
+
+
+def _ends(results: ShownSet) -> list[_Extreme]:
+    """Return the smallest and the largest ratio of the mean to the target."""
+    ratio, periods, limits = results.found.ratio, results.found.candidates.periods, results.found.wanted.within
+    ends = zip(("least", "most"), (int(ratio.argmin()), int(ratio.argmax())), limits, strict=True)
+    return [
+        _Extreme(what, ratio_in_words(float(ratio[k]), limits), float(periods[k]), limit) for what, k, limit in ends
+    ]
+
+
+def _spans(periods: NDArray[np.float64], where: NDArray[np.bool_]) -> str:
+    """Return the ranges of flagged periods in words: "from 0.2 to 0.31 s and at 1.4 s"."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], where.astype(int), [0]]))).reshape(-1, 2)
+    said = []
+    for start, end in edges.tolist():
+        first, last = f"{periods[start]:.3g}", f"{periods[end - 1]:.3g}"
+        said.append(f"at {first} s" if first == last else f"from {first} to {last} s")
+    if len(said) > SPANS:
+        said = [*said[:SPANS], f"in {len(said) - SPANS} more ranges"]
+    return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"
+
+
+def _left_out(results: ShownSet) -> str:
+    """Return a sentence on the records that could not be chosen; empty if there are none."""
+    found = results.found
+    said = [f"{found.candidates.motions[k].name}: {_why(found, each)}" for k, each in found.left_out.items()]
+    if not said:
+        return ""
+    more = f"; and {len(said) - LISTED} more" if len(said) > LISTED else ""
+    return f"Left out: {'; '.join(said[:LISTED])}{more}."
+
+
+def _why(found: RecordSet, needed: float | None) -> str:
+    """Return why a record could not be chosen, by the factor that it needs."""
+    low, high = found.wanted.factors
+    if needed is None:
+        return "it does not move in the band"
+    return f"it needs a factor of {needed:.3g}, outside {low:g} to {high:g}"
+
+
+def _silent(results: ShownSet) -> str:
+    """Return a sentence on the records whose file names no earthquake or station."""
+    found = results.found
+    if not found.silent:
+        return ""
+    what = {"event": "earthquake", "station": "station"}[found.wanted.one_per]
+    count, those = len(found.candidates.motions), found.silent
+    gives, each = ("gives", "it") if those == 1 else ("give", "each")
+    whose = "The record" if count == 1 else f"{those} of {count} records"
+    return f"{whose} {gives} no {what}; {each} counts as a separate {what}."

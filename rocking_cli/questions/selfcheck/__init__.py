@@ -1,0 +1,1 @@
+"""`selfcheck`: whether this installation computes correctly."""

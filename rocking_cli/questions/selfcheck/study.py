@@ -1,0 +1,210 @@
+"""Checks that this installation computes correctly: what a check is, all checks, and the run of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from importlib import import_module
+from math import isfinite
+from time import monotonic
+
+from rocking_cli.errors import RockingError
+from rocking_cli.text import seen
+
+NO_KERNEL = ("blocks", "joints", "filters", "records", "records_by_obspy", "units", "kernels")
+"""Checks that simulate nothing, or all that they simulate in ways of their own."""
+
+
+class NotRun(Exception):
+    """Reason why a check cannot be run on this machine, though nothing is wrong: an extra that is not installed."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """A check of the installation.
+
+    Parameters
+    ----------
+    name : str
+        Name of the check.
+    meaning : str
+        What is compared with what.
+    unit : str
+        Unit of the deviation; empty if it is dimensionless.
+    limit : float
+        Largest deviation with which the check passes.
+    deviation : callable
+        Function of `quick`, whether to compute a few cases only, that returns the largest deviation. It may raise any
+        error, with which the check fails, or `NotRun`.
+    """
+
+    name: str
+    meaning: str
+    unit: str
+    limit: float
+    deviation: Callable[[bool], float]
+
+    def run(self, *, quick: bool) -> Checked:
+        """Run the check; its errors become part of the result."""
+        began = monotonic()
+        found, error = None, None
+        try:
+            found = float(self.deviation(quick))
+        except Exception as raised:  # whatever is wrong with the installation
+            error = raised
+        return Checked(self, found, error, monotonic() - began)
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """Result of a check of the installation.
+
+    Parameters
+    ----------
+    check : Check
+        The check.
+    found : float or None
+        The largest deviation, in the unit of the check; None if it was not computed.
+    error : Exception or None
+        The error that ended the check; None if there was none.
+    seconds : float
+        Time that the check took [s].
+    """
+
+    check: Check
+    found: float | None
+    error: Exception | None
+    seconds: float
+
+    @property
+    def passed(self) -> bool | None:
+        """Whether the check passed; None if it was not run."""
+        if isinstance(self.error, NotRun):
+            return None
+        return self.found is not None and self.found <= self.check.limit
+
+    @property
+    def why(self) -> str | None:
+        """Why the check failed or was not run, in one line; None if it passed."""
+        if self.passed:
+            return None
+        if self.error is not None:
+            said = seen(str(self.error))
+            if isinstance(self.error, NotRun | RockingError):
+                return said
+            return f"{type(self.error).__name__}: {said}" if said else type(self.error).__name__
+        if self.found is None or not isfinite(self.found):
+            return "values are missing, or are not numbers"
+        return "the deviation exceeds the limit"
+
+
+@dataclass(frozen=True)
+class SelfCheck:
+    """Results of all checks of the installation.
+
+    Parameters
+    ----------
+    checks : tuple of Checked
+        The results, in the order of the checks.
+    quick : bool
+        Whether only a few cases of each check were computed.
+    seconds : float
+        Time from the beginning to the end, with all that had to be loaded or compiled [s].
+    """
+
+    checks: tuple[Checked, ...]
+    quick: bool
+    seconds: float
+
+    @property
+    def failed(self) -> tuple[Checked, ...]:
+        """The checks that failed."""
+        return tuple(each for each in self.checks if each.passed is False)
+
+    @property
+    def not_run(self) -> tuple[Checked, ...]:
+        """The checks that were not run."""
+        return tuple(each for each in self.checks if each.passed is None)
+
+    @property
+    def passed(self) -> bool:
+        """Whether no check failed."""
+        return not self.failed
+
+
+def _of(name: str, quick: bool) -> float:
+    """Call a function of the module of checks, which is imported in the check: even this may fail."""
+    checks = import_module(f"{__package__}.checks")
+    if name not in NO_KERNEL and checks.another_way():
+        raise NotRun("the machine code is broken, see `kernels`: Python would compute this instead")
+    found: float = getattr(checks, name)(quick)
+    return found
+
+
+def _check(name: str, meaning: str, unit: str, limit: float) -> Check:
+    return Check(name, meaning, unit, limit, partial(_of, name))
+
+
+CHECKS = (
+    _check(
+        "release",
+        "Times of the first eight impacts of released blocks and walls, against quadrature of the first integral",
+        "s",
+        1e-9,
+    ),
+    _check(
+        "pulses", "Amplitudes of sine pulses that overturn a linear block, against formulas of its motion", "", 1e-12
+    ),
+    _check(
+        "histories",
+        "Times of uplift, impacts and overturning under ground motions, against the solver of SciPy",
+        "s",
+        1e-9,
+    ),
+    _check("blocks", "Equivalent blocks of five structures, against formulas and values of other programs", "", 1e-9),
+    _check(
+        "neighbours",
+        "Shares of neighbours that overturn, and their restitution, against normal distributions",
+        "",
+        0.006,
+    ),
+    _check("joints", "Forces at the corner of a rocking block, as tabulated, against Newton's law", "m/s2", 1e-5),
+    _check(
+        "openings",
+        "Times at which a block first slides, and from which its motion is unknown, by formulas",
+        "s",
+        1.4e-3,
+    ),
+    _check("filters", "Amplitudes of filtered sines, against those of Butterworth filters in closed form", "", 1e-9),
+    _check("records", "Samples read from small files of each record format and unit, against those written", "", 1e-12),
+    _check("records_by_obspy", "Samples read from SAC and miniSEED files by obspy, against those written", "", 1e-12),
+    _check("units", "Sizes of all units of quantities, against those of their definitions", "", 1e-15),
+    _check(
+        "threads", "Outcomes of batches in several threads and in one: equal bits, and none is missing", "values", 0.0
+    ),
+    _check("kernels", "Shipped machine code and its source run by Python: equal bits", "values", 0.0),
+)
+
+
+def run_checks(
+    checks: Sequence[Check], *, quick: bool, progress: Callable[[int, int], None], began: float
+) -> SelfCheck:
+    """Run checks, whatever becomes of each.
+
+    Parameters
+    ----------
+    checks : sequence of Check
+        The checks to run.
+    quick : bool
+        Whether to compute a few cases of each check only.
+    progress : callable
+        Called after each check with 1, and with 1 if it failed or else 0.
+    began : float
+        Reading of `time.monotonic` at the beginning [s].
+    """
+    found = []
+    for check in checks:
+        found.append(check.run(quick=quick))
+        progress(1, int(found[-1].passed is False))
+    return SelfCheck(tuple(found), quick, monotonic() - began)

@@ -1,0 +1,47 @@
+"""`rk.selfcheck`: check that this installation computes correctly."""
+
+from __future__ import annotations
+
+from functools import partial
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from rocking_cli.ask.answer import Answer, no_plot
+from rocking_cli.ask.numbers import takes_numbers
+from rocking_cli.ask.watcher import SILENT, Watcher
+
+if TYPE_CHECKING:
+    from rocking_cli.questions.selfcheck.study import SelfCheck
+
+
+@takes_numbers
+def selfcheck(*, quick: bool = False, watch: Watcher = SILENT) -> Answer[SelfCheck]:
+    """Check that this installation computes correctly, against formulas, literal values and a general solver.
+
+    Parameters
+    ----------
+    quick : bool
+        Whether to compute a few cases of each check only.
+    watch : Watcher
+        Told how far the work is.
+
+    Returns
+    -------
+    Answer of SelfCheck
+        `passed` is whether no check failed; `checks` are the results, `failed` and `not_run` some of them. A check
+        that ends by an error fails; this is not raised. `seconds` is the time it took.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> rk.selfcheck(quick=True).passed
+    True
+    """
+    from rocking_cli.questions.selfcheck.study import CHECKS, run_checks
+    from rocking_cli.questions.selfcheck.view import columns, view
+
+    began = monotonic()
+    with watch.progress(len(CHECKS), "checks") as advance:
+        found = run_checks(CHECKS, quick=quick, progress=advance, began=began)
+    figure = no_plot("the checks of an installation have no plot", "`to_frame` has them as a table")
+    return Answer("selfcheck", found, view(found), partial(columns, found), figure)

@@ -1,0 +1,1 @@
+"""`spectrum`: peak rotation against size."""

@@ -1,0 +1,229 @@
+"""Plot of rocking spectra: the peak rotation against the size, and the share of the motions that overturn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import degrees
+from textwrap import shorten
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from rocking_cli import names
+from rocking_cli.arrays import Reals
+from rocking_cli.names import FEWEST
+from rocking_cli.plotting import style
+from rocking_cli.questions.spectrum.study import Spectrum
+
+NAME = 40  # characters of a structure's name in the legend
+SHORT = 8.0  # ratio of the ends of an axis up to which it has more ticks
+SHADED = 2  # curves up to which the spread of the motions is drawn: more shades cannot be told apart
+CLEAR = 20  # motions up to which the line of each is opaque
+ROW = 0.06  # height of the row of marks where a curve overturns, or is unknown, over that of the peaks
+
+
+def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title: str) -> Figure:
+    """Plot spectra against 2 pi/p, with given structures marked; for several motions also the share that overturns.
+
+    Open symbols above the peaks mark unknown outcomes; in the panel of shares, a hatched band includes them.
+
+    Parameters
+    ----------
+    spectra : sequence of Spectrum
+        The spectra to plot, all under the same motions.
+    fractiles : sequence of float
+        Fractiles over several motions, 0.5 among them; the outermost bound the shade around the median of one or two
+        curves.
+    title : str
+        Heading.
+    """
+    many = len(spectra[0].peak_ratio) > 1
+    low, high = min(fractiles), max(fractiles)
+    figure = style.new_figure(6.4 if many else 4.8)
+    panels = figure.subplots(1 + many, 1, sharex=True, squeeze=False, height_ratios=[2.4, 1][: 1 + many])[:, 0]
+    style.heading(panels[0], title)
+    medians = [each.fractile(0.5) for each in spectra]
+    falls = [np.isinf(median) & each.fractile_overturns(0.5) for each, median in zip(spectra, medians, strict=True)]
+    doubtful = [np.isinf(median) & ~fall for median, fall in zip(medians, falls, strict=True)]
+    rows = [(k, True) for k, some in enumerate(falls) if some.any()]
+    rows += [(k, False) for k, some in enumerate(doubtful) if some.any()]
+    shaded = many and low < high and len(spectra) <= SHADED and any((each.followed >= FEWEST).any() for each in spectra)
+    top = _top(spectra, high if shaded else 0.5)
+    for k, (each, median) in enumerate(zip(spectra, medians, strict=True)):
+        if shaded:
+            _draw_spread(panels[0], each, k, (low, high), top, every=len(spectra) == 1)
+        if many:
+            _draw_doubt(panels[1], each, k)
+            _draw_line(panels[1], each, k, each.share)
+        heights = {known: top * (1 + ROW * (place + 0.5)) for place, (of, known) in enumerate(rows) if of == k}
+        beyond = np.where(falls[k], heights.get(True, np.nan), heights.get(False, np.nan))
+        _draw_line(panels[0], each, k, median, beyond, doubtful[k])
+        if each.given is not None:
+            for axes in panels:
+                axes.axvline(each.periods[each.given], color=style.INK, linewidth=style.CURVE, linestyle=":", zorder=1)
+    _scale_peaks(panels[0], top, [known for _, known in rows])
+    if many:
+        panels[1].set_ylim(-0.04, 1.04)
+        style.in_percent(panels[1].yaxis)
+        panels[1].set_ylabel("share that overturns", fontsize=style.LABEL)
+    what = r"median peak $\phi/\phi_{cr}$" if many else r"peak $\phi/\phi_{cr}$"
+    panels[0].set_ylabel(what, fontsize=style.LABEL)
+    panels[-1].set_xlabel(r"size $2\pi/p$ [s]", fontsize=style.LABEL)
+    for axes in panels:
+        axes.set_xscale("log")
+        axes.margins(x=0.01)
+        _log_ticks(axes.xaxis, spectra[0].periods[-1] / spectra[0].periods[0])
+        style.tidy(axes)
+    _second_axis(panels[0], spectra)
+    handles = _legend(spectra, (low, high) if shaded else None, many=many)
+    style.legend_below(figure, handles, handlelength=3.5)
+    return figure
+
+
+def _top(spectra: Sequence[Spectrum], q: float) -> float:
+    """Return the peak at which the scale ends: above those drawn, and at least 1 if a motion overturns."""
+    drawn = [each.fractile(q) for each in spectra]
+    if len(spectra) == 1:
+        drawn.append(spectra[0].peak_ratio.ravel())
+    peaks = np.concatenate(drawn)
+    finite = peaks[np.isfinite(peaks)]
+    highest = float(finite.max()) if finite.size else 0.0
+    return max(1.05 * highest, 1.0 if np.isinf(peaks).any() else 0.01)
+
+
+def _within(each: Spectrum) -> Reals:
+    """Return 1 for sizes to join by lines, NaN for a given structure outside the requested range."""
+    inside = np.ones(each.scales.size)
+    if each.given in (0, each.scales.size - 1):
+        inside[each.given] = np.nan
+    return inside
+
+
+def _draw_spread(axes: Axes, each: Spectrum, k: int, bounds: tuple[float, float], top: float, *, every: bool) -> None:
+    """Shade between two fractiles, up to the top if the upper one overturns; with `every`, each motion faintly."""
+    lower, upper = (np.minimum(each.fractile(q), top) * _within(each) for q in bounds)
+    colour = style.distinct(k)["color"]
+    axes.fill_between(each.periods, lower, upper, color=colour, alpha=0.15, linewidth=0)
+    for edge in (lower, upper):  # up to where it overturns
+        axes.plot(each.periods, np.where(edge < top, edge, np.nan), color=colour, linewidth=style.MEDIUM, zorder=2.2)
+    if every:
+        curves = np.where(np.isfinite(each.peak_ratio), each.peak_ratio, np.nan) * _within(each)
+        clear = min(1.0, CLEAR / len(curves))  # of many the fractiles must still be seen
+        axes.plot(each.periods, curves.T, color=style.FAINT, linewidth=style.THIN, alpha=max(clear, 0.1))
+
+
+def _draw_doubt(axes: Axes, each: Spectrum, k: int) -> None:
+    """Hatch up to the share that overturns if all motions of unknown outcome do."""
+    if not each.unknown.any():
+        return
+    look = style.distinct(k)
+    low, high = each.share * _within(each), each.share_at_most * _within(each)
+    axes.fill_between(each.periods, low, high, alpha=0.4, **(style.UNKNOWN | {"edgecolor": look["color"]}))
+    axes.plot(each.periods, high, color=look["color"], linestyle=look["linestyle"], linewidth=style.CURVE)
+
+
+def _draw_line(
+    axes: Axes,
+    each: Spectrum,
+    k: int,
+    values: Reals,
+    beyond: Reals | float = np.nan,
+    doubtful: NDArray[np.bool_] | bool = False,
+) -> None:
+    """Draw a curve with the given structure on it; infinite values become marks at the heights `beyond`.
+
+    Marks of unknown outcomes are open.
+    """
+    look = style.distinct(k)
+    finite = np.where(np.isfinite(values), values, np.nan)
+    spaced = max(1, each.scales.size // 8)
+    axes.plot(each.periods, finite * _within(each), markevery=(k * spaced // 4, spaced), **look)
+    small = look | {"linestyle": "none", "markersize": 3.5}
+    no_line = np.isnan(np.pad(finite, 1, constant_values=np.nan))
+    axes.plot(each.periods, np.where(no_line[:-2] & no_line[2:], finite, np.nan), **small)
+    marks = np.where(np.isinf(values), beyond, np.nan)
+    unknown = np.broadcast_to(doubtful, marks.shape)
+    axes.plot(each.periods, np.where(unknown, np.nan, marks), **small)
+    axes.plot(each.periods, np.where(unknown, marks, np.nan), **small, markerfacecolor="white")
+    finite = np.where(np.isinf(values), beyond, finite)
+    if each.given is not None:
+        star = style.STAR | {"color": look["color"], "clip_on": False}
+        if unknown[each.given]:
+            star |= {"markerfacecolor": "white", "markeredgecolor": look["color"]}
+        axes.plot(each.periods[each.given], finite[each.given], **star)
+
+
+def _scale_peaks(axes: Axes, top: float, rows: Sequence[bool]) -> None:
+    """Scale the upper panel: peaks, above them a row for overturning of each curve, then for unknown outcomes."""
+    ticks = [tick for tick in MaxNLocator(6).tick_values(0.0, top) if 0 <= tick <= top]
+    labels = [f"{tick:g}" for tick in ticks]
+    middle, roof = (top * (1 + ROW * count) for count in (sum(rows), len(rows)))
+    if middle > top:
+        axes.axhspan(top, middle, color=style.SHADE, zorder=0)
+        ticks.append((top + middle) / 2)
+        labels.append(names.OVERTURNS)
+    if roof > middle:
+        axes.axhspan(middle, roof, zorder=0, **style.UNKNOWN)
+        ticks.append((middle + roof) / 2)
+        labels.append(names.UNKNOWN)
+    axes.set_yticks(ticks, labels)
+    axes.set_ylim(-0.02 * top, roof)
+
+
+def _log_ticks(axis: Axis, ratio: float) -> None:
+    """Set ticks in plain numbers on a logarithmic axis whose ends have this ratio."""
+    style.plain_numbers(axis, (1.0, 2.0, 5.0) if ratio > SHORT else (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0))
+
+
+def _second_axis(axes: Axes, spectra: Sequence[Spectrum]) -> None:
+    """Add an upper axis: the scale of the structure if there is only one, or R of the blocks if all are blocks."""
+    own = [each for each in spectra if each.shape.slenderness is None]
+    if len(own) > 1:
+        return
+    of = own[0] if own else spectra[0]
+    both: tuple[Callable[[Reals], Reals], ...] = (of.shape.scales, of.shape.periods)
+    if of.shape.own is not None:  # known at the sizes that were built
+        both = _between(of.periods, of.scales, 2.0), _between(of.scales, of.periods, 0.5)
+    above = axes.secondary_xaxis("top", functions=both)  # type: ignore[arg-type]
+    above.set_xlabel("scale (1: as given)" if own else "size R of the blocks [m]", fontsize=style.LABEL)
+    _log_ticks(above.xaxis, spectra[0].scales[-1] / spectra[0].scales[0])
+    above.tick_params(labelsize=8, colors=style.INK)
+
+
+def _between(x: Reals, y: Reals, power: float) -> Callable[[Reals], Reals]:
+    """Return a function y(x) between points of a curve, linear in logarithms; a power of x beyond them."""
+    known = np.log(x)
+
+    def at(values: Reals) -> Reals:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            place = np.log(values)
+        inside = np.clip(place, known[0], known[-1])
+        result: Reals = np.exp(np.interp(inside, known, np.log(y)) + power * (place - inside))
+        return result
+
+    return at
+
+
+def _legend(spectra: Sequence[Spectrum], bounds: tuple[float, float] | None, *, many: bool) -> list[Line2D | Patch]:
+    handles: list[Line2D | Patch] = []
+    for k, each in enumerate(spectra):
+        alpha = each.shape.slenderness
+        name = style.plain(shorten(each.shape.structure.name, NAME, placeholder=" ..."))
+        label = rf"blocks, $\alpha$ = {alpha:g} rad = {degrees(alpha):.3g}°" if alpha is not None else name
+        handles.append(Line2D([], [], label=label, **style.distinct(k)))
+    if any(each.given is not None for each in spectra):
+        handles.append(Line2D([], [], label="as given", color=style.INK, **style.STAR))
+    if bounds is not None:
+        label = f"{100 * bounds[0]:g} to {100 * bounds[1]:g} % of the motions"
+        handles.append(Patch(color=style.INK, alpha=0.15, linewidth=0, label=label))
+    if many and any(each.unknown.any() for each in spectra):
+        handles.append(Patch(label="hatched up to the thin line: unknown outcome", **style.UNKNOWN))
+    if bounds is not None and len(spectra) == 1:
+        handles.append(Line2D([], [], color=style.FAINT, linewidth=style.THIN, label="each motion"))
+    return handles

@@ -1,0 +1,335 @@
+"""View of rocking spectra, as text and as data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from textwrap import shorten
+from typing import Any
+
+import numpy as np
+
+from rocking_cli.arrays import Integers, Reals
+from rocking_cli.names import FEWEST, NO_UPLIFT, OVERTURNS, ROCKS, UNKNOWN
+from rocking_cli.processing.listed import Scaled
+from rocking_cli.questions.overturning.view import FROM_KINEMATICS, NO_JOINTS, numbers, spaced
+from rocking_cli.questions.spectrum.study import Spectrum
+from rocking_cli.views import processing
+from rocking_cli.views.column import Column, only_shown, rounded, table_of
+from rocking_cli.views.verdict import unchecked
+from rocking_cli.views.view import ABSENT, Table, View
+
+ROWS = 12  # of a table, besides the structure itself: the curves themselves are in --out and --json
+HUNG = "All lengths are scaled, including the positions of loads and ties; their masses, stiffness and forces are not."
+LISTED = 3  # histories that could not be simulated
+BECAUSE = "a joint opens or slides so far that the model no longer holds"
+
+
+@dataclass(frozen=True, eq=False)
+class ShownSpectra:
+    """Spectra, their ground motions, the fractiles to show (0.5 among them), and the polarity as given."""
+
+    spectra: Sequence[Spectrum]
+    motions: Sequence[Scaled]
+    fractiles: tuple[float, ...]
+    polarity: str
+
+    @property
+    def one(self) -> bool:
+        """Whether there is a single motion, and so no fractile."""
+        return len(self.motions) == 1
+
+    @property
+    def shaking(self) -> str:
+        """The ground motions, for a heading."""
+        first = self.motions[0]
+        scaled = f" x {first.factor:.4g}" if first.factor != 1 else ""
+        what = f"{first.motion.name}{scaled}" if self.one else f"{len(self.motions)} motions"
+        return what + {"1": "", "-1": ", reversed", "both": ", either polarity"}[self.polarity]
+
+
+def view(results: ShownSpectra) -> View:
+    """Show the peaks as a function of the size of each shape, and a verdict on each."""
+    parts = [part for each in results.spectra for part in _curve(results, each)]
+    said = [_verdict(results, each) for each in results.spectra]
+    if any(each.shape.slenderness is None for each in results.spectra):
+        said.append(
+            "Scale multiplies all lengths of the structure. Larger structures have a smaller frequency parameter p."
+        )
+    if any(each.shape.hung for each in results.spectra):
+        said.append(HUNG)
+    if any(each.unknown.any() for each in results.spectra):
+        more = "; its peak is at least the number after >=." if results.one else ". Fractiles count it as overturning."
+        said.append(f"The outcome is {UNKNOWN} if {BECAUSE}{more}")
+    said += _joints(results)
+    return View(lambda: _all(results), [*parts, *said])
+
+
+def _all(results: ShownSpectra) -> dict[str, Any]:
+    return {
+        "model": results.spectra[0].shape.structure.model.name,
+        "polarity": results.polarity,
+        "fractiles": list(results.fractiles),
+        "motions": [
+            {"name": motion.name, "format": motion.format, "npts": motion.npts, "dt": motion.dt}
+            | {"pga": motion.of_ground.pga_g, "scale": factor, **processing.data(motion)}
+            for motion, factor, *_ in results.motions
+        ],
+        "spectra": [_data(results, each) for each in results.spectra],
+    }
+
+
+def _joints(results: ShownSpectra) -> list[str]:
+    """Return sentences on joints of the structures that are not checked; empty if all are."""
+    said = [NO_JOINTS] if any(each.shape.leaves_out_joints for each in results.spectra) else []
+    several = len(results.spectra) > 1
+    said += [unchecked(each.shape.structure.name if several else "") for each in results.spectra if not each.checked]
+    return said + [
+        f"Caution: {each.shape.structure.name}: {each.shape.caution}" for each in results.spectra if each.shape.caution
+    ]
+
+
+def title(results: ShownSpectra) -> str:
+    """Return the motions and the model of the spectra, as a heading."""
+    return f"{results.shaking}, {results.spectra[0].shape.structure.model.name}"
+
+
+def lost(results: ShownSpectra) -> str:
+    """List the responses that could not be simulated; empty if all could."""
+    found = [
+        f"{each.shape.structure.name} at 2 pi/p = {each.periods[k]:.4g} s under {results.motions[m].motion.name}"
+        for each in results.spectra
+        for m, k in np.argwhere(np.isnan(each.peak_ratio)).tolist()
+    ]
+    if not found:
+        return ""
+    more = f" and {len(found) - LISTED} more" if len(found) > LISTED else ""
+    every = sum(each.peak_ratio.size for each in results.spectra)
+    return (
+        f"{len(found)} of {every} responses could not be simulated and are left out: {'; '.join(found[:LISTED])}{more}"
+    )
+
+
+def table(results: ShownSpectra) -> dict[str, Sequence[object]]:
+    """Return the columns of the curves, with a row for each shape and size."""
+    columns: dict[str, list[object]] = {}
+    doubtful = any(each.shape.structure.may_open for each in results.spectra)
+
+    def add(heading: str, values: Sequence[object]) -> None:
+        columns.setdefault(heading, []).extend(values)
+
+    for each in results.spectra:
+        blocks = each.shape.slenderness is not None
+        nothing = [np.nan] * each.scales.size
+        add("structure", [each.shape.structure.name] * each.scales.size)
+        add("2 pi/p [s]", each.periods.tolist())
+        add("scale", nothing if blocks else each.scales.tolist())
+        add("R of the block [m]", each.scales.tolist() if blocks else nothing)
+        if any(other.shape.own is not None for other in results.spectra):
+            add("lambda", each.uplifts.tolist())
+        if not results.one:
+            add("motions", each.followed.tolist())
+            add("overturned share", each.share.tolist())
+            if doubtful:
+                add("unknown share", (each.share_at_most - each.share).tolist())
+            for q in results.fractiles:
+                add(f"{q:g}-fractile of peak phi/phi_cr", each.fractile(q).tolist())
+        for peaks, unknown, under in zip(each.peak_ratio, each.unknown, results.motions, strict=True):
+            known = [UNKNOWN if hidden else peak for peak, hidden in zip(peaks.tolist(), unknown.tolist(), strict=True)]
+            add(f"peak phi/phi_cr under {under.motion.name}", known)
+        if doubtful:
+            bounds = np.broadcast_to(each.lower_bound, each.peak_ratio.shape)
+            for bound, under in zip(bounds, results.motions, strict=True):
+                add(f"peak phi/phi_cr under {under.motion.name}, at least", bound.tolist())
+    return columns  # type: ignore[return-value]
+
+
+def _data(results: ShownSpectra, each: Spectrum) -> dict[str, Any]:
+    structure, blocks = each.shape.structure, each.shape.slenderness is not None
+    return {
+        "name": structure.name,
+        "slenderness": each.shape.slenderness,
+        "direction": structure.direction.label,
+        "p": None if blocks else structure.p,
+        "lambda": structure.lambda_,
+        "eta": structure.eta,
+        "alike": each.shape.own is None,
+        "hung": each.shape.hung,
+        "lambdas": each.uplifts.tolist() if each.shape.own is not None else None,
+        "size": each.periods.tolist(),
+        "scale": None if blocks else each.scales.tolist(),
+        "R": each.scales.tolist() if blocks else None,
+        "given": each.given,
+        "motions": each.followed.tolist(),
+        "overturned": each.overturned.tolist(),
+        "unknown": each.doubtful.tolist() if each.checked else None,
+        "peaks": [_finite(each.fractile(q)) for q in results.fractiles],
+        "every_peak": [_finite(peaks) for peaks in each.peak_ratio],
+        "every_overturned": [
+            [None if hidden else peak == np.inf for peak, hidden in zip(*row, strict=True)]
+            for row in zip(each.peak_ratio.tolist(), each.unknown.tolist(), strict=True)
+        ],
+        "every_unknown": each.unknown.tolist() if each.checked else None,
+        "every_peak_lower_bound": [
+            numbers(bounds) for bounds in np.broadcast_to(each.lower_bound, each.peak_ratio.shape)
+        ],
+        "verdict": _verdict(results, each),
+    }
+
+
+def _finite(values: Reals) -> list[float | None]:
+    return numbers(np.where(np.isfinite(values), values, np.nan))
+
+
+def _peak(value: float, least: float = np.nan) -> str:
+    """Format a peak; `least` is its lower bound if the outcome is unknown."""
+    if least == least:
+        return f"{UNKNOWN}, >= {least:.3g}"
+    if value != value:
+        return ABSENT
+    return OVERTURNS if np.isinf(value) else f"{value:.3g}"
+
+
+def _curve(results: ShownSpectra, each: Spectrum) -> Iterator[Table | str]:
+    """Yield the table of a shape, below its heading."""
+    structure = each.shape.structure
+    shown = sorted({*spaced(each.scales.size, ROWS), *([] if each.given is None else [each.given])})
+    side = "" if structure.symmetric else f" ({structure.direction.label})"
+    yield (
+        f"{structure.name}{side}, {structure.model.name}: uplift at {structure.lambda_:.4g} g, eta = "
+        f"{structure.eta:.4g}{'' if structure.eta_given else FROM_KINEMATICS}, under {results.shaking}"
+    )
+    if each.shape.own is not None:
+        ends = (f"at {each.uplifts[k]:.4g} g at scale {each.scales[k]:.3g}" for k in (0, -1))
+        yield (
+            "Masses, loads or a strength that do not scale with the structure change its response, so every size was "
+            f"built and simulated separately. Uplift is {' and '.join(ends)}."
+        )
+    if not results.one:
+        few = "" if (each.followed >= FEWEST).all() else (
+            f" Except for the median they are '{ABSENT}' under fewer than {FEWEST} motions, of which one decides them."
+        )  # fmt: skip
+        yield f"Median and fractiles of the peak phi/phi_cr; an overturning motion ranks above every finite peak.{few}"
+    yield table_of("", _columns(results, each), shown)
+
+
+def _columns(results: ShownSpectra, each: Spectrum) -> Iterator[Column[int]]:
+    """Yield the columns of the table of a shape, whose rows are its sizes."""
+    yield only_shown("2 pi/p\n[s]", each.periods.item, rounded(3))
+    scales = ["as given" if k == each.given else f"{scale:.3g}" for k, scale in enumerate(each.scales)]
+    yield only_shown("scale" if each.shape.slenderness is None else "R\n[m]", scales.__getitem__)
+    if results.one:
+        least = np.broadcast_to(each.lower_bound, each.peak_ratio.shape)[0]
+        yield only_shown("peak\nphi/phi_cr", lambda k: _peak(each.peak_ratio[0, k], least[k]))
+        return
+    for q in results.fractiles:
+        falls, peaks = each.fractile_overturns(q), [_peak(value) for value in each.fractile(q)]
+        # Unknown outcomes count as overturning in a fractile: where only they make it overturn, it is not known.
+        cells = [UNKNOWN if peak == OVERTURNS and not known else peak for peak, known in zip(peaks, falls, strict=True)]
+        yield only_shown("median" if q == 0.5 else f"{100 * q:g} %", cells.__getitem__)
+    yield only_shown("overturned", lambda k: f"{each.overturned[k]} of {each.followed[k]}")
+    if each.unknown.any():
+        yield only_shown(UNKNOWN, each.doubtful.item)
+
+
+def _verdict(results: ShownSpectra, each: Spectrum) -> str:
+    """Return sentences on the structure among larger and smaller ones, or on which blocks overturn."""
+    place = each.given
+    if place is None:
+        return f"{each.shape.structure.name}: {_blocks(results, each)}"
+    sides = [
+        said
+        for what, part in (("smaller", slice(None, place)), ("larger", slice(place + 1, None)))
+        if (said := _side(results, each, what, part))
+    ]
+    return " ".join(
+        [
+            f"{each.shape.structure.name} as given, 2 pi/p = {each.periods[place]:.3g} s: {_itself(results, each)}.",
+            *sides,
+        ]
+    )
+
+
+def _itself(results: ShownSpectra, each: Spectrum) -> str:
+    assert each.given is not None
+    peaks, unknown = each.peak_ratio[:, each.given], each.unknown[:, each.given]
+    if results.one and unknown[0]:
+        return f"its outcome is {UNKNOWN}"
+    if results.one:
+        if np.isnan(peaks[0]):
+            return "its motion could not be simulated"
+        if np.isinf(peaks[0]):
+            return f"it {OVERTURNS}"
+        return f"it {ROCKS} to {peaks[0]:.3g} of phi_cr" if peaks[0] else f"it {NO_UPLIFT}"
+    falls, count = np.flatnonzero(np.isinf(peaks) & ~unknown), np.count_nonzero(~np.isnan(peaks))
+    if not count:
+        return "no motion could be simulated"
+    names = shorten(", ".join(results.motions[k].motion.name for k in falls.tolist()), 90, placeholder=" ...")
+    median = float(each.fractile(0.5)[each.given])
+    said = f"{falls.size} of {count} motions overturn it ({names})" if falls.size else f"none of {count} overturns it"
+    if unknown.any():
+        some = f"{falls.size} of {count} motions are known to overturn it ({names})" if falls.size else (
+            f"none of {count} motions is known to overturn it"
+        )  # fmt: skip
+        said = f"{some}, the outcome of {np.count_nonzero(unknown)} is {UNKNOWN}"
+    return said if np.isinf(median) else f"{said}, and its median peak is {median:.3g} of phi_cr"
+
+
+def _side(results: ShownSpectra, each: Spectrum, what: str, part: slice) -> str:
+    """Return a sentence on the sizes larger or smaller than the structure; empty if there are none."""
+    falls, of, scales = each.overturned[part], each.followed[part], each.scales[part]
+    if not falls.size:
+        return ""
+    doubtful = each.doubtful[part]
+    end = f"down to scale {scales[0]:.3g}" if what == "smaller" else f"up to scale {scales[-1]:.3g}"
+    called = [f"scale {scale:.3g}" for scale in scales]
+    if doubtful.any():
+        return f"Of the {what} sizes {end}, {_doubt(results, falls, doubtful, of, called)}."
+    if not falls.any():
+        return f"No {what} size {end} overturns."
+    if not results.one:
+        return f"Of the {what} sizes {end}, {_most(falls, of, called)}."
+    if (falls == of).all():
+        return f"Every {what} size {end} overturns."
+    least, largest = scales[falls > 0][[0, -1]]
+    where = f"at scale {least:.3g}" if least == largest else f"between scale {least:.3g} and {largest:.3g}"
+    return f"Of the {what} sizes {end}, {falls.sum()} of {of.sum()} overturn, {where}."
+
+
+def _blocks(results: ShownSpectra, each: Spectrum) -> str:
+    """Return a sentence on the sizes of blocks that overturn."""
+    falls, of = each.overturned, each.followed
+    names = [f"{period:.3g} s (R = {R:.3g} m)" for period, R in zip(each.periods, each.scales, strict=True)]
+    if each.doubtful.any():
+        return f"{_doubt(results, falls, each.doubtful, of, names)}."
+    if not falls.any():
+        return f"no size up to {names[-1]} overturns."
+    if not results.one:
+        return f"{_most(falls, of, names)}."
+    last = int(np.flatnonzero(falls)[-1])
+    return f"{falls.sum()} of {of.sum()} sizes overturn, the largest at {names[last]}."
+
+
+def _most(falls: Integers, of: Integers, names: Sequence[str]) -> str:
+    """Return the largest number of motions that overturn one size, and the size above which none does, in words."""
+    worst, last = int(np.argmax(falls / np.maximum(of, 1))), int(np.flatnonzero(falls)[-1])
+    said = f"at most {falls[worst]} of {of[worst]} motions overturn any one size, at {names[worst]}"
+    if last == len(names) - 1:
+        return said
+    return f"{said}, and none {'overturns a larger size' if worst == last else f'does above {names[last]}'}"
+
+
+def _doubt(results: ShownSpectra, falls: Integers, doubtful: Integers, of: Integers, names: Sequence[str]) -> str:
+    """Return in words how many sizes, or motions at the worst size, are known to overturn, and how many may."""
+    places = np.flatnonzero(doubtful)
+    where = f"at {names[places[0]]}" if places.size == 1 else f"between {names[places[0]]} and {names[places[-1]]}"
+    if results.one:
+        some = f"{falls.sum()} of {of.sum()} are known to overturn" if falls.any() else "none is known to overturn"
+        return f"{some}, and the outcome of {doubtful.sum()} is {UNKNOWN}, {where}"
+    most = falls + doubtful
+    worst = int(np.argmax(most / np.maximum(of, 1)))
+    return (
+        f"{_most(falls, of, names) if falls.any() else 'none is known to overturn'}; the outcome of some motions is "
+        f"{UNKNOWN} {where}, and counting these as overturning, at most {most[worst]} of {of[worst]} motions overturn "
+        f"any one size, at {names[worst]}"
+    )

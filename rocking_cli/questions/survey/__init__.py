@@ -1,0 +1,1 @@
+"""`survey`: the structures of a table, the most vulnerable first."""

@@ -1,0 +1,55 @@
+"""A survey as a single HTML page with a sortable table; it needs no other file and no network."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from markupsafe import Markup
+
+from rocking_cli.documents.figures import inline_svg, template
+from rocking_cli.plotting.moving import asset
+from rocking_cli.questions.report.page import symbols
+from rocking_cli.questions.survey.picture import draw_survey
+from rocking_cli.questions.survey.study import Survey
+from rocking_cli.questions.survey.view import counts, sentences, table, title
+from rocking_cli.text import printable
+
+MOST = 10_000  # rows of a page: browsers lay out more of them for many seconds
+SYMBOLS = {"lambda": "λ", "phi_cr": "φ_cr", "kappa2": "κ₂", "eta": "η"}
+
+
+def render(found: Survey, source: str, about: Sequence[str]) -> str:
+    """Return the page of a survey.
+
+    Parameters
+    ----------
+    found : Survey
+        The survey; every text in it is escaped.
+    source : str
+        Source of the structures.
+    about : sequence of str
+        Further lines of the heading: date and command.
+    """
+    rows = table(found, MOST, longest=None)
+    left_out = max(0, len(found.rows) - MOST)
+    page = template("survey.html", symbols=symbols).render(
+        source=source,
+        about=about,
+        title=title(found),
+        said=[each.replace("`", "") for each in (*counts(found), *sentences(found))],
+        picture=inline_svg(draw_survey(found, ""), "survey") if found.rows else None,
+        columns=[_symbolic(each) for each in rows.columns],
+        words=[k for k in range(len(rows.columns)) if k not in rows.numbers],
+        rows=rows.rows,
+        left_out=f"The table lists the first {MOST:,} of {len(found.rows):,} structures." if left_out else "",
+        bad=[(each.line if each.line is not None else "", each.name, each.reason) for each in found.bad[:MOST]],
+        bad_count=len(found.bad),
+        style=Markup(asset("motion.css")),
+    )
+    return printable(page)  # a table may contain what no page can hold
+
+
+def _symbolic(heading: str) -> str:
+    for word, symbol in SYMBOLS.items():
+        heading = heading.replace(word, symbol)
+    return heading.replace("\n", " ")

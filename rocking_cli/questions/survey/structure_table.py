@@ -1,0 +1,392 @@
+"""A table of structures, one in each row: columns are fields, and each row becomes a structure."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from rocking_cli.core import Mechanism
+from rocking_cli.core.registry import Registry
+from rocking_cli.core.structure_file import HINT, of_document
+from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.io.dotted import closed, put, replace_at, words
+from rocking_cli.io.field_problems import lists_models, types_at
+from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Spreadsheet, read_sheet
+from rocking_cli.io.yaml_file import Document, Place, parse, read_text, spell
+from rocking_cli.text import cut, did_you_mean, one_line
+
+BASE, MECHANISM = "file", "mechanism"
+YAML = (".yaml", ".yml")
+NOTE = "#"
+"""What a heading begins with whose column is for people only."""
+THOUSANDS = re.compile(r"[-+]?\d{1,3}(\.\d{3})+", re.ASCII)
+DIGITS = 308  # of the largest whole number that is a float
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_UNIT = re.compile(r"(.*?)\s*\[([^\]]*)\]\s*", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class FieldColumn:
+    """A column that holds a field.
+
+    Parameters
+    ----------
+    place : int
+        Index of the cell in a row.
+    heading : str
+        Heading of the column in the table.
+    path : tuple of str
+        The field, see `rocking_cli.io.dotted`.
+    unit : str
+        Unit of numbers in the column that are given without a unit; empty for the unit of the field.
+    """
+
+    place: int
+    heading: str
+    path: tuple[str, ...]
+    unit: str = ""
+
+
+@dataclass
+class _RowDocument(Document):
+    """The data of a row, whose problems name the table, the line and the heading of the column."""
+
+    line: int = 0
+    base: str = ""
+    columns: dict[Place, str] = field(default_factory=dict)
+
+    def problem(
+        self, message: str, mark: yaml.Mark | None, name: str | None = None, hint: str | None = None
+    ) -> Problem:
+        """Return a problem of this row."""
+        return Problem(message, self.file, self.line, field=name, hint=hint)
+
+    def at(self, place: Place, message: str, hint: str | None = None, *, key: bool = False) -> Problem:
+        """Return a problem with the content of a column, or with a field that has no column."""
+        own = next((self.columns[place[:k]] for k in range(len(place), 0, -1) if place[:k] in self.columns), None)
+        of_file = ": ".join(each for each in (cut(one_line(self.base)), spell(place)) if each)
+        return self.problem(message, None, own or of_file, hint)
+
+
+class _Kept(Registry):
+    """All installed mechanisms, each looked up once, as a table looks up the same ones thousands of times."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._kept: dict[str, type[Mechanism]] = {}
+
+    def __getitem__(self, name: str) -> type[Mechanism]:
+        if name not in self._kept:
+            self._kept[name] = super().__getitem__(name)
+        return self._kept[name]
+
+
+class StructureTable(Sequence["TableRow"]):
+    """The structures of a table, each built on demand.
+
+    Parameters
+    ----------
+    sheet : Spreadsheet
+        The table.
+    folder : Path
+        Folder of the files that the table names.
+
+    Raises
+    ------
+    InputError
+        If a heading is not a field of any mechanism in the rows.
+    """
+
+    def __init__(self, sheet: Spreadsheet, folder: Path) -> None:
+        self.sheet, self.folder = sheet, folder
+        self.registry = _Kept()
+        self._bases: dict[str, dict[str, Any] | InputError] = {}
+        self.columns = self._columns()
+        self._special = {column.path[0]: column.place for column in self.columns if len(column.path) == 1}
+        self._check_fields()
+
+    @classmethod
+    def read(cls, path: Path) -> StructureTable:
+        """Read a table from a CSV file. Raises `InputError` if it cannot be used."""
+        return cls(read_sheet(path), path.parent)
+
+    def __len__(self) -> int:
+        return len(self.sheet.rows)
+
+    def __getitem__(self, k: Any) -> Any:
+        return TableRow(self, k) if isinstance(k, int) else [TableRow(self, each) for each in range(len(self))[k]]
+
+    def __iter__(self) -> Iterator[TableRow]:
+        return (TableRow(self, k) for k in range(len(self)))
+
+    @property
+    def short(self) -> list[int]:
+        """Line numbers of rows that have fewer cells than there are headings."""
+        return [row.line for row in self.sheet.rows if row.short]
+
+    def text(self, row: Row, name: str) -> str:
+        """Return the text of a row's cell, by the heading of its column; empty without such a column."""
+        return row.cells[self._special[name]] if name in self._special else ""
+
+    def base_of(self, row: Row) -> str:
+        """Return the YAML file that a row modifies; empty for none. Other files are fields of mechanisms."""
+        named = self.text(row, BASE)
+        return named if named.lower().endswith(YAML) else ""
+
+    def base(self, named: str) -> dict[str, Any]:
+        """Return the data of a YAML file, read once. Raises `InputError` if it cannot be read."""
+        if named not in self._bases:
+            path = self.folder / named
+            try:
+                document = parse(read_text(path, "structure"), str(path), "structure", HINT)
+                document.check()
+                self._bases[named] = document.data
+            except InputError as error:
+                self._bases[named] = error
+        found = self._bases[named]
+        if isinstance(found, InputError):
+            raise found
+        return found
+
+    def _columns(self) -> list[FieldColumn]:
+        columns, problems, taken = [], [], dict[tuple[str, ...], str]()
+        sheet = self.sheet
+        for place, heading in enumerate(sheet.headings):
+            if not heading or heading.startswith(NOTE):
+                continue
+            name, unit = (match[1], match[2].strip()) if (match := _UNIT.fullmatch(heading)) else (heading, "")
+            shown = cut(one_line(heading))
+            try:
+                path = words(name)
+            except InputError as error:
+                problems += [Problem(one.message, sheet.file, sheet.line, hint=one.hint) for one in error.problems]
+                continue
+            if path in taken:
+                message = f"is the same field as {cut(one_line(taken[path]))}"
+                problems.append(Problem(message, sheet.file, sheet.line, field=shown, hint="take one of them away"))
+            taken[path] = heading
+            columns.append(FieldColumn(place, shown, path, unit))
+        if problems:
+            raise InputError(*problems)
+        if not columns:
+            raise InputError(Problem("the table has no headings", sheet.file, sheet.line, hint="mechanism,name,..."))
+        return columns
+
+    def _check_fields(self) -> None:
+        """Check the headings against the fields of all mechanisms in the rows."""
+        classes = []
+        for name in sorted(self._mechanisms()):
+            try:
+                classes.append(self.registry[name])
+            except (InputError, MechanismError):  # each of its rows says so
+                continue
+        if not {MECHANISM, BASE} & {column.path[0] for column in self.columns}:
+            near = get_close_matches(MECHANISM, [column.path[0].lower() for column in self.columns], n=1)
+            given = [column.heading for column in self.columns if near and column.path[0].lower() == near[0]]
+            hint = (
+                f"write {MECHANISM} instead of {given[0]}" if given else "add one that names the mechanism of each row"
+            )
+            raise InputError(
+                Problem(
+                    f"the table has neither a column {MECHANISM} nor a column {BASE}",
+                    self.sheet.file,
+                    self.sheet.line,
+                    hint=hint,
+                )
+            )
+        known = {MECHANISM, BASE}.union(*(_fields(cls) for cls in classes))
+        problems = []
+        for column in self.columns:
+            if classes and column.path[0] not in known:
+                guess = did_you_mean(column.path[0], sorted(known))
+                guess = guess if guess and guess.endswith("?") else ""
+                what = "any mechanism in this table" if len(classes) > 1 else classes[0].mechanism
+                hint = f"{guess} A column whose heading starts with {NOTE} is ignored".strip()
+                message = f"is not a field of {what}"
+                problems.append(Problem(message, self.sheet.file, self.sheet.line, field=column.heading, hint=hint))
+        if problems:
+            raise InputError(*problems)
+
+    def _mechanisms(self) -> set[str]:
+        """Return the names of the mechanisms in the rows, known or not."""
+        found = {self.text(row, MECHANISM) for row in self.sheet.rows}
+        for named in {self.base_of(row) for row in self.sheet.rows if not self.text(row, MECHANISM)} - {""}:
+            try:
+                found.add(str(self.base(named).get(MECHANISM)))
+            except InputError:  # each of its rows says so
+                continue
+        return found - {""}
+
+
+@dataclass(frozen=True)
+class TableRow:
+    """A row of a table of structures.
+
+    Parameters
+    ----------
+    table : StructureTable
+        The table.
+    place : int
+        Index of the row, from 0.
+    """
+
+    table: StructureTable
+    place: int
+
+    @property
+    def row(self) -> Row:
+        """Cells of the row."""
+        return self.table.sheet.rows[self.place]
+
+    @property
+    def line(self) -> int:
+        """Line number in the file at which the row begins."""
+        return self.row.line
+
+    @property
+    def name(self) -> str:
+        """Name of the structure, whether or not it can be used."""
+        return one_line(self.table.text(self.row, "name")) or f"row {self.place + 1}"
+
+    def make(self) -> Mechanism:
+        """Build the structure of the row.
+
+        Raises
+        ------
+        InputError
+            With every problem of the row: the file, its line, and the heading of the column.
+        MechanismError
+            If the mechanism's plugin cannot be used.
+        """
+        table, row = self.table, self.row
+        document = _RowDocument("structure", table.sheet.file, [], line=row.line, base=table.base_of(row))
+        document.values[()] = document.values[(MECHANISM,)] = yaml.Mark(document.file, 0, row.line - 1, 0, None, 0)
+        if row.too_many is not None:
+            what = f"has more cells than headings; the first extra cell is {cut(one_line(row.too_many))!r}"
+            raise InputError(document.problem(what, None, hint="is a separator in a cell without quotes?"))
+        based = table.base_of(row)
+        folder, default = table.folder, self.name
+        if based:
+            document.data = deepcopy(self._base(based, document))
+            folder = (table.folder / based).parent
+            default = one_line(Path(based).stem) or default
+        self._fill(document, based)
+        if MECHANISM not in document.data and not based and (named := table.text(row, BASE)):
+            what = f"{cut(one_line(named))!r} is not a structure file: its name must end in .yaml or .yml"
+            document.problems.append(document.problem(what, None, BASE, "or give the mechanism of the row"))
+        document.check()
+        document.data = closed(document.data)
+        return of_document(document, default, folder, table.registry)
+
+    def _base(self, named: str, document: _RowDocument) -> dict[str, Any]:
+        try:
+            return self.table.base(named)
+        except InputError as error:
+            first = error.problems[0]
+            line = f"{first.line}: " if first.line is not None else ""
+            message = f"{cut(one_line(named))}: {line}{first.message}"
+            raise InputError(document.problem(message, None, BASE, first.hint)) from None
+
+    def _fill(self, document: _RowDocument, based: str) -> None:
+        """Write the non-empty cells to the fields of a document; add problems for those that cannot be written."""
+        table, data = self.table, document.data
+        if given := table.text(self.row, MECHANISM):
+            data[MECHANISM] = given
+        name = str(data.get(MECHANISM))
+        cls = table.registry.get(name)  # None where there is no such mechanism, which is said when it is made
+        for column in table.columns:
+            text = self.row.cells[column.place]
+            if not text or column.path == (MECHANISM,) or (based and column.path == (BASE,)):
+                continue
+            try:
+                place = put(data, column.path, None, is_list=partial(_is_list, cls) if cls is not None else _none)
+                value = _value(text, column, _types(cls, place), decimal_comma=table.sheet.decimal_comma)
+                replace_at(data, place, value)
+                document.columns[place] = column.heading
+            except InputError as error:
+                document.problems += [
+                    document.problem(one.message, None, column.heading, one.hint) for one in error.problems
+                ]
+
+
+def _none(place: Place) -> bool:
+    return False
+
+
+@cache
+def _fields(cls: type[Mechanism]) -> frozenset[str]:
+    return frozenset(info.alias or name for name, info in cls.model_fields.items())
+
+
+@cache
+def _is_list(cls: type[Mechanism], place: Place) -> bool:
+    return lists_models(cls, place)
+
+
+@cache
+def _types(cls: type[Mechanism] | None, place: Place) -> frozenset[Any]:
+    return frozenset(types_at(cls, place)) if cls is not None else frozenset()
+
+
+def _value(text: str, column: FieldColumn, types: frozenset[Any], *, decimal_comma: bool) -> Any:
+    """Read a cell: a number, a list of numbers, or a text; texts with units are converted later, at the field."""
+    if str in types and not types & {float, int}:
+        return text
+    if text[0] in "[{" and not (decimal_comma and ";" in text):
+        value: Any = parse(f"cell: {text}", "cell", "cell", "").data["cell"]
+        return _with_unit(value, column.unit)
+    if ";" in text:
+        return [_one(part.strip(), column, decimal_comma=decimal_comma) for part in text.strip("[]").split(";")]
+    return _one(text, column, decimal_comma=decimal_comma)
+
+
+def _one(text: str, column: FieldColumn, *, decimal_comma: bool) -> Any:
+    if decimal_comma and THOUSANDS.fullmatch(text):
+        hint = "write numbers without thousands separators"
+        raise InputError(
+            Problem(
+                f"{text} is ambiguous, because other cells use decimal commas: the point may separate decimals or "
+                "thousands",
+                hint=hint,
+            )
+        )
+    if decimal_comma and DECIMAL_COMMA.fullmatch(text):
+        text = text.replace(",", ".")
+    if len(text.lstrip("+-")) > DIGITS and text.lstrip("+-").isdecimal():
+        raise InputError(Problem(f"a number of {len(text.lstrip('+-'))} digits is beyond the range of numbers"))
+    if _NUMBER.fullmatch(text):
+        return _with_unit(float(text) if re.search(r"[.eE]", text) else int(text), column.unit)
+    return {"true": True, "false": False}.get(text.lower(), text)
+
+
+def _with_unit(value: Any, unit: str) -> Any:
+    """Return a number as text with the unit of its heading, if the heading has one; lists entry by entry."""
+    if isinstance(value, list):
+        return [_with_unit(each, unit) for each in value]
+    return f"{value} {unit}" if unit and isinstance(value, int | float) and not isinstance(value, bool) else value
+
+
+def of_mapping(columns: Mapping[str, Sequence[Any]], name: str = "table") -> StructureTable:
+    """Return a table from columns, such as a frame of pandas; empty texts, None and NaN are fields not given."""
+    headings = tuple(str(each).strip() for each in columns)
+    cells = [[_text(value) for value in columns[key]] for key in columns]
+    if len({len(each) for each in cells}) > 1:
+        raise InputError("the columns of a table must have the same length")
+    rows = tuple(Row(k + 1, tuple(row)) for k, row in enumerate(zip(*cells, strict=True)))
+    return StructureTable(Spreadsheet(name, 0, headings, rows, decimal_comma=False), Path())
+
+
+def _text(value: Any) -> str:
+    if value is None or value != value:
+        return ""
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_text, value))}]"
+    return str(value).strip()

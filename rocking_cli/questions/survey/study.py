@@ -1,0 +1,421 @@
+"""A survey of many structures: the equivalent block of each, its response to ground motions, and their ranking."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from math import inf, isnan, nan
+from typing import Protocol
+
+import numpy as np
+
+from rocking_cli.core import Mechanism
+from rocking_cli.core.mechanism import doubts
+from rocking_cli.dynamics.batch import Runs, respond_many
+from rocking_cli.dynamics.model import Model
+from rocking_cli.dynamics.outcome import Outcomes
+from rocking_cli.dynamics.parallel import in_parts, in_processes
+from rocking_cli.errors import InputError, Problem, RockingError, SolverError
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.names import OPENING
+from rocking_cli.structure import Structure, check_opening
+from rocking_cli.studies.conclusion import Concluded, Conclusion
+from rocking_cli.verification.check import of_each, verify
+from rocking_cli.verification.code import SiteFile
+
+PART = 8  # structures that a thread has in memory at a time: the tables of each are one megabyte, at most ten
+
+
+class SurveyEntry(Protocol):
+    """A structure that is still to be built."""
+
+    @property
+    def name(self) -> str:
+        """Name of the structure, whether or not it can be used."""
+
+    @property
+    def line(self) -> int | None:
+        """Line of the structure in a file; None without one."""
+
+    def make(self) -> Mechanism:
+        """Build the structure. Raises `InputError` or `MechanismError` if it cannot be used."""
+
+
+@dataclass(frozen=True)
+class Under:
+    """Response of a structure to ground motions, by the nonlinear model.
+
+    Parameters
+    ----------
+    overturned : float
+        The share of the motions that overturn the structure; of two polarities of a motion, the worse governs.
+    peak_ratio : float
+        The largest peak rotation over the critical one, of the motions that are known not to overturn the structure;
+        NaN if there are none.
+    worst : str
+        A motion that overturns the structure, else one of unknown outcome, else that of the largest peak.
+    over : str
+        Reference of the peak: "phi_cr", or "limit" if a direction has no critical rotation.
+    unknown : float or None
+        The share of the motions that have an unknown outcome; None if the joints are not known, so that nothing was
+        checked.
+    """
+
+    overturned: float
+    peak_ratio: float
+    worst: str
+    over: str = "phi_cr"
+    unknown: float | None = 0.0
+
+    @property
+    def concluded(self) -> Concluded:
+        """What is concluded over all motions: the worst of them."""
+        if self.overturned:
+            return Concluded.OVERTURNS
+        if self.unknown:
+            return Concluded.UNKNOWN
+        return Concluded.ROCKS if self.peak_ratio else Concluded.NO_UPLIFT
+
+    @property
+    def at_most(self) -> float:
+        """The share of the motions that overturn the structure if all of unknown outcome do."""
+        return self.overturned + (self.unknown or 0.0)
+
+
+@dataclass(frozen=True)
+class Surveyed:
+    """A structure of a survey, with its results in the direction in which it uplifts first.
+
+    Parameters
+    ----------
+    row : int
+        Number of the row among those requested, from 1.
+    line : int or None
+        Line of the structure in its file.
+    name, mechanism : str
+        Names of the structure and of its mechanism.
+    direction : str
+        "positive", or "negative" if the structure uplifts first in this direction.
+    lambda_ : float
+        Uplift acceleration over the gravitational acceleration of the structure.
+    uplift : float
+        Uplift acceleration [standard gravity].
+    p, phi_cr, kappa1, kappa2, eta : float
+        Parameters of the equivalent block, see `rocking_cli.core.EquivalentBlock`; NaN if undefined.
+    no_block : str or None
+        Why there is no equivalent block; None if there is one.
+    doubt : str or None
+        A doubt about the size of the structure, if any.
+    caution : str or None
+        A caution about the lambda of the structure, if any.
+    under : Under, optional
+        Response to ground motions, if there are any.
+    ratio : float, optional
+        Capacity over demand by the code of the site, in the direction where it is smaller; 1 or more passes. NaN if the
+        site file lacks values that the code needs; None without a site.
+    verified : Conclusion, optional
+        The conclusion of the verification by the code of the site.
+    unprinted : bool
+        Whether a formula of that verification was not checked against the printed code.
+    """
+
+    row: int
+    line: int | None
+    name: str
+    mechanism: str
+    direction: str
+    lambda_: float
+    uplift: float
+    p: float
+    phi_cr: float
+    kappa1: float
+    kappa2: float
+    eta: float
+    no_block: str | None = None
+    doubt: str | None = None
+    caution: str | None = None
+    under: Under | None = None
+    ratio: float | None = None
+    verified: Conclusion | None = None
+    unprinted: bool = False
+
+
+@dataclass(frozen=True)
+class Bad:
+    """A structure that could not be used.
+
+    Parameters
+    ----------
+    row : int
+        Number of the row among those requested, from 1.
+    line : int or None
+        Line of the structure in its file.
+    name : str
+        Name of the structure.
+    error : RockingError
+        The reason, with the place in the file.
+    """
+
+    row: int
+    line: int | None
+    name: str
+    error: RockingError
+
+    @property
+    def reason(self) -> str:
+        """The reason in one line, without the place in the file."""
+        if not isinstance(self.error, InputError):
+            return str(self.error)
+        return "; ".join(str(Problem(each.message, field=each.field)) for each in self.error.problems)
+
+
+Order = Callable[[Surveyed], tuple[float, ...]]
+
+
+def _rounded(value: float) -> float:
+    """Round a number to nine digits, so that equal structures keep their order on every processor."""
+    return float(f"{value:.9g}")
+
+
+def _by_lambda(found: Surveyed) -> tuple[float, ...]:
+    return (_rounded(found.uplift),)
+
+
+def _by_response(found: Surveyed) -> tuple[float, ...]:
+    assert found.under is not None
+    peak = found.under.peak_ratio
+    return (-found.under.at_most, -(inf if isnan(peak) else _rounded(peak)), _rounded(found.uplift))
+
+
+def _by_ratio(found: Surveyed) -> tuple[float, ...]:
+    assert found.ratio is not None
+    return (inf if isnan(found.ratio) else _rounded(found.ratio), _rounded(found.uplift))
+
+
+ORDERS: Mapping[str, Order] = {"lambda": _by_lambda, "response": _by_response, "ratio": _by_ratio}
+"""By what structures are ranked: of two the one with the smaller key is the more vulnerable."""
+
+
+@dataclass(frozen=True)
+class Survey:
+    """The structures of a survey, the most vulnerable first.
+
+    Parameters
+    ----------
+    rows : sequence of Surveyed
+        The structures in the order of their rank.
+    bad : sequence of Bad
+        The structures that could not be used, in their order.
+    motions : sequence of str
+        The names of the ground motions.
+    by : str
+        The quantity by which they are ranked, a key of `ORDERS`.
+    """
+
+    rows: Sequence[Surveyed]
+    bad: Sequence[Bad] = ()
+    motions: Sequence[str] = ()
+    by: str = "lambda"
+
+
+def survey(
+    entries: Sequence[SurveyEntry],
+    motions: Sequence[GroundMotion] = (),
+    polarities: Sequence[int] = (1,),
+    *,
+    site: SiteFile | None = None,
+    opening: float = OPENING,
+    threads: int | None = None,
+    processes: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> Survey:
+    """Derive the equivalent blocks of structures, simulate them under ground motions, and rank them.
+
+    Parameters
+    ----------
+    entries : sequence of SurveyEntry
+        The structures. They are built and dropped a few at a time, so that any number fits in memory.
+    motions : sequence of GroundMotion
+        The scaled ground motions.
+    polarities : sequence of int
+        The polarities, 1, -1 or both; of both, the worse governs.
+    site : SiteFile, optional
+        The site: each structure is verified by its code.
+    opening : float
+        Largest opening of a joint, over D_cr, up to which a history is known.
+    threads : int, optional
+        Number of threads; by default one for each processor.
+    processes : int, optional
+        Number of processes to use instead of threads, for thousands of structures: each takes a second or two to start,
+        and is sent all entries and motions.
+    progress : callable, optional
+        Called with the number of structures done since the last call.
+
+    Returns
+    -------
+    Survey
+        Ranked by uplift acceleration; with motions by the share that overturns or is of unknown outcome, then by the
+        largest peak, then by uplift acceleration; with a site by the ratio of its code. Structures that rank equal keep
+        their order.
+    """
+    check_opening(opening)
+    results: list[Surveyed | Bad | None] = [None] * len(entries)
+    site = of_each(site) if site is not None else None
+
+    def work(first: int, stop: int) -> None:
+        results[first:stop] = _part(entries, motions, polarities, site, opening, first, stop)
+
+    if processes is None:
+        in_parts(work, len(entries), PART, threads, progress)
+    else:
+        whole = partial(_part, entries, motions, polarities, site, opening)
+        for first, part in in_processes(whole, len(entries), PART, processes):
+            results[first : first + len(part)] = part
+            if progress is not None:
+                progress(len(part))
+    by = "ratio" if site is not None else "response" if motions else "lambda"
+    good = sorted((result for result in results if isinstance(result, Surveyed)), key=ORDERS[by])
+    return Survey(good, [each for each in results if isinstance(each, Bad)], [each.name for each in motions], by)
+
+
+def _part(
+    entries: Sequence[SurveyEntry],
+    motions: Sequence[GroundMotion],
+    polarities: Sequence[int],
+    site: SiteFile | None,
+    opening: float,
+    first: int,
+    stop: int,
+) -> list[Surveyed | Bad | None]:
+    """Return the results of the structures from index `first` to before `stop`, in any process."""
+    ready: dict[int, Structure] = {}
+    models: dict[int, Model] = {}
+    found: list[Surveyed | Bad | None] = [None] * (stop - first)
+    for k, place in enumerate(range(first, stop)):
+        entry = entries[place]
+        try:
+            ready[k] = Structure(entry.make(), opening=opening)
+            found[k] = _alone(place, entry, ready[k], site)
+            if _may_lift(ready[k], motions):
+                models[k] = ready[k].model("nonlinear")
+        except RockingError as error:
+            ready.pop(k, None)
+            found[k] = Bad(place + 1, entry.line, entry.name, _placed(error, entry))
+    if motions:
+        under = _under(list(models.values()), motions, polarities)
+        answers = dict(zip(models, under, strict=True))
+        for k, structure in ready.items():
+            one = found[k]
+            assert isinstance(one, Surveyed)
+            over = "phi_cr" if all(side.phi_cr is not None for side in structure.statics) else "limit"
+            answer = answers.get(k, Under(0.0, 0.0, motions[0].name, over))
+            if isinstance(answer, SolverError):
+                found[k] = Bad(one.row, entries[first + k].line, one.name, answer)
+            else:
+                found[k] = replace(one, under=answer)
+    return found
+
+
+def _placed(error: RockingError, entry: SurveyEntry) -> RockingError:
+    """Return an error of a structure's mechanics with the line of the structure, if it has no line yet."""
+    if not isinstance(error, InputError):
+        return error
+    return InputError(
+        *(replace(each, line=each.line if each.line is not None else entry.line) for each in error.problems)
+    )
+
+
+def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile | None) -> Surveyed:
+    """Return the results of a structure without ground motions."""
+    mechanism, sides = structure.mechanism, structure.statics
+    k = int(sides[1].lambda_ < sides[0].lambda_ * (1 - 1e-9))
+    direction, side = mechanism.sides[k], sides[k]
+    why = structure.why_no_block
+    block = structure.equivalence[direction] if why is None else None
+    found = verify(structure, site) if site is not None else None
+    return Surveyed(
+        place + 1,
+        entry.line,
+        structure.name,
+        mechanism.mechanism,
+        direction.label,
+        side.lambda_,
+        side.lambda_ * mechanism.gravity / STANDARD_GRAVITY,
+        block.p if block is not None else nan,
+        side.phi_cr if side.phi_cr is not None else nan,
+        block.kappa1 if block is not None else nan,
+        block.kappa2 if block is not None else nan,
+        structure.etas[k],
+        why.removeprefix(f"{structure.name}: ") if why is not None else None,
+        "; ".join(doubts(mechanism)) or None,
+        mechanism.own_caution() or None,
+        ratio=found.ratio if found is not None else None,
+        verified=found.conclusion if found is not None else None,
+        unprinted=found is not None and found.unprinted,
+    )
+
+
+def _may_lift(structure: Structure, motions: Sequence[GroundMotion]) -> bool:
+    """Return whether any of the motions could uplift a structure; if none can, its equation of motion is not needed."""
+    least = min(structure.uplift)
+    return any(each.vertical is not None or each.pga_g >= least * (1 - 1e-9) for each in motions)
+
+
+def _under(
+    models: Sequence[Model], motions: Sequence[GroundMotion], polarities: Sequence[int]
+) -> list[Under | SolverError]:
+    """Return the response of each of some structures to ground motions; an error if a motion cannot be simulated."""
+    if not models:
+        return []
+    places = [
+        (i, j, sign)
+        for i, model in enumerate(models)
+        for j in range(len(motions))
+        for sign in (polarities[:1] if len(polarities) > 1 and model.symmetric else polarities)
+    ]
+    which = np.array(places)
+    runs = Runs.of(which[:, 0], which[:, 1], polarity=which[:, 2])
+    outcomes = respond_many(models, motions, runs, threads=1, only_peaks=True)
+    return [_of_one(model, which[:, 0] == i, which[:, 1], outcomes, motions) for i, model in enumerate(models)]
+
+
+def _of_one(
+    model: Model, own: np.ndarray, record: np.ndarray, outcomes: Outcomes, motions: Sequence[GroundMotion]
+) -> Under | SolverError:
+    """Return the response of one structure to ground motions; the mask `own` selects its runs."""
+    if (outcomes.failed & own).any():
+        name = motions[int(record[int((outcomes.failed & own).argmax())])].name
+        return SolverError(f"{model.structure}: its motion under {name} could not be simulated")
+    fell = np.unique(record[own & outcomes.fell])
+    doubtful = np.setdiff1d(record[own & outcomes.unknown], fell)
+    stays = own & ~np.isin(record, fell) & ~np.isin(record, doubtful)
+    peaks = np.where(stays, outcomes.peak_ratio, -1.0)
+    most = int(peaks.argmax())
+    worst = motions[int([*fell, *doubtful, record[most]][0])].name
+    over = "limit" if any(model.ends_at_limit) else "phi_cr"
+    unknown = doubtful.size / len(motions) if doubtful.size or model.joints is not None else None
+    return Under(fell.size / len(motions), float(peaks[most]) if stays.any() else nan, worst, over, unknown)
+
+
+@dataclass(frozen=True)
+class MadeStructure:
+    """A structure that is already built.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The structure.
+    """
+
+    mechanism: Mechanism
+    line: int | None = None
+
+    @property
+    def name(self) -> str:
+        """Name of the structure, or of its mechanism."""
+        return self.mechanism.name or self.mechanism.mechanism
+
+    def make(self) -> Mechanism:
+        """Return the structure."""
+        return self.mechanism

@@ -1,0 +1,164 @@
+"""`rk.survey`: rank many structures by vulnerability."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Unpack
+
+from rocking_cli.ask.answer import Answer, drawn
+from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
+from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
+from rocking_cli.ask.numbers import refuse_idle, takes_numbers
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.names import OPENING
+from rocking_cli.questions.survey.view import TOP
+from rocking_cli.text import one_line
+
+if TYPE_CHECKING:
+    from rocking_cli.questions.survey.structure_table import StructureTable
+    from rocking_cli.questions.survey.study import Survey, SurveyEntry
+
+Table = str | Path | Mapping[str, Sequence[Any]]
+"""CSV file, or columns by their headings."""
+LONG, LONG_SHAKEN = 10_000, 1_000  # rows from which on processes are worth their beginning
+FEW = 3  # doubts about sizes that are told one by one
+
+
+@takes_numbers
+def survey(
+    structures: Table | StructureTable | Sequence[StructureLike],
+    motions: Motion | Motions | Sequence[Motion] = (),
+    *,
+    polarity: str | int = "1",
+    site: SiteLike | None = None,
+    opening: float = OPENING,
+    top: int = TOP,
+    threads: int | None = None,
+    processes: bool = False,
+    page: str | Path | None = None,
+    watch: Watcher = SILENT,
+    **options: Unpack[MotionArguments],
+) -> Answer[Survey]:
+    """Rank many structures by vulnerability.
+
+    Parameters
+    ----------
+    structures : str or Path, or mapping, or sequence of Mechanism, str or Path
+        A table of structures as a CSV file, or its columns by their headings (a frame of pandas is one); or structures,
+        or their YAML files.
+    motions : GroundMotion, Pulse, str or Path, or a sequence of these
+        Ground motions; without any, the structures are ranked by their uplift acceleration.
+    polarity : {"1", "-1", "both"}
+        Polarity of the motions: as given, reversed, or both, of which the worse governs.
+    site : mapping, str or Path, optional
+        Fields of a site file, or the file: each structure is verified by its code and ranked by the ratio of capacity
+        to demand.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
+    top : int
+        Number of structures in the tables of the answer.
+    threads : int, optional
+        Number of structures at a time; by default, one for each processor.
+    processes : bool
+        Whether processes share the work of thousands of structures; a script then needs `if __name__ == "__main__"`.
+    page : str or Path, optional
+        File for an HTML page with a plot and all rows in a sortable table.
+    watch : Watcher
+        Told what was read, how far the work is, what is doubtful, and which of several motions cannot be used.
+    **options
+        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
+
+    Returns
+    -------
+    Answer of Survey
+        `rows` are the ranked structures, `bad` the unusable ones with their reasons.
+
+    Raises
+    ------
+    InputError
+        If the table or a motion cannot be used.
+
+    Notes
+    -----
+    The blocks are those of DeJong and Dimitrakopoulos (2014), Section 3; see `equiv`.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> table = {"mechanism": ["block", "block"], "name": ["a", "b"], "width [mm]": [500, 300], "height": [2, 2]}
+    >>> [row.name for row in rk.survey(table).rows]
+    ['b', 'a']
+    """
+    from rocking_cli.questions.survey.study import survey as study
+    from rocking_cli.questions.survey.view import blocks, columns, title, view
+
+    signs, where = signs_of(polarity), site_of(site) if site is not None else None
+    entries, given = _entries(structures, watch), Motions.of(motions, options)
+    if not given:
+        refuse_idle("without ground motions", polarity=signs != (1,), opening=opening != OPENING)
+    shaken = [each.motion.scaled(each.factor) for each in given.gather(0.0, watch)] if given else []
+    count = _processes(len(entries), bool(shaken) or where is not None) if processes else None
+    with watch.progress(len(entries), "structures") as advance:
+        found = study(
+            entries, shaken, signs, site=where, opening=opening, threads=threads, processes=count, progress=advance
+        )
+    _warn_of_sizes(found, watch)
+    if page is not None and found.rows:
+        file = getattr(entries, "sheet", None)
+        _write_page(Path(page), found, Path(file.file).name if file is not None else "structures", watch)
+    figure, files = (
+        drawn("questions.survey.picture.draw_survey", found, title(found)),
+        partial(blocks, found, for_spreadsheets=True),
+    )
+    return Answer("survey", found, view(found, top), partial(columns, found), figure, files)
+
+
+def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
+    from rocking_cli.questions.survey.structure_table import StructureTable, of_mapping
+    from rocking_cli.questions.survey.study import MadeStructure
+
+    table = StructureTable.read(Path(given)) if isinstance(given, str | Path) else given
+    if not isinstance(table, StructureTable):
+        if isinstance(given, Mapping) or hasattr(given, "columns"):
+            return of_mapping(given)
+        return [MadeStructure(structure_of(each, watch).mechanism) for each in given]
+    if not len(table):
+        raise InputError(Problem("the table has no rows below its headings", table.sheet.file))
+    if short := table.short:
+        lines = f"line {short[0]}" if len(short) == 1 else f"{len(short):,} lines, first in line {short[0]}"
+        watch.warn(f"{table.sheet.file}: fewer cells than headings in {lines}: missing cells are read as empty")
+    return table
+
+
+def _processes(rows: int, shaken: bool) -> int | None:
+    """Return the number of processes that share the work; None if threads are as fast."""
+    from rocking_cli.dynamics.parallel import MOST
+
+    count = min(os.cpu_count() or 1, MOST)
+    if count < 2 or rows < (LONG_SHAKEN if shaken else LONG):
+        return None
+    return count
+
+
+def _warn_of_sizes(found: Survey, watch: Watcher) -> None:
+    doubtful = [each for each in found.rows if each.doubt is not None]
+    for each in doubtful[:FEW]:
+        watch.warn(f"{one_line(each.name)}: {each.doubt}")
+    if len(doubtful) > FEW:
+        watch.warn(f"{len(doubtful) - FEW:,} more structures have doubtful sizes: JSON lists them")
+
+
+def _write_page(place: Path, found: Survey, table: str, watch: Watcher) -> None:
+    from rocking_cli import __version__
+    from rocking_cli.io.files import write_whole
+    from rocking_cli.questions.survey.page import render
+
+    today = datetime.now(UTC).strftime("%d %B %Y").lstrip("0")
+    page = render(found, table, [f"Written on {today} with rocking-cli {__version__}."]).encode()
+    write_whole(place, lambda stream: stream.write(page))
+    watch.note(f"wrote {place} ({len(page) / 1e6:.2g} MB)")

@@ -1,0 +1,301 @@
+"""View of a survey of structures, ranked, as text and as data."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from math import isnan
+from typing import Any, NamedTuple
+
+from rocking_cli.io.tables import Columns
+from rocking_cli.names import digits_apart, percent
+from rocking_cli.questions.survey.study import Bad, Survey, Surveyed
+from rocking_cli.studies.conclusion import Concluded, Conclusion
+from rocking_cli.text import cut, one_line
+from rocking_cli.views.column import Column, data_of, frame_of, of, table_of
+from rocking_cli.views.view import Table, View, number
+
+TOP = 20
+NAME = 30  # characters of a name in the table
+CAUTIONED = 3  # structures whose cautions are printed
+BLOCK = 10_000  # rows of a file written at a time
+FORMULA = ("=", "+", "-", "@")
+"""First characters of a text that a spreadsheet would read as a formula."""
+RANKED = {
+    "lambda": "by ground acceleration at uplift",
+    "ratio": "by the ratio of capacity to demand under the code of the site; structures with ratios below 1 fail",
+    "response": (
+        "by the share of motions that overturn them, then by the largest peak under the others, then by uplift "
+        "acceleration; an unknown outcome counts as overturning"
+    ),
+}
+
+
+class RankedStructure(NamedTuple):
+    """A row of a survey: the rank of a structure, from 1, and its results."""
+
+    rank: int
+    found: Surveyed
+
+
+def spaced(key: str) -> str:
+    """Return a keyword of a conclusion as words."""
+    return key.replace("_", " ")
+
+
+def _limit_state(row: RankedStructure) -> str | None:
+    return (row.found.verified.limit_state or None) if row.found.verified is not None else None
+
+
+def _not_counted(row: RankedStructure) -> str | None:
+    found = row.found.verified
+    return ", ".join(each.name for each in found.left_out) or None if found is not None else None
+
+
+def _peak(peak: float) -> str:
+    return "no uplift" if peak == 0 else number(peak, 3)
+
+
+STRUCTURE: tuple[Column[RankedStructure], ...] = (
+    Column("rank", of("rank"), head="rank"),
+    Column("name", of("found.name"), head="name", form=one_line, text=True),
+    Column("mechanism", of("found.mechanism"), head="mechanism", text=True),
+    Column("row", of("found.row")),
+    Column("line", of("found.line")),
+)
+OF_SITE: tuple[Column[RankedStructure], ...] = (
+    Column("ratio", of("found.ratio"), head="ratio"),
+    Column("concluded", of("found.verified.concluded.value"), head="verified", form=spaced, text=True),
+    Column("limit_state", _limit_state, head="governs", text=True),
+    Column("not_counted", _not_counted, head="not\ncounted", text=True),
+)
+UNDER_MOTIONS: tuple[Column[RankedStructure], ...] = (
+    Column("overturned", of("found.under.overturned"), head="overturn\nit", form=percent),
+    Column("unknown", of("found.under.unknown"), head="unknown", form=percent),
+    Column("peak_ratio", of("found.under.peak_ratio"), head="largest\npeak", form=_peak),
+    Column("peak_over", of("found.under.over"), text=True),
+    Column("outcome", of("found.under.concluded.value"), text=True),
+    Column("worst", of("found.under.worst"), text=True),
+)
+PARAMETERS: tuple[Column[RankedStructure], ...] = (
+    Column("lambda", of("found.lambda_"), head="lambda"),
+    Column("uplift", of("found.uplift"), "g"),
+    Column("direction", of("found.direction"), text=True),
+    Column("p", of("found.p"), "rad/s", "p\n[rad/s]"),
+    Column("phi_cr", of("found.phi_cr"), "rad", "phi_cr\n[rad]"),
+    Column("kappa1", of("found.kappa1")),
+    Column("kappa2", of("found.kappa2"), head="kappa2"),
+    Column("eta", of("found.eta"), head="eta"),
+    Column("no_block", of("found.no_block"), text=True),
+    Column("doubt", of("found.doubt"), text=True),
+    Column("caution", of("found.caution"), text=True),
+)
+
+
+def view(found: Survey, top: int = TOP) -> View:
+    """Show the most vulnerable structures, and how many of all overturn."""
+    parts: list[Table | str] = []
+    if found.rows:
+        parts = [*counts(found), table(found, top), *sentences(found, top)]
+    return View(lambda: data(found), parts)
+
+
+def data(found: Survey) -> dict[str, Any]:
+    """Return a survey as plain data."""
+    applying = _columns(found)
+    return {
+        "ranked_by": found.by,
+        "motions": list(found.motions),
+        "rows": [data_of(applying, row) for row in _ranked(found)],
+        "bad": [
+            {"row": each.row, "line": each.line, "name": one_line(each.name), "reason": each.reason}
+            for each in found.bad
+        ],
+    }
+
+
+def _columns(found: Survey) -> list[Column[RankedStructure]]:
+    """Return the columns that apply to a survey."""
+    return [
+        *STRUCTURE,
+        *(OF_SITE if found.by == "ratio" else ()),
+        *(UNDER_MOTIONS if found.motions else ()),
+        *PARAMETERS,
+    ]
+
+
+def _ranked(found: Survey, start: int = 0, stop: int | None = None) -> list[RankedStructure]:
+    return [RankedStructure(rank, each) for rank, each in enumerate(found.rows[start:stop], start + 1)]
+
+
+def blocks(found: Survey, *, for_spreadsheets: bool) -> Iterator[Columns]:
+    """Yield all rows in blocks; texts that a spreadsheet would compute get an apostrophe in front."""
+    for start in range(0, max(len(found.rows), 1), BLOCK):
+        yield columns(found, start, start + BLOCK, for_spreadsheets=for_spreadsheets)
+
+
+def columns(found: Survey, start: int = 0, stop: int | None = None, *, for_spreadsheets: bool = False) -> Columns:
+    """Return some of the rows as columns of a table."""
+    rows = _ranked(found, start, stop)
+    if not rows:
+        return {"rank": [], "name": [], "lambda": []}
+    applying = _columns(found)
+    made = frame_of(applying, rows)
+    for column in applying:
+        if column.text:
+            texts = map(one_line, made[column.heading])
+            made[column.heading] = [
+                f"'{each}" if for_spreadsheets and each.startswith(FORMULA) else each for each in texts
+            ]
+    return made
+
+
+def has_unknown(found: Survey) -> bool:
+    """Return whether the outcome of any structure is unknown under any motion."""
+    return any(each.under is not None and each.under.unknown for each in found.rows)
+
+
+def table(found: Survey, top: int, longest: int | None = NAME) -> Table:
+    """Return a table of the first rows, with names of at most `longest` characters."""
+    empty = {"unknown"} if not has_unknown(found) else set[str]()
+    if all(_not_counted(row) is None for row in _ranked(found)):
+        empty.add("not_counted")
+    shown = [column for column in _columns(found) if column.key not in empty]
+    whole = table_of(title(found), shown, _ranked(found, stop=top))
+    if longest is None:
+        return whole
+    return replace(whole, rows=[[rank, cut(name, longest), *cells] for rank, name, *cells in whole.rows])
+
+
+def title(found: Survey) -> str:
+    """Return the number of structures, as a heading."""
+    count = len(found.rows)
+    return f"{count:,} structure{'s' * (count != 1)}, the most vulnerable first"
+
+
+def counts(found: Survey) -> list[str]:
+    """Return the first sentences: how many structures fail or overturn, what governs, and which is the worst."""
+    rows = found.rows
+    said = []
+    if found.by == "ratio":
+        said.append(" ".join(_of_site(rows)))
+    if found.motions:
+        said.append(_of_motions(found))
+    if not said and len(rows) > 1:
+        first, last = rows[0], rows[-1]
+        said.append(
+            f"Of {_structures(len(rows))}, {_named([first])} uplifts at the lowest ground acceleration, "
+            f"{number(first.uplift, 3)} g, and {_named([last])} at the highest, {number(last.uplift, 3)} g."
+        )
+    return said
+
+
+def _of_site(rows: Sequence[Surveyed]) -> Iterator[str]:
+    """Yield how many structures do not satisfy the verification, which limit states govern them, and the worst."""
+    ends = [each.verified for each in rows if each.verified is not None]
+    fail = [end for end in ends if end.concluded in (Concluded.NOT_SATISFIED, Concluded.UNKNOWN)]
+    passed = sum(end.concluded is Concluded.SATISFIED for end in ends)
+    if fail:
+        does = "does" if len(fail) == 1 else "do"
+        yield f"{len(fail):,} of {_structures(len(rows))} {does} not satisfy the verification{_governing(fail)}."
+    elif passed == len(rows):
+        yield "All structures satisfy the verification." if passed > 1 else "The structure satisfies the verification."
+    else:
+        yield f"{passed:,} of {_structures(len(rows))} {'satisfies' if passed == 1 else 'satisfy'} the verification."
+    if without := [each for each, end in zip(rows, ends, strict=True) if end.concluded is Concluded.NOT_CHECKED]:
+        yield f"Not verified: {_named(without)}; `rocking verify` gives the reason."
+    least = rows[0].ratio
+    if least is not None and not isnan(least):
+        ratio = number(least, digits_apart(least, 1.0, 3))
+        yield f"The smallest ratio of capacity to demand is {ratio}, that of {_named(rows[:1])}."
+
+
+def _governing(fail: Sequence[Conclusion]) -> str:
+    """Return which limit states govern the structures that fail, as a clause; empty if a code has none."""
+    (first, count), *others = Counter(end.limit_state for end in fail).most_common()
+    if not first:
+        return ""
+    if not others:
+        return f"; {first} governs{' all of them' if count > 1 else ''}"
+    return f"; {first} governs {count:,}{''.join(f', {state} {n:,}' for state, n in others)} of them"
+
+
+def _of_motions(found: Survey) -> str:
+    """Return how many structures overturn, have an unknown outcome, and uplift under any of the motions."""
+    under = [each.under for each in found.rows if each.under is not None]
+    falls = sum(each.overturned > 0 for each in under)
+    doubtful = sum(bool(each.unknown) and each.overturned == 0 for each in under)
+    lifts = sum(each.at_most > 0 or each.peak_ratio > 0 for each in under)
+    motions = f"at least one of {len(found.motions)} motions" if len(found.motions) > 1 else found.motions[0]
+    unknown = f", {doubtful:,} may overturn (unknown outcome)" if doubtful else ""
+    verb = "overturns" if falls == 1 else "overturn"
+    return (
+        f"Under {motions}, {falls:,} of {_structures(len(under))} {verb}{unknown}, and {lifts:,} "
+        f"{'uplifts' if lifts == 1 else 'uplift'}."
+    )
+
+
+def _structures(count: int) -> str:
+    return f"{count:,} structure{'s' * (count != 1)}"
+
+
+def sentences(found: Survey, top: int | None = None) -> list[str]:
+    """Return sentences on how to read the rows."""
+    rows, many = found.rows, len(found.rows)
+    said = [f"Ranked {RANKED[found.by]}."]
+    if top is not None and many > top:
+        said[0] = f"Showing {top} of {many:,}, ranked {RANKED[found.by]}."
+    if found.motions:
+        said.append(
+            "Time histories are by the nonlinear model. The peak is the largest rotation over the critical rotation "
+            "among the motions that do not overturn the structure. One time history is one sample: use "
+            "`rocking respond` and `rocking margin` to see how close the result is."
+        )
+        said += _not_known(rows)
+    cautioned = [each for each in rows if each.caution is not None]
+    said += [f"Caution: {each.name}: {each.caution}" for each in cautioned[:CAUTIONED]]
+    if len(cautioned) > CAUTIONED:
+        said.append(f"{len(cautioned) - CAUTIONED:,} more structures have such a caution: JSON lists them all.")
+    if any(each.unprinted for each in rows):
+        said.append(
+            "Caution: formulas of the code have not been checked against the printed code yet: have them checked "
+            "before you rely on a verdict. `rocking verify` names them."
+        )
+    without = [each for each in rows if each.no_block is not None]
+    if without:
+        said.append(
+            f"{_named(without)}: no equivalent single block, so only lambda is given and not p; `rocking equiv` gives "
+            "the reason."
+        )
+    return said
+
+
+def _not_known(rows: Sequence[Surveyed]) -> Iterator[str]:
+    """Yield sentences on the structures with unknown outcomes, and on those with unchecked joints."""
+    doubtful = [each for each in rows if each.under is not None and each.under.unknown]
+    if doubtful:
+        yield (
+            f"{_named(doubtful)}: the outcome under at least one motion is unknown, as a joint opens or slides that "
+            "the model keeps closed: it may overturn. The peak leaves such motions out. Next: `rocking respond` names "
+            "the joint and the time."
+        )
+    unchecked = [each for each in rows if each.under is not None and each.under.unknown is None]
+    if unchecked:
+        yield f"Caution: the joints of {_named(unchecked)} are not checked: it is not known which of them stay closed."
+
+
+def _named(rows: Sequence[Surveyed], most: int = 3) -> str:
+    names = ", ".join(cut(one_line(each.name), NAME) for each in rows[:most])
+    return names if len(rows) <= most else f"{len(rows):,} structures ({names}, ...)"
+
+
+def bad_lines(found: Sequence[Bad], file: str, most: int) -> Iterator[str]:
+    """Yield the errors of structures that could not be used: of the first ones in full, then the number of others."""
+    for each in found[:most]:
+        said = str(each.error)
+        place = "" if said.startswith(f"{one_line(file)}:") else f"{one_line(file)}:{each.line}: "
+        place = place.removesuffix(f"{each.line}: ") if said.startswith(f"{each.line}: ") else place
+        yield f"{place}{said}"
+    if len(found) > most:
+        yield f"{len(found) - most:,} more structures cannot be used: `as_json` lists them all"

@@ -1,0 +1,1 @@
+"""`verify`: a mechanism verified by a code of practice."""

@@ -1,0 +1,96 @@
+"""`rocking verify`: verify a rocking mechanism of masonry by a code."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from rocking_cli.cli import complete, options, terminal
+from rocking_cli.cli.defaults import as_declared
+from rocking_cli.cli.groups import GroundMotions, Output
+from rocking_cli.cli.help import Command
+from rocking_cli.cli.quantities import Parsed, number
+from rocking_cli.questions.verify import heads
+
+
+def _point(text: str) -> tuple[float, float, str | None]:
+    """Return a point x,y of a body, or x,y,body."""
+    x, _, rest = text.partition(",")
+    y, _, body = rest.partition(",")
+    try:
+        return number(x), number(y), body.strip() or None
+    except ValueError:
+        raise ValueError(f"{text!r} is not a valid point: give x,y in m, or x,y,BODY, such as 0.3,8.0") from None
+
+
+@click.command(cls=Command, short_help="Verify a masonry mechanism by a code, such as NTC 2018.")
+@options.structure
+@click.option(
+    "--site", required=True, type=click.Path(), metavar="SITE.yaml", shell_complete=complete.files,
+    help=options.HELP["site"],
+)  # fmt: skip
+@click.option(
+    "--control", type=Parsed("point", _point), metavar="X,Y[,BODY]",
+    help="Control point, in m.  [default: centroid of the moving weights]",
+)  # fmt: skip
+@options.ground_motions
+@options.reading
+@options.scaling("1", "-1", "both")
+@options.opening
+@options.state
+@options.on_floor
+@options.plot("Plot the capacity curves")
+@heads.sheet
+@options.as_json
+@click.pass_context
+@options.grouped(asked=GroundMotions, output=Output)
+def command(
+    ctx: click.Context,
+    file: str | Path,
+    site: str,
+    asked: GroundMotions,
+    sheet: Path | None,
+    output: Output,
+    **question: Any,
+) -> None:
+    """Verify a rocking mechanism by the code that the site file names: the Italian, NTC 2018 and Circolare 7/2019.
+
+    The command compares the damage, linear and nonlinear methods for each direction, on the exact capacity curve and on
+    its straight-line approximation: the capacity by each method, which one governs, and why they differ. Every number
+    is given with its clause. The exit code is 0 whether the structure passes or fails.
+
+    With --record (repeatable), the dynamic method is added: time histories on the capacity curve, with and without the
+    confidence factor; with --polarity both, the worse of the two polarities governs. A record whose outcome is unknown,
+    because a joint opens or slides that the model keeps closed, does not pass. A set of records belongs to one limit
+    state, given by --state, and is checked against it alone. If the site has a floor, ground motions are carried to
+    it, unless --on-floor states that they are motions of the floor. Whether the records match the spectrum of the site
+    is not checked. --sheet writes the calculation sheet for submission: every formula with its
+    numbers, in English or Italian.
+
+    Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m.
+
+    \b
+    Example:
+      rocking new block > block.yaml
+      rocking new site > site.yaml
+      rocking verify block.yaml --site site.yaml
+      rocking verify block.yaml --site site.yaml --sheet block.html --language it
+      rocking verify block.yaml --site site.yaml --control 0.35,2.8
+      rocking verify block.yaml --site site.yaml --record "records/*.AT2" --target-pga 0.24
+    """
+    asked.check()
+    from rocking_cli.io.files import keep_apart
+    from rocking_cli.questions.verify.verb import verify
+
+    if sheet is None:
+        as_declared(question, *heads.HEAD)
+    motions = asked.motions
+    read = [file, site, question["logo"], *(str(each.path) for each in motions.records)]
+    keep_apart([("--plot", output.plot), ("--sheet", sheet)], read)
+    answer = verify(
+        file, site, motions=motions, polarity=asked.polarity, sheet=sheet, every_step=terminal.asked("verbose"),
+        origin=heads.command_line(ctx), watch=output.watch, **question,
+    )  # fmt: skip
+    output.show(answer)

@@ -1,0 +1,102 @@
+"""Calculation sheets of verifications, and the headings and sources of documents."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import NamedTuple
+
+from rocking_cli.ask.given import SiteLike, yaml_of
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.errors import InputError, Problem
+from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
+from rocking_cli.io.browser import as_pdf, browser
+from rocking_cli.io.files import check_writable, write_whole
+from rocking_cli.io.json_text import json_text
+from rocking_cli.processing.listed import Scaled
+from rocking_cli.questions.report.study import File, TitleBlock, file_of_motion, versions
+from rocking_cli.structure import Structure
+from rocking_cli.verification.code import SiteFile
+from rocking_cli.verification.results import Verification
+from rocking_cli.views.sheet.build import SheetSources, sheet, sheet_of
+from rocking_cli.views.sheet.document import Sheet
+from rocking_cli.views.sheet.language import Language
+
+
+class SheetOrigin(NamedTuple):
+    """Origin of a document: the command that wrote it, and the file of the structure as it was given."""
+
+    command: str
+    structure: File
+
+    @classmethod
+    def of(cls, call: str, structure: Structure) -> SheetOrigin:
+        """Return the origin of a document that a command, or a call of Python, writes."""
+        file = structure.file
+        if file is None:
+            return cls(call, File(structure.name, yaml_of(structure.mechanism).encode()))
+        return cls(call, File(file, original(STANDARD_INPUT if file == name_of(STANDARD_INPUT) else file)))
+
+
+class Head(NamedTuple):
+    """Heading of a document, as it is given."""
+
+    project: str | None = None
+    place: str | None = None
+    author: str | None = None
+    logo: str | Path | None = None
+
+    def block(self, origin: SheetOrigin, language: str = "en") -> TitleBlock:
+        """Return the title block, with the date of today. Raises `InputError` if the logo cannot be used."""
+        picture = None
+        if self.logo is not None:
+            from rocking_cli.documents.logo import embedded
+
+            picture = embedded(Path(self.logo))
+        today = Language(language).day(datetime.now(UTC).date())
+        return TitleBlock(origin.command, today, self.project, self.place, self.author, picture)
+
+
+def check(file: Path, site: SiteFile, language: str) -> None:
+    """Raise `InputError`, before any work, if a sheet cannot be written."""
+    if file.suffix.lower() not in (".html", ".docx", ".pdf"):
+        raise InputError(Problem("give a file name that ends in .html, .docx or .pdf", str(file)))
+    check_writable(file)
+    sheet_of(site).language(language)
+    if file.suffix.lower() == ".docx":
+        from rocking_cli.documents.sheet_docx import check_package
+
+        check_package()
+    if file.suffix.lower() == ".pdf":
+        browser()
+
+
+def sheet_for(
+    found: Verification, site: SiteFile, given: SiteLike, motions: Sequence[Scaled], language: str,
+    title: TitleBlock, origin: SheetOrigin,
+) -> Sheet:  # fmt: skip
+    """Return the sheet of a verification, with the checksums of the files that were given."""
+    if isinstance(given, str | Path):
+        of_site = File(str(given), original(given))
+    else:
+        of_site = File("site", json_text(given).encode())
+    records = {each.motion.name: file_of_motion(each) for each in motions}
+    sources = SheetSources(origin.structure, of_site, records, versions(found.mechanism))
+    return sheet(found, site, Language(language), title, sources)
+
+
+def write(file: Path, content: Sheet, found: Verification, watch: Watcher) -> None:
+    """Write a sheet, and tell that it was written."""
+    if file.suffix.lower() == ".docx":
+        from rocking_cli.documents.sheet_docx import render as render_docx
+
+        data = render_docx(content, found.mechanism)
+    else:
+        from rocking_cli.documents.sheet_page import render
+
+        data = render(content, found.mechanism).encode()
+        if file.suffix.lower() == ".pdf":
+            data = as_pdf(data)
+    write_whole(file, lambda stream: stream.write(data))
+    watch.note(f"wrote {file} ({len(data) / 1e6:.2g} MB)")

@@ -1,0 +1,144 @@
+"""`rk.verify`: verify a rocking mechanism of masonry by a code."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Unpack
+
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.given import SiteLike, StructureLike, site_of, structure_of
+from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, signs_of
+from rocking_cli.ask.numbers import refuse_idle, takes_numbers
+from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.errors import InputError
+from rocking_cli.names import OPENING
+from rocking_cli.verification.results import Verification
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rocking_cli.processing.listed import Scaled
+
+
+@takes_numbers
+def verify(
+    structure: StructureLike,
+    site: SiteLike,
+    *,
+    control: tuple[float, float] | tuple[float, float, str | None] | None = None,
+    motions: Motion | Motions | Sequence[Motion] = (),
+    polarity: str | int = "1",
+    state: str | None = None,
+    on_floor: bool = False,
+    opening: float = OPENING,
+    sheet: str | Path | None = None,
+    language: str = "en",
+    project: str | None = None,
+    place: str | None = None,
+    author: str | None = None,
+    logo: str | Path | None = None,
+    every_step: bool = False,
+    origin: str | None = None,
+    watch: Watcher = SILENT,
+    **options: Unpack[MotionArguments],
+) -> Answer[Verification]:
+    """Verify a rocking mechanism of masonry by a code, such as the Italian: NTC 2018 and Circolare 7/2019.
+
+    Parameters
+    ----------
+    structure : Mechanism, str or Path
+        The structure, or its YAML file.
+    site : mapping, str or Path
+        Fields of a site file, or the file.
+    control : tuple, optional
+        Control point x, y [m], and the body it is on; by default the centroid of the moving weights.
+    motions : GroundMotion, Pulse, str or Path, or a sequence of these
+        Motions of the dynamic method: records that match the spectrum of the site. An unknown outcome does not pass.
+    polarity : {"1", "-1", "both"}
+        Polarity of the motions: as given, reversed, or both, of which the worse governs.
+    state : str, optional
+        Limit state to which the motions belong, such as `"SLC"`; by default SLV. They are checked against it alone.
+    on_floor : bool
+        Whether the motions are those of the floor of the site; if not, ground motions are carried to it.
+    opening : float
+        Largest opening of a joint up to which a history is valid, over D_cr.
+    sheet : str or Path, optional
+        File for the calculation sheet: .html, .docx with an extra package, or .pdf with a browser.
+    language : {"en", "it"}
+        Language of the sheet.
+    project, place, author, logo : str, str, str, path, optional
+        Entries for the heading of the sheet, and a picture in .png, .jpg or .svg.
+    every_step : bool
+        Whether the answer lists every line of the calculation.
+    origin : str, optional
+        What the sheet says of how it was made; by default this function and the structure.
+    watch : Watcher
+        Told what was read and written, how far the work is, and which of several motions cannot be used.
+    **options
+        How the motions are read, corrected and scaled: see `rocking_cli.ask.ground_motions.MotionArguments`.
+
+    Returns
+    -------
+    Answer of Verification
+        `directions` holds the results of each direction, with `methods`, `states` and `workings`.
+
+    Raises
+    ------
+    InputError
+        If the site, the control point or a file cannot be used, or the structure has no capacity curve.
+    MechanismError
+        If the structure is not stable at rest.
+    SolverError
+        If a motion cannot be simulated to its end.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> site = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
+    >>> answer = rk.verify(rk.Block(width=0.6, height=8.0), site)
+    >>> round(answer.directions[rk.Direction.POSITIVE].counts.a_g, 6)
+    0.193382
+    """
+    from rocking_cli.verification.check import refuse, with_histories
+    from rocking_cli.verification.check import verify as study
+    from rocking_cli.verification.results import Histories, control_at
+    from rocking_cli.views.verification import table, view
+
+    signs, given, known = signs_of(polarity), Motions.of(motions, options), site_of(site)
+    if not given and (state is not None or on_floor):
+        raise InputError("`state` and `on_floor` describe records: give `motions`")
+    if not given and signs != (1,):
+        raise InputError("`polarity` reverses a ground motion: give `motions`")
+    if not given:
+        refuse_idle("without ground motions", opening=opening != OPENING)
+    if sheet is None:
+        head = {"project": project, "place": place, "author": author, "logo": logo}
+        refuse_idle("without a calculation sheet: give `sheet`", language=language != "en", **head)
+    refuse(known, control=control is not None, motions=bool(given))
+    if sheet is not None:
+        from rocking_cli.questions.verify import sheets
+
+        sheets.check(Path(sheet), known, language)
+    ready = structure_of(structure, watch, opening)
+    found = study(ready, known, None if control is None else control_at(ready.mechanism, *control))
+    chosen: list[Scaled] = []
+    if given:
+        chosen = given.gather(ready.growth, watch)
+        with watch.progress(len(chosen), "records") as advance:
+            scaled = [each.motion.scaled(each.factor) for each in chosen]
+            found = with_histories(found, ready, known, Histories(scaled, signs, state, on_floor, advance))
+    if sheet is not None:
+        source = sheets.SheetOrigin.of(origin or "rocking_cli.verify(...)", ready)
+        title = sheets.Head(project, place, author, logo).block(source, language)
+        content = sheets.sheet_for(found, known, site, chosen, language, title, source)
+        sheets.write(Path(sheet), content, found, watch)
+    shown = view(found, known.site.name, every_step=every_step)
+    return Answer("verification", found, shown, partial(table, found), partial(_figure, found))
+
+
+def _figure(found: Verification) -> Figure:
+    from rocking_cli.views.verification import showing
+
+    return showing(found).draw(found)

@@ -1,1 +1,0 @@
-"""What shake-table tests say of the tool, and of a structure."""

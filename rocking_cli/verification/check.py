@@ -1,0 +1,162 @@
+"""Verification of a structure by the code that a site file names."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from numbers import Real
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from rocking_cli.dynamics.resting import early_failures
+from rocking_cli.errors import InputError, PluginError, Problem
+from rocking_cli.io.yaml_file import Document, parse, read_text
+from rocking_cli.plugins.errors import blame
+from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import LeftOut
+from rocking_cli.studies.file_part import problems_of
+from rocking_cli.text import did_you_mean
+from rocking_cli.verification.code import HINT, USUAL, Code, SiteFile, codes
+from rocking_cli.verification.results import Control, Histories, Verification, Verified
+
+
+def read_site(path: Path) -> SiteFile:
+    """Read a site file, for any installed code. Raises `InputError` with every problem of the file."""
+    return site_in(parse(read_text(path, "site"), str(path), "site", HINT))
+
+
+def site_in(document: Document) -> SiteFile:
+    """Return the site in a parsed file.
+
+    Parameters
+    ----------
+    document : Document
+        The file.
+
+    Raises
+    ------
+    InputError
+        With every problem of the file: place, field, and valid values.
+    """
+    code = document.data.get("code", USUAL)
+    if isinstance(code, str) and code not in codes():
+        problem = document.at(("code",), f"there is no code {code!r}", did_you_mean(code, list(codes())))
+        raise InputError(*document.problems, problem)
+    code = code if isinstance(code, str) else USUAL
+    model, site = codes()[code].site, None
+    lister = HINT if code == USUAL else f"`rocking new site` prints one to start from, if given the code {code}"
+    try:
+        site = model.model_validate(document.data)
+    except ValidationError as error:
+        document.problems += problems_of(document, model, error, owner="the site", lister=lister)
+    document.check()
+    assert site is not None  # else there is a problem
+    return SiteFile(site, document)
+
+
+def code_of(site: SiteFile) -> Code:
+    """Return the code that a site names."""
+    return codes()[site.site.code]
+
+
+def of_each(site: SiteFile) -> SiteFile:
+    """Return the site for a survey, without data of the structure itself, which are left to each row."""
+    return replace(site, site=code_of(site).of_each(site.site))
+
+
+def refuse(site: SiteFile, *, control: bool = False, motions: bool = False) -> None:
+    """Raise `InputError` if the code of a site takes no control point, or no ground motions, but there are some."""
+    code = code_of(site)
+    if control and not code.takes_control:
+        raise InputError(Problem(f"{code.key} takes no control point", field="`control`", hint="leave it out"))
+    if motions and not code.takes_motions:
+        hint = "leave out the ground motions"
+        raise InputError(Problem(f"{code.key} has no method with time histories", hint=hint))
+
+
+def verify(
+    structure: Structure,
+    site: SiteFile,
+    control: Control | None = None,
+) -> Verification:
+    """Verify a structure by the code of a site, by its static methods.
+
+    Parameters
+    ----------
+    structure : Structure
+        The structure.
+    site : SiteFile
+        The site.
+    control : Control, optional
+        The control point; by default that of the code.
+
+    Raises
+    ------
+    InputError
+        If the site lacks values that the structure needs, or the structure has no capacity curve.
+    MechanismError
+        If the structure does not stand.
+    """
+    refuse(site, control=control is not None)
+    structure.ask("verification")
+    structure.statics  # noqa: B018 - what does not stand, or jumps, is refused with its name
+    code = code_of(site)
+    taken = {"control": control} if code.takes_control else {}
+    try:
+        found = _held(code.verify(structure.mechanism, site.site, **taken), code, "verify")
+        mechanism = structure.mechanism
+        before = {each.failure.joint: 0 for each in early_failures(mechanism) if each.direction in mechanism.directions}
+        starts_first = [LeftOut("mechanism", joint, "starts_first") for joint in before]
+        return replace(found, left_out=[*found.left_out, *starts_first])
+    except InputError as error:
+        own = type(structure.mechanism).model_fields
+        placed = site.placed(error).problems
+        raise InputError(
+            *(
+                replace(each, file=structure.file) if each.file is None and each.field in {*own, "mechanism"} else each
+                for each in placed
+            )
+        ) from None
+
+
+def _held(found: object, code: Code, method: str) -> Verification:
+    """Return an answer of a code if it is valid; anything else that a plugin returns is an error of the plugin."""
+    failed = f"the code {code.key} failed in {method}"
+    with blame(failed, type(code).__module__):
+        if isinstance(found, Verification) and found.directions and all(map(_is_whole, found.directions.values())):
+            return found
+    raise PluginError(
+        f"{failed}: it must return a Verification with at least one direction, each governed by one of its methods"
+    )
+
+
+def _is_whole(each: Verified) -> bool:
+    """Return whether a direction is governed by one of its methods, and has a valid ratio and verdict."""
+    return each.governs in each.methods and isinstance(each.ratio, Real | None) and each.passed in (None, True, False)
+
+
+def with_histories(found: Verification, structure: Structure, site: SiteFile, asked: Histories) -> Verification:
+    """Return a verification with time histories under a set of records.
+
+    Parameters
+    ----------
+    found : Verification
+        The verification by the static methods.
+    structure : Structure
+        The structure.
+    site : SiteFile
+        The site.
+    asked : Histories
+        The records, with their polarities and limit state.
+
+    Raises
+    ------
+    InputError
+        If the code has no method with time histories, there is no motion, the site lacks the limit state or a floor on
+        which the motions could be, or the restitution is not valid for a time history.
+    SolverError
+        If a motion cannot be simulated to its end.
+    """
+    refuse(site, motions=True)
+    code = code_of(site)
+    return _held(code.with_histories(found, structure, site.site, asked), code, "with_histories")

@@ -1,0 +1,204 @@
+"""The interface of a code of practice: a site file, and a class derived from `Code`, found through an entry point."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import EntryPoint
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core.fields import Name
+from rocking_cli.errors import InputError, MechanismError, Problem
+from rocking_cli.io.yaml_file import Document
+from rocking_cli.plugins.errors import blame, failed, guard
+from rocking_cli.plugins.registry import Plugins, origin
+from rocking_cli.structure import Structure
+from rocking_cli.studies.file_part import Part
+from rocking_cli.verification.results import Control, Histories, Verification, Verified
+
+ANSWERS = ("verify", "with_histories", "of_each", "showing", "sheet")
+"""The methods in which a code answers: whatever fails there is an error of the plugin."""
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number of a code that a structure can be designed for; of two directions the smaller counts.
+
+    Parameters
+    ----------
+    meaning : str
+        Meaning of the number, in a few words.
+    of : callable, optional
+        `of(verified)` returns the number from the result of a direction, or None if the site lacks values for it.
+    of_structure : callable, optional
+        `of_structure(mechanism, direction)` returns the number of a structure without a site instead.
+    unit : str
+        Unit of the number; empty if it is dimensionless.
+    """
+
+    meaning: str
+    of: Callable[[Any], float | None] | None = None
+    of_structure: Callable[[Mechanism, Direction], float] | None = None
+    unit: str = ""
+
+
+class Code(ABC):
+    """A code of practice.
+
+    Attributes
+    ----------
+    key : str
+        Name of the code in site files, and of its entry point of `rocking.codes`.
+    name, edition : str
+        Name of the code for readers, and its edition.
+    site : type of Site
+        The fields of a site file for it.
+    starter : str
+        A commented site file that works as it is; if it is empty, it is made from the fields and their examples.
+    numbers : mapping of str to Number
+        Numbers of this code for which a structure can be designed, in addition to the `ratio` of every code.
+    takes_control : bool
+        Whether `verify` takes a control point.
+    """
+
+    key: ClassVar[str]
+    name: ClassVar[str]
+    edition: ClassVar[str]
+    site: ClassVar[type[Site]]
+    starter: ClassVar[str] = ""
+    numbers: ClassVar[Mapping[str, Number]] = {}
+    takes_control: ClassVar[bool] = False
+
+    def __init_subclass__(cls, **named: Any) -> None:
+        """Wrap the methods of a subclass, so that errors in them are reported as errors of the plugin."""
+        super().__init_subclass__(**named)
+        guard(cls, ANSWERS, failed("code", "key"))
+
+    @abstractmethod
+    def verify(self, mechanism: Mechanism, site: Any, control: Control | None = None) -> Verification:
+        """Verify a structure at a site.
+
+        Parameters
+        ----------
+        mechanism : Mechanism
+            The structure.
+        site : Site
+            The site, an object of the class attribute `site`.
+        control : Control, optional
+            The control point, passed only to a code that takes one; None for its own choice.
+
+        Raises
+        ------
+        InputError
+            If the site lacks values that the structure needs; a `Problem` with a `field` of the site is reported with
+            its line.
+        """
+
+    @property
+    def takes_motions(self) -> bool:
+        """Whether the code has a method with time histories."""
+        return type(self).with_histories is not Code.with_histories
+
+    def found(self, mechanism: Mechanism, directions: Mapping[Direction, Verified], **more: Any) -> Verification:
+        """Return the answer of `verify` from what was found in each direction; `more` are fields of `Verification`."""
+        return Verification(mechanism, self.key, self.name, self.edition, directions, **more)
+
+    def with_histories(self, found: Any, structure: Structure, site: Any, asked: Histories) -> Verification:
+        """Return a verification with time histories; only a code that overrides this method takes ground motions.
+
+        Parameters are those of `rocking_cli.verification.check.with_histories`.
+        """
+        raise NotImplementedError
+
+    def of_each(self, site: Any) -> Any:
+        """Return the site for a survey, without data of the structure itself, which are left to each row."""
+        return site
+
+    def showing(self) -> Any:
+        """Return how its results are shown, a `rocking_cli.views.verification.Showing`; None for the usual way."""
+        return None
+
+    def sheet(self) -> Any:
+        """Return its calculation sheet, a `rocking_cli.views.sheet.build.SheetOfCode`; None if it has none."""
+        return None
+
+
+HINT = "`rocking new site` prints one to start from"
+USUAL = "NTC2018"
+"""The code of a site file that names none."""
+
+
+class Site(Part):
+    """Fields of a site file for every code; a code adds its own."""
+
+    code: str = Field(USUAL, description="the code to verify by")
+    name: Name | None = Field(None, description="what to call the site")
+
+
+@dataclass(frozen=True)
+class SiteFile:
+    """A site, and the file with the lines on which its values stand.
+
+    Parameters
+    ----------
+    site : Site
+        The site.
+    document : Document
+        The file.
+    """
+
+    site: Site
+    document: Document
+
+    def placed(self, error: InputError) -> InputError:
+        """Return an error with its problems; those of fields of the site get their place in the file."""
+        return InputError(*(self._placed(each) for each in error.problems))
+
+    def _placed(self, problem: Problem) -> Problem:
+        place = tuple((problem.field or "").split("."))
+        if problem.file is not None or place not in self.document.values:
+            return problem
+        return self.document.at(place, problem.message, problem.hint)
+
+
+class Codes(Plugins[Code]):
+    """Installed codes, by their names in site files. Listing names loads nothing; looking one up loads it.
+
+    Raises
+    ------
+    InputError
+        On looking up an unknown name.
+    MechanismError
+        On looking up a plugin that cannot be loaded, is not a code, or has a name that two packages claim.
+    """
+
+    group = "rocking.codes"
+    kind = "code"
+
+    @staticmethod
+    def accept(loaded: object, point: EntryPoint) -> Code:
+        """Return an instance of a loaded class if it is a complete code of its name. Raises `MechanismError` if not."""
+        if not (isinstance(loaded, type) and issubclass(loaded, Code)) or loaded.__abstractmethods__:
+            raise MechanismError(f"{origin(point)} is not a code: it must derive from Code and be complete")
+        texts = [getattr(loaded, key, None) for key in ("name", "edition")]
+        if getattr(loaded, "key", None) != point.name or not all(isinstance(each, str) for each in texts):
+            raise MechanismError(f"{origin(point)} is not a code: it needs key = {point.name!r}, a name and an edition")
+        fields = getattr(loaded, "site", None)
+        if not (isinstance(fields, type) and issubclass(fields, Site)):
+            raise MechanismError(f"{origin(point)} is not a code: its site must be a class derived from Site")
+        numbers = getattr(loaded, "numbers", None)
+        if not (isinstance(numbers, Mapping) and all(isinstance(each, Number) for each in numbers.values())):
+            raise MechanismError(f"{origin(point)} is not a code: its numbers must be a mapping of str to Number")
+        with blame(f"{origin(point)} cannot be made", loaded.__module__):
+            return loaded()
+
+
+@cache
+def codes() -> Codes:
+    """Return the installed codes."""
+    return Codes()
