@@ -277,7 +277,8 @@ def is_sound(place: Path, sound: Path, told: str) -> None:
 WAITS = """
 import sys, time
 from pathlib import Path
-import rocking_cli.questions.fragility.command, rocking_cli.questions.fragility.study_output, rocking_cli.questions.fragility.campaign
+import rocking_cli.questions.fragility.command, rocking_cli.questions.fragility.study_output
+import rocking_cli.questions.fragility.campaign
 import rocking_cli.dynamics.kernels, rocking_cli.questions.fragility.view
 from rocking_cli.cli.main import main
 Path(sys.argv[1]).touch()

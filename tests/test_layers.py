@@ -62,6 +62,20 @@ def test_no_layer_below_the_questions_imports_by_the_name_of_the_package(package
     assert not found, "\n".join(found)
 
 
+def test_a_question_draws_its_own_pictures(package):
+    """A picture is imported by its name when it is drawn, which the contract on questions does not see."""
+    found = [
+        (place.split("/")[2], part.value.split(".")[1])
+        for place, tree in package.items()
+        if place.startswith("rocking_cli/questions/")
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and ast.unparse(node.func) == "drawn"
+        for part in ast.walk(node.args[0])
+        if isinstance(part, ast.Constant) and part.value.startswith("questions.")
+    ]
+    assert len(found) > 10 and {pair for pair in found if pair[0] != pair[1]} == {("animate", "respond")}
+
+
 # Classes that share a name: plugins import the load of `rocking_cli.core`, users the mechanism of `rocking_cli`; the
 # shipped kernels are made of the text of theirs.
 SHARED = {

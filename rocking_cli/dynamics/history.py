@@ -121,7 +121,7 @@ def follow(
     most_kept: int = MOST_IMPACTS,
     eta: float = float("nan"),
 ) -> History:
-    """Simulate the time history of one model; most arguments are those of `Engine.follow` of `rocking_cli.studies.engines`.
+    """Simulate the time history of one model; most arguments are those of `rocking_cli.studies.engines.follow`.
 
     `release` is 0 without a release; `most_kept` is the number of impacts to keep; `eta` is the restitution of both
     directions, NaN for that of the model.

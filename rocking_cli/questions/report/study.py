@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import platform
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from hashlib import sha256
-from importlib.metadata import version
 from math import pi
 
 import numpy as np
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.history import RTOL, TAIL, History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import CLOSE, disagree
@@ -22,7 +18,6 @@ from rocking_cli.excitation.doubts import coarse_for, doubts
 from rocking_cli.excitation.measures import Measures, measure
 from rocking_cli.excitation.pulse_fit import PulseFit, fit_pulses
 from rocking_cli.excitation.pulses import Pulse
-from rocking_cli.excitation.records.opening import name_of, original
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.questions.error.study import Linearisation, compare
 from rocking_cli.questions.margin.study import LEVELS, Margin, margin
@@ -32,6 +27,7 @@ from rocking_cli.studies.conclusion import Conclusion, worst
 from rocking_cli.studies.engines import respond
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.studies.picture import Picture, picture
+from rocking_cli.studies.provenance import File, TitleBlock, file_of_motion, versions
 from rocking_cli.studies.response import Question, Response, response_of
 from rocking_cli.studies.under_pulses import parse_shape, pulsed_model
 
@@ -42,53 +38,6 @@ NEAR = 1.25  # a factor on the motion within which the opposite outcome of some 
 POINTS = 80  # of each side of a map
 OMEGAS, TALLEST = (1.0, 10.0), 10.0  # omega_g/p of a map, and a_g/(g lambda) up to which it goes at least
 BEYOND = 1.15  # times a mark, that a map goes further
-PACKAGES = ("numpy", "scipy", "matplotlib")
-
-
-@dataclass(frozen=True)
-class File:
-    """An input file as the user gave it: its name and its content, with a checksum of the content."""
-
-    name: str
-    content: bytes
-
-    @property
-    def checksum(self) -> str:
-        """SHA-256, in hexadecimal."""
-        return sha256(self.content).hexdigest()
-
-    @property
-    def text(self) -> str:
-        """The content as text."""
-        return self.content.decode("utf-8", errors="replace")
-
-
-@dataclass(frozen=True)
-class TitleBlock:
-    """Heading of a report: the project, its place and author, and how and when the report was made.
-
-    Parameters
-    ----------
-    command, date : str
-        The command that wrote the report, and the date.
-    project, place, author : str, optional
-        As the user gave them.
-    logo : str, optional
-        Address of a picture to show in the heading.
-    """
-
-    command: str
-    date: str
-    project: str | None = None
-    place: str | None = None
-    author: str | None = None
-    logo: str | None = None
-
-    @property
-    def known(self) -> dict[str, str]:
-        """The given ones of project, place and author, by name."""
-        given = {"project": self.project, "place": self.place, "author": self.author}
-        return {name: text for name, text in given.items() if text}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -308,17 +257,6 @@ def _error_of_block(structure: Structure) -> tuple[Sequence[Linearisation], Sequ
         return [], [], str(error)
 
 
-def versions(mechanism: Mechanism) -> dict[str, str]:
-    """Return the versions of this package, of the mechanism's package, of Python and of the packages for computing."""
-    registry, name = Registry(), mechanism.mechanism
-    return {
-        "rocking-cli": version("rocking-cli"),
-        f"mechanism {name}": registry.package_of(name) if name in registry else "not installed as a plugin",
-        "Python": platform.python_version(),
-        **{package: version(package) for package in PACKAGES},
-    }
-
-
 def steps(given: Sequence[Scaled]) -> int:
     """Return the number of steps of which `gather` reports the progress."""
     return len(given) + 2
@@ -344,11 +282,6 @@ def _result(structure: Structure, given: Scaled, polarities: Sequence[int], arou
         margin=margin(structure.model("nonlinear"), scaled, polarities, around=around),
         fits=fits,
     )
-
-
-def file_of_motion(given: Scaled) -> File | None:
-    """Return the file of a ground motion; None for a pulse."""
-    return None if given.file is None else File(name_of(str(given.file)), original(str(given.file)))
 
 
 def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:

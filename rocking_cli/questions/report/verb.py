@@ -21,9 +21,10 @@ if TYPE_CHECKING:
     from rocking_cli.io.tables import Columns
     from rocking_cli.processing.listed import Scaled
     from rocking_cli.questions.report.page import VerifiedReport
-    from rocking_cli.questions.report.study import Assessment, TitleBlock
+    from rocking_cli.questions.report.study import Assessment
     from rocking_cli.questions.verify.sheets import SheetOrigin
     from rocking_cli.structure import Structure
+    from rocking_cli.studies.provenance import TitleBlock
     from rocking_cli.verification.code import SiteFile
     from rocking_cli.verification.results import Histories
 

@@ -15,8 +15,8 @@ from rocking_cli.io.browser import as_pdf, browser
 from rocking_cli.io.files import check_writable, write_whole
 from rocking_cli.io.json_text import json_text
 from rocking_cli.processing.listed import Scaled
-from rocking_cli.questions.report.study import File, TitleBlock, file_of_motion, versions
 from rocking_cli.structure import Structure
+from rocking_cli.studies.provenance import File, TitleBlock, file_of_motion, versions
 from rocking_cli.verification.code import SiteFile
 from rocking_cli.verification.results import Verification
 from rocking_cli.views.sheet.build import SheetSources, sheet, sheet_of

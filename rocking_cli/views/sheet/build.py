@@ -8,7 +8,7 @@ from typing import Any
 
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.plugins.errors import blame
-from rocking_cli.questions.report.study import File, TitleBlock
+from rocking_cli.studies.provenance import File, TitleBlock
 from rocking_cli.verification.check import code_of
 from rocking_cli.verification.code import SiteFile
 from rocking_cli.verification.results import Verification

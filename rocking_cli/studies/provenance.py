@@ -1,0 +1,77 @@
+"""What a document that is handed over says of itself: its heading, the files it was made from, and the versions."""
+
+from __future__ import annotations
+
+import platform
+from dataclasses import dataclass
+from hashlib import sha256
+from importlib.metadata import version
+
+from rocking_cli.core import Mechanism
+from rocking_cli.core.registry import Registry
+from rocking_cli.excitation.records.opening import name_of, original
+from rocking_cli.processing.listed import Scaled
+
+PACKAGES = ("numpy", "scipy", "matplotlib")
+
+
+@dataclass(frozen=True)
+class File:
+    """An input file as the user gave it: its name and its content, with a checksum of the content."""
+
+    name: str
+    content: bytes
+
+    @property
+    def checksum(self) -> str:
+        """SHA-256, in hexadecimal."""
+        return sha256(self.content).hexdigest()
+
+    @property
+    def text(self) -> str:
+        """The content as text."""
+        return self.content.decode("utf-8", errors="replace")
+
+
+@dataclass(frozen=True)
+class TitleBlock:
+    """Heading of a report: the project, its place and author, and how and when the report was made.
+
+    Parameters
+    ----------
+    command, date : str
+        The command that wrote the report, and the date.
+    project, place, author : str, optional
+        As the user gave them.
+    logo : str, optional
+        Address of a picture to show in the heading.
+    """
+
+    command: str
+    date: str
+    project: str | None = None
+    place: str | None = None
+    author: str | None = None
+    logo: str | None = None
+
+    @property
+    def known(self) -> dict[str, str]:
+        """The given ones of project, place and author, by name."""
+        given = {"project": self.project, "place": self.place, "author": self.author}
+        return {name: text for name, text in given.items() if text}
+
+
+def file_of_motion(given: Scaled) -> File | None:
+    """Return the file of a ground motion; None for a pulse."""
+    return None if given.file is None else File(name_of(str(given.file)), original(str(given.file)))
+
+
+def versions(mechanism: Mechanism) -> dict[str, str]:
+    """Return the versions of this package, of the mechanism's package, of Python and of the packages for computing."""
+    registry, name = Registry(), mechanism.mechanism
+    return {
+        "rocking-cli": version("rocking-cli"),
+        f"mechanism {name}": registry.package_of(name) if name in registry else "not installed as a plugin",
+        "Python": platform.python_version(),
+        **{package: version(package) for package in PACKAGES},
+    }
