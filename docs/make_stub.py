@@ -11,6 +11,7 @@ from importlib.metadata import distribution
 from pathlib import Path
 
 import rocking_cli
+from rocking_cli.rooms import names
 
 STUB = Path(rocking_cli.__file__).with_suffix(".pyi")
 
@@ -21,6 +22,7 @@ def stub() -> str:
     own = distribution("rocking-cli").entry_points.select(group="rocking.mechanisms")
     found = [(point.module, point.attr) for point in own]
     found += [(f"rocking_cli.{home}", name) for home, names in rocking_cli._HOME.items() for name in names]
+    found += [(module, name) for name, module in names().items()]
     lines += [f"from {module} import {name} as {name}" for module, name in sorted(found)]
     return "\n".join([*lines, "", "__version__: str", "mechanisms: Registry", ""])
 

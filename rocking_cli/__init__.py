@@ -19,33 +19,11 @@ from typing import Any
 
 __version__ = "0.1.0"
 
-# What is in which module. The stub beside this file, `__init__.pyi`, is written from it by `make stub`.
+# What is in which module; `rooms` finds what the questions offer. The stub beside this file, `__init__.pyi`, is written
+# from both by `make stub`.
 _HOME = {
-    "questions.animate.verb": ["animate"],
     "ask.answer": ["Answer", "MappingAnswer"],
-    "questions.design.verb": ["design"],
-    "questions.equivalent.verb": ["equivalent"],
-    "questions.fragility.verb": ["fragility"],
-    "questions.margin.verb": ["margin", "shares"],
-    "questions.overturning.verb": ["overturning", "overturning_curves", "overturning_map"],
-    "questions.pulse.verb": ["pulse"],
-    "questions.record.verb": ["record", "response_spectrum"],
-    "questions.report.verb": ["report"],
-    "questions.respond.verb": ["respond"],
-    "questions.fragility.results": ["results"],
-    "questions.spectrum.verb": ["spectrum"],
-    "questions.respond.motions": ["correct", "on_floor", "respond_around", "respond_each"],
     "ask.several": ["Answers"],
-    "questions.select.verb": ["select"],
-    "questions.selfcheck.verb": ["selfcheck"],
-    "questions.calibrate.verb": ["calibrate"],
-    "questions.collapse.verb": ["collapse"],
-    "questions.draw.verb": ["draw"],
-    "questions.equiv.verb": ["equiv"],
-    "questions.error.verb": ["error"],
-    "questions.score.verb": ["score"],
-    "questions.survey.verb": ["survey"],
-    "questions.verify.verb": ["verify"],
     "core": ["Body", "Direction", "Equivalence", "EquivalentBlock", "Mechanism", "RigidMotion", "equivalent_block"],
     "core.registry": ["Registry"],
     "dynamics.batch": ["Runs", "respond_many"],
@@ -82,12 +60,15 @@ def _own_mechanisms() -> dict[str, str]:
     return {point.value.partition(":")[2]: point.name for point in own}
 
 
-__all__ = sorted(["__version__", "mechanisms", *_MODULES])
-
-
 def __getattr__(name: str) -> Any:
     if name in _MODULES:
         return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
+    from rocking_cli.rooms import names  # not for every import of the package
+
+    if name == "__all__":
+        return sorted(["__version__", "mechanisms", *_MODULES, *names()])
+    if name in names():
+        return getattr(import_module(names()[name]), name)
     if name == "mechanisms":
         from rocking_cli.core.registry import Registry
 
@@ -98,4 +79,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted([*__all__, *_own_mechanisms()])
+    return sorted([*__getattr__("__all__"), *_own_mechanisms()])

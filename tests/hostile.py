@@ -9,7 +9,8 @@ from functools import cache
 import click
 from hypothesis import strategies as st
 
-from rocking_cli.cli.main import COMMANDS, main
+from rocking_cli.cli.main import main
+from rocking_cli.rooms import commands
 from tests.conftest import EXAMPLES
 from tests.test_record_formats import MADE
 
@@ -116,7 +117,7 @@ def command_lines(draw, structures, motions, outputs):
     outputs : str
         A folder to write to.
     """
-    name = draw(st.sampled_from([each for each in COMMANDS if each not in SLOW or draw(st.integers(0, 9)) == 0]))
+    name = draw(st.sampled_from([each for each in commands() if each not in SLOW or draw(st.integers(0, 9)) == 0]))
     command = main.get_command(click.Context(main), name)
     assert command is not None
     words = [name]

@@ -15,12 +15,12 @@ import pytest
 
 import rocking_cli
 from rocking_cli import Registry, core
-from rocking_cli.cli.main import COMMANDS
 from rocking_cli.core import Angle, Length, Line, box
 from rocking_cli.core.answers import Jointed, Kinematics
 from rocking_cli.core.released import released
 from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.questions.collapse.view import data
+from rocking_cli.rooms import commands
 from rocking_cli.testing import contract
 from rocking_cli.views.mechanisms import fields
 from tests.conftest import PROJECT
@@ -135,7 +135,7 @@ def test_a_page_can_be_read_as_a_file(page):
         assert not re.search(r"\\[^a-zA-Z]|\*|<[^ ]", formula), f"${formula}$: Markdown takes this for its own"
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", commands())
 def test_every_command_is_explained(name, made):
     headings = re.findall(r"^## .*", text_of("commands.md"), re.M)
     assert any(re.search(rf"`rocking {name}\b", heading) for heading in headings), name

@@ -22,8 +22,9 @@ import pytest
 from click.testing import CliRunner
 
 from rocking_cli.cli import terminal
-from rocking_cli.cli.main import COMMANDS, main
+from rocking_cli.cli.main import main
 from rocking_cli.questions.report import study as assessment
+from rocking_cli.rooms import commands
 from rocking_cli.text import printable
 from tests.conftest import EXAMPLES, PROJECT
 from tests.test_hostile_text import HARMFUL
@@ -246,7 +247,7 @@ def names(lines):
 
 
 def test_every_command_is_walked_or_follows_no_history():
-    assert names(HISTORIES) | WITHOUT == set(COMMANDS) and not names(HISTORIES) & WITHOUT
+    assert names(HISTORIES) | WITHOUT == set(commands()) and not names(HISTORIES) & WITHOUT
 
 
 @pytest.mark.every(4)
@@ -369,7 +370,7 @@ def test_tables_of_many_columns_fit(line, examples, monkeypatch):
 
 def test_every_command_is_held():
     assert {command for command, _ in HELD} == set(outputs.questions())
-    assert names(asked()) == names(command for command, _ in HELD) == set(COMMANDS)
+    assert names(asked()) == names(command for command, _ in HELD) == set(commands())
 
 
 def test_commands_whose_json_is_no_view_are_shown_as_text():

@@ -28,8 +28,9 @@ import rocking_cli.questions.selfcheck.study
 import rocking_cli.questions.selfcheck.view
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.watcher import Watcher
-from rocking_cli.cli.main import COMMANDS, main
+from rocking_cli.cli.main import main
 from rocking_cli.questions.fragility.results import StudyAnswer
+from rocking_cli.rooms import commands
 from rocking_cli.views.view import View
 from tests.conftest import EXAMPLES
 
@@ -464,7 +465,7 @@ def called(command, words):
 
 
 @pytest.mark.every(3)
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", commands())
 def test_every_option_reaches_the_verb_or_is_refused_by_name(command, monkeypatch):
     listen(monkeypatch, command)
     words, silent = shlex.split(COMMAND_LINES[command]), []

@@ -14,10 +14,11 @@ import pytest
 from click.testing import CliRunner
 
 from rocking_cli.cli import defaults
-from rocking_cli.cli.main import COMMANDS, main
+from rocking_cli.cli.main import main
 from rocking_cli.dynamics import shipped
 from rocking_cli.errors import InputError
 from rocking_cli.questions.fragility.verb import workers_of
+from rocking_cli.rooms import commands
 from tests.conftest import EXAMPLES
 from tests.test_cli import run, run_json
 
@@ -157,8 +158,8 @@ class TestDefaults:
 
     def test_the_options_that_can_have_one_are_options(self):
         options: dict[str, set[str]] = {}
-        for name in COMMANDS:
-            for each in import_module(f"rocking_cli.cli.{name}").command.params:
+        for name in commands():
+            for each in import_module(commands()[name]).command.params:
                 options.setdefault(max(each.opts, key=len)[2:], set()).add(name)
         assert set(defaults.EVERYWHERE) <= set(options) and set(defaults.IN_TABLES) <= set(options)
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import click
 import pytest
 
-from rocking_cli.cli.main import COMMANDS
 from rocking_cli.excitation.records import read_record
+from rocking_cli.rooms import commands
 from tests.test_cli import run
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -68,13 +68,13 @@ def test_what_is_no_such_quantity_is_said(arguments, words):
 # Names
 
 
-def commands():
-    return {name: import_module(f"rocking_cli.cli.{name}").command for name in COMMANDS}
+def imported():
+    return {name: import_module(module).command for name, module in commands().items()}
 
 
 def test_one_name_is_one_thing_in_every_command():
     meant: dict[str, set[str | None]] = {}
-    for command in commands().values():
+    for command in imported().values():
         for each in command.params:
             if isinstance(each, click.Option) and not each.hidden:
                 meant.setdefault(max(each.opts, key=len), set()).add(each.metavar)

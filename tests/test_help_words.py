@@ -7,8 +7,9 @@ import click
 from click.testing import CliRunner
 
 from rocking_cli.cli.help import OF_RECORDS, OPTIONS, RecordOption
-from rocking_cli.cli.main import COMMANDS, main
+from rocking_cli.cli.main import main
 from rocking_cli.cli.options import CORRECTIONS
+from rocking_cli.rooms import commands
 
 WIDEST = 60
 NO_VERBS = ("The", "A", "An", "Its", "What", "Which", "Who", "How", "Where", "Whether")
@@ -28,7 +29,7 @@ DIFFERENT = {
 ONCE = {f"--{name}" for name in CORRECTIONS}
 """Options that are declared as multiple only to refuse a second one by themselves."""
 
-COMMANDS_BY_NAME = {name: import_module(f"rocking_cli.cli.{name}").command for name in COMMANDS}
+COMMANDS_BY_NAME = {name: import_module(module).command for name, module in commands().items()}
 EVERY_OPTION = [
     (name, max(each.opts, key=len), each)
     for name, command in COMMANDS_BY_NAME.items()
@@ -81,7 +82,7 @@ def test_an_option_says_what_its_value_is():
 
 def test_options_of_records_have_a_heading_of_their_own():
     wrong = []
-    for name in COMMANDS:
+    for name in commands():
         result = CliRunner().invoke(main, [name, "--help"], env={"COLUMNS": "100"})
         before, _, after = result.output.partition(f"\n{OF_RECORDS}:\n")
         own = before.partition(f"\n{OPTIONS}:\n")[2]

@@ -11,8 +11,8 @@ import pytest
 
 import rocking_cli as rk
 from rocking_cli.ask import watcher as rk_watcher
-from rocking_cli.cli.main import COMMANDS
 from rocking_cli.processing.reading_options import READING, SCALING
+from rocking_cli.rooms import commands
 from tests.conftest import EXAMPLES
 from tests.elsewhere import PROJECT
 from tests.test_cli import run, run_json
@@ -33,7 +33,7 @@ FLOOR = "T1=0.4,xi=0.05,z=0.67,gamma=1.29"
 
 
 def asked(name):
-    command = import_module(f"rocking_cli.cli.{name}").command
+    command = import_module(commands()[name]).command
     return [param for param in command.params if param.name not in OF_THE_TERMINAL and not getattr(param, "hidden", 0)]
 
 
@@ -44,7 +44,7 @@ def usual(option):
     return option.type_cast_value(click.Context(click.Command("command")), option.default)
 
 
-VERBS = [name for name in COMMANDS if name not in WITHOUT]
+VERBS = [name for name in commands() if name not in WITHOUT]
 
 
 @pytest.mark.parametrize("name", VERBS)
@@ -72,7 +72,7 @@ def test_what_a_command_can_do_python_can_do_by_the_same_names(name):
 
 @pytest.mark.parametrize("name", VERBS)
 def test_the_function_of_a_command_is_short(name):
-    tree = ast.parse((PROJECT / "rocking_cli" / "cli" / f"{name}.py").read_text(encoding="utf-8"))
+    tree = ast.parse((PROJECT / f"{commands()[name].replace('.', '/')}.py").read_text(encoding="utf-8"))
     (function,) = (each for each in tree.body if isinstance(each, ast.FunctionDef) and each.name == "command")
     body = function.body[1:]
     assert body[-1].end_lineno - body[0].lineno + 1 <= MOST

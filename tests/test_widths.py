@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from rocking_cli.cli import terminal
 from rocking_cli.cli.layout import cells, grid, stacked, wrapped
-from rocking_cli.cli.main import COMMANDS, main
+from rocking_cli.cli.main import main
+from rocking_cli.rooms import commands
 from tests.conftest import EXAMPLES
 from tests.test_cli import run
 
@@ -32,7 +33,7 @@ def fits(text, width):
 
 
 @pytest.mark.parametrize("width", [40, 80])  # in tests, click takes any terminal for one of 80
-@pytest.mark.parametrize("name", ["", *COMMANDS])
+@pytest.mark.parametrize("name", ["", *commands()])
 def test_help_fits(name, width, monkeypatch):
     monkeypatch.setenv("COLUMNS", str(width))
     text = run(*name.split(), "--help").stdout

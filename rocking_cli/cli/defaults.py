@@ -17,6 +17,7 @@ from click.core import ParameterSource
 
 from rocking_cli.cli import terminal
 from rocking_cli.errors import InputError, Problem
+from rocking_cli.rooms import commands
 from rocking_cli.text import cut, did_you_mean, one_line
 
 FILE = "rocking.toml"
@@ -72,7 +73,7 @@ def files() -> list[Path]:
     return [each for each in (Path(FILE), user_file()) if each.is_file()]
 
 
-def in_force(commands: tuple[str, ...]) -> list[Default]:
+def in_force() -> list[Default]:
     """Return all defaults that are set, in descending priority.
 
     Raises
@@ -90,8 +91,8 @@ def in_force(commands: tuple[str, ...]) -> list[Default]:
     for file in files():
         shown, data = one_line(str(file)), _read(file)
         tables: dict[str | None, Any] = {key: value for key, value in data.items() if isinstance(value, dict)}
-        for command in [each for each in tables if each not in commands]:
-            hint = did_you_mean(str(command), list(commands))
+        for command in [each for each in tables if each not in commands()]:
+            hint = did_you_mean(str(command), list(commands()))
             word = cut(str(command))
             problems.append(Problem(f"{word} is not a command", shown, field=f"[{word}]", hint=hint))
             del tables[command]
@@ -124,12 +125,12 @@ def unknown_variables() -> list[str]:
     return sorted(each for each in os.environ if each.startswith(PREFIX) and each not in known)
 
 
-def set_for(context: click.Context, commands: tuple[str, ...]) -> None:
+def set_for(context: click.Context) -> None:
     """Set the defaults of a command for the options that are not typed. Raises as `in_force`."""
     name, params = context.info_name, context.command.params
     options = {max(each.opts, key=len)[2:]: each for each in params if isinstance(each, click.Option)}
     found: dict[str, Default] = {}
-    for each in in_force(commands):
+    for each in in_force():
         if each.command == name and each.option not in options:
             hint = did_you_mean(each.option, [*{*EVERYWHERE, *IN_TABLES} & {*options}])
             raise InputError(Problem(f"`rocking {name}` has no option --{each.option}", each.key, hint=hint))

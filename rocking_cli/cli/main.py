@@ -16,15 +16,9 @@ from rocking_cli import __version__
 from rocking_cli.cli import defaults, endings, terminal
 from rocking_cli.cli.help import HelpFormatter
 from rocking_cli.errors import InputError, Problem, RockingError
+from rocking_cli.rooms import commands
 from rocking_cli.text import cut, one_line, printable
 
-COMMANDS = (
-    "draw", "equiv", "collapse", "error", "record", "select", "respond", "margin", "verify", "survey", "design",
-    "score", "calibrate", "animate", "pulse", "overturning", "spectrum", "equivalent", "fragility",
-    "results", "report", "mechanisms", "measures", "new", "info", "selfcheck",
-    "completion",
-)  # fmt: skip
-ROOMS = {"results": "fragility.results_command"}
 DO_WITHOUT = ("info", "selfcheck")
 """Commands that run even if the user's defaults are invalid."""
 LATEST = 11  # digits of SOURCE_DATE_EPOCH, up to the year 5138
@@ -44,7 +38,7 @@ class _Context(_Helped):
         self.refused: InputError | None = None
         if not self.resilient_parsing:
             try:
-                defaults.set_for(self, COMMANDS)
+                defaults.set_for(self)
             except InputError as error:  # --help does not need them
                 self.refused = error
 
@@ -77,15 +71,13 @@ class LazyGroup(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names in the order in which a newcomer needs them."""
-        return list(COMMANDS)
+        return list(commands())
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Import the module of a command."""
-        if cmd_name not in COMMANDS:
+        if cmd_name not in commands():
             return None
-        command: click.Command = import_module(
-            f"rocking_cli.questions.{ROOMS.get(cmd_name, cmd_name + '.command')}"
-        ).command
+        command: click.Command = import_module(commands()[cmd_name]).command
         command.context_class = _Context
         return command
 
@@ -95,8 +87,8 @@ class LazyGroup(click.Group):
         """Resolve a command; if it does not exist, suggest a similar name."""
         from difflib import get_close_matches
 
-        close = get_close_matches(args[0], COMMANDS, n=1)
-        if args[0] not in COMMANDS and close and not ctx.resilient_parsing and not args[0].startswith("-"):
+        close = get_close_matches(args[0], commands(), n=1)
+        if args[0] not in commands() and close and not ctx.resilient_parsing and not args[0].startswith("-"):
             raise click.UsageError(f"No such command '{args[0]}': did you mean {close[0]}?", ctx)
         return super().resolve_command(ctx, args)
 

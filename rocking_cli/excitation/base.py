@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -185,40 +184,6 @@ class GroundMotion:
         if self.every == 1:
             return self
         return replace(self, dt=self.every * self.dt, acceleration=self.acceleration[:: self.every], every=1)
-
-    def plot(self, file: str | Path | None = None) -> Any:
-        """Draw acceleration, velocity, displacement and Arias intensity against time, as `rocking_cli.record` does.
-
-        Parameters
-        ----------
-        file : str or Path, optional
-            File to write the plot to as well: .png, .svg or .pdf.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-        """
-        from rocking_cli import record  # by its public name: a motion knows nothing of pictures
-
-        return record(self).plot(file)
-
-    def response_spectrum(self, periods: ArrayLike | None = None, damping: float = 0.05) -> Any:
-        """Return the response spectrum of the motion, as `rocking_cli.response_spectrum` gives it.
-
-        Parameters
-        ----------
-        periods : array_like, shape (n,), optional
-            Periods of the oscillators [s]; by default, 200 from 0.02 to 10 s at equal ratios.
-        damping : float
-            Damping ratio of the oscillators.
-
-        Returns
-        -------
-        Answer of ResponseSpectrum
-        """
-        from rocking_cli import response_spectrum  # by its public name: a motion knows nothing of oscillators
-
-        return response_spectrum(self, periods, damping=damping)
 
     def scaled(self, factor: float) -> GroundMotion:
         """Return the motion with every acceleration multiplied by `factor`, and the factor in its name.

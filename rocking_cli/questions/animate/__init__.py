@@ -1,1 +1,3 @@
 """`animate`: a structure that moves under a ground motion."""
+
+PLACE = 140

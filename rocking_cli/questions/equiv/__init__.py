@@ -1,1 +1,3 @@
 """`equiv`: the equivalent rocking block of a structure."""
+
+PLACE = 20

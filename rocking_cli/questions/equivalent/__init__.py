@@ -1,1 +1,3 @@
 """`equivalent`: the equivalent pulses of several structures."""
+
+PLACE = 180

@@ -1,1 +1,3 @@
 """`error`: the errors of the equivalent block."""
+
+PLACE = 40

@@ -1,1 +1,4 @@
 """`fragility` and `results`: many histories, kept in a store, and the curves fitted to them."""
+
+PLACE = 190
+MORE = {"results": ["results"]}

@@ -1,1 +1,3 @@
 """`info`: what is installed."""
+
+PLACE = 250

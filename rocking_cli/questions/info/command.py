@@ -30,13 +30,12 @@ def command(as_json: bool) -> None:
 
 def _defaults() -> dict[str, Any]:
     """Return the user's defaults, and what is wrong with them."""
-    from rocking_cli.cli.main import COMMANDS
     from rocking_cli.errors import InputError
 
     found: list[defaults.Default] = []
     problem = None
     try:
-        found = defaults.in_force(COMMANDS)
+        found = defaults.in_force()
     except InputError as error:
         problem = str(error)
     return {

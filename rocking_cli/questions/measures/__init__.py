@@ -1,1 +1,3 @@
 """`measures`: the measures of intensity that are installed."""
+
+PLACE = 230

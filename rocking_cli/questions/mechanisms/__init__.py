@@ -1,1 +1,3 @@
 """`mechanisms`: the mechanisms that are installed, and their fields."""
+
+PLACE = 220

@@ -1,1 +1,3 @@
 """`new`: a file or a plugin to start from."""
+
+PLACE = 240

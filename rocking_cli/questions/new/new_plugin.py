@@ -52,7 +52,7 @@ class PluginKind:
 
     def package(self, name: str) -> dict[str, bytes]:
         """Return the files of the package for a plugin of this name, by their paths in the folder."""
-        package = Path(__file__).parents[1]
+        package = Path(__file__).parents[2]
         source = package / "data" / self.folder
         if not source.is_dir():  # in a checkout
             source = package.parent / "examples" / self.folder

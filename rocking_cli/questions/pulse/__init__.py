@@ -1,1 +1,3 @@
 """`pulse`: the response to a pulse."""
+
+PLACE = 150

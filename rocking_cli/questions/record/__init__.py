@@ -1,1 +1,4 @@
 """`record`: what is in a record."""
+
+PLACE = 50
+MORE = {"verb": ["response_spectrum"]}

@@ -1,1 +1,3 @@
 """`report`: the assessment of a structure, as a page."""
+
+PLACE = 210

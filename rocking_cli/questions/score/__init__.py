@@ -1,1 +1,3 @@
 """`score`: stated shares of overturning against tests."""
+
+PLACE = 120

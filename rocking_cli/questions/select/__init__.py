@@ -1,1 +1,3 @@
 """`select`: records whose mean spectrum matches a target."""
+
+PLACE = 60

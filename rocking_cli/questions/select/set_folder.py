@@ -81,7 +81,7 @@ def check_folder(folder_: Path, inputs: Sequence[Path]) -> None:
     for each in inputs:
         if each.exists() and each.resolve().parent == place.resolve():
             hint = "name a separate folder for the set"
-            raise InputError(Problem("--out is the folder of an input file", str(each), hint=hint))
+            raise InputError(Problem("`out` is the folder of an input file", str(each), hint=hint))
     check_writable(place / LIST)
     earlier = _earlier(place / LIST)
     for each in sorted(place.glob("*.csv")):
@@ -98,7 +98,7 @@ def _earlier(path: Path) -> set[str]:
         return set()
     lines = path.read_text(encoding="utf-8", errors="replace").splitlines() if path.is_file() else []
     if lines[:1] != [MARK]:
-        raise InputError(Problem("--out would overwrite a file that rocking did not write", str(path), hint=ELSEWHERE))
+        raise InputError(Problem("`out` would overwrite a file that rocking did not write", str(path), hint=ELSEWHERE))
     return {line.removeprefix("#   ") for line in lines if line.startswith("#   ")}
 
 

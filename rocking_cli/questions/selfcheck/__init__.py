@@ -1,1 +1,3 @@
 """`selfcheck`: whether this installation computes correctly."""
+
+PLACE = 260

@@ -1,1 +1,3 @@
 """`spectrum`: peak rotation against size."""
+
+PLACE = 170

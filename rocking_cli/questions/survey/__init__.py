@@ -1,1 +1,3 @@
 """`survey`: the structures of a table, the most vulnerable first."""
+
+PLACE = 100

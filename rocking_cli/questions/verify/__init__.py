@@ -1,1 +1,3 @@
 """`verify`: a mechanism verified by a code of practice."""
+
+PLACE = 90

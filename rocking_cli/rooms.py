@@ -1,0 +1,47 @@
+"""What the folders of `questions` offer: the commands and the names of Python, found without importing any of them.
+
+A folder `margin` with a `command.py` is the command `rocking margin`, and with a `verb.py` the verb
+`rocking_cli.margin`. Its `__init__.py` says where the command stands among the others (`PLACE`), and which further
+names its modules offer (`MORE`).
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import import_module
+from pkgutil import iter_modules
+
+QUESTIONS = "rocking_cli.questions"
+FURTHER = "_command"  # ends the name of a module that has a second command of a folder: `results_command`
+
+
+@cache
+def commands() -> dict[str, str]:
+    """Return the module of each command, in the order in which a newcomer needs them."""
+    found = []
+    for room, place, files, _ in _rooms():
+        own = {room: "command"} | {file.removesuffix(FURTHER): file for file in files if file.endswith(FURTHER)}
+        found += [(place, name, f"{QUESTIONS}.{room}.{file}") for name, file in own.items() if file in files]
+    return {name: module for _, name, module in sorted(found)}
+
+
+@cache
+def names() -> dict[str, str]:
+    """Return the module of each name that the rooms offer in Python."""
+    found: dict[str, str] = {}
+    for room, _, files, more in _rooms():
+        own = {room: "verb"} if "verb" in files else {}
+        own |= {name: file for file, offered in more.items() for name in offered}
+        found |= {name: f"{QUESTIONS}.{room}.{file}" for name, file in own.items()}
+    return found
+
+
+@cache
+def _rooms() -> list[tuple[str, int, list[str], dict[str, list[str]]]]:
+    """Return of each room its name, the place of its commands, its modules, and the names that these offer further."""
+    found = []
+    for _, room, _ in iter_modules(import_module(QUESTIONS).__path__):
+        said = import_module(f"{QUESTIONS}.{room}")
+        files = [file for _, file, _ in iter_modules(said.__path__)]
+        found.append((room, said.PLACE, files, getattr(said, "MORE", {})))
+    return found
