@@ -97,13 +97,13 @@ bench: setup  ## Ratios within one run; see docs/performance.md. RECORD=FILE for
 	$(BIN)/python benchmarks/walls.py
 
 fuzz: setup  ## Hostile records, structures and command lines; INPUTS=100000 is how many
-	$(BIN)/python -c "import os, sys, pytest; os.environ['ROCKING_FUZZ'] = '$(or $(INPUTS),10000)'; sys.exit(pytest.main(['-q', 'tests/test_fuzz.py']))"
+	$(BIN)/python -c "import os, sys, pytest; os.environ['ROCKING_FUZZ'] = '$(or $(INPUTS),10000)'; sys.exit(pytest.main(['-q', 'tests/cli/test_fuzz.py']))"
 
 fields: setup  ## Every field of every example and starter, spoilt in every way; PAIRS=1000 is how many pairs as well
-	$(BIN)/python -c "import os, sys, pytest; os.environ['ROCKING_FIELDS'] = '$(or $(PAIRS),1000)'; sys.exit(pytest.main(['-q', 'tests/test_fields.py']))"
+	$(BIN)/python -c "import os, sys, pytest; os.environ['ROCKING_FIELDS'] = '$(or $(PAIRS),1000)'; sys.exit(pytest.main(['-q', 'tests/cli/test_fields.py']))"
 
 properties: setup  ## New examples for every property test, random ones; EXAMPLES=1000 is how many for each
-	$(BIN)/python -c "import os, sys, pytest; os.environ['ROCKING_PROPERTIES'] = '$(or $(EXAMPLES),500)'; sys.exit(pytest.main(['-q', '-n', 'auto', '-m', 'hypothesis', '--ignore=tests/test_fuzz.py', 'tests']))"
+	$(BIN)/python -c "import os, sys, pytest; os.environ['ROCKING_PROPERTIES'] = '$(or $(EXAMPLES),500)'; sys.exit(pytest.main(['-q', '-n', 'auto', '-m', 'hypothesis', '--ignore=tests/cli/test_fuzz.py', 'tests']))"
 
 soak: setup  ## What takes too long for the tests, an hour: damaged stores, races, kills, spoilt records; READERS=20 is how often
 	$(BIN)/python -m tests.soak

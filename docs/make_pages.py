@@ -2,7 +2,7 @@
 
     python docs/make_pages.py             # part of make docs
 
-`tests/test_docs.py` fails as long as a part or a picture is stale.
+`tests/house/test_docs.py` fails as long as a part or a picture is stale.
 """
 
 from __future__ import annotations

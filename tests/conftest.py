@@ -105,7 +105,7 @@ def small_maps(monkeypatch):
 @pytest.fixture(scope="session")
 def frame_report(tmp_path_factory):
     """The report on the example of a frame: its file, and what was printed."""
-    from tests.test_cli import run
+    from tests.cli.test_cli import run
 
     out = tmp_path_factory.mktemp("report") / "r.html"
     result = run("report", "--neighbours", 20, EXAMPLES / "frame.yaml", "--record", EXAMPLES / "accel.csv", "-o", out)

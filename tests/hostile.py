@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from rocking_cli.cli.main import main
 from rocking_cli.rooms import commands
 from tests.conftest import EXAMPLES
-from tests.test_record_formats import MADE
+from tests.excitation.test_record_formats import MADE
 
 NUMBERS = [
     "0", "-0", "-1", "1e-300", "5e-324", "1e300", "1e309", "-1e30", "1e29", "1e15", "9" * 30, "9" * 5000,

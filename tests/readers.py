@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tests import hostile
-from tests.test_record_formats import MADE
+from tests.excitation.test_record_formats import MADE
 
 MEMORY = 10**9  # bytes of address space of a process, where the system can limit it
 PATIENCE = 120.0  # s

@@ -1,0 +1,332 @@
+"""What makes a tool pleasant every day: how it is called, what defaults it assumes, what it says of itself."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from importlib import import_module
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from rocking_cli.cli import defaults
+from rocking_cli.cli.main import main
+from rocking_cli.dynamics import shipped
+from rocking_cli.errors import InputError
+from rocking_cli.questions.fragility.verb import workers_of
+from rocking_cli.rooms import commands
+from tests.cli.test_cli import run, run_json
+from tests.conftest import EXAMPLES
+
+ACCEL, BLOCK = str(EXAMPLES / "accel.csv"), str(EXAMPLES / "block.yaml")
+PULSE = ("respond", BLOCK, "--model", "linear2", "--pulse", "sine:0.5g:1s", "--neighbours", "0")
+
+
+def test_the_package_runs_as_the_command_does():
+    module = [sys.executable, "-m", "rocking_cli", "equiv", BLOCK, "--json"]
+    ran = subprocess.run(module, capture_output=True, text=True, check=True)
+    assert ran.stdout == run("equiv", BLOCK, "--json").stdout
+    wrong = subprocess.run([*module, "--no"], capture_output=True, text=True)
+    assert wrong.returncode == 2 and "Usage: rocking equiv" in wrong.stderr
+
+
+class TestSwitchesOfTheProgram:
+    def debugged(self, *arguments):
+        return CliRunner().invoke(main, list(arguments))
+
+    @pytest.mark.parametrize("wrong", [("equiv", "none.yaml"), ("equiv", "--none"), ("respond", BLOCK)])
+    def test_debug_shows_the_traceback_of_any_error(self, wrong, monkeypatch):
+        assert "Traceback" not in run(*wrong, code=2).stderr
+        asked = self.debugged("--debug", *wrong)
+        assert asked.exit_code == 2 and "Traceback" in asked.stderr and asked.stdout == ""
+        monkeypatch.setenv("ROCKING_DEBUG", "1")
+        assert "Traceback" in self.debugged(*wrong).stderr
+
+    def test_verbose_says_which_file_and_how_long(self):
+        said = run("-v", "equiv", BLOCK)
+        assert f"structure: pedestal (block), of {BLOCK}" in said.stderr.replace("\n", "")
+        assert re.search(r"took \d+\.\d\d s", said.stderr)
+        assert said.stdout == run("equiv", BLOCK).stdout and run("equiv", BLOCK).stderr == ""
+
+
+class TestDefaults:
+    @pytest.fixture
+    def user(self, _no_defaults_of_a_user):
+        _no_defaults_of_a_user.parent.mkdir(exist_ok=True)
+        return _no_defaults_of_a_user
+
+    def neighbours(self, *more):
+        return run_json("respond", BLOCK, "--model", "linear2", "--pulse", "sine:0.5g:1s", *more)["neighbours"]["count"]
+
+    def test_each_place_goes_before_the_next(self, tmp_path, user, monkeypatch):
+        user.write_text("neighbours = 11\n", encoding="utf-8")
+        assert self.neighbours() == 11
+        here = tmp_path / "rocking.toml"
+        here.write_text("neighbours = 12\n", encoding="utf-8")
+        assert self.neighbours() == 12
+        here.write_text("neighbours = 12\n[respond]\nneighbours = 13\n[margin]\nneighbours = 14\n", encoding="utf-8")
+        assert self.neighbours() == 13
+        monkeypatch.setenv("ROCKING_NEIGHBOURS", "15")
+        assert self.neighbours() == 15
+        assert self.neighbours("--neighbours", "16") == 16
+
+    def test_what_was_taken_is_said_once_and_only_where_it_changes_something(self, tmp_path, monkeypatch):
+        (tmp_path / "rocking.toml").write_text("tail = 5\nfps = 3\n", encoding="utf-8")
+        monkeypatch.setenv("ROCKING_AMPLITUDE_DEVIATION", "3%")
+        said = run(*PULSE).stderr
+        assert said.count("defaults:") == 1
+        assert "defaults: --amplitude-deviation 3% (ROCKING_AMPLITUDE_DEVIATION), --tail 5 (rocking.toml)" in said
+        assert "--amplitude" in run(*PULSE, "--tail", "5").stderr and "--tail" not in run(*PULSE, "--tail", "5").stderr
+        monkeypatch.delenv("ROCKING_AMPLITUDE_DEVIATION")
+        (tmp_path / "rocking.toml").write_text("tail = 10.0\n", encoding="utf-8")
+        assert "defaults:" not in run(*PULSE).stderr
+
+    @pytest.mark.parametrize(
+        ("text", "words"),
+        [
+            ("neighbors = 2", "rocking.toml: neighbors: this option cannot have a default did you mean neigh"),
+            ("model = 'linear1'", "rocking.toml: model: this option cannot have a default its meaning differs between"),
+            ("[repsond]\ntail = 2", "rocking.toml: [repsond]: repsond is not a command did you mean respond?"),
+            ("[respond]\njobs = 2", "rocking.toml: [respond] jobs: `rocking respond` has no option --jobs"),
+            ("tail = true", "rocking.toml: tail: the value is neither a text nor a number"),
+            ("[respond]\nmodel = ['linear3']", "rocking.toml: [respond] model: linear3 is not a model: choose from"),
+            ("[respond\n", "rocking.toml: not valid TOML: "),
+        ],
+    )
+    def test_what_is_wrong_is_said_with_file_and_key(self, text, words, tmp_path):
+        (tmp_path / "rocking.toml").write_text(text, encoding="utf-8")
+        without = (each for each in PULSE if each not in ("--model", "linear2"))
+        assert words in " ".join(run(*without, code=2).stderr.split())
+        assert "Usage:" in run("respond", "--help").stdout
+
+    def test_a_wrong_variable_is_named(self, monkeypatch):
+        monkeypatch.setenv("ROCKING_TAIL", "long")
+        assert "ROCKING_TAIL: 'long' is not a valid time" in run(*PULSE, code=2).stderr
+
+    def test_an_option_that_does_not_go_with_others_is_said_to_be_a_default(self, tmp_path):
+        (tmp_path / "rocking.toml").write_text("[respond]\npolarity = 'both'\n", encoding="utf-8")
+        said = " ".join(run("respond", BLOCK, "--release", "0.5", code=2).stderr.split())
+        assert "--polarity both was not typed; it is a default from rocking.toml: [respond] polarity." in said
+        typed = run("respond", BLOCK, "--release", "0.5", "--polarity", "-1", code=2).stderr
+        assert "was not typed" not in typed
+
+    @pytest.mark.parametrize(
+        "words",
+        [
+            ("respond", BLOCK, "--release", "0.3", "--model", "nonlinear"),
+            ("verify", BLOCK, "--site", EXAMPLES / "verify" / "site.yaml"),
+            ("report", BLOCK, "--json"),
+        ],
+    )
+    def test_what_has_no_effect_is_an_error_only_where_it_is_typed(self, words, tmp_path):
+        text = "author = 'me'\nneighbours = 7\nslenderness-deviation = 0.2\n[report]\npolarity = '1'\n"
+        (tmp_path / "rocking.toml").write_text(text, encoding="utf-8")
+        run(*words)
+        option = ("--author", "me") if words[0] == "verify" else ("--slenderness-deviation", 0.2)
+        assert f"{option[0]} has no effect without" in run(*words, *option, code=2).stderr
+
+    def test_a_list_is_what_is_typed_with_commas(self, tmp_path):
+        (tmp_path / "rocking.toml").write_text("[respond]\nmodel = ['linear1', 'linear2']\n", encoding="utf-8")
+        found = run_json("respond", BLOCK, "--pulse", "sine:0.5g:1s", "--neighbours", "0")
+        assert set(found["responses"]) == {"linear1", "linear2"}
+
+    def test_how_records_are_read_holds_where_the_file_does_not_say(self, tmp_path):
+        (tmp_path / "rocking.toml").write_text("units = 'm/s2'\ndt = 0.02\n", encoding="utf-8")
+        assert run_json("record", ACCEL)["dt"] == 0.01  # in its own unit, and with its own times
+        (tmp_path / "bare.txt").write_text("\n".join(f"{k % 7 - 3}.5" for k in range(50)), encoding="utf-8")
+        bare = run_json("record", "bare.txt")
+        assert (bare["unit"], bare["dt"]) == ("m/s2", 0.02)
+        run(*PULSE)  # no record to describe, and nobody typed that there is one
+        assert "describes a record" in run(*PULSE, "--units", "g", code=2).stderr
+
+    def test_jobs_are_for_this_machine_and_silent_on_a_cluster(self, monkeypatch):
+        Path("study.yaml").write_text("name: unread\n", encoding="utf-8")
+        asked = []
+        monkeypatch.setattr(
+            "rocking_cli.questions.fragility.verb.fragility", lambda study, **given: asked.append(given["jobs"])
+        )
+        for typed in ([], ["--jobs", "2"]):
+            monkeypatch.setenv("ROCKING_JOBS", "3")
+            CliRunner().invoke(main, ["fragility", "study.yaml", "--scheduler", "tcp://there", *typed])
+        assert asked == [None, 2]  # the verb refuses a number of workers that was typed
+        with pytest.raises(InputError, match="a cluster has its own number of workers"):
+            workers_of(2, "tcp://there")
+
+    def test_the_options_that_can_have_one_are_options(self):
+        options: dict[str, set[str]] = {}
+        for name in commands():
+            for each in import_module(commands()[name]).command.params:
+                options.setdefault(max(each.opts, key=len)[2:], set()).add(name)
+        assert set(defaults.EVERYWHERE) <= set(options) and set(defaults.IN_TABLES) <= set(options)
+
+    @pytest.mark.rest
+    def test_a_report_says_what_it_took_from_where(self, monkeypatch):
+        monkeypatch.setenv("ROCKING_NEIGHBOURS", "5")
+        run("report", BLOCK, "-o", "r.html")
+        assert "--neighbours 5  # --neighbours from ROCKING_NEIGHBOURS" in Path("r.html").read_text(encoding="utf-8")
+
+
+class TestInfo:
+    def test_it_knows_the_versions_the_extras_and_the_plugins(self, monkeypatch):
+        from rocking_cli.questions.info import study as installation
+
+        found = run_json("info")
+        assert found["version"] == version("rocking-cli") and found["libraries"]["numpy"] == version("numpy")
+        assert {"cluster", "docx", "parquet", "seismo"} == set(found["extras"])
+        names = {kind: {each["name"] for each in plugins} for kind, plugins in found["plugins"].items()}
+        assert "arch" in names["mechanisms"] and "peer_at2" in names["records"] and "ricker" in names["pulses"]
+        assert found["processors"] >= found["threads"] >= 1
+        monkeypatch.setattr(installation, "_version", lambda name: None)
+        assert "no pyarrow: pip install 'rocking-cli[parquet]'" in run("info").stdout
+
+    def test_it_knows_what_is_taken_for_granted_and_what_is_wrong_with_it(self, tmp_path, monkeypatch):
+        monkeypatch.setenv("ROCKING_TAIL", "3")
+        monkeypatch.setenv("ROCKING_TAILS", "3")
+        (tmp_path / "rocking.toml").write_text("tail = 4\n[margin]\ntail = 5\n", encoding="utf-8")
+        found = run_json("info")["defaults"]
+        assert [(each["value"], each["place"], each["command"]) for each in found["set"]] == [
+            ("3", "ROCKING_TAIL", None), ("5", "rocking.toml", "margin"), ("4", "rocking.toml", None),
+        ]  # fmt: skip
+        assert found["unknown"] == ["ROCKING_TAILS"] and found["problem"] is None
+        (tmp_path / "rocking.toml").write_text("tial = 4\n", encoding="utf-8")
+        assert "rocking.toml: tial: this option cannot have a default" in run_json("info")["defaults"]["problem"]
+        assert "The environment variable ROCKING_TAILS is not used by rocking" in run("info").stdout
+
+    def test_it_knows_what_runs_the_kernels(self, monkeypatch):
+        monkeypatch.delenv("ROCKING_KERNELS", raising=False)
+        assert run_json("info")["slow_kernels"] is None
+        monkeypatch.setattr(shipped, "LIBRARIES", ())
+        shipped.loaded.cache_clear()
+        assert run_json("info")["slow_kernels"].startswith("no kernels are shipped for ")
+        monkeypatch.setenv("ROCKING_KERNELS", "python")
+        assert "sixty times slower: ROCKING_KERNELS is python" in run("info").stdout
+
+
+class TestCompletion:
+    def asked(self, *words, debug=()):
+        environment = {**os.environ, "_ROCKING_COMPLETE": "bash_complete", "COMP_WORDS": "\n".join(words)}
+        environment["COMP_CWORD"] = str(len(words) - 1)
+        program = [sys.executable, *debug, "-m", "rocking_cli"]
+        ran = subprocess.run(program, env=environment, capture_output=True, text=True, check=True)
+        return {line.partition(",")[2] for line in ran.stdout.splitlines()}, ran
+
+    @pytest.mark.every(4)
+    @pytest.mark.parametrize(
+        ("words", "found"),
+        [
+            (("resp",), {"respond"}),
+            (("new", "s"), {"site", "spanning_wall", "statue", "study", "symmetric_frame"}),
+            (("pulse", "--shape", "ric"), {"ricker", "ricker_antisymmetric"}),
+            (("respond", "--pulse", "s"), {"sine:"}),
+            (("respond", "--model", "linear1,"), {"linear1,nonlinear", "linear1,linear2"}),
+            (("completion", ""), {"bash", "zsh", "fish"}),
+        ],
+    )
+    def test_names_are_completed_and_no_plugin_is_loaded(self, words, found):
+        completed, ran = self.asked("rocking", *words, debug=("-X", "importtime"))
+        assert completed == found
+        loaded = {line.rpartition("|")[2].strip() for line in ran.stderr.splitlines()}
+        assert "click" in loaded and not loaded & {"mechanisms", "numpy", "pydantic", "rocking_cli.excitation.pulses"}
+
+    @pytest.mark.parametrize("words", [("equiv", "x"), ("respond", "--record", "x"), ("draw", "--plot", "x")])
+    def test_files_are_left_to_the_shell(self, words):
+        assert self.asked("rocking", *words)[1].stdout == "file,x\n"
+
+    @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+    def test_the_script_is_that_of_the_shell(self, shell):
+        script = run_json("completion", shell)["script"]
+        assert f"_ROCKING_COMPLETE={shell}_complete" in script
+        assert run("completion", shell).stdout.strip() == script.strip()
+
+    @pytest.mark.skipif(shutil.which("bash") is None or sys.platform == "win32", reason="no bash")
+    def test_bash_completes_with_it(self, tmp_path):
+        program = tmp_path / "rocking"
+        program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m rocking_cli "$@"\n', encoding="utf-8")
+        program.chmod(0o755)
+        (tmp_path / "script").write_text(run("completion", "bash").stdout, encoding="utf-8")
+        typed = "COMP_WORDS=(rocking new ar); COMP_CWORD=2; _rocking_completion rocking; echo ${COMPREPLY[@]}"
+        environment = {**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}"}
+        ran = subprocess.run(["bash", "-c", f". ./script; {typed}"], env=environment, capture_output=True, text=True)
+        assert ran.stdout == "arch\n", ran.stderr
+
+
+def test_the_study_to_start_from_runs_beside_a_block(tmp_path):
+    (tmp_path / "block.yaml").write_text(run("new", "block").stdout, encoding="utf-8")
+    (tmp_path / "study.yaml").write_text(run("new", "study").stdout, encoding="utf-8")
+    assert run_json("new", "study")["yaml"] == (tmp_path / "study.yaml").read_text(encoding="utf-8")
+    found = run_json("fragility", "study.yaml")
+    assert found["finished"] == found["runs"] > 0 and found["failed"] == 0
+    assert {each["limit_state"] for each in found["curves"]} == {"uplift", 0.5, "overturning"}
+
+
+def test_what_is_left_out_of_the_study_to_start_from_can_be_put_in(tmp_path):
+    for each in ("block", "wall"):
+        (tmp_path / f"{each}.yaml").write_text(run("new", each).stdout, encoding="utf-8")
+    (tmp_path / "records").mkdir()
+    (tmp_path / "records" / "one.AT2").write_bytes(Path(ACCEL).read_bytes())
+    (tmp_path / "accel.txt").write_text("\n".join(f"0.{k % 7}" for k in range(50)), encoding="utf-8")
+    head, body = run("new", "study").stdout.split("name:")
+    full = re.sub(r"^( *)# ( *(- |[a-z]+:))", r"\1\2", body, flags=re.M)
+    assert full.count("\n  - ") > body.count("\n  - ") and "\nsamples: 10" in full and "\nhazard:" in full
+    (tmp_path / "study.yaml").write_text(f"{head}name:{full}", encoding="utf-8")
+    checked = run_json("fragility", "study.yaml", "--check")
+    assert checked["runs"] == 15 * 2 * 11 * (1 + 10)
+
+
+def piped(*arguments, given, code=0):
+    result = CliRunner().invoke(main, [str(each) for each in arguments], input=given)
+    assert result.exit_code == code, result.output
+    assert "Traceback" not in result.stderr
+    return result
+
+
+class TestStandardStreams:
+    @pytest.mark.parametrize(
+        "command",
+        [
+            ("respond", BLOCK, "--pulse", "sine:0.5g:1s", "--neighbours", "0"),
+            ("spectrum", BLOCK, "--pulse", "sine:0.5g:1s", "--sizes", "2:3:2"),
+            ("overturning", BLOCK, "--points", "6"),
+            ("equivalent", BLOCK, str(EXAMPLES / "wall.yaml"), "--ag", "0.6g", "--period", "0.8"),
+        ],
+        ids=lambda command: command[0],
+    )
+    def test_a_table_goes_to_standard_output_and_nothing_else_does(self, command):
+        run(*command, "--out", "there.csv")
+        table = Path("there.csv").read_bytes()
+        shown = run(*command)
+        assert table and CliRunner().invoke(main, [*command, "--out", "-"]).stdout_bytes == table
+        assert run(*command, "--out", "-", "--json").stdout_bytes == table
+        assert shown.stdout.strip() in run(*command, "--out", "-").stderr
+        assert not Path("-").exists()
+
+    def test_after_it_results_are_on_standard_output_again(self):
+        run("overturning", BLOCK, "--points", "6", "--out", "-")
+        assert run("equiv", BLOCK).stdout
+
+    def test_several_motions_have_several_tables_and_a_picture_is_none(self):
+        several = ("respond", BLOCK, "--pulse", "sine:0.5g:1s", "--pulse", "sine:0.4g:1s", "--out", "-")
+        assert "--out - works for a single motion only" in run(*several, code=2).stderr
+        assert "does not end in .html" in run("report", BLOCK, "-o", "-", code=2).stderr
+
+    def test_a_report_holds_what_came_from_there(self):
+        there = json.loads(piped("report", "-", "--json", given=Path(BLOCK).read_bytes()).stdout)["structure"]
+        assert there == {**run_json("report", BLOCK)["structure"], "file": "standard input"}
+
+    def test_files_that_are_made_of_it_have_a_name_of_their_own(self):
+        piped("draw", "-", given=Path(BLOCK).read_text(encoding="utf-8"))
+        assert Path("rocking.png").exists()
+        Path("rocking.png").unlink()
+        run("draw", "")  # of a variable of a script that is not set
+        assert Path("rocking.png").exists()
+
+    def test_what_is_wrong_with_it_is_said_and_it_is_one_thing(self):
+        assert "standard input:2:" in piped("equiv", "-", given="mechanism: block\nwidht: 3\n", code=2).stderr
+        both = ("respond", "-", "--record", "-")
+        said = piped(*both, given=Path(BLOCK).read_text(encoding="utf-8"), code=2).stderr
+        assert "can be read once only, and something else has been read from it" in said
+        assert "larger than 10 MB" in piped("equiv", "-", given="#" * 10_000_001, code=2).stderr

@@ -1,0 +1,118 @@
+"""One grammar for all commands: quantities with units, one name for one thing, and old names that go on working."""
+
+import json
+from importlib import import_module
+from pathlib import Path
+
+import click
+import pytest
+
+from rocking_cli.excitation.records import read_record
+from rocking_cli.rooms import commands
+from tests.cli.test_cli import run
+from tests.conftest import PROJECT
+
+EXAMPLES = PROJECT / "examples"
+ACCEL, BLOCK, FRAME = (str(EXAMPLES / name) for name in ("accel.csv", "block.yaml", "frame.yaml"))
+FEW = ("--points", "6")
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def data(*arguments):
+    return json.loads(run(*arguments, "--json").stdout)
+
+
+@pytest.mark.every(3)
+@pytest.mark.parametrize(
+    ("command", "option", "alike"),
+    [
+        (("pulse", BLOCK, "--ag", "0.4g"), "--period", ["0.8", "0.8s", "800ms", "1.25Hz", "0.8 s"]),
+        (("pulse", BLOCK, "--period", "1"), "--ag", ["0.4g", "0.4 g", "400mg", "40%g"]),
+        (("record", ACCEL), "--target-pga", ["0.25", "0.25g", "250mg"]),
+        (("record", ACCEL), "--target-pgv", ["0.5", "0.5m/s", "50 cm/s", "500mm/s"]),
+        (("respond", BLOCK, "--record", ACCEL), "--tail", ["2", "2s", "2000ms"]),
+        (("respond", BLOCK, "--record", ACCEL, "--model", "linear2"), "--amplitude-deviation", ["0.05", "5%", "5 %"]),
+        (("respond", BLOCK, "--pulse", "sine:0.5g:1s"), "--slenderness-deviation", ["0.05", "5%", "5 %"]),
+        (("respond", FRAME, "--record", ACCEL, "--neighbours", "0"), "--opening", ["0.01", "1%", "1 %"]),
+        (("respond", BLOCK, "--model", "linear2"), "--pulse", ["sine:0.4g:0.8s", "sine:0.4g:0.8", "sine:400mg:800ms"]),
+        (("spectrum", BLOCK, "--record", ACCEL, "--sizes", "1:2:3"), "--fractiles", ["0.1,0.9", "10%,90%"]),
+        (("spectrum", "--record", ACCEL, "--slenderness", "0.2"), "--sizes", ["1:2:3", "1s:2s:3", "1000ms:2s:3"]),
+        (("overturning", BLOCK, *FEW), "--period", ["0.2:4", "0.2s:4s", "200ms:4s"]),
+        (("equivalent", BLOCK, FRAME, "--ag", "0.6g"), "--period", ["0.5", "500ms", "2Hz"]),
+    ],
+)
+def test_the_same_quantity_in_any_spelling_gives_the_same(command, option, alike):
+    first, *others = (run(*command, option, text, "--json").stdout for text in alike)
+    assert others == [first] * len(others)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("record", ACCEL, "--target-pga", "3m"), "'m' is not a unit of acceleration: give one of g, m/s2"),
+        (("record", ACCEL, "--dt", "10 Hz"), "'Hz' is not a unit of time"),
+        (("record", ACCEL, "--dt", "x"), "'x' is not a number, with or without a unit: give a value such as 0.01s"),
+        (("respond", BLOCK, "--record", ACCEL, "--tail", "61min"),
+         "'61min' is outside the supported range: 0 to 3600 s"),
+        (("margin", BLOCK, "--record", ACCEL, "--amplitude-deviation", "2x"),
+         "'2x' is not a fraction: give a number such as 0.02 or"),
+    ],
+)  # fmt: skip
+def test_what_is_no_such_quantity_is_said(arguments, words):
+    assert words in " ".join(run(*arguments, code=2).stderr.split())
+
+
+# Names
+
+
+def imported():
+    return {name: import_module(module).command for name, module in commands().items()}
+
+
+def test_one_name_is_one_thing_in_every_command():
+    meant: dict[str, set[str | None]] = {}
+    for command in imported().values():
+        for each in command.params:
+            if isinstance(each, click.Option) and not each.hidden:
+                meant.setdefault(max(each.opts, key=len), set()).add(each.metavar)
+                assert ("-o" in each.opts) == ("--out" in each.opts)
+    assert meant["--pulse"] == {"PULSE"} and meant["--shape"] == {"SHAPE"}
+    assert meant["--ag"] == {"AMPLITUDE", "LOW:HIGH"} and meant["--period"] == {"PERIOD", "LOW:HIGH"}
+    assert all(kind and kind.startswith(("FILE", "FOLDER")) for kind in meant["--plot"])
+
+
+def test_a_file_called_like_an_option_is_a_file(tmp_path):
+    (tmp_path / "--pulse").write_bytes(Path(ACCEL).read_bytes())
+    assert "mean acceleration" in run("record", "--", "--pulse").stdout
+
+
+# Where a clean record goes
+
+
+def test_a_clean_record_goes_to_the_file_or_into_the_folder_that_is_named(tmp_path):
+    run("record", ACCEL, "-o", "clean.csv", "--scale", "2")
+    run("record", ACCEL, "--polarity", "both", "--out", "made/here")
+    assert sorted(path.name for path in (tmp_path / "made" / "here").iterdir()) == ["accel-reversed.csv", "accel.csv"]
+    twice = read_record("clean.csv").acceleration
+    assert twice == pytest.approx(2 * read_record("made/here/accel.csv").acceleration, rel=1e-12)
+    (tmp_path / "folder.csv").mkdir()
+    run("record", ACCEL, "--out", "folder.csv")
+    assert (tmp_path / "folder.csv" / "accel.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((ACCEL, "--polarity", "both", "--out", "one.csv"), "--out FILE.csv takes one record"),
+        ((ACCEL, "--out", "taken/x"), "cannot be a folder to write into"),
+        ((ACCEL, "--out", "no/one.csv"), "no/one.csv"),
+    ],
+)
+def test_what_cannot_be_written_is_said_and_nothing_is(arguments, words, tmp_path):
+    (tmp_path / "taken").write_text("", encoding="utf-8")
+    assert words in " ".join(run("record", *arguments, code=2).stderr.split())
+    assert [path.name for path in tmp_path.iterdir()] == ["taken"]

@@ -1,0 +1,178 @@
+"""Quantities with units, and what is said of sizes that look like a slip of the unit."""
+
+import re
+from fractions import Fraction
+from math import degrees, pi
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mechanisms.block import Block
+from mechanisms.rigid_body import RigidBody
+from mechanisms.wall import Wall
+from rocking_cli import Registry
+from rocking_cli.core.mechanism import doubtful_size, extent
+from rocking_cli.core.structure_file import parse_structure
+from rocking_cli.units import KINDS, UnitError, kind_of, read, units_of
+from rocking_cli.views.template import template
+from tests.cli.test_cli import run
+from tests.conftest import PROJECT
+
+# What the units are by definition, written down apart from the table.
+KNOWN = [
+    ("800 mm", "m", 0.8), ("80cm", "m", 0.8), ("12 ft", "m", 12 * 0.3048), ("12 in", "m", 12 * 0.0254),
+    ("3km", "m", 3000.0), ("1.8 t", "kg", 1800.0), ("500 g", "kg", 0.5), ("1 lb", "kg", 0.45359237),
+    ("40 kN", "N", 40e3), ("1 kip", "N", 1000 * 0.45359237 * 9.80665), ("2 MPa", "Pa", 2e6), ("2 N/mm2", "Pa", 2e6),
+    ("1 psi", "Pa", 0.45359237 * 9.80665 / 0.0254**2), ("1 ksi", "Pa", 1000 * 0.45359237 * 9.80665 / 0.0254**2),
+    ("2.1 t/m3", "kg/m3", 2100.0), ("2.1 t/m^3", "kg/m3", 2100.0), ("2.1 t / m³", "kg/m3", 2100.0),
+    ("1 lb/ft3", "kg/m3", 0.45359237 / 0.3048**3), ("1 lbf/ft3", "N/m3", 0.45359237 * 9.80665 / 0.3048**3),
+    ("981 gal", "m/s2", 9.81), ("1 g", "m/s2", 9.80665), ("10 deg", "deg", 10.0), ("10°", "rad", pi / 18),
+    ("0.2 rad", "deg", degrees(0.2)), ("1e3 mm", "m", 1.0), ("-.5 m", "m", -0.5), ("4 kg m2", "kg m2", 4.0),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "unit", "value"), KNOWN, ids=[each[0] for each in KNOWN])
+def test_a_number_with_a_unit_is_what_its_definition_says(text, unit, value):
+    assert read(text, unit) == pytest.approx(value, rel=1e-15)
+
+
+@given(st.decimals(-1000, 1000, places=6), st.sampled_from(["m", "mm", "cm", "km", "in", "ft"]))
+def test_a_length_is_the_number_nearest_to_what_is_written(number, unit):
+    exact = Fraction(number) * Fraction(KINDS["length"][unit])
+    assert read(f"{number} {unit}", "m") == float(exact)
+
+
+WRONG = [
+    ("5 kg", "m", "5 kg is a mass, not a length"), ("5 m", "kg/m3", "is a length, not a density"),
+    ("5 mmm", "m", "did you mean mm?"), ("5 MM", "m", "did you mean mm?"), ("5 smoot", "m", "known: m, mm"),
+    ("18 kN/m3", "kg/m3", "1835.49 kg/m3"), ("0,8 m", "m", "decimal point"), ("5", "m", "without a unit"),
+    ("5 m", "", "give a number without one"), ("m", "m", "is not a number"), ("", "m", "is not a number"),
+    ("5 \x1b[31m", "m", r"\x1b[31m"), ("5 m", "kg m2", "is a length, not in kg m2"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "unit", "words"), WRONG, ids=[each[2] for each in WRONG])
+def test_a_wrong_unit_says_what_would_be_right(text, unit, words):
+    with pytest.raises(UnitError) as caught:
+        read(text, unit)
+    assert words in str(caught.value)
+
+
+@given(st.text(max_size=30), st.sampled_from(["m", "deg", "kg/m3", "", "N m"]))
+def test_no_text_makes_more_than_a_unit_error(text, unit):
+    for each in (text, f"1{text}", f"9e{text}", f"{text} m"):
+        try:
+            assert isinstance(read(each, unit), float)
+        except UnitError as error:
+            assert error.message
+
+
+def test_numbers_beyond_all_bounds_end_in_a_message():
+    with pytest.raises(ValueError, match="finite"):
+        Block(width="1e999999999999 mm", height=1.0)
+    assert read("9" * 5000 + " mm", "m") == float("inf")
+
+
+def test_every_unit_has_one_kind_and_no_table_is_behind():
+    first = [next(iter(units)) for units in KINDS.values()]
+    assert [kind_of(unit) for unit in first] == list(KINDS)
+    page = (PROJECT / "docs" / "mechanisms.md").read_text(encoding="utf-8")
+    table = dict(re.findall(r"^\| ([a-z ]+) \| (`.*`) \|$", page, re.M))
+    for kind, units in KINDS.items():
+        if kind != "weight density":
+            assert table[kind] == ", ".join(f"`{unit}`" for unit in units)
+
+
+def test_units_need_neither_numpy_nor_pydantic():
+    import subprocess
+    import sys
+
+    code = "import sys, rocking_cli.units; sys.exit(bool({'numpy', 'pydantic'} & set(sys.modules)))"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_mechanisms_lists_the_units_that_are_taken():
+    found = run("mechanisms", "asymmetric_frame").stdout
+    for unit in ("m", "kg/m3", "kg", "m/s2"):
+        assert ", ".join(units_of(unit)) in " ".join(found.split())
+
+
+@pytest.mark.every(3)
+@pytest.mark.parametrize("name", Registry())
+def test_a_starting_file_in_millimetres_is_the_same_structure(name):
+    text = template(Registry()[name])
+    metres = re.compile(r"^(\w+: )([\d.]+)( +# .*\[m\])", re.M)
+    changed = metres.sub(lambda line: f"{line[1]}{1000 * float(line[2]):g} mm{line[3]}", text)
+    assert "mm  " in changed
+    assert parse_structure(changed, "f", "f") == parse_structure(text, "f", "f")
+
+
+@pytest.mark.parametrize("name", Registry())
+def test_nothing_is_said_of_structures_of_the_usual_size(name):
+    assert doubtful_size(parse_structure(template(Registry()[name]), "f", "f")) is None
+
+
+@pytest.mark.parametrize(
+    ("structure", "words"),
+    [
+        (Wall(thickness=800.0, height=12000.0),
+         "thickness is 800 m, height is 12000 m: did you mean 800 mm and 12000 mm?"),
+        (Block(width=0.7, height=2800.0), "height is 2800 m: did you mean 2800 mm?"),
+        (Block(width=0.0007, height=0.0028), "width is 0.0007 m, height is 0.0028 m: did you mean 0.7 m and 2.8 m?"),
+        (RigidBody(polygon=[[0.0, 0.0], [800.0, 0.0], [800.0, 50.0], [0.0, 50.0]]), "polygon spans 800 m"),
+        (RigidBody(R=150.0, alpha_deg=10.0, inertia_ratio=1.3), "R is 150 m"),
+    ],
+)  # fmt: skip
+def test_sizes_that_look_like_a_slip_are_named(structure, words):
+    assert words in doubtful_size(structure)
+
+
+def test_the_extent_needs_no_outline():
+    assert extent(RigidBody(R=150.0, alpha_deg=10.0, inertia_ratio=1.3)) == pytest.approx(150.0)
+    assert extent(Block(width=3.0, height=4.0)) == pytest.approx(5.0)
+
+
+def test_a_plugin_that_fails_is_not_judged():
+    class Broken(Block):
+        def bodies(self):
+            raise ZeroDivisionError
+
+    assert doubtful_size(Broken(width=1e4, height=1e4)) is None
+
+
+@pytest.mark.every(4)
+@pytest.mark.usefixtures("small_maps")
+@pytest.mark.parametrize("command", ["equiv", "draw", "error", "respond", "spectrum", "report", "overturning", "pulse"])
+def test_every_command_warns_of_millimetres(command, tmp_path):
+    (tmp_path / "w.yaml").write_text("mechanism: block\nwidth: 800\nheight: 12000\n")
+    more = {
+        "respond": ["--release", "0.5"], "spectrum": ["--pulse", "sine:0.1g:1s", "--sizes", "100:200:2"],
+        "overturning": ["--points", "3"], "pulse": ["--ag", "0.1g", "--period", "1"], "draw": ["--json"],
+        "report": ["-o", "r.html"],
+    }  # fmt: skip
+    found = run(command, "w.yaml", *more.get(command, []))
+    assert "warning: w: width is 800 m, height is 12000 m: did you mean 800 mm and 12000 mm?" in found.stderr
+    if command == "report":
+        assert "width is 800 m" in (tmp_path / "r.html").read_text(encoding="utf-8")
+
+
+def test_the_notes_of_respond_say_it_too(tmp_path):
+    import json
+
+    (tmp_path / "w.yaml").write_text("mechanism: block\nwidth: 800\nheight: 12000\n")
+    found = json.loads(run("respond", "w.yaml", "--release", "0.5", "--json").stdout)
+    assert found["notes"] == ["w: width is 800 m, height is 12000 m: did you mean 800 mm and 12000 mm?"]
+
+
+def test_a_slenderness_is_an_angle(tmp_path):
+    import json
+
+    asked = "--pulse", "sine:0.5g:0.8s", "--sizes", "1:3:2"
+    spectra = json.loads(run("spectrum", "--slenderness", "0.2,18 deg", *asked, "--json").stdout)["spectra"]
+    assert [each["slenderness"] for each in spectra] == [0.2, pytest.approx(pi / 10, rel=1e-15)]
+    assert "is a mass, not an angle" in run("spectrum", "--slenderness", "5kg", *asked, code=2).stderr
+    assert (
+        "a slenderness is an angle in rad between 0 and pi/2"
+        in run("spectrum", "--slenderness", "95deg", *asked, code=2).stderr
+    )

@@ -1,0 +1,511 @@
+"""The package as Python users have it: classes to import, verbs, answers that show themselves, a page that runs."""
+
+import doctest
+import json
+import pickle
+import time
+from concurrent.futures import ThreadPoolExecutor
+from importlib import import_module
+
+import numpy as np
+import pytest
+from mypy import api as mypy
+from pydantic import ValidationError
+
+import rocking_cli as rk
+from rocking_cli.ask.answer import Answer
+from rocking_cli.ask.watcher import Watcher
+from rocking_cli.core.registry import Registry
+from rocking_cli.dynamics.model import MODELS
+from rocking_cli.rooms import names
+from rocking_cli.views.view import View
+from tests.cli.test_cli import run_json
+from tests.cli.test_every_option import CALLS, RECORD, SITE
+from tests.conftest import EXAMPLES, PROJECT
+from tests.following import respond
+
+ACCEL = str(EXAMPLES / "accel.csv")
+DOCS = PROJECT / "docs"
+
+
+@pytest.fixture(scope="module")
+def maker():
+    def load(name):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.syspath_prepend(DOCS)
+            return import_module(name)
+
+    return load
+
+
+@pytest.fixture(scope="module")
+def wall():
+    return rk.Wall(thickness=0.3, height=3.0)
+
+
+# --- classes
+
+
+@pytest.mark.parametrize("name", [name for name in Registry() if "rocking-cli " in Registry().package_of(name)])
+def test_every_mechanism_can_be_imported_by_the_name_of_its_class(name):
+    cls = Registry()[name]
+    assert getattr(rk, cls.__name__) is cls
+    assert cls.__name__ in dir(rk)
+    assert rk.mechanisms[name] is cls
+
+
+def test_what_is_not_there_is_no_attribute():
+    with pytest.raises(AttributeError, match="has no attribute 'Steeple'"):
+        _ = rk.Steeple
+    assert not hasattr(rk, "_own")
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"thickness": -0.3, "height": 3.0}, "thickness must be more than 0 m, got -0.3"),
+        ({"thickness": 0.3}, "height is missing"),
+        ({"thicknes": 0.3, "thickness": 0.3, "height": 3.0}, "did you mean thickness?"),
+        ({"thickness": "30 kg", "height": 3.0}, "30 kg is a mass, not a length"),
+    ],
+)
+def test_wrong_fields_are_an_input_error_that_names_them(fields, words):
+    with pytest.raises(rk.InputError) as caught:
+        rk.Wall(**fields)
+    assert words in str(caught.value)
+    assert not isinstance(caught.value, ValidationError)
+
+
+def test_files_place_their_errors_themselves(tmp_path):
+    (tmp_path / "w.yaml").write_text("mechanism: wall\nthickness: -1\nheight: 3\n", encoding="utf-8")
+    with pytest.raises(rk.InputError, match=r"w\.yaml:2:12: thickness must be more than 0"):
+        rk.load_structure(tmp_path / "w.yaml")
+
+
+def test_the_stub_is_not_stale(maker):
+    stub = maker("make_stub")
+    assert stub.STUB.read_text(encoding="utf-8") == stub.stub(), "run make stub"
+
+
+# --- answers
+
+
+def test_a_response_is_the_histories_and_the_json_of_the_command(wall):
+    answer = rk.respond(wall, ACCEL)
+    alone = respond(wall, rk.read_record(ACCEL))
+    assert list(answer) == list(alone)
+    for name, run in alone.items():
+        assert answer[name].peak_ratio == run.peak_ratio
+    said = run_json("respond", EXAMPLES / "wall.yaml", "--record", ACCEL, "--neighbours", 0)
+    assert rk.respond(EXAMPLES / "wall.yaml", ACCEL).to_dict()["responses"] == said["responses"]
+    assert json.dumps(answer.to_dict())
+
+
+def test_a_model_may_be_one_name_and_an_unknown_one_is_told(wall):
+    assert list(rk.respond(wall, "sine:0.2g:1s", models="linear2")) == ["linear2"]
+    with pytest.raises(rk.InputError, match="models must be of nonlinear, linear1, linear2, got linear3"):
+        rk.respond(wall, "sine:0.2g:1s", models="linear3")
+
+
+def test_a_motion_may_be_a_file_a_pulse_its_text_or_samples(wall):
+    pulse = rk.parse_pulse("ricker:0.4g:0.8s")
+    ways = [pulse, "ricker:0.4g:0.8s", pulse.sampled()]
+    peaks = {rk.respond(wall, each, models="nonlinear")["nonlinear"].peak_ratio for each in ways}
+    assert len(peaks) == 1
+    assert rk.respond(wall, ACCEL, scale=-1.0, models="nonlinear")["nonlinear"].peak_ratio > 0
+    with pytest.raises(rk.InputError, match="no such file"):
+        rk.respond(wall, "nowhere.csv")
+
+
+def test_every_structure_under_every_motion_with_every_factor(wall):
+    block = rk.Block(width=0.7, height=2.8)
+    answer = rk.respond_each([block, wall], ["sine:0.4g:0.8s", ACCEL], models="nonlinear", scales=[0.5, -1.0, 2.0])
+    found = answer["nonlinear"]
+    assert found.peak_ratio.shape == (2, 2, 3)
+    one = rk.respond(wall, ACCEL, scale=-1.0, models="nonlinear", tail=0.0)["nonlinear"]
+    assert found.peak_ratio[1, 1, 1] == one.peak_ratio and found.fell_to[1, 1, 1] == one.fell_to
+    frame = answer.to_frame()
+    assert len(frame) == 12 and frame["nonlinear peak_ratio"][10] == one.peak_ratio
+    assert frame.loc[10, ["structure", "motion", "scale"]].tolist() == ["wall", "accel.csv", -1.0]
+
+
+def test_doubts_are_warnings_of_python_unless_something_watches():
+    tall = rk.Block(width=0.5, height=700.0)
+    with pytest.warns(rk.DoubtWarning, match="did you mean 700 mm"):
+        rk.equiv(tall)
+    with pytest.warns(rk.DoubtWarning, match="displacement ends"):
+        rk.record(rk.parse_pulse("sine:0.4g:0.8s").sampled())
+
+    class Patient(Watcher):
+        def warn(self, text):
+            said.append(text)
+
+    said = []
+    rk.equiv(tall, watch=Patient())
+    assert "did you mean 700 mm" in said[0]
+
+
+ENDS = ("overturned", "peak_ratio", "uplift_time", "overturning_time", "impact_count")
+OF_A_MAP = (
+    "omega; a; period [s]; acceleration [g]; outcome; peak phi/phi_cr; impacts before overturning; known to [s]; "
+    "peak phi/phi_cr, at least"
+)
+FRAMES = {
+    "equiv": (
+        "name; mechanism; direction; p [rad/s]; phi_cr [rad]; lambda [g]; lambda_lin [g]; kappa1; kappa2; "
+        "theta_cr1 [rad]; theta_cr2 [rad]; eta; v_imp [m/s]; I_eq [kg m2]; G_eq [kg m]; B_eq [kg m]; per unit mass",
+        {"lambda [g]": lambda _, data: [side["lambda"] for side in data["directions"].values()]},
+    ),
+    "collapse": (
+        "direction; lambda; hinge; between; x [m]; y [m]",
+        {"y [m]": lambda _, data: [each["at"][1] for side in data["directions"].values() for each in side["hinges"]]},
+    ),
+    "draw": ("length", {"length": lambda answer, _: [each.text for each in answer.sketch.lengths]}),
+    "error": (
+        "direction; phi/phi_cr; period [s]; period_ratio",
+        {"period [s]": lambda _, data: [each["period"] for each in data["directions"]["positive"]["free_period"]]},
+    ),
+    "respond": (
+        "t [s]; a_g [g]; "
+        + "; ".join(f"{model} {what}" for model in MODELS for what in ("phi [rad]", "phi_dot [rad/s]", "phi/phi_cr"))
+        + "".join(f"; {model} top {what} [m]" for model in MODELS for what in ("u_x", "u_y"))
+        + "; nonlinear base shear [N/kg]",
+        {"linear1 phi [rad]": lambda answer, _: answer["linear1"].phi},
+    ),
+    "respond_each": (
+        "structure; motion; scale; "
+        + "; ".join(f"nonlinear {end}" for end in (*ENDS, "unknown", "known_to"))
+        + "".join(f"; {model} {end}" for model in MODELS[1:] for end in ENDS),
+        {"linear2 peak_ratio": lambda _, data: data["linear2"]["peak_ratio"][0][0]},
+    ),
+    "respond_around": (
+        "azimuth [deg]; PGA [g]; peak phi/phi_cr nonlinear; overturns nonlinear",
+        {"PGA [g]": lambda _, data: data["pga"]},
+    ),
+    "animate": ("time; phi", {"phi": lambda answer, _: answer.film.history.phi}),
+    "pulse": (
+        "polarity; model; peak_ratio; outcome",
+        {"peak_ratio": lambda _, data: [each["peak_ratio"] for each in data["responses"].values()]},
+    ),
+    "spectrum": (
+        "structure; 2 pi/p [s]; scale; R of the block [m]; motions; overturned share; unknown share; "
+        "0.16-fractile of peak phi/phi_cr; 0.5-fractile of peak phi/phi_cr; 0.84-fractile of peak phi/phi_cr; "
+        "peak phi/phi_cr under sine:0.9g:0.5s; peak phi/phi_cr under sine:0.3g:0.5s; "
+        "peak phi/phi_cr under sine:0.9g:0.5s, at least; peak phi/phi_cr under sine:0.3g:0.5s, at least",
+        {"scale": lambda _, data: data["spectra"][0]["scale"],
+         "unknown share": lambda _, data: [each / 2 for each in data["spectra"][0]["unknown"]]},
+    ),
+    "overturning": (OF_A_MAP, {"omega": lambda _, data: data["omega"] * 3}),
+    "overturning_map": (OF_A_MAP, {"acceleration [g]": lambda _, data: np.repeat(data["acceleration"], 3)}),
+    "overturning_curves": (
+        "period [s]; weak [g]; weak, overturns or unknown [g]; block [g]; block, overturns or unknown [g]; first",
+        {"weak [g]": lambda _, data: data["structures"][0]["least"],
+         "block [g]": lambda _, data: data["structures"][1]["least"]},
+    ),
+    "margin": (
+        "motion; factor; overturned; unknown",
+        {"factor": lambda _, data: data["motions"][0]["factors"],
+         "overturned": lambda _, data: data["motions"][0]["shares"]},
+    ),
+    "shares": ("overturned; stands; unknown; checked", {"stands": lambda _, data: [data["stands"]]}),
+    "survey": (
+        "rank; name; mechanism; row; line; overturned; unknown; peak_ratio; peak_over; outcome; worst; lambda; "
+        "uplift [g]; direction; p [rad/s]; phi_cr [rad]; kappa1; kappa2; eta; no_block; doubt; caution",
+        {"p [rad/s]": lambda _, data: [row["p"] for row in data["rows"]]},
+    ),
+    "design": (
+        "width [m]; peak_ratio; unknown; holds",
+        {"width [m]": lambda _, data: data["scan"]["values"], "peak_ratio": lambda answer, _: answer.metric},
+    ),
+    "equivalent": (
+        "p t; block t [s]; block phi/phi_cr; weak t [s]; weak phi/phi_cr; linear block phi/phi_cr",
+        {"p t": lambda answer, _: answer.members[0].block.p * answer.members[0].history.time},
+    ),
+    "response_spectrum": (
+        "record; damping; period [s]; pseudo Sa [g]; pseudo Sv [m/s]; Sd [m]",
+        {"pseudo Sv [m/s]": lambda _, data: data["sv"]},
+    ),
+    "record": ("t [s]; a_g [g]", {"a_g [g]": lambda *_: RECORD.acceleration / 9.80665}),
+    "verify": (
+        "direction; method; a_g [g]; asked [g]; zeta_E; TR [years]; governs",
+        {"a_g [g]": lambda answer, _: [
+            method.a_g for side in answer.directions.values() for method in side.methods.values()
+        ]},
+    ),
+    "select": (
+        "period [s]; target Sa [g]; mean Sa [g]; Sa of r0 [g]; Sa of r5 [g]",
+        {"mean Sa [g]": lambda _, data: data["spectrum"]["mean"]},
+    ),
+    "fragility": (
+        "run; structure; sample; record; level; polarity; eta; scale; PGA [g]; PGV [m/s]; PGA/(g lambda); "
+        "p PGV/(g lambda); outcome; fell_to; phi/phi_cr; phi positive [rad]; phi negative [rad]; uplift [s]; "
+        "overturning [s]; known to [s]; phi/phi_cr at least; opening/D_cr",
+        {"run": lambda _, data: range(data["runs"])},
+    ),
+    "score": (
+        "line; structure; record; cluster; share; unknown; overturned; doubtful; pgv; error",
+        {"pgv": lambda _, data: [each["pgv"] for each in data["tests"]]},
+    ),
+    "report": (
+        "motion; peak_ratio; overturned; unknown",
+        {"motion": lambda _, data: [each["name"] for each in data["motions"]],
+         "peak_ratio": lambda _, data: [
+             each["polarities"][f"{each['polarity']}"]["responses"]["nonlinear"]["peak_ratio"]
+             for each in data["motions"]
+         ]},
+    ),
+    "calibrate": (
+        "time [s]; angle [rad]; fitted [rad]; fitted, eta of each impact [rad]",
+        {"fitted [rad]": lambda answer, _: answer.fitted},
+    ),
+    "selfcheck": (
+        "check; meaning; found; limit; unit; passed; why; seconds",
+        {name: lambda _, data, name=name: [each[name] for each in data["checks"]] for name in ("check", "found")},
+    ),
+}  # fmt: skip
+FRAMES["results"] = FRAMES["fragility"]
+"""The columns of the frame of each verb, and numbers of some as answer or data have them."""
+QUESTIONS = {verb: given for verb, (given, _) in CALLS.items()} | {
+    "verify": {"structure": CALLS["equiv"][0]["structures"], "site": SITE},
+    "score": {"tests": EXAMPLES / "tests.csv", "neighbours": 2},
+    "results": {"store": "in.db"},
+    "selfcheck": {"quick": True},
+}  # fmt: skip
+
+
+@pytest.mark.filterwarnings("ignore::rocking_cli.DoubtWarning")
+def test_every_frame_has_its_columns_and_the_numbers_of_its_answer(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for verb, (heads, numbers) in FRAMES.items():
+        answer = getattr(rk, verb)(**QUESTIONS[verb])
+        frame, data = answer.to_frame(), answer.to_dict()
+        assert list(frame) == heads.split("; "), verb
+        for head, of in numbers.items():
+            expected = list(of(answer, data))
+            if isinstance(expected[0], str):
+                assert frame[head].tolist() == expected
+            else:
+                np.testing.assert_allclose(
+                    frame[head].astype(float), np.array(expected, float), rtol=1e-12, err_msg=verb
+                )
+
+
+@pytest.mark.every(4)
+@pytest.mark.filterwarnings("ignore::rocking_cli.DoubtWarning")
+@pytest.mark.parametrize(
+    "verb",
+    ["collapse", "equiv", "draw", "record", "respond", "spectrum", "overturning_map", "overturning_curves", "margin",
+     "verify", "error", "equivalent"],
+)  # fmt: skip
+def test_an_answer_shows_itself(verb, tmp_path):
+    answer = getattr(rk, verb)(**QUESTIONS[verb])
+    text = repr(answer)
+    assert text.startswith("<") and text.endswith(">") and "\n" not in text and len(text) < 160
+    page = answer._repr_html_()
+    assert "<p>" in page and page.count("<table") == page.count("</table>")
+    assert len(answer.to_frame()) > 0
+    json.dumps(answer.to_dict(), allow_nan=False)
+    answer.plot(tmp_path / "a.svg")
+    assert (tmp_path / "a.svg").stat().st_size > 1000
+
+
+def test_names_of_others_are_text_in_a_notebook():
+    answer = rk.equiv(rk.Block(name="<img src=x>", width=0.7, height=2.8))
+    assert "<img" not in answer._repr_html_() and "&lt;img" in answer._repr_html_()
+
+
+def test_a_picture_has_a_known_ending(wall):
+    with pytest.raises(rk.InputError, match=r"give a file name that ends in \.png, \.svg or \.pdf"):
+        rk.equiv(wall).plot("a.jpeg2")
+
+
+def test_a_map_of_a_structure_is_that_of_the_command():
+    pulses = {"period": (0.3, 2.0), "ag": (0.1, 1.0), "points": 9}
+    answer = rk.overturning_map(EXAMPLES / "block.yaml", **pulses)
+    said = run_json("overturning", EXAMPLES / "block.yaml", "--period", "0.3:2", "--ag", "0.1g:1g", "--points", 9)
+    assert answer.to_dict() == said
+    assert np.isnan(answer.outcome.peak_ratio[answer.outcome.fell]).all()
+
+
+def test_a_report_is_written_with_what_gives_the_structure_again(tmp_path):
+    answer = rk.report(rk.Block(name="made here", width=0.7, height=2.8), (), tmp_path / "r.html")
+    page = (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert "made here" in page and "width: 0.7" in page
+    assert "made here" in repr(answer)
+
+
+def test_a_study_given_in_python_is_that_of_its_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    study = {
+        "structures": [rk.Block(name="pillar", width=0.6, height=2.6, restitution=0.9), EXAMPLES / "wall.yaml"],
+        "records": [{"pulse": "sine:1g:0.6s"}, {"pulse": "ricker:1g:1s"}],
+        "method": "stripes",
+        "levels": {"measure": "PGA", "least": 0.2, "most": 1.6, "count": 6},
+        "limit_states": ["overturning"],
+    }
+    first = rk.fragility(study, store="pillar.db")
+    (tmp_path / "pillar.yaml").write_text("mechanism: block\nname: pillar\nwidth: 0.6\nheight: 2.6\nrestitution: 0.9\n")
+    file = json.dumps({**study, "structures": ["pillar.yaml", str(EXAMPLES / "wall.yaml")]})
+    (tmp_path / "study.yaml").write_text(file)
+    again = rk.fragility("study.yaml", store="other.db")
+    assert first.result[0].structure == "pillar" and len(first.result) == 2
+    assert first.to_frame().equals(again.to_frame())
+    assert first.sentences[0].startswith("pillar: stripes") and again.sentences[0].startswith("study: stripes")
+    told, noted = Watcher(), []
+    told.note = noted.append
+    assert rk.fragility("study.yaml", store="pillar.db", watch=told).result  # whichever started it, both go on
+    rk.fragility(study, store="other.db", watch=told)
+    assert noted.count("24 of 24 runs are in the store already") == 2
+    assert rk.results("pillar.db").to_frame().equals(first.to_frame())
+    with pytest.raises(rk.InputError, match=r"study: levels"):
+        rk.fragility({**study, "levels": 3}, store="bad.db")
+    with pytest.raises(rk.InputError, match=r"study: structures must be a list"):
+        rk.fragility({**study, "structures": study["structures"][0]}, store="bad.db")
+
+
+def test_a_mechanism_stands_for_the_file_of_an_entry(tmp_path):
+    width = {"normal": {"mean": 0.6, "deviation": 0.06}}
+    study = {
+        "structures": [
+            {"file": rk.Block(name="pillar", width=0.6, height=2.6), "vary": {"width": width}},
+            {"file": EXAMPLES / "block.yaml", "name": "other"},
+        ],
+        "records": [{"file": EXAMPLES / "accel.csv", "factor": 2}],
+        "method": "cloud",
+        "samples": 2,
+    }
+    plan = rk.fragility(study, store=tmp_path / "a.db", check=True).result
+    assert [each.structure for each in plan.trials] == ["pillar", "pillar", "other"]
+    assert len({each.lambda_ for each in plan.trials}) == 3
+
+
+# --- what the documentation shows
+
+
+def test_the_page_on_python_does_what_it_shows(maker, tmp_path):
+    assert maker("make_python").run(tmp_path) == 0
+    assert {path.name for path in tmp_path.glob("*.png")} == {"response.png", "spectrum.png", "fragility.png"}
+
+
+@pytest.mark.types
+def test_a_type_checker_accepts_the_page(maker, tmp_path):
+    file = tmp_path / "page.py"
+    file.write_text(maker("make_python").script(), encoding="utf-8")
+    options = ["--config-file", str(PROJECT / "pyproject.toml"), "--disable-error-code", "no-untyped-call"]
+    out, err, code = mypy.run([*options, "--cache-dir", str(PROJECT / ".mypy_cache"), str(file)])
+    wrong = [line for line in out.splitlines() if "page.py" in line and "Wall" not in line]
+    assert not wrong and code in (0, 1), out + err
+
+
+TYPED = """
+from typing import assert_type
+import rocking_cli as rk
+from rocking_cli.questions.record.verb import RecordAnswer
+from rocking_cli.questions.respond.verb import ResponseAnswer
+from rocking_cli.ask.several import Answers
+block = rk.Block(width=0.7, height=2.8)
+assert_type(rk.respond(block, "sine:0.3g:0.5s", tail=3), ResponseAnswer)
+assert_type(rk.respond(structure=block, motion=["a.csv", "b.csv"]), Answers[ResponseAnswer])
+assert_type(rk.record("a.csv", scale=2.0), RecordAnswer)
+assert_type(rk.record(["a.csv"]), Answers[RecordAnswer])
+rk.animate(block, "a.csv", "a.html").film
+rk.animate(block, ["a.csv"], "a.html")["a.csv"].film
+rk.equiv(block).positive
+rk.equiv([block])["block"].positive
+rk.respond(block, "a.csv", tale=3)
+"""
+
+
+@pytest.mark.types
+def test_one_motion_gives_one_answer_to_a_type_checker_and_several_give_answers(tmp_path):
+    (tmp_path / "typed.py").write_text(TYPED, encoding="utf-8")
+    cache = ["--cache-dir", str(PROJECT / ".mypy_cache")]
+    out, _, _ = mypy.run(["--config-file", str(PROJECT / "pyproject.toml"), *cache, str(tmp_path / "typed.py")])
+    wrong = [line for line in out.splitlines() if "typed.py" in line and " error: " in line]
+    assert wrong and all(f":{TYPED.count(chr(10))}:" in line for line in wrong), out
+
+
+VERBS = [
+    name.removeprefix("rocking_cli")
+    for name in sorted(set(names().values()))
+    if ">>>" in (PROJECT / f"{name.replace('.', '/')}.py").read_text(encoding="utf-8")
+]
+MODULES = ("", *VERBS, ".ask.watcher", ".dynamics.batch", ".dynamics.exact", ".names", ".units", ".views.column")
+
+
+@pytest.mark.every(2)
+@pytest.mark.parametrize("name", MODULES)
+def test_examples_in_docstrings_run(name, monkeypatch):
+    monkeypatch.chdir(PROJECT)
+    found = doctest.testmod(import_module(f"rocking_cli{name}"))
+    assert found.attempted > 0 and found.failed == 0
+
+
+def test_a_motion_keeps_samples_of_its_own():
+    samples = np.zeros(100)
+    made = []
+    for k in (1, 2, 3):
+        samples[:] = k
+        made.append(rk.GroundMotion(f"m{k}", 0.01, samples))
+    assert [each.pga_g for each in made] == pytest.approx([k / 9.80665 for k in (1, 2, 3)])
+    with pytest.raises(ValueError, match="read-only"):
+        made[0].acceleration[0] = 9.0
+    assert made[0].scaled(1.0).acceleration is not samples
+
+
+@pytest.mark.parametrize("scales", [[[1.0], [2.0], [3.0]], np.ones((2, 2))])
+def test_factors_in_several_dimensions_are_refused(scales):
+    with pytest.raises(rk.InputError, match="scales must be one factor or a list of them"):
+        rk.respond_each(rk.Block(width=0.7, height=2.8), "sine:0.4g:0.8s", models="nonlinear", scales=scales)
+
+
+# --- what is refused, and what travels
+
+
+@pytest.mark.parametrize(
+    ("ask", "said"),
+    [
+        (lambda block: rk.equiv({"mechanism": "block"}), "structure must be a mechanism or a YAML file, got a dict"),
+        (lambda block: rk.respond(rk.build_models(block)[0], ACCEL), "structure must be a mechanism or a YAML file"),
+        (lambda block: rk.respond(block, np.zeros(9)), "motion must be a ground motion, a pulse or a file, got a nd"),
+        (lambda block: rk.spectrum(block, ACCEL, count=-1), "count must be a whole number of at least 1, got -1"),
+        (lambda block: rk.spectrum(block, ACCEL, count=0), "count must be a whole number of at least 1, got 0"),
+        (lambda block: block.coefficients(0.1, rk.Direction.POSITIVE), "phi must be an array of rotations, got 0.1"),
+        (lambda block: block.coefficients("a", rk.Direction.POSITIVE), "phi must be an array of rotations, got 'a'"),
+        (lambda block: block.kinetic_inertia(0.1, rk.Direction.POSITIVE), "phi must be an array of rotations"),
+    ],
+)
+def test_an_argument_of_another_kind_is_an_error_of_the_tool(ask, said):
+    with pytest.raises(rk.InputError, match=said):
+        ask(rk.Block(width=0.7, height=2.8))
+
+
+def test_answers_can_be_pickled_with_their_plots():
+    block = rk.Block(width=0.7, height=2.8)
+    for answer in (rk.equiv(block), rk.respond(block, "sine:0.3g:0.8s", models="nonlinear")):
+        copy = pickle.loads(pickle.dumps(answer))
+        assert copy.to_dict() == answer.to_dict() and copy.sentences == answer.sentences
+        columns = answer.columns()
+        for name, values in columns.items():
+            np.testing.assert_array_equal(copy.columns()[name], values)
+        assert len(copy.plot().axes) == len(answer.plot().axes)
+        assert pickle.loads(pickle.dumps(copy)).to_dict() == answer.to_dict()
+    many = pickle.loads(pickle.dumps(rk.respond_each(block, "sine:0.3g:0.8s", models="nonlinear")))
+    with pytest.raises(rk.InputError, match="many responses have no plot of their own"):
+        many.plot()
+
+
+def test_threads_draw_one_after_another(monkeypatch):
+    """Matplotlib fails where two threads draw at once."""
+    drawing, most = [], []
+
+    def figure():
+        drawing.append(1)
+        most.append(len(drawing))
+        time.sleep(0.01)
+        drawing.pop()
+
+    answer = Answer("q", None, View({}, []), dict, figure)
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(lambda _: answer.plot(), range(8)))
+    assert max(most) == 1

@@ -1,0 +1,498 @@
+"""Restitution from traces and from tests: against traces integrated here, and as a user runs the command."""
+
+import csv
+import runpy
+import warnings
+from math import atan, cos, degrees, hypot, sin, sqrt
+
+import numpy as np
+import pytest
+import yaml
+from click.testing import CliRunner
+
+import rocking_cli as rk
+from rocking_cli.cli.main import main
+from rocking_cli.core import Direction
+from rocking_cli.errors import InputError
+from rocking_cli.io.yaml_file import with_fields
+from rocking_cli.questions.calibrate.free_rocking import MechanismSide, ScaledSide, free_rocking
+from rocking_cli.questions.calibrate.region import JointRegion, joint_region
+from rocking_cli.questions.calibrate.study import fit_trace, pool
+from rocking_cli.questions.calibrate.trace import Trace, read_trace
+from rocking_cli.questions.calibrate.view import region_view, trace_view
+from rocking_cli.questions.score.table import parse_columns
+from rocking_cli.structure import Structure
+from rocking_cli.studies.neighbours import Neighbourhood
+from tests.cli.test_cli import run, run_json
+from tests.conftest import EXAMPLES
+from tests.elsewhere import PROJECT
+
+simulate = runpy.run_path(str(PROJECT / "docs" / "make_traces.py"))["simulate"]  # by Runge and Kutta
+BLOCK = rk.Block(width=0.1, height=0.5)
+ALPHA, P = atan(0.2), sqrt(3 * 9.80665 / (2 * hypot(0.1, 0.5)))
+P_OTHER = sqrt(3 * 9.80665 / (2 * hypot(0.103, 0.49)))
+ETA, RELEASE, DT = 0.9323, 0.7 * ALPHA, 0.01
+
+
+@pytest.fixture(scope="module")
+def clean():
+    """Seven impacts of the block, and their times."""
+    return simulate(ALPHA, P, [ETA] * 8, RELEASE, 8)
+
+
+def trace(angles, *, noise=0.01, drift=0.0, offset=0.0, held=30, seed=1, start=0.0):
+    random = np.random.default_rng(seed)
+    read = np.concatenate([np.full(held, angles[0]), angles])
+    times = DT * np.arange(read.size)
+    read = read + drift * ALPHA * times + offset * ALPHA + random.normal(0, noise * abs(angles[0]), read.size)
+    return Trace("trace.csv", times + start, read)
+
+
+def sides_of(structure):
+    return {
+        each: MechanismSide(structure.mechanism, each, side.reference)
+        for each, side in zip(Direction, structure.statics, strict=True)
+        if each in structure.mechanism.directions
+    }
+
+
+def write(folder, given, unit="deg", name="trace.csv"):
+    factor = {"deg": degrees(1), "rad": 1.0}[unit]
+    rows = [
+        f"{t:.9g},{'' if np.isnan(a) else f'{a * factor:.9g}'}" for t, a in zip(given.times, given.angles, strict=True)
+    ]
+    (folder / name).write_text("\n".join([f"time [s],angle [{unit}]", *rows]) + "\n", encoding="utf-8")
+    return folder / name
+
+
+class TestFreeRocking:
+    def test_a_block_is_that_of_runge_and_kutta(self, clean):
+        angles, impacts = clean
+        for sides in (
+            {each: MechanismSide(BLOCK, each, ALPHA) for each in Direction},
+            {each: ScaledSide(MechanismSide(BLOCK, each, ALPHA)) for each in Direction},
+        ):
+            motion = free_rocking(sides, RELEASE, ETA)
+            assert motion.at(DT * np.arange(angles.size)) == pytest.approx(angles, abs=1e-6 * ALPHA)
+            assert motion.impacts[:7] == pytest.approx(impacts, abs=1e-8)
+            assert motion.at(np.array([-1.0, 1e3])) == pytest.approx([RELEASE, 0])
+        other = free_rocking(sides, -RELEASE, np.array([ETA, 0.5]), until=1.0)
+        assert other.peaks[1] == pytest.approx(motion.peaks[1])
+        assert P**2 * (cos(ALPHA - other.peaks[2]) - cos(ALPHA)) == pytest.approx(
+            (ETA * 0.5) ** 2 * P**2 * (cos(ALPHA - RELEASE) - cos(ALPHA))
+        )
+
+    @pytest.mark.parametrize("name", ["frame.yaml", "rigid_body.yaml", "masonry/portal.yaml", "walls/facade.yaml"])
+    def test_any_structure_rocks_as_its_history_does(self, name):
+        structure = Structure(rk.load_structure(EXAMPLES / name)).with_eta(0.7)
+        sides = sides_of(structure)
+        first = structure.mechanism.directions[0]
+        release = min(0.3 * sides[first].end, 0.05)
+        run = rk.respond(structure, release=f"{int(first) * release}rad", models="nonlinear", tail=3.0).runs[1][
+            "nonlinear"
+        ]
+        rebounds = not structure.mechanism.rocks_both_ways
+        motion = free_rocking(sides, int(first) * release, 0.7, rebounds=rebounds)
+        assert run.impacts.size > 3
+        assert run.phi == pytest.approx(motion.at(run.time), abs=2e-5 * sides[first].end)
+
+
+class TestFit:
+    @pytest.mark.rest
+    @pytest.mark.parametrize("drift", [0.0, 0.01])
+    def test_the_bars_of_accuracy_are_met(self, clean, drift):
+        """Bias below .0002 and deviation below .0003; docs/make_traces.py has 200 traces."""
+        found = [fit_trace(Structure(BLOCK), trace(clean[0], drift=drift, seed=k)).eta for k in range(5)]
+        values = np.array([each.value for each in found])
+        assert abs(values.mean() - ETA) < 0.0002 and values.std(ddof=1) < 0.0003
+
+    def test_what_else_a_trace_shows(self, clean):
+        found = fit_trace(Structure(BLOCK), trace(clean[0], drift=0.01, offset=0.03, start=5.0))
+        assert len(found.etas) == 7 and found.pooled.seen < 0.005 < found.scatter
+        assert found.impacts == pytest.approx(np.array(clean[1]) + 5.3, abs=0.005)
+        assert (found.release_time, found.release) == pytest.approx((5.3, RELEASE), abs=0.004)
+        for fitted, true in ((found.drift, 0.01 * ALPHA), (found.offset, (0.03 - 0.05) * ALPHA)):  # at time zero
+            assert fitted.deviation < 0.04 * ALPHA and fitted.value == pytest.approx(true, abs=3 * fitted.deviation)
+        assert found.noise == pytest.approx(0.01 * RELEASE, rel=0.15)
+        assert 0.8 < found.residual / found.noise < 1.3
+
+    @pytest.mark.every(3)
+    @pytest.mark.parametrize(
+        ("before", "lift", "held", "impacts"),
+        [(1, 2, 0, 7), (0, 0, 20, 7), (3, 10, 20, 7), (0, 0, 0.5, 3), (1, 0.2, 0, 60)],
+    )
+    def test_lifting_holding_and_rest_are_no_rocking(self, before, lift, held, impacts):
+        """As laboratories record it; with 60 impacts, it comes to rest and stays so for 3 s."""
+        angles, times = simulate(ALPHA, P, [ETA] * 61, RELEASE, impacts + 1)
+        parts = [np.zeros(round(before / DT)), RELEASE * np.sin(np.linspace(0, np.pi / 2, round(lift / DT))) ** 2]
+        parts += [np.full(round(held / DT), RELEASE), angles, np.zeros(300 if impacts == 60 else 0)]
+        given = trace(np.concatenate(parts), held=0, noise=0, drift=0.01, offset=0.03)
+        noise = np.random.default_rng(3).normal(0, 0.01 * RELEASE, given.times.size)
+        found = fit_trace(Structure(BLOCK), Trace("t", given.times, given.angles + noise))
+        assert found.eta.value == pytest.approx(ETA, abs=6e-4 if impacts > 3 else 3e-3)
+        assert abs(found.eta.value - ETA) < 2 * found.eta.deviation < 0.08
+        assert (len(found.etas), found.patterned, found.sides) == (min(impacts, 15), False, None)
+        let_go = before + lift + held
+        assert found.part[0] == pytest.approx(let_go + 0.1 * times[0], abs=0.05)
+        assert found.impacts[:3] == pytest.approx(let_go + np.array(times[:3]), abs=0.01)
+
+    @pytest.mark.rest
+    def test_of_two_tests_the_larger_is_fitted(self):
+        angles, times = simulate(ALPHA, P, [ETA] * 61, RELEASE, 60)
+        small, _ = simulate(ALPHA, P, [ETA] * 61, 0.5 * RELEASE, 60)
+        for both, begin in (((angles, small), 0.0), ((small, angles), (small.size + 130) * DT)):
+            given = trace(np.concatenate([both[0], np.full(100, 0.0), np.full(30, both[1][0]), both[1]]), held=0)
+            found = fit_trace(Structure(BLOCK), given)
+            assert found.impacts[:3] == pytest.approx(begin + np.array(times[:3]), abs=0.01)
+
+    def test_a_wrong_p_leaves_a_pattern_and_is_within_the_deviation(self, clean):
+        size = 1.03**2
+        near = rk.Block(width=0.1 * size, height=0.5 * size)
+        found = fit_trace(Structure(near), trace(clean[0]))
+        assert 0.002 < abs(found.eta.value - ETA) < 2 * found.eta.deviation and found.patterned
+        assert "Caution: the residual leaves a pattern" in trace_view(found, Structure(near)).parts[-1]
+        sure = rk.Block(width=0.1, height=0.5, uncertainty={"slenderness": 0.0})
+        sharp, usual = (fit_trace(Structure(each), trace(clean[0])) for each in (sure, BLOCK))
+        part = np.sqrt(usual.eta.deviation**2 - sharp.eta.deviation**2)  # of 10 % of slenderness, 3.5 % of p
+        assert part == pytest.approx(0.0033 * 3.5 / 3, rel=0.8)
+
+    @pytest.mark.rest
+    def test_sides_that_differ_are_no_scatter(self):
+        """One side of 5 % more alpha; the rates go on, as the inertia of both is the same."""
+        motion = free_rocking(
+            {each: ScaledSide(MechanismSide(BLOCK, each, ALPHA), alpha=1.025 ** int(each)) for each in Direction},
+            RELEASE, ETA,
+        )  # fmt: skip
+        given = trace(motion.at(np.arange(0, motion.impacts[7], DT)))
+        found = fit_trace(Structure(BLOCK), given)
+        assert found.sides.value == pytest.approx(1.025**2, abs=4 * found.sides.deviation)
+        assert found.pooled.seen < 0.003 and found.eta.value == pytest.approx(ETA, abs=5e-4)
+        assert fit_trace(Structure(BLOCK), Trace("t", given.times, -given.angles)).sides.value == pytest.approx(
+            1 / found.sides.value, rel=1e-6
+        )
+        assert "The two sides differ" in trace_view(found, Structure(BLOCK)).parts[3]
+
+    @pytest.mark.every(2)
+    @pytest.mark.parametrize("way", ["reversed", "uneven", "gaps", "late", "in parts"])
+    def test_any_sense_sampling_and_gaps(self, clean, way):
+        given = trace(clean[0], noise=0.002)
+        random, kept = np.random.default_rng(2), np.full(given.times.size, True)
+        if way == "reversed":
+            given = Trace("t", given.times, -given.angles)
+        elif way == "uneven":
+            kept = random.random(kept.size) < 0.6
+        elif way == "gaps":
+            kept = ~((np.abs(given.times - 1.2) < 0.12) | (np.abs(given.times - 2.2) < 0.2))
+        elif way == "late":  # it begins while the block rises to its second peak
+            kept = given.times > clean[1][0] + 0.3 + 0.05
+        else:
+            kept = np.arange(kept.size) % 50 < 40
+        found = fit_trace(Structure(BLOCK), Trace("t", given.times[kept], given.angles[kept]))
+        assert found.eta.value == pytest.approx(ETA, abs=5e-4)
+        assert len(found.etas) == 7 - (way == "late")
+
+    def test_the_scaled_sides_of_a_block_are_those_of_another(self):
+        other = rk.Block(width=0.103, height=0.49)
+        alpha = atan(0.103 / 0.49)
+        for direction in Direction:
+            scaled = ScaledSide(MechanismSide(BLOCK, direction, ALPHA), P_OTHER / P, alpha / ALPHA)
+            motion, true = (
+                free_rocking(dict.fromkeys(Direction, side), 0.6 * alpha, ETA)
+                for side in (scaled, MechanismSide(other, direction, alpha))
+            )
+            times = np.linspace(0, 3, 50)
+            assert motion.at(times) == pytest.approx(true.at(times), abs=2e-3 * alpha)
+
+    def test_scatter_is_that_of_the_impacts(self):
+        etas = [0.93, 0.96, 0.92, 0.95, 0.9, 0.94, 0.93, 0.9]
+        found = fit_trace(Structure(BLOCK), trace(simulate(ALPHA, P, etas, RELEASE, 8)[0], noise=0.001))
+        assert [each.value for each in found.etas[:6]] == pytest.approx(etas[:6], abs=0.004)
+        assert found.pooled.seen == pytest.approx(np.std(etas[:6], ddof=1), rel=0.1)
+        assert found.residual > 3 * found.own_residual
+        assert "it differs from impact to impact" in trace_view(found, Structure(BLOCK)).parts[-1]
+
+    def test_scatter_is_free_of_noise(self):
+        """The variance beyond that of the errors: with equal errors, the difference of the two."""
+        values = np.array([0.9, 0.94, 0.92, 0.95, 0.93])
+        found = pool(values, 0.01**2 * np.eye(5), 0.03)
+        assert found.seen**2 == pytest.approx(np.var(values, ddof=1) - 0.01**2, rel=0.05)  # to the grid
+        assert found.mean == pytest.approx(values.mean()) and found.weights == pytest.approx(np.full(5, 0.2))
+        assert pool(values, 0.05**2 * np.eye(5), 0.03).seen == 0
+
+    def test_scatter_is_drawn_towards_that_of_other_bodies(self):
+        """With exact etas, (.03^2 + sum of squares)/(1 + n - 1); without information, .03; never 0."""
+        values = np.array([0.9, 0.94, 0.92, 0.95, 0.93])
+        exact = pool(values, 1e-12 * np.eye(5), 0.03)
+        assert exact.scatter == pytest.approx(np.sqrt((0.03**2 + 4 * np.var(values, ddof=1)) / 5), rel=1e-3)
+        low, high = exact.interval  # by the likelihood; by chi square .0126 to .0459
+        assert (low, high) == (pytest.approx(0.0126, rel=0.1), pytest.approx(0.0459, rel=0.15))
+        assert pool(values, np.eye(5), 0.03).scatter == pytest.approx(0.03, rel=0.05)
+        none = pool(np.full(7, 0.93), 1e-8 * np.eye(7), 0.03)
+        assert none.scatter == pytest.approx(0.03 / np.sqrt(7), rel=0.02) and none.interval[0] == none.seen == 0
+
+    @pytest.mark.rest
+    def test_p_and_alpha_may_be_free(self, clean):
+        near = rk.Block(width=0.103, height=0.49)  # what somebody measured
+        found = [fit_trace(Structure(near), trace(clean[0], seed=k), free_geometry=True) for k in range(4)]
+        assert np.mean([each.p.value for each in found]) == pytest.approx(P, rel=0.01)
+        assert np.mean([each.alpha.value for each in found]) == pytest.approx(ALPHA, rel=0.01)
+        assert abs(found[0].p.value / P - 1) < 4 * found[0].p.deviation / P
+
+    @pytest.mark.rest
+    def test_both_directions_of_a_leaning_stone(self):
+        structure = Structure(rk.load_structure(EXAMPLES / "rigid_body.yaml"))
+        sides = sides_of(structure)
+        for sign in (1, -1):
+            first = sides[Direction.POSITIVE if sign > 0 else Direction.NEGATIVE]
+            motion = free_rocking(sides, sign * 0.6 * first.end, 0.85)
+            times = np.arange(0, motion.impacts[5], 0.02)
+            angles = sign * motion.at(times)  # the trace has a sense of its own
+            noise = np.random.default_rng(4).normal(0, 0.003 * first.end, times.size)
+            found = fit_trace(structure, Trace("t", times, angles + noise))
+            assert found.eta.value == pytest.approx(0.85, abs=0.002)
+
+
+class TestRefusals:
+    def refused(self, given, structure=BLOCK, **how):
+        with pytest.raises(InputError) as caught:
+            fit_trace(Structure(structure), given, **how)
+        return str(caught.value)
+
+    def test_fewer_than_three_impacts_and_noise_above_the_motion(self, clean):
+        short = clean[0][: int((clean[1][2] - 0.02) / DT)]  # to before the third
+        assert "2 impacts can be seen above the noise, and a fit needs 3" in self.refused(trace(short))
+        assert "there is no motion to fit" in self.refused(trace(clean[0], noise=0.6))
+
+    def test_numbers_that_no_instrument_writes(self, clean):
+        times, angles = DT * np.arange(len(clean[0])), clean[0]
+        assert "the angle is the same in all samples" in self.refused(Trace("t", times, np.full(times.size, 0.1)))
+        assert "check the unit of the angles" in self.refused(Trace("t", times, 1e-300 * angles))
+        assert "check the unit of the times" in self.refused(Trace("t", 1e200 * times, angles))
+        for wrong in (np.nan, np.inf):
+            some = np.where(times == 1.0, wrong, angles)
+            assert "must be finite numbers" in self.refused(Trace("t", times, some))
+        assert "and times increase" in self.refused(Trace("t", times[::-1], angles))
+        assert "at least 30 samples, got 10" in self.refused(Trace("t", times[:10], angles[:10]))
+        with warnings.catch_warnings():  # a fit that wanders far off says so in words, if at all
+            warnings.simplefilter("error")
+            self.refused(Trace("t", 1e-4 * times, 1e-5 * angles))
+
+    @pytest.mark.rest
+    def test_a_trace_of_something_else(self, clean):
+        given = trace(clean[0])
+        other = Trace("t", given.times, 0.1 * np.exp(-0.3 * given.times) * np.cos(40 * given.times))
+        said = self.refused(other)
+        assert "this is not free rocking of this structure" in said or "can be seen above the noise" in said
+
+    @pytest.mark.rest
+    def test_a_block_of_another_size(self, clean):
+        said = self.refused(trace(clean[0]), rk.Block(width=0.2, height=1.0))
+        assert "not free rocking of this structure" in said
+        assert float(said.split("; p = ")[1].split()[0]) == pytest.approx(P, rel=0.1)
+
+    def test_a_structure_that_is_lifted_and_lowered(self):
+        angles = 0.5 * ALPHA * np.interp(DT * np.arange(900), [0, 1, 3, 6, 8], [0, 0, 1, 1, 0])
+        assert "can be seen above the noise, and a fit needs 3" in self.refused(trace(angles, held=0))
+
+    def test_angles_beyond_overturning(self, clean):
+        given = trace(clean[0])
+        said = self.refused(Trace("t", given.times, np.degrees(given.angles)))
+        assert "more than twice the rotation at which the structure overturns" in said and "check the unit" in said
+
+    def test_free_geometry_of_a_slender_block_and_of_no_block(self, clean):
+        slender = rk.Block(width=0.03, height=0.5)
+        assert "a trace does not tell p and alpha apart" in self.refused(trace(clean[0]), slender, free_geometry=True)
+        frame = rk.load_structure(EXAMPLES / "frame.yaml")
+        assert "of a free-standing block" in self.refused(trace(clean[0]), frame, free_geometry=True)
+
+    @pytest.mark.parametrize(
+        ("text", "said"),
+        [
+            ("time [s],angle\n0,1\n", "t.csv:1: angle: its unit must be one of rad, deg"),
+            ("time [s],force [N]\n0,1\n", "one column must be the angle, none of 2 is"),
+            ("time [s],angle [deg],rotation [deg]\n0,1,1\n", "one column must be the angle, 2 of 3 is"),
+            ("time [s],angle [deg]\n0,1\n1,x\n1.5,y\n", "t.csv:4: angle [deg]: 'y' is not a number"),
+            ("time [s],angle [deg]\n0,1\n1,2\n0.5,2\n", "t.csv:4: time [s] must be later than the row before, 1 s"),
+        ],
+    )
+    def test_wrong_files(self, tmp_path, text, said):
+        (tmp_path / "t.csv").write_text(text, encoding="utf-8")
+        assert said in run("calibrate", EXAMPLES / "block.yaml", "--free", tmp_path / "t.csv", code=2).stderr
+
+    def test_ways_that_do_not_fit_together(self, tmp_path):
+        block = EXAMPLES / "block.yaml"
+        assert "either --free" in run("calibrate", block, code=2).stderr
+        assert "either --free" in run("calibrate", block, "--free", "a", "--tests", "b", code=2).stderr
+        both = ("--tests", EXAMPLES / "tests.csv", "--out", tmp_path / "new.yaml")
+        assert "--out requires a trace" in run("calibrate", block, *both, code=2).stderr
+
+
+class TestCommand:
+    @pytest.fixture
+    def folder(self, tmp_path, clean):
+        write(tmp_path, trace(clean[0], drift=0.01))
+        (tmp_path / "block.yaml").write_text(
+            "# of a museum\nmechanism: block\nwidth: 0.1  # m\nuncertainty: {slenderness: 0.03}\nheight: 0.5\n"
+        )
+        return tmp_path
+
+    def test_what_is_printed_and_written(self, folder):
+        block, new = folder / "block.yaml", folder / "new.yaml"
+        asked = ("calibrate", block, "--free", folder / "trace.csv")
+        data = run_json(*asked, "-o", new, "--plot", folder / "fit.png")
+        eta = data["restitution"]
+        assert eta["value"] == pytest.approx(ETA, abs=5e-4) and 2e-3 < eta["deviation"] < 0.01
+        assert data["impacts"] == len(data["etas"]) == len(data["impact_times"]) == 7 and data["geometry"] is None
+        text = run(*asked).stdout
+        assert f"eta = {eta['value']:.4f}" in text and "7 impacts are seen" in text
+        assert (folder / "fit.png").read_bytes().startswith(b"\x89PNG")
+        written = new.read_text(encoding="utf-8")
+        assert "# of a museum" in written and "fitted to trace.csv, 7 impacts" in written
+        fields = yaml.safe_load(written)
+        assert fields["restitution"] == pytest.approx(eta["value"], abs=5e-5)
+        assert fields["uncertainty"] == {"slenderness": 0.03, "restitution": pytest.approx(eta["scatter"], abs=5e-5)}
+        assert fields["width"] == 0.1 and rk.load_structure(new).restitution == fields["restitution"]
+
+    @pytest.mark.rest
+    def test_a_fitted_geometry_is_written_with_its_eta(self, folder):
+        near, new = folder / "near.yaml", folder / "new.yaml"
+        near.write_text("mechanism: block\nwidth: 0.103\nheight: 0.49  # m\nfriction: 0.6\n", encoding="utf-8")
+        found = rk.calibrate(near, free=folder / "trace.csv", free_geometry=True, out=new)
+        block = Structure(rk.load_structure(new))
+        assert block.mechanism.restitution == pytest.approx(found.eta.value, abs=5e-5)
+        assert (block.p, block.equivalence.positive.phi_cr) == pytest.approx(
+            (found.p.value, found.alpha.value), rel=1e-4
+        )
+        assert found.p.value == pytest.approx(P, rel=0.02) and block.mechanism.friction == 0.6
+        assert found.eta.value == pytest.approx(ETA, abs=3 * found.eta.deviation)
+        assert found.to_dict()["release"] == pytest.approx(RELEASE, rel=0.02)
+
+    @pytest.mark.parametrize("headings", ["time,angle_deg", "t (s),theta (deg)", "Time [s];Rotation [deg]"])
+    def test_headings_as_people_write_them(self, folder, clean, headings):
+        lines = (folder / "trace.csv").read_text(encoding="utf-8").splitlines()[1:]
+        lines = [line.replace(",", ";") if ";" in headings else line for line in lines]
+        (folder / "other.csv").write_text("\n".join([headings, *lines]), encoding="utf-8")
+        write(folder, trace(clean[0], drift=0.01), "rad", "rad.csv")
+        one, *others = (read_trace(folder / name) for name in ("trace.csv", "other.csv", "rad.csv"))
+        for other in others:
+            assert one.angles == pytest.approx(other.angles) and one.times == pytest.approx(other.times)
+
+    def test_a_trace_may_come_from_standard_input(self, folder):
+        text = (folder / "trace.csv").read_text(encoding="utf-8")
+        result = CliRunner().invoke(main, ["calibrate", str(folder / "block.yaml"), "--free", "-"], input=text)
+        assert result.exit_code == 0 and "7 impacts are seen" in result.stdout
+
+    def test_a_file_is_never_overwritten_by_its_copy(self, folder):
+        asked = ("calibrate", folder / "block.yaml", "--free", folder / "trace.csv", "-o", folder / "block.yaml")
+        before = (folder / "block.yaml").read_text(encoding="utf-8")
+        run(*asked, code=2)
+        assert (folder / "block.yaml").read_text(encoding="utf-8") == before
+        with pytest.raises(InputError, match="needs the file"):
+            rk.calibrate(BLOCK, free=folder / "trace.csv", out=folder / "new.yaml")
+
+    def test_a_restitution_above_its_bound_is_refused(self, folder):
+        """With the trace of a larger angle scale, energy would grow."""
+        angles, _ = simulate(ALPHA, P, [1.02] * 8, 0.3 * ALPHA, 6)
+        grows = write(folder, trace(angles, noise=0.002), name="grows.csv")
+        assert "restitution" in run("calibrate", folder / "block.yaml", "--free", grows, code=2).stderr
+
+
+def test_a_copy_keeps_all_but_the_fields():
+    old = "restitution:  # old\n  positive_to_negative: .9\n  negative_to_positive: .8  # x\n"
+    text = f"a: 1 # one\n{old}# kept\nb: [1,\n 2]"
+    assert with_fields(text, {"restitution": "0.7  # new", "c": "3", "b": "4"}, "f") == (
+        "a: 1 # one\nrestitution: 0.7  # new\n# kept\nb: 4\nc: 3\n"
+    )
+    assert with_fields("a: 1\r\nb: 2\r\n", {"a": "3"}, "f") == "a: 3\r\nb: 2\r\n"
+    with pytest.raises(InputError, match="in braces"):
+        with_fields("{a: 1}", {"a": "2"}, "f")
+
+
+GRID = {"slenderness": (0.8, 1.25), "restitution": (0.32, 0.98), "points": 3, "neighbours": 20}
+SCATTER = {"restitution": 0.05, "slenderness": 0.03}
+
+
+@pytest.fixture(scope="module")
+def outcomes():
+    """Outcomes drawn by the shares of a block with eta .65."""
+    block = rk.Block(width=0.7, height=2.8, restitution=0.65, uncertainty=SCATTER)
+    pulses = [f"sine:{level:g}g:{period:g}s" for level in np.arange(0.3, 0.6, 0.03) for period in (0.6, 0.9, 1.3)]
+    shares = np.array([rk.shares(block, pulse, neighbours=20).overturned for pulse in pulses])
+    assert 5 < shares.sum() < shares.size - 5
+    return {
+        "structure": ["x"] * 30, "record": pulses, "polarity": [1] * 30,
+        "overturned": (np.random.default_rng(1).random(30) < shares).astype(int).tolist(),
+        "cluster": [f"c{k // 2}" for k in range(30)],
+    }  # fmt: skip
+
+
+class TestRegion:
+    @pytest.mark.rest
+    def test_the_likelihood_is_that_of_shares(self, outcomes):
+        block = rk.Block(width=0.7, height=2.8, uncertainty=SCATTER)
+        found = rk.calibrate(block, tests=outcomes, **GRID)
+        assert found.best == pytest.approx((1, 0.65))
+        # Once more at another point: its shares one by one, and the formula written out.
+        other = rk.Block(width=0.7, height=2.8, restitution=0.98, uncertainty=SCATTER)
+        shares = np.array([rk.shares(other, each, neighbours=20).overturned for each in outcomes["record"]])
+        held = np.clip(shares, 0.5 / 21, 1 - 0.5 / 21)
+        total = np.log(np.where(np.array(outcomes["overturned"]) == 1, held, 1 - held)).sum()
+        assert (found.tests, found.clusters) == (30, 15)
+        assert found.likelihood[1, 2] == pytest.approx(total * 15 / 30, rel=1e-9)
+        assert found.inside[1, 1] and not found.inside.all()
+        (low, high), (least, most) = found.ranges
+        assert low <= found.best[0] <= high and least <= found.best[1] <= most
+
+    @pytest.mark.rest
+    def test_a_factor_on_slenderness_is_a_structure_made_anew(self, outcomes):
+        """Of twice the slenderness, the same uplift is twice the acceleration: by scaling, and by another block."""
+        tests = parse_columns(outcomes).tests
+        motions = {test.record: rk.parse_pulse(test.record).sampled() for test in tests}
+        block = rk.Block(width=0.7, height=2.8, restitution=0.65, uncertainty=SCATTER)
+        grid = np.array([0.5, 1.0, 1.5]), np.array([0.5, 0.65, 0.8])
+        found = joint_region(tests, Structure(block), motions.__getitem__, Neighbourhood(20), *grid)
+        size, alpha = hypot(0.7, 2.8), 1.5 * atan(0.25)
+        wide = rk.Block(width=size * sin(alpha), height=size * cos(alpha), restitution=0.65, uncertainty=SCATTER)
+        shares = np.array([rk.shares(wide, each, neighbours=20).overturned for each in outcomes["record"]])
+        assert found.likelihood[2, 1] == pytest.approx(
+            np.log(np.where(np.array(outcomes["overturned"]) == 1, shares, 1 - shares).clip(0.5 / 21, 1)).sum() / 2,
+            rel=0.1,
+        )
+
+    @pytest.mark.rest
+    def test_a_best_point_on_the_edge_is_refused(self, outcomes):
+        grid = {**GRID, "restitution": (0.65, 0.98)}
+        with pytest.raises(InputError, match=r"lies on its edge \(restitution 0\.65\)"):
+            rk.calibrate(rk.Block(width=0.7, height=2.8, uncertainty=SCATTER), tests=outcomes, **grid)
+
+    @pytest.mark.rest
+    def test_the_command_and_its_words(self, tmp_path, outcomes):
+        (tmp_path / "block.yaml").write_text(
+            "mechanism: block\nwidth: 0.7\nheight: 2.8\nuncertainty: {slenderness: 0.03}\n", encoding="utf-8"
+        )
+        with (tmp_path / "tests.csv").open("w", newline="", encoding="utf-8") as stream:
+            table = csv.writer(stream)
+            table.writerow(outcomes)
+            table.writerows(zip(*({**outcomes, "structure": ["block.yaml"] * 30}).values(), strict=True))
+        asked = ["calibrate", tmp_path / "block.yaml", "--tests", tmp_path / "tests.csv", "--points", 3]
+        asked += ["--slenderness", "0.8:1.25", "--restitution", "0.32:0.98", "--neighbours", 10]
+        data = run_json(*asked, "--plot", tmp_path / "region.png")
+        assert data["tests"] == 30 and data["clusters"] == 15
+        assert np.shape(data["grid"]["log_likelihood"]) == (3, 3)
+        assert data["region"]["probability"] == 0.9
+        text = run(*asked).stdout
+        assert f"restitution {data['best']['restitution']:.3g}" in text and "30 of 30 tests are of" in text
+        assert (tmp_path / "region.png").read_bytes().startswith(b"\x89PNG")
+        said = run("calibrate", EXAMPLES / "block.yaml", "--tests", tmp_path / "tests.csv", code=2).stderr
+        assert "no test is of" in said and "its structures are block.yaml" in said
+
+    @pytest.mark.parametrize(("drop", "wide"), [(1.0, True), (9.0, False)])
+    def test_a_region_that_reaches_the_edge_is_said_to(self, drop, wide):
+        likelihood = np.full((3, 3), -drop)
+        likelihood[1, 1] = 0.0
+        found = JointRegion(
+            Neighbourhood(9), np.array([0.8, 1, 1.2]), np.array([0.8, 0.9, 0.95]), likelihood, 5, 4, 0.0
+        )
+        text = " ".join(part for part in region_view(found, "a", "f", 5).parts if isinstance(part, str))
+        assert ("the region reaches the edge" in text) == wide
+        assert found.inside.sum() == (9 if wide else 1)

@@ -1,0 +1,330 @@
+"""Where a requirement holds: against closed forms, and counted by hand."""
+
+import json
+from math import isclose, nan
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rocking_cli as rk
+from rocking_cli.errors import InputError
+from rocking_cli.questions.design.metrics import METRICS, Excitation, Metric
+from rocking_cli.questions.design.study import Aim, Span, design
+from rocking_cli.questions.design.view import answer
+from rocking_cli.structure import Structure
+from rocking_cli.studies.neighbours import Neighbourhood, neighbours
+from tests.cli.test_cli import run
+from tests.conftest import EXAMPLES
+
+ACCEL = EXAMPLES / "accel.csv"
+BLOCK = EXAMPLES / "block.yaml"
+G = 9.80665
+MASS = 12_000.0  # kg
+TENDON = {"name": "tendon", "path": [{"ground": [0.0, 0.0]}, {"at": [0.0, 0.0]}], "stiffness": 0.0}
+
+
+def tied():
+    """The column of docs/loads.md: 1 m x 5 m, with a tendon of constant force along its axis."""
+    return rk.Block(name="column", width=1.0, height=5.0, mass=MASS, ties=[TENDON])
+
+
+def of(metric, values=(0.0, 1.0), points=11, until="m >= 0.5"):
+    """A design of a metric that is a function of the width, which has no physics in it."""
+    from unittest.mock import patch
+
+    made = Metric("m", "", "a test", lambda structure, excitation: metric(structure.mechanism.width))
+    with patch.dict(METRICS, {"m": made}):
+        return design(Structure(rk.Block(width=1.0, height=2.0)), "width", values, Aim.parse(until), points=points)
+
+
+class TestClosedForms:
+    @pytest.mark.parametrize(
+        ("until", "least"), [("lambda >= 0.2", True), ("lambda > 0.2", True), ("lambda <= 0.2", False)]
+    )
+    def test_the_width_of_a_block(self, until, least):
+        found = rk.design(rk.Block(width=0.5, height=2.0), "width=200mm:0.8m", until)
+        assert isclose(found.value, 0.4, rel_tol=1e-9)  # lambda = width/height
+        assert found.monotone and found.is_least is least and len(found.holds) == 1
+        low, high = found.holds[0]
+        assert (isclose(low, 0.4), high == 0.8) == (True, True) if least else (low == 0.2, isclose(high, 0.4))
+
+    def test_the_height_for_a_frequency_parameter(self):
+        found = rk.design(rk.Block(width=0.5, height=2.0), ("height", 0.5, 5.0), "p <= 3")
+        diagonal = 2 * 3 * G / (4 * 3.0**2)  # p2 = 3 g/(4 R), with 2 R the diagonal
+        assert isclose(found.value, (diagonal**2 - 0.5**2) ** 0.5, rel_tol=1e-9)
+
+    @pytest.mark.parametrize(
+        ("until", "share"),
+        [("lambda >= 0.24", 0.2), ("phi_cr >= 0.23635507", 0.2), ("phi_cr >= 0.19739556", 0.0)],
+    )
+    def test_the_force_of_a_tendon(self, until, share):
+        """lambda = tan(alpha) (1 + N0/mg); the table of an independent program has phi_cr with N0/mg = 0.2."""
+        found = rk.design(tied(), "ties.tendon.prestress=0:100kN", until)
+        assert isclose(found.value, share * MASS * G, rel_tol=1e-5, abs_tol=2e-3)
+        assert found.is_least and found.unit == "N"
+
+    def test_the_largest_load_on_top(self):
+        """A mass M at a height h on a block of m, b, H: lambda = b (m + M)/(m H + 2 M h)."""
+        b, height, m, h, level = 0.5, 2.0, 1000.0, 2.0, 0.2
+        load = {"name": "bust", "mass": 10.0, "at": [0.0, h]}
+        block = rk.Block(width=b, height=height, mass=m, loads=[load])
+        wanted = m * (b - level * height) / (2 * level * h - b)
+        for field in ("loads.bust.mass", "loads.0.mass"):
+            found = rk.design(block, f"{field}=0.01t:2t", f"lambda >= {level}")
+            assert isclose(found.value, wanted, rel_tol=1e-9) and not found.is_least
+
+
+class TestMetrics:
+    def test_of_two_directions_the_weaker_counts(self):
+        load = {"name": "bust", "mass": 300.0, "at": [0.2, 2.0]}
+        block = rk.Block(width=0.6, height=2.0, mass=900.0, loads=[load])
+        both = rk.equivalent_block(block)
+        for name, worse in (("lambda", min), ("phi_cr", min), ("p", max)):
+            key = "lambda_" if name == "lambda" else name
+            sides = [getattr(each, key) for each in (both.positive, both.negative)]
+            found = rk.design(block, ("width", 0.6, 0.7), f"{name} < 9", points=2).metric[0]
+            assert sides[0] != sides[1] and isclose(found, worse(sides), rel_tol=1e-9)
+
+
+class TestScan:
+    def test_every_range_of_what_turns(self):
+        found = of(lambda x: np.sin(4 * np.pi * x), (0.001, 1.0), 41, "m >= 0.5")
+        edges = [(1 / 24, 5 / 24), (13 / 24, 17 / 24)]
+        assert not found.monotone and found.value is None
+        assert np.allclose(found.holds, edges, rtol=1e-8)
+        assert "at neither end" in answer(found)
+
+    def test_a_metric_of_two_ranges_that_reaches_an_end(self):
+        found = of(lambda x: abs(x - 0.5), (0.1, 1.0), 10, "m > 0.25")
+        assert np.allclose(found.holds, [(0.1, 0.25), (0.75, 1.0)])
+        assert isclose(found.value, 0.75) and not found.monotone
+
+    def test_nowhere_and_everywhere(self):
+        nowhere, everywhere = (of(lambda x: x, (0.1, 0.9), until=f"m < {level}") for level in (0.1, 2))
+        assert nowhere.holds == [] and nowhere.value is None and not nowhere.everywhere
+        assert "holds at no value" in answer(nowhere) and "the smallest m is 0.1, at 0.1 m" in answer(nowhere)
+        assert everywhere.holds == [(0.1, 0.9)] and everywhere.value is None and everywhere.everywhere
+        assert "holds at every value" in answer(everywhere)
+
+    def test_what_cannot_be_built_is_named(self):
+        found = of(lambda x: 1 - x, (-0.5, 1.0), 16, "m >= 0.25")
+        (part,) = found.not_built
+        assert isclose(part.low, -0.5) and isclose(part.high, 0.0, abs_tol=1e-12)
+        assert "width must be more than 0 m" in part.reason
+        assert np.isnan(found.metric[:6]).all() and not np.isnan(found.metric[6:]).any()
+        ((low, high),) = found.holds
+        assert isclose(high, 0.75) and isclose(low, 1e-6, rel_tol=1e-6)
+        gap = of(lambda x: nan if 0.4 < x < 0.6 else x, (0.05, 0.95), 19, "m >= 0.2")
+        assert not gap.monotone and len(gap.holds) == 2 and gap.not_built[0].reason == "m does not exist"
+
+    @pytest.mark.parametrize("missing", [0.45, 0.5])
+    def test_one_value_without_a_metric_is_a_gap_too(self, missing):
+        """Of 19 values one has no metric: nobody knows whether it turns there."""
+        found = of(lambda x: nan if isclose(x, missing) else x, (0.05, 0.95), 19, "m >= 0.2")
+        assert np.isnan(found.metric).sum() == 1 and not found.monotone and len(found.holds) == 2
+        ends = of(lambda x: nan if x < 0.06 or x > 0.94 else x, (0.05, 0.95), 19, "m >= 0.2")
+        assert np.isnan(ends.metric).sum() == 2 and ends.monotone  # nothing is between the ends and what is there
+
+    def test_a_metric_without_a_bound(self):
+        found = of(lambda x: np.inf if x < 0.62 else 1 / x, (0.1, 1.0), 10, "m < 5")
+        assert isclose(found.value, 0.62, rel_tol=1e-9) and found.monotone
+
+    def test_an_answer_that_is_a_value_of_the_scan(self):
+        assert of(lambda x: x, (0.1, 0.9), 9, "m >= 0.5").value == pytest.approx(0.5, rel=1e-12)
+        assert of(lambda x: x, (0.1, 0.9), 9, "m > 0.5").value == pytest.approx(0.5, rel=1e-12)
+
+
+class TestShares:
+    SINE = "sine:0.5g:0.8s"
+
+    def test_the_metrics_are_those_of_the_neighbours(self):
+        motion, around = rk.parse_pulse(self.SINE).sampled(), Neighbourhood(20)
+        found = rk.design(BLOCK, "width=0.3:1.2", "overturned < 5%", self.SINE, neighbours=20, points=7)
+        peaks = rk.design(BLOCK, "width=0.3:1.2", "peak_ratio < 0.5", self.SINE, neighbours=20, points=7)
+        block = rk.load_structure(BLOCK)
+        for width, share, peak in zip(found.values, found.metric, peaks.metric, strict=True):
+            model = rk.build_models(block.model_copy(update={"width": float(width)}), ("nonlinear",))[0]
+            near = neighbours(model, motion, around)
+            assert share == near.overturned and peak == near.peak_ratio[1]
+
+    def test_the_answer_holds_and_just_below_it_does_not(self):
+        found = rk.design(BLOCK, "width=0.5:1.2", "overturned <= 50%", self.SINE, neighbours=20, points=8)
+        assert found.monotone
+        excitation = Excitation([rk.parse_pulse(self.SINE).sampled()], (1,), Neighbourhood(20))
+        metric, block = METRICS["overturned"].value, Structure(rk.load_structure(BLOCK))
+
+        at, below = (metric(block.varied("width", found.value - off), excitation) for off in (0.0, 2e-3))
+        assert at <= 0.5 < below
+
+    def test_the_worse_of_motions_and_polarities_counts(self):
+        frame = EXAMPLES / "frame.yaml"
+
+        def peaks(motions, polarity):
+            given = {"polarity": polarity, "neighbours": 5, "points": 2}
+            return rk.design(frame, "gravity=9.7:9.9", "peak_ratio < 1", motions, **given).metric
+
+        one, other = peaks(ACCEL, "1"), peaks(ACCEL, "-1")
+        assert (one != other).all()
+        assert (peaks(ACCEL, "both") == np.maximum(one, other)).all()
+        pulse = peaks(self.SINE, "1")
+        assert (peaks([ACCEL, self.SINE], "1") == np.maximum(one, pulse)).all()
+
+    def test_where_shares_turn_edges_are_values_that_were_tried(self):
+        found = rk.design(BLOCK, "width=0.3:1.5", "overturned < 5%", ACCEL, neighbours=20, points=25)
+        assert not found.monotone
+        assert all(edge in found.values for span in found.holds for edge in span)
+        assert any("One time history is one sample" in said for said in found.sentences)
+
+
+class TestWritten:
+    @pytest.mark.parametrize(
+        ("text", "said"),
+        [
+            ("lambda 0.2", "'lambda 0.2' is not a valid requirement"), ("lambda = 0.2", "is not a valid requirement"),
+            ("lamda < 1", "did you mean lambda?"),
+            ("lambda < x", "not a number"), ("phi_cr < 3 kg", "a mass, not an angle"),
+            ("lambda < 1e999", "not a finite number"),
+            ("p > 2 m", "not"), ("", "'' is not a valid requirement"),
+        ],
+    )  # fmt: skip
+    def test_requirements(self, text, said):
+        with pytest.raises(InputError, match=said.replace("?", r"\?")):
+            Aim.parse(text)
+
+    def test_requirements_with_units(self):
+        assert (
+            isclose(Aim.parse("phi_cr<=10 deg").level, np.radians(10)) and Aim.parse("overturned < 5 %").level == 0.05
+        )
+        assert str(Aim.parse(" lambda>=0.2 ")) == "lambda >= 0.2"
+
+    @pytest.mark.parametrize("text", ["width", "width=1", "width=1:2:3", "=1:2", "width=:2"])
+    def test_ranges(self, text):
+        with pytest.raises(InputError, match="is not a valid FIELD=LOW:HIGH"):
+            Span.parse(text)
+        with pytest.raises(InputError, match="is not increasing"):
+            Span.parse("width=2m:10cm").in_unit("m")
+
+    @pytest.mark.parametrize(
+        ("field", "said"),
+        [
+            ("widht", "did you mean width?"), ("name", "name is not a numeric field"),
+            ("ties", "ties is not a numeric field"),
+            ("ties.tendn.prestress", "tendon?"),
+            ("ties.tendon.prestres", "did you mean prestress?"), ("loads.x.mass", "loads has no entry x"),
+            ("ties.1.prestress", "no entry 1"), ("ties.0.path", "is not a numeric field"), ("width.x", "holds no x"),
+        ],
+    )  # fmt: skip
+    def test_fields(self, field, said):
+        with pytest.raises(InputError, match=said.replace("?", r"\?")):
+            Structure(tied()).unit_of(field)
+
+    def test_what_varies_and_what_stays(self):
+        whole, field = Structure(tied()), "ties.tendon.path.1.at.0"
+        changed = whole.varied(field, 0.1).mechanism
+        assert (whole.value_of(field), whole.unit_of(field)) == (0.0, "m")
+        assert changed.ties[0].path[1].at == [0.1, 0.0] and changed.width == 1.0
+        assert tied().ties[0].path[1].at == [0.0, 0.0]
+
+
+class TestCommand:
+    def test_json_table_and_picture(self):
+        arguments = ("design", BLOCK, "--vary", "width=200mm:0.8m", "--until", "lambda >= 0.2", "--points", "7")
+        data = json.loads(run(*arguments, "--json", "--plot", "p.svg", "--out", "o.csv").stdout)
+        assert isclose(data["value"], 0.56) and data["field"] == "width" and data["unit"] == "m"
+        assert data["holds"][0][1] == 0.8 and data["monotone"] and data["given"] == 0.7
+        assert data["scan"]["metric"] == pytest.approx([each / 2.8 for each in data["scan"]["values"]])
+        assert "answer: 0.56 m" in Path("p.svg").read_text(encoding="utf-8") or Path("p.svg").stat().st_size > 1000
+        lines = Path("o.csv").read_text(encoding="utf-8").splitlines()
+        assert lines[0] == "width [m],lambda,holds" and len(lines) == 8
+        said = run(*arguments).stdout
+        smallest = (
+            "The smallest width for which lambda >= 0.2 holds is 0.56 m; from there it holds to the end of the range"
+        )
+        assert f"{smallest} tried, 0.8 m." in " ".join(said.split())
+
+    @pytest.mark.parametrize(
+        ("arguments", "said"),
+        [
+            (("--vary", "width=1:2", "--until", "overturned < 1"), "needs a ground motion"),
+            (("--vary", "width=1:2", "--until", "lambda < 1", "--pulse", "sine:1g:1s"),
+             "lambda does not depend on a ground motion"),
+            (("--vary", "width=1:2", "--until", "peak_ratio < 1", "--pulse", "sine:1g:1s", "--neighbours", "0"),
+             "at least 1"),
+            (("--vary", "width=1kg:2kg", "--until", "lambda < 1"), "a mass, not a length"),
+            (("--vary", "\x1b[31m=1:2", "--until", "lambda < 1"), r"\x1b[31m"),
+            (("--until", "lambda < 1"), "--vary"),
+        ],
+    )  # fmt: skip
+    def test_what_cannot_be_is_refused(self, arguments, said):
+        assert said in " ".join(run("design", BLOCK, *arguments, code=2).stderr.split())
+
+    def test_a_range_without_any_structure_is_a_result(self):
+        said = run("design", BLOCK, "--vary", "width=-2:-1", "--until", "lambda < 1", "--plot", "p.png").stdout
+        assert "lambda could not be computed at any of these values" in said
+        assert "From -2 m to -1 m lambda could not be computed: width must be more than 0 m, got -2.0." in said
+
+
+def test_a_wall_is_designed_for_a_code():
+    """The facade of 8 m passes by the nonlinear method from where d_SLV, 0.4 of d0*, is what the ground asks for."""
+    import rocking_cli as rk
+
+    site = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
+    found = rk.design(rk.Block(width=0.6, height=8.0), "width=0.4m:0.9m", "zeta_nonlinear >= 1", site=site)
+    just = rk.verify(rk.Block(width=found.value, height=8.0), site)
+    counts = just.directions[rk.Direction.POSITIVE]
+    assert counts.methods["nonlinear"].zeta == pytest.approx(1, abs=1e-6)
+    assert counts.states["SLV"].ratio == pytest.approx(1, abs=1e-6)
+    wide = rk.design(rk.Block(width=0.6, height=8.0), "width=0.4m:0.9m", "alpha0 >= 0.1")
+    assert wide.value == pytest.approx(0.8, rel=1e-9)
+
+
+def test_a_range_that_looks_like_millimetres_is_warned_of(tmp_path):
+    file = tmp_path / "block.yaml"
+    file.write_text("mechanism: block\nwidth: 0.7\nheight: 2.8\n", encoding="utf-8")
+    odd = run("design", file, "--vary", "width=200:800", "--until", "lambda > 0.1", "--points", "3").stderr
+    assert "at width = 200 m: width is 200 m: did you mean 200 mm?" in " ".join(odd.split())
+    right = run("design", file, "--vary", "width=200mm:800mm", "--until", "lambda > 0.1", "--points", "3").stderr
+    assert "did you mean" not in right
+
+
+TIE = {"name": "bar", "from": {"ground": [-6, 7.5]}, "to": {"at": [-0.3, 7.5]}, "prestress": 2e3}
+FACADE = {"name": "facade", "width": 0.6, "height": 8.0, "density": 1800.0, "depth": 5.0,
+          "one_sided": "positive", "rebound": 0.4}  # fmt: skip
+SITE = {"FC": 1.35, "ag": 0.25, "F0": 2.5, "TC": 0.4, "S": 1.2}
+
+
+class TestWhatHasNoEffect:
+    def facade(self, **tie):
+        return rk.Block(**FACADE, ties=[{**TIE, **tie}])
+
+    def test_the_area_of_a_tie_that_would_hold_for_ever_says_why(self):
+        """The reason is that of `verify`, and its advice is one that works."""
+        found = rk.design(
+            self.facade(area=5e-4, modulus=2e11), "ties.bar.area=100mm2:900mm2", "zeta_nonlinear >= 1", site=SITE,
+            points=3,
+        )  # fmt: skip
+        said = " ".join(found.sentences)
+        assert found.holds == [] and "holds at no value of ties.bar.area" in said
+        assert [each.name for each in found.taken_otherwise] == ["bar"]
+        (why,) = found.to_dict()["taken_otherwise"]
+        assert why in " ".join(rk.verify(self.facade(area=5e-4, modulus=2e11), SITE).sentences)
+        assert why in said and "stiffness of bar" in why and "as a constant force in `loads`" in said
+        assert "zeta_nonlinear is the same at every value tried: ties.bar.area has no effect on it." in said
+        held = self.facade(stiffness=0, prestress=106311.0)
+        assert rk.verify(held, SITE).directions[rk.Direction.POSITIVE].methods["nonlinear"].zeta > 1
+
+    def test_what_has_an_effect_says_nothing(self):
+        found = rk.design(
+            self.facade(stiffness=0), "ties.bar.prestress=1kN:100kN", "zeta_nonlinear >= 1", site=SITE, points=3
+        )
+        said = " ".join(found.sentences)
+        assert found.value is not None and "no effect" not in said and found.taken_otherwise == []
+
+    def test_of_lambda_too(self):
+        said = " ".join(rk.design(self.facade(stiffness=1e6), "ties.bar.stiffness=1e5:1e6", "lambda > 0.9").sentences)
+        assert "lambda is the same at every value tried: ties.bar.stiffness has no effect on it." in said
+
+    def test_a_prestress_alone_is_refused_with_what_is_accepted(self):
+        with pytest.raises(ValueError, match="`stiffness: 0` for a constant force"):
+            self.facade()

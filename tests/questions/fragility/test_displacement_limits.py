@@ -1,0 +1,212 @@
+"""Limit states on how far the top moves: against closed forms, dense looks at the way, and single histories."""
+
+import json
+
+import numpy as np
+import pytest
+import yaml
+from scipy.optimize import brentq
+
+from rocking_cli import load_structure, respond
+from rocking_cli.core import Direction
+from rocking_cli.questions.fragility import tally
+from rocking_cli.questions.fragility.campaign import prepare
+from rocking_cli.questions.fragility.store import Store
+from rocking_cli.questions.fragility.study import load_study
+from rocking_cli.questions.fragility.tally import count, exceeds, first_reached, of_a_structure
+from rocking_cli.studies.fragility.quantities import FACT, is_quantity, kept, metres, spelt
+from rocking_cli.studies.movements import Watched
+from tests.conftest import EXAMPLES
+from tests.questions.fragility.test_study_runs import carry_out
+from tests.stores import command
+
+STUDY = {
+    "structures": [
+        str(EXAMPLES / "frame.yaml"),
+        {
+            "file": str(EXAMPLES / "block.yaml"), "name": "uncertain",
+            "vary": {"width": {"normal": {"mean": 0.7, "deviation": 0.05}}, "height": {"values": [2.5, 2.8, 3.1]}},
+        },
+    ],
+    "records": [str(EXAMPLES / "accel.csv"), {"pulse": "sine:0.6g:0.8s"}, {"pulse": "ricker:0.6g:1.2s"}],
+    "method": "stripes",
+    "levels": {"measure": "PGA", "least": 0.15, "most": 1.2, "count": 8},
+    "polarities": [1, -1],
+    "samples": 3,
+    "limit_states": ["uplift", "overturning", "25 mm", "0.2 m"],
+}  # fmt: skip
+LIMITS = ("25 mm", "200 mm")
+
+
+def write(folder, **changes):
+    path = folder / "study.yaml"
+    path.write_text(yaml.safe_dump({**STUDY, **changes}), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("displacements")
+    path = write(folder)
+    return path, carry_out(path, folder / "study.db", jobs=1), folder / "study.db"
+
+
+@pytest.mark.parametrize(
+    ("text", "limit"),
+    [("25 mm", "25 mm"), ("2.5cm", "25 mm"), ("0.025 m", "25 mm"), ("1 in", "25.4 mm"), ("0.03 m", "30 mm")],
+)
+def test_a_displacement_is_written_in_mm(text, limit):
+    assert spelt(text) == limit and is_quantity(limit)
+    assert metres(limit) == pytest.approx(float(limit.split()[0]) / 1000)
+    assert metres("uplift") is None and metres(0.5) is None and metres("25 kg") is None
+
+
+@pytest.mark.parametrize(
+    ("limit", "said"),
+    [
+        ("25 kg", "a mass, not a length"), ("0 mm", "must be positive"), ("-3 mm", "must be positive"),
+        ("25 foo", "not a unit of length"), ("1e999 m", "must be positive"), ("far", "a displacement such as 25 mm"),
+    ],
+)  # fmt: skip
+def test_what_is_no_displacement_is_refused_with_its_line(tmp_path, limit, said):
+    found = command("fragility", write(tmp_path, limit_states=["uplift", limit]), "--check")
+    assert found.exit_code == 2 and said in found.stderr and "limit_states[2]" in found.stderr
+
+
+def test_one_displacement_in_two_units_is_given_twice(tmp_path):
+    found = command("fragility", write(tmp_path, limit_states=["25 mm", "2.5 cm"]), "--check")
+    assert found.exit_code == 2 and "25 mm is given twice" in found.stderr
+
+
+def test_a_block_moves_as_its_closed_form_says():
+    block = load_structure(EXAMPLES / "block.yaml")
+    b, h = block.width / 2, block.height
+    wanted = [1e-6, 0.025, 0.2, 1.0, 2.5]
+    for pair, u in zip(of_a_structure(block, wanted), wanted, strict=True):
+        # About its right foot the middle of the top stands at (-b, h): it moves by b (1 - cos phi) + h sin phi.
+        expected = brentq(lambda phi, u=u: b * (1 - np.cos(phi)) + h * np.sin(phi) - u, 0, np.pi / 2, xtol=1e-15)
+        assert pair == pytest.approx((expected, expected), rel=1e-9)
+    assert of_a_structure(block, [b + h + 0.001]) == [(None, None)]
+
+
+@pytest.mark.parametrize("name", ["frame", "symmetric_frame", "arch", "wall", "cone", "point_mass", "rigid_body"])
+def test_it_is_the_first_rotation_at_which_the_top_is_there(name):
+    structure = load_structure(EXAMPLES / f"{name}.yaml")
+    spot = next(iter(Watched(structure).points.values()))
+    for side in structure.directions:
+        phi = np.linspace(0, structure.limit(side), 100_001)[:-1]
+        body = [each.name for each in structure.bodies()].index(spot.body)
+        moved = np.abs((structure.motion(phi, side)[body].carry(spot.at)[0] - spot.at).real)
+        for share in (0.05, 0.5, 0.97):
+            wanted = share * moved.max()
+            (pair,) = of_a_structure(structure, [wanted])
+            k = int(np.argmax(moved >= wanted))
+            assert phi[k - 1] <= pair[0 if side is Direction.POSITIVE else 1] <= phi[k]
+
+
+def test_a_bump_narrower_than_the_look_is_found_and_one_that_is_too_low_is_not():
+    phi = np.linspace(0, 1, 65)
+
+    def moved(x):
+        return np.maximum(0.5 - 40 * np.abs(x - 0.3), 0) + 0.4 * np.sin(2 * np.pi * x) ** 2  # a spike on two hills
+
+    top_of_it = float(moved(np.array([0.3]))[0])
+    at = moved(phi)
+    wanted = (at.max() + top_of_it) / 2  # between what is seen at the rotations looked at and what there is
+    expected = brentq(lambda x: float(moved(np.array([x]))[0]) - wanted, 0.28, 0.3, xtol=1e-14)
+    assert first_reached(moved, phi, at, wanted) == pytest.approx(expected, abs=1e-9)
+    assert first_reached(moved, phi, at, 1.001 * top_of_it) is None
+
+
+@pytest.mark.rest
+@pytest.mark.filterwarnings("ignore::rocking_cli.errors.DoubtWarning")  # a sine ends displaced
+def test_each_run_exceeds_when_its_own_history_says_so(whole):
+    path, prepared, place = whole
+    study, plan = load_study(path), prepared.plan
+    motions = [source.read() for source in study.sources]
+    with Store.reading(place) as store:
+        (found,) = store.endings(0, plan.size)
+        table = kept(store.fact, ["uplift", "overturning", *LIMITS])
+    assert set(table) == set(LIMITS)
+    sample, record, _, _, polarity = plan.places(found.id)
+    flags = {limit: exceeds(found, limit, table[limit][sample]) for limit in LIMITS}
+    seen = set()
+    watched = [Watched(each.mechanism) for each in study.samples]
+    with Store.reading(place) as store:
+        scale = store.runs(0, plan.size).scale
+    one_way = (found.peaks > table["200 mm"][sample]).sum(axis=1) == 1
+    assert ((found.peaks[one_way] > table["200 mm"][sample][one_way]).sum(axis=0) > 0).all()
+    for k in sorted({*range(0, plan.size, 7), *np.flatnonzero(one_way).tolist()}):
+        motion = motions[record[k]].scaled(float(scale[k]) * plan.polarities[polarity[k]])
+        history = respond(study.samples[sample[k]].mechanism, motion, models=("nonlinear",))["nonlinear"]
+        top = next(each for each in watched[sample[k]].peaks(history).points if each.name == "top")
+        for limit, metre in zip(LIMITS, (0.025, 0.2), strict=True):
+            expected = history.overturned or top.horizontal > metre
+            assert flags[limit][k] == expected, (k, limit)
+            seen.add((limit, bool(expected), history.overturned))
+    assert {(limit, said, False) for limit in LIMITS for said in (True, False)} < seen
+
+
+def test_samples_of_another_geometry_have_rotations_of_their_own(whole):
+    path, _, place = whole
+    study = load_study(path)
+    with Store.reading(place) as store:
+        table = kept(store.fact, LIMITS)["25 mm"]
+    for pair, sample in zip(table[1:], study.samples[1:], strict=True):
+        b, h = sample.mechanism.width / 2, sample.mechanism.height
+        for phi in pair:
+            assert b * (1 - np.cos(phi)) + h * np.sin(phi) == pytest.approx(0.025, rel=1e-9)
+    assert len(set(table[1:, 0].tolist())) == 3
+
+
+def test_a_larger_displacement_is_exceeded_by_fewer_and_both_by_all_that_overturn(whole):
+    _, prepared, place = whole
+    with Store.reading(place) as store:
+        tally = count(store, prepared.plan, "uncertain", ["overturning", *LIMITS], ["PGA"])
+    numbers = [int(tally.exceeding[limit].sum()) for limit in ("25 mm", "200 mm", "overturning")]
+    assert numbers[0] > numbers[1] > numbers[2] > 0
+
+
+def test_a_store_without_them_opens_and_a_study_that_asks_adds_them_and_runs_nothing(whole, tmp_path, monkeypatch):
+    path = write(tmp_path, limit_states=["uplift", "overturning"])
+    place = tmp_path / "study.db"
+    carry_out(path, place, jobs=1)
+    with Store.reading(place) as store:
+        assert FACT not in store.facts()
+    write(tmp_path)
+    with Store.writing(place) as store:
+        prepared = prepare(load_study(path), store)
+        assert prepared.finished == prepared.plan.total
+    found, expected = (json.loads(command("results", each, "--json").stdout)["curves"] for each in (place, whole[2]))
+    assert found == expected and {each["limit_state"] for each in found} >= set(LIMITS)
+    # What is known is not looked for again, also where the limits of today are others.
+    monkeypatch.setattr(tally, "of_a_structure", lambda mechanism, wanted: [(float(each), None) for each in wanted])
+    write(tmp_path, limit_states=["25 mm", "1 m"])
+    with Store.writing(place) as store:
+        prepare(load_study(path), store)
+    with Store.reading(place) as store:
+        table = kept(store.fact, ["25 mm", "1000 mm"])
+        assert table["1000 mm"].tolist() == [[1.0, np.inf]] * 4
+        assert table["25 mm"].max() < 0.02
+
+
+def test_a_top_that_cannot_move_so_far_is_named(tmp_path):
+    path = write(tmp_path, limit_states=["uplift", "overturning", "9 m"])
+    carry_out(path, tmp_path / "study.db", jobs=1)
+    shown = command("results", tmp_path / "study.db")
+    assert "uncertain: its top never moves by 9000 mm, whatever its rotation" in " ".join(shown.stdout.split())
+    curves = json.loads(command("results", tmp_path / "study.db", "--json").stdout)["curves"]
+    numbers = {(each["structure"], each["limit_state"]): each["exceedances"] for each in curves}
+    for name in ("uncertain", "valley bridge"):
+        assert numbers[name, "9000 mm"] == numbers[name, "overturning"]
+
+
+def test_a_top_that_is_held_is_warned_of(tmp_path):
+    wall, frame = (str(EXAMPLES / f"{name}.yaml") for name in ("spanning_wall", "frame"))
+    for limits, warned in ((["10 mm", "uplift"], True), (["uplift", 0.2], False)):
+        found = command(
+            "fragility", write(tmp_path, structures=[wall, frame], samples=1, limit_states=limits), "--check"
+        )
+        said = " ".join(found.stderr.split())
+        assert found.exit_code == 0 and ("limits such as 10 mm are of the top" in said) == warned
+        assert "bridge: its top" not in said

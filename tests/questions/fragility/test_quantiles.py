@@ -1,0 +1,213 @@
+"""Quantiles of the peak rotation: against what the runs of the store say one by one."""
+
+import io
+import json
+
+import numpy as np
+import pytest
+import yaml
+
+from rocking_cli.questions.fragility import assess, quantiles
+from rocking_cli.questions.fragility.quantiles import Group, Quantiles, all_quantiles
+from rocking_cli.questions.fragility.quantiles_picture import draw_quantiles
+from rocking_cli.questions.fragility.store import Store
+from rocking_cli.questions.fragility.study import load_study
+from tests.conftest import EXAMPLES
+from tests.questions.fragility.test_study_runs import carry_out
+from tests.stores import command
+
+BLOCK = {
+    "file": str(EXAMPLES / "block.yaml"),
+    "name": "uncertain",
+    "vary": {"width": {"normal": {"mean": 0.7, "deviation": 0.05}}},
+}
+PULSES = [{"pulse": f"{shape}:0.6g:{period}s"} for shape in ("sine", "ricker", "mavroeidis") for period in (0.7, 1.2)]
+MEASURES = ["PGA", "PGV", "PGA/(g lambda)"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def however_few():
+    """All quantiles of the six records: a test of its own has those that are too few."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(quantiles, "FEWEST", (1, 1, 1))
+        yield
+
+
+def study(folder, method, measures=MEASURES):
+    given = {
+        "structures": [str(EXAMPLES / "frame.yaml"), BLOCK], "records": PULSES, "polarities": [1, -1], "samples": 3,
+        "measures": measures, "limit_states": ["uplift", "overturning"], "method": method,
+        "levels": {"measure": "scale" if method == "cloud" else "PGA", "least": 0.15, "most": 1.5, "count": 7},
+    }  # fmt: skip
+    path = folder / "study.yaml"
+    path.write_text(yaml.safe_dump(given), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module", params=["stripes", "cloud", "ida"])
+def whole(request, tmp_path_factory):
+    folder = tmp_path_factory.mktemp(request.param)
+    path = study(folder, request.param)
+    prepared = carry_out(path, folder / "study.db", jobs=1)
+    with Store.reading(folder / "study.db") as store:
+        return prepared.plan, load_study(path).definition, folder / "study.db", list(
+            all_quantiles(store, prepared.plan, load_study(path).definition)
+        )  # fmt: skip
+
+
+def ranked(place, plan, structure, measure):
+    """Intensity and peak of every run of a structure, one by one."""
+    with Store.reading(place) as store:
+        rows = store.runs(0, plan.size)
+    sample, record, _, level, _ = plan.places(rows.id)
+    own = np.array([plan.trials[k].structure == structure for k in sample])
+    x = plan.intensities(measure, sample, record, level, rows.scale)
+    peak = np.where(rows.outcome != 0, np.inf, np.where(np.isnan(rows.uplift_time), 0.0, rows.peak_ratio))
+    return x[own], peak[own], record[own]
+
+
+def same(found, values):
+    if not values.size:
+        return all(np.isnan(each) for each in found)
+    return found == tuple(np.quantile(values, (0.16, 0.5, 0.84), method="inverted_cdf"))
+
+
+def test_each_group_has_the_runs_between_its_ends_and_their_quantiles(whole):
+    plan, _, place, found = whole
+    assert [(each.structure, each.measure) for each in found] == [
+        (structure, measure) for structure in ("valley bridge", "uncertain") for measure in MEASURES
+    ]
+    kinds = set()
+    for each in found:
+        x, peak, record = ranked(place, plan, each.structure, each.measure)
+        for group in each.groups:
+            of = (x >= group.low * (1 - 1e-9)) & (x <= group.high * (1 + 1e-9))
+            assert group.runs == of.sum() and group.records == len(set(record[of].tolist()))
+            assert group.x == pytest.approx(x[of].mean())
+            assert (group.no_uplift, group.overturned) == ((peak[of] == 0).sum(), np.isinf(peak[of]).sum())
+            assert same(group.rocking, peak[of][(peak[of] > 0) & np.isfinite(peak[of])])
+            assert same(group.every, peak[of])
+            kinds |= {np.isnan(group.rocking[0]), np.isinf(group.every[2]), group.every[0] == 0}
+        assert sum(group.runs for group in each.groups) == x.size
+        highs = np.array([group.high for group in each.groups])
+        assert (highs[:-1] < [group.low for group in each.groups[1:]]).all()
+    assert kinds == {True, False}
+
+
+@pytest.mark.parametrize(("records", "told"), [(4, "---"), (5, "-m-"), (19, "-m-"), (20, "lmh")])
+def test_a_quantile_of_too_few_records_is_not_told(monkeypatch, records, told):
+    monkeypatch.setattr(quantiles, "FEWEST", (20, 5, 20))
+    peaks, record = np.linspace(0.1, 0.9, 40).reshape(40, 1, 1), np.arange(40) % records
+    found = quantiles._group(peaks, record, np.ones(40), 1.0, records)
+    for values in (found.rocking, found.every):
+        assert "".join("-" if np.isnan(value) else word for value, word in zip(values, "lmh", strict=True)) == told
+    half = np.where(record[:, None, None] < records // 2, 0.0, peaks)  # half of the records do not uplift
+    found = quantiles._group(half, record, np.ones(40), 1.0, records)
+    assert np.isnan(found.rocking[0]) and np.isnan(found.every[0]) == (records < 20)
+
+
+def test_groups_are_those_of_the_observed_parts(whole):
+    plan, definition, place, found = whole
+    if definition.method == "ida":  # there all runs above the first that exceeds count as exceeding
+        definition = definition.model_copy(update={"method": "stripes"})
+    with Store.reading(place) as store:
+        counted = assess.counted(store, plan, definition, lambda numbers: None)
+    curves, _ = assess.fitted(counted, definition, None, lambda numbers: None)
+    by_name = {(each.structure, each.measure): each for each in found}
+    for curve in curves:
+        parts, own = curve.seen.parts(0.95), by_name[curve.structure, curve.measure]
+        assert own.stripes == curve.seen.stripes
+        np.testing.assert_array_equal(parts.runs, [each.runs for each in own.groups])
+        np.testing.assert_allclose(parts.x, [each.x for each in own.groups])
+        beyond = [
+            each.overturned if curve.limit == "overturning" else each.runs - each.no_uplift for each in own.groups
+        ]  # fmt: skip
+        np.testing.assert_array_equal(parts.exceeding, beyond)
+
+
+def test_json_has_them_always_and_the_terminal_where_they_are_asked_for(whole):
+    _, _, place, found = whole
+    data = json.loads(command("results", place, "--json").stdout)["quantiles"]
+    assert [(each["structure"], each["measure"]) for each in data] == [(each.structure, each.measure) for each in found]
+    fallen = 0
+    for each, own in zip(data, found, strict=True):
+        assert each["shares"] == [0.16, 0.5, 0.84]
+        assert each["groups"] == ("stripes" if own.stripes else "tenths")
+        for group, what in zip(each["intensities"], own.groups, strict=True):
+            assert group["no_uplift"] * group["runs"] == pytest.approx(what.no_uplift)
+            assert group["overturned"] * group["runs"] == pytest.approx(what.overturned)
+            assert group["rocking"] == [None if np.isnan(value) else value for value in what.rocking]
+            assert group["all"] == ["overturns" if np.isinf(value) else value for value in what.every]
+            fallen += group["all"].count("overturns")
+    assert fallen
+    assert "peaks of the runs that rock" not in command("results", place).stdout
+    shown = command("results", place, "--quantiles").stdout
+    assert shown.count("peaks of the runs that rock, against") == len(found) and "overturns" in shown
+    assert ("in tenths" in shown) == any(not each.stripes for each in found)
+
+
+def test_runs_that_are_not_there_count_for_nothing(tmp_path):
+    path = study(tmp_path, "stripes")
+    prepared = carry_out(path, tmp_path / "study.db", jobs=1)
+    with Store.reading(tmp_path / "study.db") as store:
+        gone = prepared.plan.size // 4  # all of the first structure, and none of the other
+        store._connection.execute("PRAGMA query_only = 0")
+        store._connection.execute("BEGIN")
+        store._connection.execute("DELETE FROM run WHERE id < ?", (gone,))
+        store._connection.execute("UPDATE run SET outcome = 2 WHERE id >= ? AND id % 2 = 1", (gone,))
+        assert not list(quantiles.quantiles(store, prepared.plan, "valley bridge", ["PGA"]))
+        (found,) = quantiles.quantiles(store, prepared.plan, "uncertain", ["PGA"])
+        store._connection.execute("ROLLBACK")
+    assert sum(each.runs for each in found.groups) == (prepared.plan.size - gone) / 2
+
+
+def groups(*rows):
+    return [Group(x, x, x, 10, 10, still, fallen, rocking, every) for x, still, fallen, rocking, every in rows]
+
+
+NONE = (np.nan,) * 3
+SOME = groups(
+    (0.1, 10, 0, NONE, (0.0, 0.0, 0.0)),
+    (0.2, 3, 0, (0.1, 0.2, 0.3), (0.0, 0.1, 0.25)),
+    (0.3, 0, 4, (0.2, 0.4, 0.6), (0.3, 0.5, np.inf)),
+    (0.4, 0, 10, NONE, (np.inf,) * 3),
+)
+
+
+def test_the_picture_shows_the_quantiles_and_the_shares():
+    figure = draw_quantiles(Quantiles("a $block$", "PGA", True, SOME), "PGA [g]")
+    figure.savefig(io.BytesIO(), format="png", dpi=40)
+    above, below = figure.axes
+    lines = {line.get_label(): line.get_ydata() for line in above.get_lines()}
+    np.testing.assert_array_equal(lines["runs that rock, median"], [np.nan, 0.2, 0.4, np.nan])
+    np.testing.assert_array_equal(lines["all runs, median"][:3], [0.0, 0.1, 0.5])
+    band = next(each for each in above.patches).get_extents().transformed(above.transData.inverted())
+    assert band.y0 < lines["all runs, median"][3] < band.y1 and band.y0 > 1
+    assert band.y0 < lines["all runs, 84 %"][2] < band.y1 and np.isnan(lines["all runs, 84 %"][3])
+    assert above.get_yticklabels()[-1].get_text() == "overturns" and below.get_xlabel() == "PGA [g]"
+    still, rocks, fallen = below.collections
+    heights = [each.get_paths()[0].get_extents() for each in (still, rocks, fallen)]
+    assert [(each.y0, each.y1) for each in heights] == [(0, 1), (0, 1), (0, 1)]
+    top_of_still = {tuple(each) for each in still.get_paths()[0].vertices.round(9).tolist()}
+    assert {(0.1, 1.0), (0.2, 0.3), (0.3, 0.0)} <= top_of_still
+    low_of_fallen = {tuple(each) for each in fallen.get_paths()[0].vertices.round(9).tolist()}
+    assert {(0.2, 1.0), (0.3, 0.6), (0.4, 0.0)} <= low_of_fallen
+
+
+@pytest.mark.every(2)
+@pytest.mark.parametrize("some", [SOME[:1], SOME[:2], SOME[1:2], SOME[3:]])
+def test_a_picture_of_little_is_drawn_too(some):
+    figure = draw_quantiles(Quantiles("a", "PGV", False, some), "PGV [m/s]")
+    figure.savefig(io.BytesIO(), format="png", dpi=40)
+    above, below = figure.axes
+    assert "tenths" in below.get_xlabel()
+    falls = any(np.isinf(value) for each in some for value in each.every)
+    assert any(each.get_text() == "overturns" for each in above.get_yticklabels()) == falls
+
+
+@pytest.mark.rest
+def test_the_command_draws_one_for_each_structure_and_measure(tmp_path):
+    path = study(tmp_path, "stripes", ["PGA"])
+    assert command("fragility", path, "--plot", tmp_path / "pictures").exit_code == 0
+    drawn = sorted(each.name for each in (tmp_path / "pictures").glob("*quantiles*"))
+    assert len(drawn) == 2 and "uncertain-PGA-quantiles.png" in drawn

@@ -1,0 +1,827 @@
+"""Running studies: the same runs whatever stops them, however many workers there are, and wherever they run."""
+
+import json
+import os
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from rocking_cli import GroundMotion, equivalent_block, exact_response, load_structure, parse_pulse, respond
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.processing.intensity import Reference, parse_measure
+from rocking_cli.processing.reading import Reading
+from rocking_cli.questions.fragility import assess, curves, sources, store, tally, work_units, workers
+from rocking_cli.questions.fragility.campaign import differences, prepare, run
+from rocking_cli.questions.fragility.definition import RecordEntry
+from rocking_cli.questions.fragility.observed import few_records
+from rocking_cli.questions.fragility.plan import Trial, weaker
+from rocking_cli.questions.fragility.sources import Source
+from rocking_cli.questions.fragility.store import COLUMNS, Store, StoreError
+from rocking_cli.questions.fragility.study import load_study
+from rocking_cli.studies.fragility.quantities import ALWAYS
+from tests.cli.test_cli import run as command
+from tests.cli.test_cli import run_json
+from tests.conftest import EXAMPLES, rows_of
+
+STUDY = f"""\
+structures:
+  - {EXAMPLES / "frame.yaml"}
+  - file: {EXAMPLES / "block.yaml"}
+    name: uncertain
+    vary:
+      width: {{normal: {{mean: 0.7, deviation: 0.05}}}}
+      restitution: {{uniform: {{low: 0.85, high: 0.95}}}}
+records:
+  - '{EXAMPLES}/*accel.csv'
+  - pulse: sine:0.6g:0.8s
+  - pulse: ricker:0.6g:1.2s
+method: stripes
+levels: {{measure: PGA/(g lambda), least: 0.8, most: 4, count: COUNT}}
+polarities: [1, -1]
+samples: 4
+limit_states: [uplift, 0.25, overturning]
+"""
+
+
+def write(folder, text=STUDY, count=5):
+    path = folder / "study.yaml"
+    path.write_text(text.replace("COUNT", str(count)), encoding="utf-8")
+    return path
+
+
+def carry_out(path, place, make=workers.threads, **options):
+    with Store.writing(place) as kept, make(**options) as hands:
+        prepared = prepare(load_study(path), kept)
+        run(prepared, kept, hands)
+    return prepared
+
+
+def dump(place):
+    """All that a store holds, as text."""
+    connection = sqlite3.connect(place)
+    try:
+        return list(connection.iterdump())
+    finally:
+        connection.close()
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A study and its store, run without interruption on one worker."""
+    folder = tmp_path_factory.mktemp("whole")
+    path = write(folder)
+    return path, carry_out(path, folder / "study.db", jobs=1), folder / "study.db"
+
+
+def test_each_run_is_what_respond_gives(whole):
+    path, prepared, place = whole
+    study, plan = load_study(path), prepared.plan
+    with Store.reading(place) as kept:
+        rows = kept.runs(0, plan.total)
+    assert len(rows) == plan.total == 5 * 3 * 5 * 2
+    assert set(rows.outcome.tolist()) == {-1, 0, 1}
+    motions = [source.read() for source in study.sources]
+    for k in range(0, plan.total, 7):
+        sample, record, _, level, polarity = (int(place) for place in np.unravel_index(k, plan.shape))
+        trial, known = plan.trials[sample], plan.records[record]
+        factor = plan.levels[level] * trial.lambda_ * trial.gravity / (known.pga * STANDARD_GRAVITY)
+        motion = motions[record].scaled(plan.polarities[polarity] * factor)
+        history = respond(study.samples[sample].mechanism, motion, models=("nonlinear",))["nonlinear"]
+        assert rows.outcome[k] == history.fell_to
+        assert rows.scale[k] == pytest.approx(factor, rel=1e-14)
+        if not history.overturned:
+            assert rows.peak_ratio[k] == pytest.approx(history.peak_ratio, rel=1e-9)
+
+
+def test_the_view_says_in_words_what_the_numbers_stand_for(whole):
+    _, prepared, place = whole
+    connection = sqlite3.connect(place)
+    rows = connection.execute(
+        "SELECT structure, sample, record, level, polarity, pga, uplift_time, fell_to, outcome FROM runs"
+    ).fetchall()
+    connection.close()
+    plan = prepared.plan
+    for k in range(0, plan.total, 11):
+        sample, record, _, level, polarity = np.unravel_index(k, plan.shape)
+        trial = plan.trials[sample]
+        assert rows[k][:5] == (
+            trial.structure, trial.number, plan.records[record].name, plan.levels[level], plan.polarities[polarity],
+        )  # fmt: skip
+        assert rows[k][5] * STANDARD_GRAVITY / (trial.gravity * trial.lambda_) == pytest.approx(plan.levels[level])
+    for *_, uplift_time, fell_to, outcome in rows:
+        assert outcome == ("overturns" if fell_to else "does not uplift" if uplift_time is None else "rocks")
+    assert {row[-1] for row in rows} == {"does not uplift", "rocks", "overturns"}
+
+
+class TestSameResults:
+    @pytest.mark.every(2)
+    @pytest.mark.parametrize("size", [1, 7, 64, 1000])
+    def test_whatever_the_units(self, whole, tmp_path, monkeypatch, size):
+        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.unit_size", lambda runs, workers: size)
+        carry_out(whole[0], tmp_path / "other.db", jobs=3)
+        assert dump(tmp_path / "other.db") == dump(whole[2])
+
+    def test_whatever_memory_there_is_for_records(self, whole, tmp_path, monkeypatch):
+        monkeypatch.setattr(work_units, "SAMPLES", 1)
+        monkeypatch.setattr("rocking_cli.questions.fragility.sources.KEPT", 1)
+        carry_out(whole[0], tmp_path / "other.db", jobs=2)
+        assert dump(tmp_path / "other.db") == dump(whole[2])
+
+    def test_after_an_error_in_the_middle(self, whole, tmp_path, monkeypatch):
+        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.unit_size", lambda runs, workers: 20)
+        done = []
+
+        def breaks(unit):
+            if len(done) == 3:
+                raise OSError("the machine is on fire")
+            done.append(unit)
+            return work_units.carry_out(unit)
+
+        place = tmp_path / "other.db"
+        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.carry_out", breaks)
+        with pytest.raises(OSError, match="on fire"):
+            carry_out(whole[0], place, jobs=1)
+        with Store.reading(place) as kept:
+            assert 0 < kept.count()[0] < whole[1].plan.total
+        ran = []
+        monkeypatch.setattr(
+            "rocking_cli.questions.fragility.campaign.carry_out",
+            lambda unit: ran.append(unit) or work_units.carry_out(unit),
+        )
+        before = whole[1].plan.total - carry_out(whole[0], place, jobs=2).finished
+        assert sum(len(unit.id) for unit in ran) == before  # nothing twice
+        assert dump(place) == dump(whole[2])
+
+    def test_after_a_full_disk(self, whole, tmp_path, monkeypatch):
+        monkeypatch.setattr(store, "PATIENCE", 0.0)
+        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.unit_size", lambda runs, workers: 10)
+        place = tmp_path / "other.db"
+        with pytest.raises(StoreError, match="full"), Store.writing(place) as kept, workers.threads(1) as hands:
+            prepared = prepare(load_study(whole[0]), kept)
+            (pages,) = kept._connection.execute("PRAGMA page_count").fetchone()
+            kept._connection.execute(f"PRAGMA max_page_count = {pages + 1}")
+            run(prepared, kept, hands)
+        with Store.reading(place) as kept:
+            assert 0 < kept.count()[0] < whole[1].plan.total
+        carry_out(whole[0], place, jobs=2)
+        assert dump(place) == dump(whole[2])
+
+
+def program(*arguments, **options):
+    """The command in a process of its own."""
+    code = "from rocking_cli.cli.main import main; main()"
+    environment = {**os.environ, "PYTHONWARNINGS": "default", "PYTHONIOENCODING": "utf-8"}
+    return subprocess.Popen(
+        [sys.executable, "-c", code, *map(str, arguments)], env=environment, text=True, encoding="utf-8",
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options,
+    )  # fmt: skip
+
+
+def finished(place):
+    """How many runs a store holds so far."""
+    try:
+        connection = sqlite3.connect(place)
+        try:
+            return connection.execute("SELECT count(*) FROM run").fetchone()[0]
+        finally:
+            connection.close()
+    except sqlite3.Error:
+        return 0
+
+
+def wait_until_some_are_finished(place, process):
+    deadline = time.monotonic() + 60
+    while not finished(place):
+        assert process.poll() is None, process.communicate()
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+LONG = 1000  # levels: some seconds of work
+
+
+@pytest.fixture(scope="module")
+def long_study(tmp_path_factory):
+    """A study of some seconds, and its uninterrupted store."""
+    folder = tmp_path_factory.mktemp("long")
+    path = write(folder, count=LONG)
+    return path, carry_out(path, folder / "whole.db"), folder / "whole.db"
+
+
+@pytest.mark.rest
+def test_killed_and_run_again_it_is_as_if_nothing_had_happened(long_study, tmp_path):
+    path, prepared, whole = long_study
+    place = tmp_path / "killed.db"
+    process = program("fragility", path, "--store", place, "--jobs", 1)
+    wait_until_some_are_finished(place, process)
+    process.kill()  # SIGKILL: no chance to tidy up
+    process.communicate()
+    had = finished(place)
+    assert 0 < had < prepared.plan.total
+    again = program("fragility", path, "--store", place)
+    said = again.communicate()[1]
+    assert again.returncode == 0
+    assert f"{had} of {prepared.plan.total} runs are in the store already" in said
+    assert dump(place) == dump(whole)
+
+
+@pytest.mark.rest
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no interrupt to send to one process")
+def test_interrupted_it_says_so_and_keeps_what_is_finished(long_study, tmp_path):
+    place = tmp_path / "interrupted.db"
+    process = program("fragility", long_study[0], "--store", place, "--jobs", 1)
+    wait_until_some_are_finished(place, process)
+    process.send_signal(signal.SIGINT)
+    out, said = process.communicate()
+    assert process.returncode == 130 and not out
+    assert said.endswith("interrupted: finished runs are kept; run the same command again to continue\n")
+    assert 0 < finished(place) < long_study[1].plan.total
+
+
+@pytest.mark.rest
+def test_while_it_runs_others_read_and_do_not_write(long_study, tmp_path):
+    path, prepared, _ = long_study
+    place = tmp_path / "busy.db"
+    process = program("fragility", path, "--store", place, "--jobs", 1)
+    try:
+        wait_until_some_are_finished(place, process)
+        assert "another process is at work" in command("fragility", path, "--store", place, code=2).stderr
+        assert 0 < json.loads(command("results", place, "--json", code=5).stdout)["finished"] < prepared.plan.total
+        assert process.poll() is None
+    finally:
+        process.kill()
+        process.communicate()
+
+
+@pytest.mark.rest
+def test_a_cluster_gives_the_same_though_a_worker_is_killed(long_study, tmp_path):
+    path, prepared, whole = long_study
+    place, address = tmp_path / "cluster.db", tmp_path / "scheduler.json"
+
+    def dask(*arguments):
+        return subprocess.Popen(
+            [sys.executable, "-m", "dask", *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+
+    started = [dask("scheduler", "--host", "127.0.0.1", "--port", 0, "--no-dashboard", "--scheduler-file", address)]
+    try:
+        common = ["--scheduler-file", address, "--nthreads", 1, "--no-nanny", "--no-dashboard", "--host", "127.0.0.1"]
+        started += [dask("worker", *common) for _ in range(3)]
+        deadline = time.monotonic() + 60
+        while not address.exists() or not address.stat().st_size:
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        process = program(
+            "fragility", path, "--store", place, "--scheduler", json.loads(address.read_text())["address"]
+        )
+        wait_until_some_are_finished(place, process)
+        started[1].kill()
+        assert finished(place) < prepared.plan.total
+        out, said = process.communicate(timeout=120)
+        assert process.returncode == 0, said
+        assert "lognormal" in out
+    finally:
+        for each in started:
+            each.kill()
+            each.wait()
+    assert dump(place) == dump(whole)
+
+
+def test_a_scheduler_that_is_not_there_is_said_so(whole, tmp_path, monkeypatch):
+    monkeypatch.setattr(workers, "PATIENCE", 0.3)
+    with pytest.raises(workers.ClusterError, match="no scheduler answers"):
+        carry_out(whole[0], tmp_path / "x.db", workers.cluster, address="tcp://127.0.0.1:9")
+
+
+class TestChanges:
+    @pytest.fixture
+    def place(self, whole, tmp_path):
+        """A copy of the finished store."""
+        return Path(shutil.copy(whole[2], tmp_path / "study.db"))
+
+    @pytest.mark.parametrize(
+        ("old", "new", "said"),
+        [
+            ("count: 5", "count: 6", "levels.values is now"),
+            ("most: 4", "most: 5", "levels.values was 5 numbers from 0.8 to 4.0, is now 5 numbers from 0.8 to 5.0"),
+            ("mean: 0.7", "mean: 0.8", "structures.uncertain.vary.width.normal.mean was 0.7, is now 0.8"),
+            ("samples: 4", "samples: 4\nseed: 9", "seed was 0, is now 9"),
+            ("  - pulse: ricker:0.6g:1.2s\n", "", "records is now without ricker:0.6g:1.2s"),
+            ("samples: 4", "samples: 4\nmodel: linear2", "model was nonlinear, is now linear2"),
+        ],
+    )
+    def test_a_changed_study_is_named(self, whole, tmp_path, place, old, new, said):
+        path = write(tmp_path, STUDY.replace("COUNT", "5").replace(old, new))
+        with pytest.raises(InputError) as caught:
+            carry_out(path, place)
+        assert said in str(caught.value) and "`restart`" in str(caught.value)
+        assert len(caught.value.problems) == 1
+        assert dump(place) == dump(whole[2])
+
+    ENTRY = "{file: a.csv, units: m, from: displacement, with: b.csv, azimuth: 30, processing: [lowpass 20]}"
+
+    @pytest.mark.parametrize(
+        ("old", "new", "said"),
+        [
+            ("azimuth: 30", "azimuth: 40", "azimuth was 30.0, is now 40.0"),
+            ("lowpass 20", "lowpass 15", "processing[1] was lowpass 20, is now lowpass 15"),
+            ("from: displacement", "gain: 1 m/V", "records[1]"),
+            ("units: m,", "units: mm,", "units was m, is now mm"),
+        ],
+    )
+    def test_a_changed_reading_is_named(self, tmp_path, old, new, said):
+        """What a store has of an entry is read back, and checked against the present entry."""
+        t = 0.01 * np.arange(401)
+        for name in "ab":
+            u = 0.05 * np.sin(np.pi * t / 4) ** 2 * np.sin((8 if name == "a" else 9) * t)
+            np.savetxt(tmp_path / f"{name}.csv", np.column_stack([t, u]), delimiter=",")
+        text = f"structures: ['{EXAMPLES / 'block.yaml'}']\nrecords: [{self.ENTRY}]\nmethod: cloud\n"
+        path, place = write(tmp_path, text), tmp_path / "study.db"
+        carry_out(path, place)
+        carry_out(path, place)
+        path.write_text(text.replace(old, new).replace("units: m, gain", "gain"), encoding="utf-8")
+        with pytest.raises(InputError) as caught:
+            carry_out(path, place)
+        assert said in str(caught.value) and "`restart`" in str(caught.value)
+
+    @pytest.mark.parametrize(
+        ("old", "new"), [("lowpass: 20", "lowpass: 10"), ("factor: 1.5", "factor: 3"), ("factor: 2", "factor: 4")]
+    )
+    def test_what_an_entry_makes_of_a_list_is_part_of_the_study(self, tmp_path, old, new):
+        texts = {
+            "study.yaml": f"structures: ['{EXAMPLES / 'block.yaml'}']\nmethod: cloud\n"
+            "records: [{file: set.yaml, processing: [{lowpass: 20}], factor: 1.5}]\n",
+            "set.yaml": f"records:\n  - {{file: '{EXAMPLES / 'accel.csv'}', processing: [highpass 0.3], factor: 2}}\n",
+        }
+        for name, text in texts.items():
+            (tmp_path / name).write_text(text, encoding="utf-8")
+        before = load_study(tmp_path / "study.yaml")
+        assert before.sources[0].read().processing == ("highpass 0.3", "factor 2", "lowpass 20", "factor 1.5")
+        for name, text in texts.items():
+            (tmp_path / name).write_text(text.replace(old, new), encoding="utf-8")
+        found = [*differences(before.description(), load_study(tmp_path / "study.yaml").description())]
+        assert len(found) == 1
+
+    def test_a_changed_record_is_named(self, tmp_path):
+        (tmp_path / "accel.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
+        path = write(tmp_path, STUDY.replace(f"{EXAMPLES}/*accel.csv", "accel.csv"))
+        carry_out(path, tmp_path / "study.db")
+        with (tmp_path / "accel.csv").open("a", encoding="utf-8") as file:
+            file.write("\n")
+        with pytest.raises(InputError, match=r"the record accel.csv has changed"):
+            carry_out(path, tmp_path / "study.db")
+
+    def test_another_version_is_named(self, whole, tmp_path, place, monkeypatch):
+        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.__version__", "9.9")
+        with pytest.raises(InputError, match=r"version of rocking-cli was .*, is now 9.9"):
+            carry_out(whole[0], place)
+
+    def test_what_is_asked_of_the_runs_may_change(self, whole, tmp_path, place):
+        path = write(tmp_path, STUDY.replace("[uplift, 0.25, overturning]", "[0.5]").replace("COUNT", "5"))
+        result = command("fragility", path, "--store", place, "--json")
+        assert {each["limit_state"] for each in json.loads(result.stdout)["curves"]} == {0.5}
+
+    def test_another_order_is_said_in_one_line(self, whole, tmp_path, place):
+        first, others = STUDY.split("structures:\n")[1].split("\n", 1)
+        second, rest = others.split("records:")
+        path = write(tmp_path, f"structures:\n{second}{first}\nrecords:{rest}")
+        with pytest.raises(InputError) as caught:
+            carry_out(path, place)
+        assert all("order of structures" in str(each) for each in caught.value.problems)
+
+    def test_another_mechanics_of_the_same_version_is_named(self, whole, tmp_path, place, monkeypatch):
+
+        def other(equivalence, model):
+            p, lambda_ = weaker(equivalence, model)
+            return 1.001 * p, lambda_
+
+        monkeypatch.setattr("rocking_cli.questions.fragility.campaign.weaker", other)
+        with pytest.raises(InputError, match=r"p of sample 1 of uncertain was .*, is now"):
+            carry_out(whole[0], place)
+
+    def test_restart_keeps_the_old_runs_until_new_ones_can_begin(self, whole, tmp_path, place, monkeypatch):
+        monkeypatch.setattr(workers, "PATIENCE", 0.3)
+        asked = ("fragility", whole[0], "--store", place, "--restart", "--scheduler", "tcp://127.0.0.1:9")
+        assert "no scheduler answers" in command(*asked, code=1).stderr
+        assert dump(place) == dump(whole[2])
+        assert [each.name for each in tmp_path.iterdir()] == ["study.db"]
+
+    def test_restart_begins_anew(self, whole, tmp_path, place):
+        path = write(tmp_path, STUDY.replace("samples: 4", "samples: 4\nseed: 9"))
+        result = command("fragility", path, "--restart", "--json")
+        assert json.loads(result.stdout)["seed"] == 9
+        assert "the store as it was is kept as" in result.stderr
+        assert dump(tmp_path / "study.before.db") == dump(whole[2])
+
+
+class TestBadParts:
+    @pytest.fixture
+    def with_bad_record(self, tmp_path):
+        (tmp_path / "bad.csv").write_text("t,accel_g\n0,0\n0.01,x\n", encoding="utf-8")
+        return write(tmp_path, STUDY.replace("method:", "  - bad.csv\nmethod:"))
+
+    def test_a_bad_record_is_reported_and_the_others_run(self, with_bad_record, whole, tmp_path):
+        result = command("fragility", with_bad_record, "--json", code=5)
+        assert "bad.csv" in result.stderr and ":3" in result.stderr
+        found = json.loads(result.stdout)
+        assert found["finished"] == found["runs"] == whole[1].plan.total
+        assert len(found["left_out"]) == 1 and "bad.csv" in found["left_out"][0]
+        # And again when nothing is left to run.
+        command("fragility", with_bad_record, code=5)
+        command("results", tmp_path / "study.db", code=5)
+
+    def test_a_record_put_right_is_run(self, with_bad_record, whole, tmp_path):
+        command("fragility", with_bad_record, code=5)
+        (tmp_path / "bad.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
+        result = command("fragility", with_bad_record, "--json", code=0)
+        assert "bad.csv: could not be used" in result.stderr
+        assert json.loads(result.stdout)["finished"] == 4 * whole[1].plan.total // 3
+
+    def test_a_record_without_motion_and_one_that_is_gone(self, tmp_path):
+        (tmp_path / "zero.csv").write_text("t,accel_g\n0,0\n0.01,0\n0.02,0\n", encoding="utf-8")
+        path = write(tmp_path, STUDY.replace("method:", "  - zero.csv\nmethod:"))
+        assert "zero throughout" in command("fragility", path, code=5).stderr
+
+    def test_nothing_that_can_be_used(self, tmp_path):
+        (tmp_path / "zero.csv").write_text("t,accel_g\n0,0\n0.01,0\n0.02,0\n", encoding="utf-8")
+        path = write(tmp_path, f"structures: [{EXAMPLES / 'block.yaml'}]\nrecords: [zero.csv]\nmethod: cloud\n")
+        assert "no record can be used" in command("fragility", path, code=2).stderr
+        assert not (tmp_path / "study.db").exists()
+
+    def test_a_structure_too_stocky_for_its_kinematics(self, tmp_path):
+        (tmp_path / "stocky.yaml").write_text("mechanism: block\nwidth: 3\nheight: 1\n", encoding="utf-8")
+        text = STUDY.replace("structures:", "structures:\n  - stocky.yaml")
+        result = command("fragility", write(tmp_path, text), "--json", code=5)
+        assert "its kinematics give a restitution of -0.35" in result.stderr
+        assert {each["structure"] for each in json.loads(result.stdout)["curves"]} == {"valley bridge", "uncertain"}
+        given = STUDY.replace("structures:", "eta: [0.5]\nstructures:\n  - stocky.yaml").replace(
+            "restitution", "height"
+        )
+        path = write(tmp_path, given.replace("low: 0.85, high: 0.95", "low: 2, high: 3"))
+        command("fragility", path, "--restart")
+
+
+class TestOtherFiles:
+    def test_a_text_is_no_store(self, whole, tmp_path):
+        (tmp_path / "notes.db").write_text("nothing here, but longer than a header of a database would be" * 5)
+        for words in (["results"], ["fragility", whole[0], "--store"]):
+            assert "not the store of a study" in command(*words, tmp_path / "notes.db", code=2).stderr
+
+    def test_another_database_is_left_alone(self, whole, tmp_path):
+        place = tmp_path / "other.db"
+        connection = sqlite3.connect(place)
+        connection.execute("CREATE TABLE precious (x)")
+        connection.commit()
+        connection.close()
+        for more in ([], ["--restart"]):
+            assert "another database" in command("fragility", whole[0], "--store", place, *more, code=2).stderr
+        assert "precious" in dump(place)[1]
+
+    def test_a_store_that_is_not_there_is_not_made(self, tmp_path):
+        assert "no such store" in command("results", tmp_path / "none.db", code=2).stderr
+        assert not (tmp_path / "none.db").exists()
+
+    @pytest.mark.parametrize("name", [".", "..", ""])
+    def test_a_folder_is_no_study(self, name):
+        assert "this is a folder" in command("fragility", name, code=2).stderr
+        assert "this is a folder" in command("results", ".", code=2).stderr
+
+    def test_a_study_is_not_its_own_store(self, tmp_path):
+        write(tmp_path, count=5).rename(tmp_path / "study.db")
+        assert "would overwrite an input file" in command("fragility", tmp_path / "study.db", code=2).stderr
+
+
+def test_a_reader_that_takes_its_time_does_not_stop_the_study(whole, tmp_path, monkeypatch):
+    monkeypatch.setattr(store, "WAITING", 0.2)
+    monkeypatch.setattr(store, "PATIENCE", 0.0)
+    place = tmp_path / "study.db"
+    with Store.writing(place) as kept, workers.threads(1) as hands:
+        prepared = prepare(load_study(whole[0]), kept)
+        with Store.reading(place) as reader:
+            assert reader.count() == (0, 0)
+            run(prepared, kept, hands)
+            assert reader.count()[0] > 0
+
+
+def test_units_hold_few_models(tmp_path, monkeypatch):
+    monkeypatch.setattr(work_units, "MODELS", 3)
+    path = write(tmp_path, STUDY.replace("samples: 4", "samples: 20"), count=2)
+    with Store.writing(tmp_path / "study.db") as kept:
+        prepared = prepare(load_study(path), kept)
+        study, plan = prepared.study, prepared.plan
+        made = list(work_units.units(plan, study.samples, prepared.motions, "nonlinear", kept.finished, 1000))
+    assert max(len(each.models) for each in made) == 3
+    assert np.concatenate([each.id for each in made]).tolist() == list(range(plan.total))
+
+
+def test_the_rate_is_there_though_other_measures_are_asked_for(tmp_path):
+    more = "measures: [PGV]\nhazard: {points: [[0.1, 0.01], [1, 0.0001]]}\nmethod:"
+    path = write(tmp_path, STUDY.replace("method:", more), count=5)
+    curves = run_json("fragility", path)["curves"]
+    assert {each["measure"] for each in curves} == {"PGV", "PGA"}
+    rates = {name: [each["annual_rate"] for each in curves if each["measure"] == name] for name in ("PGA", "PGV")}
+    assert any(rates["PGA"]) and not any(rates["PGV"])
+
+
+MORE = """\
+measures: [PGA, PGA/(g lambda), PGV, p PGV/(g lambda)]
+bivariate: [[PGA, PGV]]
+method:"""
+
+
+def both_as_text_and_json(path):
+    """A study's results, and its curves and surfaces as JSON."""
+    place, text = path.with_suffix(".db"), command("fragility", path).stdout
+    assert command("results", place).stdout == text
+    found = run_json("results", place)
+    return text, found["curves"], found["surfaces"]
+
+
+def alike(data, factor=1.0):
+    """The same but for rounding, numbers times a factor."""
+    return {
+        key: pytest.approx(factor * each, rel=1e-6) if isinstance(each, float) else each for key, each in data.items()
+    }
+
+
+@pytest.mark.every(2)
+@pytest.mark.parametrize("method", ["stripes", "ida"])
+@pytest.mark.parametrize("of", ["PGA/(g lambda)", "PGV"])
+def test_measures_in_proportion_give_one_curve(tmp_path, method, of):
+    text = STUDY.replace("measure: PGA/(g lambda), least: 0.8, most: 4", f"measure: {of}, least: 0.1, most: 3.3")
+    text = text.replace("method: stripes", f"method: {method}").replace("method:", MORE)
+    _, curves, _ = both_as_text_and_json(write(tmp_path, text, count=9))
+    found = {(each["limit_state"], each["measure"]): each for each in curves if each["structure"] == "valley bridge"}
+    block = equivalent_block(load_structure(EXAMPLES / "frame.yaml"))
+    weaker = min((block.positive, block.negative), key=lambda each: each.lambda_)
+    factors = {"PGA": 1 / weaker.lambda_, "PGV": weaker.p / (STANDARD_GRAVITY * weaker.lambda_)}
+    fitted = 0
+    for limit in ("uplift", 0.25, "overturning"):
+        for one, other in (("PGA", "PGA/(g lambda)"), ("PGV", "p PGV/(g lambda)")):
+            plain, relative = found[limit, one], found[limit, other]
+            assert relative["kind"] == plain["kind"]
+            if plain["median"] is not None:
+                assert relative["median"] == alike(plain["median"], factors[one])
+            if plain["dispersion"] is not None:
+                fitted += 1
+                assert relative["dispersion"] == alike(plain["dispersion"])
+                assert relative["goodness"] == alike(plain["goodness"])
+    assert fitted
+
+
+def test_runs_are_grouped_by_level_where_it_decides_their_intensity(whole):
+    with Store.reading(whole[2]) as kept:
+        plan, limits = kept.plan(), ["uplift", "overturning"]
+        found = {name: tally.count(kept, plan, name, limits, ALWAYS) for name in ("valley bridge", "uncertain")}
+        rows = kept.runs(0, plan.total)
+    over = {name: {each for each in ALWAYS if found[name].decided_by_level(each)} for name in found}
+    assert over == {"valley bridge": {"PGA", "PGA/(g lambda)"}, "uncertain": {"PGA/(g lambda)"}}  # its lambda varies
+    # Of the bridge one sample, of the other four: 3 records at 5 levels each, of both polarities.
+    cells = {(name, each): found[name].over(each).runs for name in found for each in ("PGA", "PGA/(g lambda)")}
+    assert {key: (runs.size, set(runs.tolist())) for key, runs in cells.items()} == {
+        ("valley bridge", "PGA"): (15, {2}),
+        ("valley bridge", "PGA/(g lambda)"): (15, {2}),
+        ("uncertain", "PGA"): (60, {2}),
+        ("uncertain", "PGA/(g lambda)"): (15, {8}),
+    }
+    fallen = (rows.outcome[30:] != 0).reshape(4, 3, 5, 2)
+    of = found["uncertain"]
+    assert of.over("PGA/(g lambda)").exceeding("overturning").tolist() == fallen.sum(axis=(0, 3)).ravel().tolist()
+    assert of.over("PGA").exceeding("overturning").tolist() == fallen.sum(axis=3).ravel().tolist()
+    sample, record, level = of.over("PGA").place
+    x = of.over("PGA").intensities("PGA")
+    expected = rows.scale[30:].reshape(4, 3, 5, 2)[..., 0] * np.array([each.pga for each in plan.records])[:, None]
+    np.testing.assert_allclose(x, expected[sample, record, level], rtol=1e-14)
+
+
+def test_what_is_counted_does_not_depend_on_how_it_is_read(whole, monkeypatch):
+    with Store.reading(whole[2]) as kept:
+        plan, seen = kept.plan(), []
+        once = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ALWAYS, ladders=True, counted=seen.append)
+        monkeypatch.setattr(store, "READ", 7)
+        piecewise = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ALWAYS, ladders=True, counted=seen.append)
+    assert sum(seen) == 2 * 120
+    np.testing.assert_array_equal(piecewise.runs, once.runs)
+    np.testing.assert_array_equal(piecewise.ladders.there, once.ladders.there)
+    for limit in ("uplift", 0.25):
+        np.testing.assert_array_equal(piecewise.exceeding[limit], once.exceeding[limit])
+        np.testing.assert_array_equal(piecewise.ladders.first[limit], once.ladders.first[limit])
+
+
+@pytest.mark.rest
+@pytest.mark.parametrize("method", ["stripes", "ida"])
+def test_few_records_and_what_is_not_tested_are_said_in_words_and_in_json(tmp_path, method):
+    text = STUDY.replace("method: stripes", f"method: {method}").replace("method:", MORE)
+    said, curves, surfaces = both_as_text_and_json(write(tmp_path, text))
+    warning = few_records(3)
+    fitted = {"lognormal": warning, "logistic": warning}
+    for each in (*curves, *surfaces):
+        assert (each["distinct_records"], each["warning"]) == (3, fitted.get(each["kind"]))
+    warned = {(each["structure"], each["measure"]) for each in curves if each["warning"]}
+    warned |= {(each["structure"], *each["measures"]) for each in surfaces if each["warning"]}
+    assert said.count(f"Warning: {warning}.") == len(warned) > 0
+    reasons = [each["goodness"]["why"] for each in curves if each["goodness"] and each["goodness"]["p_value"] is None]
+    assert reasons
+    for each in curves:
+        if each["goodness"] and each["goodness"]["p_value"] is None:
+            assert f"is not tested: {each['goodness']['why']}" in each["why"]
+        assert f"{each['why']}." in said
+
+
+@pytest.mark.rest
+def test_structures_of_like_names_have_a_picture_each(tmp_path):
+    text = STUDY.replace("name: uncertain", "name: Valley/bridge")
+    assert (
+        "wrote 7 plots" in command("fragility", write(tmp_path, text, 5), "--plot", "drawn").stderr
+    )  # two of them of quantiles
+    assert len({each.name.lower() for each in (tmp_path / "drawn").iterdir()}) == 7
+
+
+def test_intensities_are_those_of_their_definitions():
+    scales = Reference(p=np.array([2.0]), lambda_=np.array([0.25]), gravity=np.array([4.903325]))
+    values = {"PGA": np.array([0.5]), "PGV": np.array([0.3])}
+    measures = [parse_measure(each) for each in ALWAYS]
+    found = [float(each.relative(values[str(each.base)], scales)[0]) for each in measures]
+    assert found == pytest.approx([0.5, 0.3, 0.5 * 9.80665 / (4.903325 * 0.25), 2.0 * 0.3 / (4.903325 * 0.25)])
+
+
+def test_one_is_the_least_pga_over_g_lambda_that_uplifts():
+    block = load_structure(EXAMPLES / "block.yaml").model_copy(update={"gravity": 3.7})
+    motion = GroundMotion("pulse", 0.01, np.concatenate([np.zeros(5), np.sin(np.linspace(0, 6.28, 100)), np.zeros(5)]))
+    lam = block.uplift(1)  # type: ignore[arg-type]
+    scales = Reference(p=1.0, lambda_=lam, gravity=block.gravity)
+    unit = float(parse_measure("PGA/(g lambda)").relative(motion.pga_g, scales))
+    for a, uplifts in ((0.999, False), (1.001, True)):
+        history = respond(block, motion.scaled(a / unit), models=("linear2",))["linear2"]
+        assert (history.peak_ratio != 0) == uplifts
+
+
+def test_columns_of_a_row_are_those_of_the_table(whole):
+    connection = sqlite3.connect(whole[2])
+    names = [row[1] for row in connection.execute("PRAGMA table_info(run)")]
+    connection.close()
+    assert tuple(names) == (*COLUMNS, "checksum")
+
+
+@pytest.mark.parametrize(("table", "kind"), [("sample", Trial), ("record", sources.Record)])
+def test_columns_of_a_table_are_the_fields_of_what_it_holds_in_their_order(whole, table, kind):
+    connection = sqlite3.connect(whole[2])
+    names = [row[1] for row in connection.execute(f"PRAGMA table_info({table})")]
+    connection.close()
+    assert names == ["id", *kind.__dataclass_fields__]
+
+
+def test_a_file_that_changes_before_it_is_read_again_stops_the_study(tmp_path, monkeypatch):
+    monkeypatch.setattr(sources, "KEPT", 1)
+    (tmp_path / "accel.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
+    path = write(tmp_path, STUDY.replace(f"{EXAMPLES}/*accel.csv", "accel.csv"))
+    with Store.writing(tmp_path / "study.db") as kept, workers.threads(1) as hands:
+        prepared = prepare(load_study(path), kept)
+        prepared = replace(prepared)
+        (tmp_path / "accel.csv").write_text("t,accel_g\n0,0\n0.01,1\n", encoding="utf-8")
+        with pytest.raises(InputError, match="has changed while the study ran"):
+            run(prepared, kept, hands)
+
+
+def test_a_linear_block_under_one_pulse_shape_overturns_at_a_step(tmp_path):
+    block = load_structure(EXAMPLES / "block.yaml")
+    equivalence = equivalent_block(block)
+    unit = block.gravity * equivalence.positive.lambda_
+    period = 2 * np.pi / (3 * equivalence.positive.p)  # omega/p = 3: one step below a = 3.4
+    pulse = parse_pulse(f"sine:1g:{period!r}s")
+
+    def overturns(a):
+        shaking = replace(pulse, amplitude=a * unit)
+        return exact_response(equivalence, shaking, kappa=2, gravity=block.gravity).overturned
+
+    boundary = brentq(lambda a: 1.0 if overturns(a) else -1.0, 1.01, 3.0, xtol=1e-9)
+    path = tmp_path / "step.yaml"
+    for method in ("stripes", "ida"):
+        path.write_text(
+            f"structures: [{EXAMPLES / 'block.yaml'}]\nrecords: [{{pulse: 'sine:1g:{period!r}s'}}]\nmethod: {method}\n"
+            "levels: {measure: PGA/(g lambda), least: 0.805, most: 3.005, count: 1101}\nmodel: linear2\n",
+            encoding="utf-8",
+        )
+        result = command("fragility", path, "--json", "--restart")
+        uplift, overturning = json.loads(result.stdout)["curves"]
+        assert uplift["kind"] == overturning["kind"] == "step"
+        assert list(uplift["median"].values()) == pytest.approx([1.0] * 3, rel=1e-9)  # known without runs
+        step = overturning["median"]
+        assert step["low"] < boundary < step["high"] and step["high"] - step["low"] == pytest.approx(0.002)
+
+
+@pytest.mark.rest
+def test_the_example_runs_with_pictures_and_tables(tmp_path):
+    study = EXAMPLES / "study" / "near_fault.yaml"
+    where = ["--store", "near.db", "--plot", "drawn"]
+    result = command("fragility", study, *where)
+    assert "[1/year]" in result.stdout and "annual rate" in result.stdout and "c2" in result.stdout
+    assert len(list((tmp_path / "drawn").glob("*.png"))) == 13
+    for name in ("runs.csv", "runs.parquet"):
+        command("results", "near.db", "--out", name)
+    from pyarrow import parquet
+
+    table = parquet.read_table(tmp_path / "runs.parquet").to_pydict()
+    rows = rows_of(tmp_path / "runs.csv")
+    with Store.reading(tmp_path / "near.db") as kept:
+        plan = kept.plan()
+        assert len(rows) == len(table["run"]) == plan.total
+        exact = kept.runs(0, plan.total)
+    assert table["phi/phi_cr"] == [None if np.isnan(each) else each for each in exact.peak_ratio.tolist()]
+    levels = {float(row["level"]) for row in rows}
+    assert sorted(levels) == pytest.approx(plan.levels, rel=1e-8)
+    for row in rows[:: len(rows) // 50]:
+        assert float(row["PGA [g]"]) == pytest.approx(float(row["level"]), rel=1e-8)
+        assert (row["phi/phi_cr"] == "") == (row["outcome"] == "overturns")
+
+
+@pytest.mark.rest
+def test_incremental_analysis_takes_the_first_exceedance(tmp_path):
+    path = write(tmp_path, STUDY.replace("method: stripes", "method: ida"), count=6)
+    command("fragility", path, "--json", "--plot", "drawn")
+    with Store.reading(tmp_path / "study.db") as kept:
+        plan, definition = kept.plan(), load_study(path).definition
+        found = tally.count(kept, plan, "uncertain", definition.limit_states, ["PGA/(g lambda)"], ladders=True)
+        rows = kept.runs(36, plan.total)
+        assert tally.peaks(kept, plan, "uncertain").shape == (24, 6)
+    (_, _, overturning) = assess.curves(found, "uncertain", definition, None)
+    table = (rows.outcome != 0).reshape(4, 3, 6, 2)
+    lower, upper, exceeding = [], [], np.zeros((6, 3))
+    for sample, record, polarity in np.ndindex(4, 3, 2):  # samples, records, polarities
+        fallen = np.flatnonzero(table[sample, record, :, polarity])
+        first = int(fallen[0]) if fallen.size else 6
+        lower.append(plan.levels[first - 1] if first else 0)
+        upper.append(plan.levels[first] if first < 6 else np.inf)
+        exceeding[first:, record] += 1
+    expected = curves.fit_capacities(
+        np.array(lower), np.array(upper), np.tile(np.repeat(np.arange(3), 2), 4), levels=np.array(plan.levels)
+    )
+    assert (overturning.curve.runs, overturning.curve.why) == (24, expected.why)
+    assert overturning.curve.own.median == expected.median
+    assert overturning.seen.exceeding.tolist() == exceeding.ravel().tolist()
+    assert (tmp_path / "drawn" / "uncertain-ida.png").exists()
+
+
+def test_check_says_what_would_be_run_and_runs_nothing(tmp_path):
+    path = write(tmp_path, count=5)
+    assert run_json("fragility", path, "--check")["runs"] == 5 * 3 * 5 * 2
+    assert "150" in command("fragility", path, "--check").stdout
+    assert [each.name for each in tmp_path.iterdir()] == ["study.yaml"]
+
+
+def test_check_counts_what_is_left_out_apart(tmp_path):
+    (tmp_path / "still.csv").write_text("0,0\n0.01,0\n0.02,0\n", encoding="utf-8")
+    path = write(tmp_path, STUDY.replace("records:", "records:\n  - {file: still.csv, units: g}"), count=5)
+    data = json.loads(command("fragility", path, "--check", "--json", code=5).stdout)
+    assert (data["records"], len(data["left_out"]), data["runs"]) == (3, 1, 150)
+    words = command("fragility", path, "--check", code=5).stdout.split("\n")
+    assert [line.split() for line in words if "records" in line] == [["records", "3"], ["records", "left", "out", "1"]]
+
+
+def test_samples_that_differ_in_their_restitution_only(tmp_path):
+    text = STUDY.replace("      width: {normal: {mean: 0.7, deviation: 0.05}}\n", "").replace("[1, -1]", "[1]")
+    prepared = carry_out(write(tmp_path, text, count=3), tmp_path / "study.db")
+    study, plan = prepared.study, prepared.plan
+    with Store.reading(tmp_path / "study.db") as kept:
+        rows = kept.runs(0, plan.total)
+    assert len(set(rows.eta[9:].tolist())) == 4 and np.isnan(rows.eta[:9]).all()
+    motion = study.sources[1].read()
+    for k in range(9, plan.total):
+        sample, record, _, _, _ = (int(place) for place in np.unravel_index(k, plan.shape))
+        if record == 1:
+            history = respond(study.samples[sample].mechanism, motion.scaled(rows.scale[k]), models=("nonlinear",))
+            assert rows.eta[k] == study.samples[sample].mechanism.restitution
+            peak = history["nonlinear"].peak_ratio
+            assert (
+                np.isnan(rows.peak_ratio[k]) if np.isnan(peak) else rows.peak_ratio[k] == pytest.approx(peak, rel=1e-9)
+            )
+
+
+def test_levels_are_over_the_uplift_of_the_weaker_direction(whole):
+    study, plan = load_study(whole[0]), whole[1].plan
+    equivalence = equivalent_block(study.structures[0])
+    one, other = equivalence.positive, equivalence.negative
+    assert one.lambda_ < other.lambda_ and one.p != other.p
+    assert (plan.trials[0].lambda_, plan.trials[0].p) == (one.lambda_, one.p)
+
+
+def test_the_checksum_of_a_pulse_is_of_all_its_digits_and_of_how_it_is_sampled(monkeypatch):
+    """A store does not mix runs under pulses that differ in the seventh digit, or in their samples."""
+
+    def checksum(text):
+        return Source(text, RecordEntry(pulse=text), Reading(), text).checksum()
+
+    one = checksum("sine:0.3g:1s")
+    assert one == checksum("sine:0.3g:1.0s") != checksum("sine:0.30000001g:1s")
+    monkeypatch.setattr("rocking_cli.questions.fragility.sources.SAMPLING", "otherwise")
+    assert checksum("sine:0.3g:1s") != one

@@ -1,0 +1,325 @@
+"""Shares of overturning over the factor: against histories followed one by one, and what is said against the shares."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+from rocking_cli.core import Direction
+from rocking_cli.core.structure_file import load_structure, parse_structure
+from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.pulses import parse_pulse
+from rocking_cli.excitation.records import read_record
+from rocking_cli.questions.margin import study as margins
+from rocking_cli.questions.margin.picture import draw_margins
+from rocking_cli.questions.margin.study import FACTORS, LEVELS, Margin, margin
+from rocking_cli.questions.margin.view import in_words
+from rocking_cli.structure import Structure, build_models
+from rocking_cli.studies import engines
+from rocking_cli.studies.neighbours import Neighbourhood
+from tests.cli.test_cli import run, run_json, some
+from tests.conftest import EXAMPLES
+from tests.following import build_model
+
+BLOCK = parse_structure("mechanism: block\nwidth: 0.7\nheight: 2.8\n", "block", "block")
+CORNERS = "mechanism: rigid_body\npolygon: [[0, 0], [0.7, 0], [0.69, 2.8], [0, 2.8]]\n"
+FRAME = load_structure(EXAMPLES / "frame.yaml")
+AROUND = Neighbourhood(20)
+
+
+SINGLE = {}
+"""Neighbours by themselves, by their data and restitution: each is made once for all factors."""
+
+
+def alone(mechanism, motion, factor, slender, etas):
+    """One neighbour by itself: the ground pushes the more slender the less."""
+    key = mechanism.model_dump_json(), tuple(etas)
+    if key not in SINGLE:
+        given = {"positive_to_negative": etas[0], "negative_to_positive": etas[1]}
+        data = {**mechanism.model_dump(), "restitution": given}
+        SINGLE[key] = Structure(type(mechanism).model_validate(data))
+    return engines.respond(SINGLE[key], motion.scaled(factor / slender), models=("nonlinear",))["nonlinear"]
+
+
+def share(mechanism, motion, factor, polarities, around=AROUND):
+    """The shares next to one factor that overturn, and that do or are unknown, each of the worse polarity."""
+    model = build_model(mechanism, "nonlinear")
+    polarities = polarities[:1] if model.symmetric else polarities
+    ends = [
+        [
+            alone(mechanism, motion, sign * factor * each, *others)
+            for each, *others in zip(*around.drawn(model), strict=True)
+        ]
+        for sign in polarities
+    ]
+    return (
+        max(np.mean([each.fell for each in of]) for of in ends),
+        max(np.mean([each.fell or each.unknown for each in of]) for of in ends),
+    )
+
+
+@pytest.mark.every(4)
+@pytest.mark.parametrize("polarities", [(-1,), (1, -1)])
+@pytest.mark.parametrize(
+    ("mechanism", "pulse"), [(BLOCK, "sine:0.8g:0.5s"), (FRAME, "sine:0.3g:3s")], ids=["block", "frame"]
+)
+def test_the_shares_are_those_of_neighbours_followed_alone(mechanism, pulse, polarities):
+    motion = parse_pulse(pulse).sampled()
+    model = build_model(mechanism, "nonlinear")
+    found = margin(model, motion, polarities, around=AROUND)
+    assert found.around == Neighbourhood(20, 0.04, 0.05, 0.10) and found.checked and not found.unknown.any()
+    partly = np.flatnonzero((found.overturned > 0) & (found.overturned < 1))
+    assert found.factors.tolist() == sorted([*FACTORS, 1.0]) and partly.size
+    for k in [0, *partly[:2], partly[-1], FACTORS.size]:
+        assert found.overturned[k] == share(mechanism, motion, found.factors[k], polarities)[0]
+    assert found.share.lowest == share(mechanism, motion, 1.0, polarities)[0]
+
+
+@pytest.mark.parametrize("polarities", [(-1,), (1, -1)])
+def test_the_shares_of_unknown_outcome_are_those_of_neighbours_followed_alone(polarities):
+    """Of a body that slides: more overturn for certain under one polarity, and more may do so under the other."""
+    body = parse_structure(f"{CORNERS}friction: 0.4\n".replace("0.69", "0.6"), "sliding", "sliding")
+    motion, around = read_record(EXAMPLES / "accel.csv"), Neighbourhood(10, slenderness=0.0)
+    found = margin(build_model(body, "nonlinear"), motion, polarities, around=around, factors=np.array([0.5, 2.0, 3.0]))
+    assert found.factors.tolist() == [0.5, 1.0, 2.0, 3.0]
+    expected = [share(body, motion, factor, polarities, around) for factor in found.factors]
+    np.testing.assert_allclose(list(zip(found.overturned, found.at_most, strict=True)), expected, atol=1e-12)
+    assert 0 < found.overturned[2] < 1 and found.unknown[-1] > 0
+    assert (found.overturned[-1] > 0) == (1 in polarities)
+
+
+def test_of_joints_that_the_mechanism_does_not_name_nothing_is_said_to_be_unknown():
+    curve = build_model(load_structure(EXAMPLES / "curve.yaml"), "nonlinear")
+    found = margin(curve, parse_pulse("sine:0.5g:1s").sampled(), around=Neighbourhood(2), factors=np.array([2.0]))
+    assert not found.checked and not found.unknown.any()
+
+
+@pytest.mark.every(2)
+def test_a_reversed_motion_is_followed_only_where_it_can_add_something(monkeypatch):
+    followed, done = [], []
+    follow = margins.follow
+    monkeypatch.setattr(margins, "follow", lambda *a, **k: followed.append(len(a[2].amplitude)) or follow(*a, **k))
+    motion = parse_pulse("sine:0.8g:0.5s").sampled()
+    around = Neighbourhood(20, 0.02, 0.02, 0.0)
+    every = 61 * around.count
+    # A little heavier at one side, so that a reversed motion is another one.
+    leaning = parse_structure(CORNERS, "leaning", "leaning")
+    model = build_model(leaning, "nonlinear")
+    one = margin(model, motion, (1,), around=around)
+    certain = int((one.overturned == 1).sum())
+    for each, again in ((BLOCK, 0), (leaning, 61 - certain)):
+        followed.clear()
+        done.clear()
+        margin(build_model(each, "nonlinear"), motion, (1, -1), around=around, progress=done.append)
+        assert followed == [every, again * around.count]
+        assert sum(done) == 2 * every
+    assert certain > 10
+
+
+@pytest.mark.parametrize(
+    ("name", "alike"), [("block", True), ("arch", True), ("wall", True), ("frame", False), ("rigid_body", False)]
+)
+def test_symmetric_structures_are_known(name, alike):
+    models = build_models(load_structure(EXAMPLES / f"{name}.yaml"))
+    assert {each.name: each.symmetric for each in models} == dict.fromkeys(("nonlinear", "linear1", "linear2"), alike)
+
+
+def test_sixty_factors_from_a_fifth_to_five():
+    assert FACTORS.size == 60 and FACTORS[0] == pytest.approx(0.2) and FACTORS[-1] == pytest.approx(5)
+
+
+def made(*shares, unknown=None) -> Margin:
+    doubtful = np.zeros(len(shares)) if unknown is None else np.array(unknown, dtype=float)
+    return Margin(AROUND, 0.5, np.arange(1.0, len(shares) + 1), np.array(shares, dtype=float), doubtful)
+
+
+class TestLevels:
+    def test_first_and_last(self):
+        found = made(0.0, 0.2, 0.6, 0.3, 0.6, 1.0)
+        assert [found.first(level) for level in LEVELS] == [2.0, 3.0, 6.0]
+        assert [found.last_below(level) for level in LEVELS] == [1.0, 4.0, 5.0]
+        assert found.islands(0.5) == [(3.0, 3.0), (5.0, 6.0)]
+
+    def test_none_and_all(self):
+        assert made(0, 0).first(0.1) is None and made(0, 0).last_below(0.1) == 2.0
+        assert made(1, 1).first(0.9) == 1.0 and made(1, 1).last_below(0.9) is None
+        assert made(1, 1).islands(0.9) == [(1.0, 2.0)] and made(0, 0).islands(0.1) == []
+
+    def test_where_unknown_outcomes_count_as_overturning(self):
+        found = made(0.0, 0.2, 0.6, 0.3, 1.0, unknown=(0.1, 0.4, 0.0, 0.3, 0.0))
+        np.testing.assert_allclose(found.at_most, [0.1, 0.6, 0.6, 0.6, 1.0])
+        assert [found.first(level, unknown=True) for level in LEVELS] == [1.0, 2.0, 5.0]
+        assert [found.first(level) for level in LEVELS] == [2.0, 3.0, 5.0]
+        assert [found.last_below(level, unknown=True) for level in LEVELS] == [None, 1.0, 4.0]
+        assert [found.last_below(level) for level in LEVELS] == [1.0, 4.0, 4.0]
+        assert [found.always(level) for level in LEVELS] == [2.0, 5.0, 5.0]
+        assert [found.always(level, unknown=True) for level in LEVELS] == [1.0, 2.0, 5.0]
+        assert found.share[:2] == (0.0, 0.1)
+
+
+class TestWords:
+    @pytest.mark.parametrize(
+        ("shares", "unknown", "said"),
+        [
+            ((0, 0.05, 0), None, ["At no scale factor from 1 to 3 (PGA from 0.5 g to 1.5 g)", "10 % or more"]),
+            ((0, 0.2, 0.6), None, ["10 %", "at a factor of 2 (PGA 1 g), 50 % at 3 (1.5 g) and 90 % at none up to 3"]),
+            ((0, 0.2, 0.0, 1.0), None, ["not always worse: at a factor of 3 (1.5 g) none does."]),
+            ((0, 0.6, 0.3, 1.0), None, ["not always worse: at a factor of 3 (1.5 g) only 30 % do."]),
+            ((0, 0.6, 1.0, 0.7, 0.8), None, ["not always worse: at a factor of 4 (2 g) only 70 % do."]),
+            # Unknown outcomes count as overturning in what is said first.
+            ((0, 0, 0), (0, 0.3, 0.6), ["or have an unknown outcome, at a factor of 2 (PGA 1 g), 50 % at 3 (1.5 g)",
+                                        "From a factor of 2 (1 g) on", "does not prove that it stands"]),
+            ((0, 0, 0), (0, 0.05, 0.05), ["At no scale factor from 1 to 3", "or have an unknown outcome",
+                                          "From a factor of 2 (1 g) on", "does not prove that it stands"]),
+            ((0, 0.2, 0.0, 1.0), (0, 0.4, 0.3, 0), ["3 (1.5 g) only 30 % do", "the structure may overturn",
+                                                    "known to overturn it: 10 % from 2 (1 g), 50 % from 4 (2 g)"]),
+        ],
+    )  # fmt: skip
+    def test_it_says_at_which_factors_how_many_overturn(self, shares, unknown, said):
+        words = in_words(made(*shares, unknown=unknown), 0.5)
+        assert all(each in words for each in said)
+        assert ("always worse" in words) == any("always worse" in each or "only 30 %" in each for each in said)
+        assert ("unknown" in words) == (unknown is not None)
+
+    def test_the_numbers_are_those_of_the_shares(self):
+        motion = parse_pulse("ricker:0.7g:0.9s").sampled()
+        found = margin(build_model(BLOCK, "nonlinear"), motion, around=AROUND)
+        words = in_words(found, motion.pga_g).split("; the factors")[0]
+        said = re.findall(
+            r"(\d+) % (?:[a-z ]* first overturn the structure )?at (?:a factor of )?([\d.]+) \((?:PGA )?([\d.]+) g\)",
+            words,
+        )
+        assert [level for level, *_ in said] == ["10", "50", "90"]
+        for level, factor, pga in said:
+            k = int(np.abs(found.factors - float(factor)).argmin())
+            assert float(pga) == pytest.approx(0.7 * found.factors[k], rel=5e-3)
+            assert found.overturned[k] >= int(level) / 100 > found.overturned[:k].max()
+
+
+@pytest.mark.parametrize("polarities", [(1,), (-1,), (1, -1)])
+def test_uplift_is_a_quotient(polarities):
+    """A ground acceleration to the left lifts a block clockwise, at tan(alpha) g."""
+    motion = GroundMotion("two pushes", 0.1, np.array([0.0, 4.0, 0.0, -2.0, 0.0]))
+    found = margin(build_model(BLOCK, "nonlinear"), motion, polarities, around=Neighbourhood(1))
+    assert found.uplift == pytest.approx(0.25 * BLOCK.gravity / 4.0, rel=1e-12)
+    still = margin(build_model(BLOCK, "nonlinear"), motion.scaled(0), polarities, around=Neighbourhood(1))
+    assert still.uplift is None and not still.overturned.any()
+
+
+@pytest.mark.parametrize("wrong", [[], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [1.0, np.inf], [[1.0]]])
+def test_factors_must_ascend(wrong):
+    with pytest.raises(InputError, match="ascending"):
+        margin(build_model(BLOCK, "nonlinear"), parse_pulse("sine:1g:1s").sampled(), factors=np.array(wrong))
+
+
+def test_uplift_is_that_of_the_worse_polarity():
+    """Of a stone that leans, under a push one way only."""
+    leaning = parse_structure(
+        "mechanism: rigid_body\npolygon: [[-0.4, 0], [0.2, 0], [0.35, 2], [-0.4, 2]]\n", "stone", "stone"
+    )
+    lambdas = [leaning.uplift(direction) for direction in Direction]
+    push = GroundMotion("push", 0.01, np.append(0.1 * leaning.gravity * np.sin(np.linspace(0, np.pi, 41)), np.zeros(9)))
+    for polarities, lam in (((1,), lambdas[1]), ((-1,), lambdas[0]), ((1, -1), min(lambdas))):
+        found = margin(build_model(leaning, "nonlinear"), push, polarities=polarities, around=AROUND)
+        assert found.uplift == pytest.approx(lam / 0.1, rel=1e-9)
+
+
+class TestCommand:
+    BLOCK = EXAMPLES / "block.yaml"
+    ACCEL = EXAMPLES / "accel.csv"
+
+    def test_json_is_the_study(self):
+        data = run_json("margin", self.BLOCK, "--record", self.ACCEL, "--pulse", "sine:0.5g:0.8s", "--neighbours", 20)
+        assert data["neighbours"] == {"count": 20, "amplitude": 0.04, "restitution": 0.05, "slenderness": 0.10}
+        assert len(data["motions"]) == 2 and data["motions"][0]["name"] == "accel.csv"
+        model = build_model(load_structure(self.BLOCK), "nonlinear")
+        found = margin(model, parse_pulse("sine:0.5g:0.8s").sampled(), around=AROUND)
+        theirs = data["motions"][1]
+        assert theirs["shares"] == found.overturned.tolist() and theirs["unknown"] == [0.0] * 61
+        assert theirs["factors"] == sorted([*FACTORS.tolist(), 1.0])
+        assert theirs["overturned"] == found.share.lowest and theirs["uplift"] == found.uplift
+        assert set(theirs["levels"]) == {"10", "50", "90"}
+        assert theirs["levels"]["50"]["first"] == found.first(0.5)
+        assert theirs["verdict"] == in_words(found, 0.5)
+
+    def test_options_go_before_the_file(self, tmp_path):
+        file = tmp_path / "b.yaml"
+        file.write_text(
+            self.BLOCK.read_text(encoding="utf-8") + "uncertainty: {slenderness: 0.03, restitution: 0.01}\n"
+        )
+        words = ("margin", file, "--pulse", "sine:0.5g:0.8s", "--neighbours", 5, "--polarity", 1)
+        own = {"count": 5, "amplitude": 0.04, "slenderness": 0.03, "restitution": 0.01}
+        assert run_json(*words)["neighbours"] == own
+        given = run_json(*words, "--slenderness-deviation", "7%", "--amplitude-deviation", 0.02)
+        assert given["neighbours"] == own | {"slenderness": 0.07, "amplitude": 0.02}
+        assert run_json(*words, "--restitution-deviation", 0.04)["neighbours"] == own | {"restitution": 0.04}
+
+    def test_unknown_outcomes_are_a_share_of_their_own(self):
+        words = ("margin", EXAMPLES / "arch.yaml", "--record", self.ACCEL, "--neighbours", 5, "--polarity", 1)
+        (ours,) = run_json(*words)["motions"]
+        model = build_model(load_structure(EXAMPLES / "arch.yaml"), "nonlinear")
+        found = margin(model, read_record(self.ACCEL), (1,), around=Neighbourhood(5))
+        assert ours["unknown"] == found.unknown.tolist() and max(ours["unknown"]) > 0.5
+        assert ours["levels"]["50"]["first_or_unknown"] == found.first(0.5, unknown=True) is not None
+        assert ours["levels"]["10"]["last_below_or_unknown"] == found.last_below(0.1, unknown=True) is not None
+        rows = [" ".join(line.split()) for line in run(*words).stdout.splitlines()]
+        first = next(k for k, row in enumerate(rows) if row.startswith("accel.csv: overturn or unknown"))
+        assert f" {found.first(0.5, unknown=True):.3g} " in rows[first] and rows[first + 1].startswith(
+            "known to overturn"
+        )
+        assert any(row.startswith("accel.csv: At least 10 %") and "an unknown outcome" in row for row in rows)
+        (known,) = run_json(*words, "--opening", "100%")["motions"]
+        wider, less = np.array(known["unknown"]), np.array(ours["unknown"])
+        assert (wider <= less).all() and wider.sum() < less.sum() - 1
+
+    def test_a_scaled_motion_is_the_motion(self):
+        one, two = (
+            run_json("margin", self.BLOCK, "--pulse", f"sine:{ag}g:0.8s", *scale, "--neighbours", 5, "--polarity", 1)
+            for ag, scale in ((0.6, ()), (0.3, ("--scale", 2)))
+        )
+        np.testing.assert_allclose(one["motions"][0]["shares"], two["motions"][0]["shares"])
+
+    @pytest.mark.parametrize(
+        ("words", "fragment"),
+        [
+            ((), "--record PLACE or --pulse PULSE"),
+            (("--pulse", "sine:0.4g:0.8s", "--neighbours", 0), "at least 1"),
+            (("--record", "x", "--amplitude-deviation", 1), "from 0 up to, but not including, 1"),
+            (("--record", "x", "--slenderness-deviation", "100%"), "from 0 up to, but not including, 1"),
+            (("--record", "x", "--restitution-deviation", -1), "from 0"),
+            (("--record", "x", "--opening", 1001), "from 0 to 1000"),
+            (("--record", "no.AT2"), "no such file"),
+        ],
+    )
+    def test_wrong_input(self, words, fragment):
+        assert fragment in run("margin", self.BLOCK, *words, code=2).stderr
+
+
+def test_a_missing_record_of_several_leaves_the_others():
+    records = ("--record", EXAMPLES / "accel.csv", "--record", "no.AT2")
+    result = some("margin", EXAMPLES / "block.yaml", *records, "--neighbours", 5, "--json")
+    assert "no.AT2" in result.stderr and len(json.loads(result.stdout)["motions"]) == 1
+
+
+@pytest.mark.parametrize(("uplift", "mark"), [(0.05, "<"), (0.5, "|"), (9.0, ">")])
+def test_where_it_uplifts_is_marked_on_the_axis_or_pointed_to(uplift, mark):
+    (axes,) = draw_margins({"a": Margin(AROUND, uplift, FACTORS, *np.zeros((2, FACTORS.size)))}, "title").axes
+    (drawn,) = (line for line in axes.get_lines() if line.get_marker() in ("<", "|", ">"))
+    assert drawn.get_marker() == mark
+    assert axes.get_xlim()[0] <= drawn.get_xdata()[0] <= axes.get_xlim()[1]
+    assert ("arrowhead" in axes.get_xlabel()) == (mark != "|")
+
+
+def test_both_curves_are_drawn_where_some_outcomes_are_unknown():
+    shares, unknown = np.linspace(0, 0.4, FACTORS.size), np.linspace(0, 0.6, FACTORS.size)
+    (axes,) = draw_margins({"a": Margin(AROUND, 0.5, FACTORS, shares, unknown)}, "title").axes
+    curves = [line.get_ydata() for line in axes.get_lines() if len(line.get_xdata()) == FACTORS.size]
+    np.testing.assert_allclose(curves, [shares, shares + unknown])
+    (band, *_) = axes.collections
+    assert band.get_hatch()
+    corners = band.get_paths()[0].vertices
+    assert corners[:, 1].max() == pytest.approx(1.0) and corners[:, 1].min() == pytest.approx(0.0)

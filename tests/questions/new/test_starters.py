@@ -1,0 +1,41 @@
+"""The files that `rocking new` prints for what people have: each is a structure, stands, and moves."""
+
+import json
+from importlib.resources import files
+
+import numpy as np
+import pytest
+
+from rocking_cli.core import both_statics
+from rocking_cli.core.structure_file import load_structure, parse_structure
+from rocking_cli.dynamics.history import follow
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.questions.new.command import STARTERS, STUDY
+from tests.cli.test_cli import run
+from tests.conftest import EXAMPLES
+from tests.following import build_model
+
+WORKED = ("facade", "floor_wall", "gable", "statue", "column_with_tendon")
+SHAKING = GroundMotion("sine", 0.01, 4 * np.sin(2 * np.pi * np.arange(201) / 100))
+
+
+@pytest.mark.parametrize("name", STARTERS)
+def test_a_starter_is_a_structure_that_rocks(name):
+    text = run("new", name).stdout
+    structure = parse_structure(text, f"{name}.yaml", name)
+    assert text.startswith("# ") and structure.name == f"my {name.replace('_', ' ')}".replace(" with tendon", "")
+    assert structure.has_mass
+    assert all(side.lambda_ > 0.02 for side in both_statics(structure))
+    assert follow(build_model(structure, "nonlinear"), SHAKING).lifted
+
+
+def test_every_starter_is_a_file_of_the_package_and_none_is_forgotten():
+    there = {entry.name.removesuffix(".yaml") for entry in (files("rocking_cli") / "data" / "starters").iterdir()}
+    assert there == {*STARTERS, STUDY}
+    assert json.loads(run("new", "facade", "--json").stdout)["starter"] == "facade"
+
+
+@pytest.mark.parametrize("name", WORKED)
+def test_a_worked_example_is_a_structure_that_rocks(name):
+    structure = load_structure(EXAMPLES / "walls" / f"{name}.yaml")
+    assert follow(build_model(structure, "nonlinear"), SHAKING).lifted
