@@ -16,7 +16,7 @@ PYTEST := -m pytest -n auto --dist worksteal
 LATER := rest or docs or types or kernels
 
 .PHONY: setup constraints demo selfcheck test test-all test-newest test-oldest test-kernels test-versions test-elsewhere damage soak fuzz fields \
-	properties lint type contracts check bench kernels same-kernels validation scoreboard trust trust-check stub pictures \
+	properties lint type contracts check bench kernels same-kernels validation scoreboard trust trust-check pages pictures \
 	docs release clean
 
 setup: $(STAMP)  ## Create the environment and install the package with its development tools
@@ -134,9 +134,6 @@ same-kernels: setup  ## Make the shipped kernels anew, by Python 3.11 as they we
 	diff -r out/ready rocking_cli/dynamics/ready
 	$(BIN)/python $(PYTEST) -m kernels
 
-stub: setup  ## Write rocking_cli/__init__.pyi, which types what the package hands out
-	$(BIN)/python docs/make_stub.py
-
 pictures: setup  ## Write the pictures that the tests compare with anew; look at them before committing
 	$(BIN)/python -m tests.render
 
@@ -144,9 +141,12 @@ $(DOCS_STAMP): $(STAMP)
 	$(BIN)/python $(INSTALL) --editable ".[docs]"
 	$(BIN)/python -c "import pathlib; pathlib.Path('$(DOCS_STAMP)').touch()"
 
-docs: $(DOCS_STAMP)  ## The documentation as a site, out/site/index.html; every warning is an error
+pages: $(DOCS_STAMP)  ## Every made page, list and picture: the types of the package, outputs and options in the pages, examples in Python
+	$(BIN)/python docs/make_stub.py
 	$(BIN)/python docs/make_pages.py
 	$(BIN)/python docs/make_python.py
+
+docs: pages  ## The documentation as a site, out/site/index.html; every warning is an error
 	$(BIN)/python -m sphinx -W --keep-going -E -q -b html -d out/doctrees docs out/site
 
 $(RELEASE_STAMP): $(PACKAGE_STAMP)

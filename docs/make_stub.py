@@ -1,6 +1,6 @@
 """Writes rocking_cli/__init__.pyi, which tells type checkers the names that the package provides on first use.
 
-    python docs/make_stub.py              # part of make stub
+    python docs/make_stub.py              # part of make pages
 
 The package imports nothing until a name is used, and no mechanism by name; the stub says where each is.
 """
@@ -18,7 +18,7 @@ STUB = Path(rocking_cli.__file__).with_suffix(".pyi")
 
 def stub() -> str:
     """Return the text of the stub."""
-    lines = ['"""Written by `make stub`: do not edit."""', ""]
+    lines = ['"""Written by `make pages`: do not edit."""', ""]
     own = distribution("rocking-cli").entry_points.select(group="rocking.mechanisms")
     found = [(point.module, point.attr) for point in own]
     found += [(f"rocking_cli.{home}", name) for home, names in rocking_cli._HOME.items() for name in names]

@@ -20,7 +20,7 @@ from typing import Any
 __version__ = "0.1.0"
 
 # What is in which module; `rooms` finds what the questions offer. The stub beside this file, `__init__.pyi`, is written
-# from both by `make stub`.
+# from both by `make pages`.
 _HOME = {
     "ask.answer": ["Answer", "MappingAnswer"],
     "ask.several": ["Answers"],

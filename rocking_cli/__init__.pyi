@@ -1,4 +1,4 @@
-"""Written by `make stub`: do not edit."""
+"""Written by `make pages`: do not edit."""
 
 from mechanisms.arch import Arch as Arch
 from mechanisms.assembly import Assembly as Assembly

@@ -84,7 +84,7 @@ def test_files_place_their_errors_themselves(tmp_path):
 
 def test_the_stub_is_not_stale(maker):
     stub = maker("make_stub")
-    assert stub.STUB.read_text(encoding="utf-8") == stub.stub(), "run make stub"
+    assert stub.STUB.read_text(encoding="utf-8") == stub.stub(), "run make pages"
 
 
 # --- answers
