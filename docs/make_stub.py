@@ -11,7 +11,7 @@ from importlib.metadata import distribution
 from pathlib import Path
 
 import rocking_cli
-from rocking_cli.rooms import names
+from rocking_cli.plugins.rooms import names
 
 STUB = Path(rocking_cli.__file__).with_suffix(".pyi")
 

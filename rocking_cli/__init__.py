@@ -63,7 +63,7 @@ def _own_mechanisms() -> dict[str, str]:
 def __getattr__(name: str) -> Any:
     if name in _MODULES:
         return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
-    from rocking_cli.rooms import names  # not for every import of the package
+    from rocking_cli.plugins.rooms import names  # not for every import of the package
 
     if name == "__all__":
         return sorted(["__version__", "mechanisms", *_MODULES, *names()])

@@ -1,10 +1,11 @@
-"""Make text from files and plugins (names, keys, lines) safe to show in a terminal, a plot or a page."""
+"""Text from files and plugins (names, keys, lines): safe to show in a terminal, a plot or a page; patterns in it."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Collection, Sequence
 from itertools import count
+from typing import Any, AnyStr, cast
 
 # Control characters, marks that turn the direction of writing, line ends of other kinds, and what is no character at
 # all. Tabs and line feeds are let through: they do no harm.
@@ -110,3 +111,21 @@ def exact(number: float) -> str:
     """
     short = f"{number:g}"
     return short if float(short) == number else repr(float(number))
+
+
+def regex(text: AnyStr, flags: int = 0) -> re.Pattern[AnyStr]:
+    """Return an object that acts as `re.compile(text, flags)` and compiles the expression when first used.
+
+    A command uses few of the expressions that it imports.
+    """
+    return cast("re.Pattern[AnyStr]", _Pattern(text, flags))
+
+
+class _Pattern:
+    def __init__(self, text: str | bytes, flags: int) -> None:
+        self._given: Any = text, flags
+
+    def __getattr__(self, name: str) -> Any:
+        found = getattr(re.compile(*self._given), name)
+        setattr(self, name, found)  # from now on it is found without this function
+        return found

@@ -11,8 +11,7 @@ from decimal import Context, Decimal
 from difflib import get_close_matches
 from math import isfinite
 
-from rocking_cli.patterns import regex
-from rocking_cli.text import cut, printable
+from rocking_cli.text import cut, printable, regex
 
 PI = "3.14159265358979323846264338327950288419716939937510"
 

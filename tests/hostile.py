@@ -10,7 +10,7 @@ import click
 from hypothesis import strategies as st
 
 from rocking_cli.cli.main import main
-from rocking_cli.rooms import commands
+from rocking_cli.plugins.rooms import commands
 from tests.conftest import EXAMPLES
 from tests.excitation.test_record_formats import MADE
 

@@ -17,7 +17,7 @@ from click.core import ParameterSource
 
 from rocking_cli.cli import terminal
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.rooms import commands
+from rocking_cli.plugins.rooms import commands
 from rocking_cli.text import cut, did_you_mean, one_line
 
 FILE = "rocking.toml"

@@ -16,7 +16,7 @@ from rocking_cli import __version__
 from rocking_cli.cli import defaults, endings, terminal
 from rocking_cli.cli.help import HelpFormatter
 from rocking_cli.errors import InputError, Problem, RockingError
-from rocking_cli.rooms import commands
+from rocking_cli.plugins.rooms import commands
 from rocking_cli.text import cut, one_line, printable
 
 DO_WITHOUT = ("info", "selfcheck")

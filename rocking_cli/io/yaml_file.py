@@ -14,8 +14,7 @@ from yaml.reader import ReaderError
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import read_bytes
-from rocking_cli.patterns import regex
-from rocking_cli.text import cut, printable
+from rocking_cli.text import cut, printable, regex
 
 LARGEST = 10_000_000  # bytes; most structures take a few hundred, a wall of ten thousand blocks two million
 LONG = 100_000  # characters; what is as long takes seconds to read without the parser in C

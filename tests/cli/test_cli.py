@@ -16,7 +16,7 @@ from click.testing import CliRunner
 from rocking_cli.cli.main import main
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import parse_structure
-from rocking_cli.rooms import commands
+from rocking_cli.plugins.rooms import commands
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.neighbours import deviations
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS, rows_of

@@ -23,8 +23,8 @@ from click.testing import CliRunner
 
 from rocking_cli.cli import terminal
 from rocking_cli.cli.main import main
+from rocking_cli.plugins.rooms import commands
 from rocking_cli.questions.report import study as assessment
-from rocking_cli.rooms import commands
 from rocking_cli.text import printable
 from tests.cli.test_hostile_text import HARMFUL
 from tests.cli.test_widths import fits, words

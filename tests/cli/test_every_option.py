@@ -29,8 +29,8 @@ import rocking_cli.questions.selfcheck.view
 from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.cli.main import main
+from rocking_cli.plugins.rooms import commands
 from rocking_cli.questions.fragility.results import StudyAnswer
-from rocking_cli.rooms import commands
 from rocking_cli.views.view import View
 from tests.conftest import EXAMPLES
 

@@ -17,8 +17,8 @@ from rocking_cli.cli import defaults
 from rocking_cli.cli.main import main
 from rocking_cli.dynamics import shipped
 from rocking_cli.errors import InputError
+from rocking_cli.plugins.rooms import commands
 from rocking_cli.questions.fragility.verb import workers_of
-from rocking_cli.rooms import commands
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 

@@ -8,7 +8,7 @@ import click
 import pytest
 
 from rocking_cli.excitation.records import read_record
-from rocking_cli.rooms import commands
+from rocking_cli.plugins.rooms import commands
 from tests.cli.test_cli import run
 from tests.conftest import PROJECT
 

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from rocking_cli.cli.help import OF_RECORDS, OPTIONS, RecordOption
 from rocking_cli.cli.main import main
 from rocking_cli.cli.options import CORRECTIONS
-from rocking_cli.rooms import commands
+from rocking_cli.plugins.rooms import commands
 
 WIDEST = 60
 NO_VERBS = ("The", "A", "An", "Its", "What", "Which", "Who", "How", "Where", "Whether")

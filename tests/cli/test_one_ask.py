@@ -11,8 +11,8 @@ import pytest
 
 import rocking_cli as rk
 from rocking_cli.ask import watcher as rk_watcher
+from rocking_cli.plugins.rooms import commands
 from rocking_cli.processing.reading_options import READING, SCALING
-from rocking_cli.rooms import commands
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 from tests.elsewhere import PROJECT

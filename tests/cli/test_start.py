@@ -4,7 +4,7 @@ import re
 import subprocess
 import sys
 
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 
 def test_a_regular_expression_is_compiled_when_it_is_used(monkeypatch):

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from rocking_cli.cli import terminal
 from rocking_cli.cli.layout import cells, grid, stacked, wrapped
 from rocking_cli.cli.main import main
-from rocking_cli.rooms import commands
+from rocking_cli.plugins.rooms import commands
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
 

@@ -17,7 +17,7 @@ from rocking_cli.ask.answer import Answer
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics.model import MODELS
-from rocking_cli.rooms import names
+from rocking_cli.plugins.rooms import names
 from rocking_cli.views.view import View
 from tests.cli.test_cli import run_json
 from tests.cli.test_every_option import CALLS, RECORD, SITE

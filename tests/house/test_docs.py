@@ -18,9 +18,9 @@ from rocking_cli import Registry, core
 from rocking_cli.core import Angle, Length, Line, box
 from rocking_cli.core.answers import Jointed, Kinematics
 from rocking_cli.core.released import released
+from rocking_cli.plugins.rooms import commands
 from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.questions.collapse.view import data
-from rocking_cli.rooms import commands
 from rocking_cli.testing import contract
 from rocking_cli.views.mechanisms import fields
 from tests.conftest import PROJECT

@@ -73,8 +73,8 @@ def test_a_question_draws_its_own_pictures(package):
         if place.startswith("rocking_cli/questions/")
         for node in ast.walk(tree)
         if isinstance(node, ast.Call) and ast.unparse(node.func) == "drawn"
-        for part in ast.walk(node.args[0])
-        if isinstance(part, ast.Constant) and part.value.startswith("questions.")
+        for part in ast.walk(node)
+        if isinstance(part, ast.Constant) and str(part.value).startswith("questions.")
     ]
     assert len(found) > 10 and {pair for pair in found if pair[0] != pair[1]} == {("animate", "respond")}
 

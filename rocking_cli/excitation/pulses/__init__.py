@@ -10,8 +10,8 @@ from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses.base import COARSE, Pulse, Segment
 from rocking_cli.excitation.records.record_units import UNITS
-from rocking_cli.patterns import regex
 from rocking_cli.plugins.registry import Plugins, origin
+from rocking_cli.text import regex
 
 __all__ = ["COARSE", "Pulse", "PulseShapes", "Segment", "parse_pulse"]
 

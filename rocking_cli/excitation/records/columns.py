@@ -19,7 +19,7 @@ from rocking_cli.excitation.records.record_units import (
     plural,
     quantity_of,
 )
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 MOST = 1000  # columns of a table
 LISTED = 30  # columns in a message

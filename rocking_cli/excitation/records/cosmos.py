@@ -15,7 +15,7 @@ from rocking_cli.excitation.records.header_fields import Field, read_head
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import magnitude, origin, peak_doubts
 from rocking_cli.excitation.records.text import numbers_in
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 TITLE = "COSMOS"
 SIGN = "a first line with (Format v01.20 with 13 text lines)"

@@ -9,7 +9,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import csmip_v1, layout
 from rocking_cli.excitation.records.origins import of_csmip, peak_doubts
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 TITLE = "CSMIP V2"
 SIGN = "a line such as 3251 POINTS OF ACCEL DATA EQUALLY SPACED AT .020 SEC"

@@ -11,7 +11,7 @@ from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import length_doubts, of_csmip
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 TITLE = "CSMIP V1"
 SIGN = "a first line that begins with UNCORRECTED ACCELEROGRAM DATA"

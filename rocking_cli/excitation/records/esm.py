@@ -9,7 +9,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.origins import length_doubts, origin, peak_doubts
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 TITLE = "ESM ASCII"
 SIGN = "header lines SAMPLING_INTERVAL_S: and NDATA:"

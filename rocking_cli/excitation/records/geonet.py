@@ -8,7 +8,7 @@ from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.origins import length_doubts, peak_doubts
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 TITLE = "GeoNet V2A"
 SIGN = "a first line Corrected accelerogram, and Number of points below it"

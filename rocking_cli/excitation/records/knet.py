@@ -10,7 +10,7 @@ from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
 from rocking_cli.excitation.records.origins import peak_doubts
 from rocking_cli.excitation.records.text import sensible
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 TITLE = "K-NET/KiK-net"
 SIGN = "header lines Sampling Freq(Hz) and Scale Factor"

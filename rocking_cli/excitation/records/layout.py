@@ -20,7 +20,7 @@ from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.record_units import CHOICES, UNITS, canonical, resolve_unit
 from rocking_cli.excitation.records.text import check_interval, numbers_in, sensible
 from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, split_numbers
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 # A row of numbers has no letters but those of exponents; asterisks are an overflow, for `numbers_in` to refuse.
 _NO_ROW = regex(r"[^\s\d.+\-*EeDd]")

@@ -15,7 +15,7 @@ from weakref import WeakKeyDictionary, WeakSet
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import read_at_most, read_bytes
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 STANDARD_INPUT = "-"
 LARGEST = 2_000_000_000  # bytes; ten million samples take some 300 MB

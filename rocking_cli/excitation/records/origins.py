@@ -13,8 +13,7 @@ import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.excitation.base import NOT_SAID, Doubt, Origin
-from rocking_cli.patterns import regex
-from rocking_cli.text import seen
+from rocking_cli.text import regex, seen
 
 LONGEST = 100  # characters of a name
 LARGEST = 10.0  # magnitude

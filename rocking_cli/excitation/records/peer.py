@@ -18,7 +18,7 @@ from rocking_cli.excitation.records.origins import of_peer
 from rocking_cli.excitation.records.record_units import UNITS, resolve_unit
 from rocking_cli.excitation.records.text import check_interval, numbers_in, only_channel, usable
 from rocking_cli.excitation.records.widths import PrintedRows, odd_digits, odd_row, split_numbers
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 TITLE = "PEER AT2"
 SIGN = "a title with PEER and DATABASE, or a line with NPTS="

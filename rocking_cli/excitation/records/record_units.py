@@ -18,8 +18,7 @@ from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import of_samples
-from rocking_cli.patterns import regex
-from rocking_cli.text import did_you_mean, exact
+from rocking_cli.text import did_you_mean, exact, regex
 from rocking_cli.units import KINDS, UnitError, number_of, split
 
 UNITS: dict[str, float] = {

@@ -16,7 +16,7 @@ from rocking_cli.excitation.records.layout import Channel
 from rocking_cli.excitation.records.origins import origin
 from rocking_cli.excitation.records.record_units import UNITS, Wanted
 from rocking_cli.excitation.records.text import sensible, usable
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 # SEED names a channel by band, instrument and direction; H, L and P are seismometers and geophones: velocity.
 _VELOCITY_CODE = regex(r"[A-Z][HLP][A-Z0-9]")

@@ -9,7 +9,7 @@ from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.header_fields import Field, RecordHead, read_head
 from rocking_cli.excitation.records.origins import origin, peak_doubts
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 TITLE = "USGS SMC"
 SIGN = "a first line such as 2 CORRECTED ACCELEROGRAM, and * on the second"

@@ -20,7 +20,7 @@ from rocking_cli.excitation.records.columns import MOST, Choice, Label, choose, 
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.record_units import Wanted, plural
 from rocking_cli.excitation.records.widths import PrintedRows, unlike_the_others
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 TITLE = "delimited text"
 SIGN = "a line that begins with a number"

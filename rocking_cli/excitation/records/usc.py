@@ -8,7 +8,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.records import layout
 from rocking_cli.excitation.records.header_fields import Field, read_head
 from rocking_cli.excitation.records.origins import length_doubts
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 TITLE = "USC V1"
 SIGN = "a first line with UNCORRECTED ACCELEROGRAM DATA OF VOLUME I"

@@ -13,7 +13,7 @@ from functools import cached_property
 
 from rocking_cli.excitation.base import Doubt
 from rocking_cli.excitation.records.lines import Lines
-from rocking_cli.patterns import regex
+from rocking_cli.text import regex
 
 FEW = 0.1  # of the rows: if more of them leave the columns of the others, there are no columns
 FEW_NUMBERS = 0.03  # of the numbers: if more are printed otherwise, the program prints them as it likes
