@@ -18,11 +18,17 @@ from tests.conftest import PROJECT
 KERNELS = ("Haswell", "SkylakeX", "Prescott")  # of OpenBLAS, which numpy and scipy use on these processors
 VERSIONS = ("3.11", "3.12", "3.13", "3.14")
 ROUNDED = [
-    f"tests/test_{name}.py"
-    for name in (
-        "assembly", "assembly_limit", "distributions", "equivalent", "fragility_curves", "fragility_pictures",
-        "hazard", "json_text", "linkage", "observed", "spectrum", "study_file", "study_runs",
-    )
+    f"tests/{folder}/test_{name}.py"
+    for folder, names in {
+        "io": ("json_text",),
+        "mechanisms": ("assembly", "assembly_limit", "linkage"),
+        "questions/equivalent": ("equivalent",),
+        "questions/fragility": (
+            "distributions", "fragility_curves", "fragility_pictures", "hazard", "observed", "study_file", "study_runs",
+        ),
+        "questions/spectrum": ("spectrum",),
+    }.items()
+    for name in names
 ]  # fmt: skip
 # They take long, and rest on random numbers or on processes rather than on rounding: once is enough.
 ONCE = "TestCoverage or killed or interrupted or cluster or while_it_runs or hold_at_their_rate"
