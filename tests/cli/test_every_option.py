@@ -443,7 +443,7 @@ def listen(monkeypatch, command):
     if command in ("fragility", "results"):
         study = dict.fromkeys(("store", "plan", "definition", "surfaces", "quantiles", "rankings", "failed"), 0)
         answer = StudyAnswer(*parts, **study, complete=True)
-        monkeypatch.setattr(f"rocking_cli.cli.{command}.show_study", hear)
+        monkeypatch.setattr(f"{commands()[command]}.show_study", hear)
     else:
         answer = Answer(*parts, tables={"spectrum": lambda: {"a": [1.0]}})
     monkeypatch.setattr("rocking_cli.questions.select.set_folder.write_set", hear)
