@@ -14,7 +14,7 @@ from pydantic import BaseModel
 
 import rocking_cli
 from rocking_cli import core
-from rocking_cli.cli.help import OF_RECORDS, RecordOption
+from rocking_cli.cli.help import RECORDS_HEADING, RecordOption
 from rocking_cli.cli.main import main
 from rocking_cli.verification import Code
 from rocking_cli.views.mechanisms import fields
@@ -33,7 +33,11 @@ def command_line() -> str:
         ctx = click.Context(command, group, info_name=name)
         parts.append(f"## rocking {name}\n\n" + described(command, ctx))
         of_records |= listed(command, ctx, of_records=True)
-    parts += [f"## {OF_RECORDS}", "Each command above names those of these options that it has.", bullets(of_records)]
+    parts += [
+        f"## {RECORDS_HEADING}",
+        "Each command above names those of these options that it has.",
+        bullets(of_records),
+    ]
     return "\n\n".join(parts) + "\n"
 
 
@@ -55,7 +59,7 @@ def options(command: click.Command, ctx: click.Context) -> str:
     """Return a list of the entries of `--help`, and the names of the options of records."""
     found = bullets(listed(command, ctx, of_records=False))
     names = [f"`{each.split()[0]}`" for each in listed(command, ctx, of_records=True)]
-    link = f"[{OF_RECORDS}](#{OF_RECORDS.lower().replace(' ', '-')})"
+    link = f"[{RECORDS_HEADING}](#{RECORDS_HEADING.lower().replace(' ', '-')})"
     return found + (f"\n\n{link}: {', '.join(names)}." if names else "")
 
 

@@ -29,7 +29,14 @@ from rocking_cli import load_structure, read_record
 from rocking_cli.dynamics.model import Model
 from rocking_cli.plotting import style
 from rocking_cli.questions.score.picture import draw_reliability
-from rocking_cli.questions.score.study import DRAWS, CalibrationBin, Scored, ScoreEstimate, score_tests, scored
+from rocking_cli.questions.score.study import (
+    DRAWS,
+    CalibrationBin,
+    Scored,
+    ScoreEstimate,
+    score_tests,
+    scored,
+)
 from rocking_cli.questions.score.table import read_tests
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Draws, Neighbourhood

@@ -99,7 +99,7 @@ def small_maps(monkeypatch):
     """Maps of few points in the reports of a test of something else."""
     from rocking_cli.questions.report import study as assessment
 
-    monkeypatch.setattr(assessment, "POINTS", 20)
+    monkeypatch.setattr(assessment, "MAP_POINTS", 20)
 
 
 @pytest.fixture(scope="session")

@@ -19,7 +19,7 @@ import numpy as np
 from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
-from rocking_cli.questions.fragility.store import COLUMNS, MARK, Store
+from rocking_cli.questions.fragility.store import APPLICATION_ID, COLUMNS, Store
 from tests.conftest import EXAMPLES
 
 STUDY = f"""\
@@ -189,7 +189,7 @@ def foreign(place: Path, rng: random.Random, sound: Sound) -> str:
         with closing(sqlite3.connect(place, isolation_level=None)) as connection:
             connection.executescript("CREATE TABLE run (id INTEGER PRIMARY KEY, x); INSERT INTO run VALUES (1, 2)")
             if kind > 3:
-                connection.execute(f"PRAGMA application_id = {MARK}")
+                connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
                 connection.execute(f"PRAGMA user_version = {kind - 3}")
     return f"foreign {kind}"
 

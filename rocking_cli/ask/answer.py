@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 R = TypeVar("R")
 K = TypeVar("K")
 V = TypeVar("V")
-SHORT = 100  # characters of a repr's sentence
+MAX_REPR_LENGTH = 100  # characters
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -121,7 +121,8 @@ class Answer(Generic[R]):
 
     def __repr__(self) -> str:
         said = " ".join(self.sentences)
-        return f"<{self.question}: {said if len(said) <= SHORT else said[: SHORT - 3].rstrip() + '...'}>"
+        text = said if len(said) <= MAX_REPR_LENGTH else said[: MAX_REPR_LENGTH - 3].rstrip() + "..."
+        return f"<{self.question}: {text}>"
 
     def _repr_html_(self) -> str:
         return "\n".join(_html(part) for part in self.view.parts if part)

@@ -37,10 +37,11 @@ StructureLike = Mechanism | Structure | str | Path
 """Mechanism, or its YAML file, "-" for standard input; or a structure that was opened before."""
 SiteLike = Mapping[str, Any] | str | Path
 """Fields of a site file, or the file."""
-HERE = Path("rocking.yaml")
+LOCAL_FILE = Path("rocking.yaml")
 """The structure of a command without one: this very object is the file in the current folder, or the default block."""
-DEFAULT = "mechanism: block\nname: default block, 0.7 m x 2.8 m\nwidth: 0.7\nheight: 2.8\n"
-SLOW, MANY, MEASURED = 100, 500, 1000  # polygons: that take a second, that take more, at most that were timed
+DEFAULT_STRUCTURE = "mechanism: block\nname: default block, 0.7 m x 2.8 m\nwidth: 0.7\nheight: 2.8\n"
+# Slow structures take about a second; the slowest of which the time was measured have MAX_TIMED_POLYGONS.
+MIN_SLOW_POLYGONS, MIN_VERY_SLOW_POLYGONS, MAX_TIMED_POLYGONS = 100, 500, 1000
 
 
 def structure_of(given: StructureLike, watch: Watcher = SILENT, opening: float = OPENING) -> Structure:
@@ -80,18 +81,18 @@ def structure_of(given: StructureLike, watch: Watcher = SILENT, opening: float =
 
 def _read(given: str | Path, watch: Watcher) -> Structure:
     """Read a structure from its file."""
-    if given is HERE and not HERE.exists():
-        watch.note(f"structure: the default block, 0.7 m wide and 2.8 m high (no FILE given, no {HERE} here)")
-        return Structure(parse_structure(DEFAULT, "default block", "default block"))
-    if given is HERE:
-        watch.note(f"structure: {HERE} of this folder")
+    if given is LOCAL_FILE and not LOCAL_FILE.exists():
+        watch.note(f"structure: the default block, 0.7 m wide and 2.8 m high (no FILE given, no {LOCAL_FILE} here)")
+        return Structure(parse_structure(DEFAULT_STRUCTURE, "default block", "default block"))
+    if given is LOCAL_FILE:
+        watch.note(f"structure: {LOCAL_FILE} of this folder")
     file, is_input = name_of(given), str(given) == STANDARD_INPUT
     text = decoded(original(given), file, "structure") if is_input else read_text(Path(given), "structure")
     count = text.count("polygon")
-    if count >= MANY:
+    if count >= MIN_VERY_SLOW_POLYGONS:
         watch.note(_what_blocks_take(count))
     try:
-        with watch.working(f"analysing {count} polygons") if count >= SLOW else nullcontext():
+        with watch.working(f"analysing {count} polygons") if count >= MIN_SLOW_POLYGONS else nullcontext():
             mechanism = parse_structure(text, file, "structure" if is_input else default_name(given))
     except MechanismError as error:
         raise of_structure(error, file) from error
@@ -102,13 +103,13 @@ def _read(given: str | Path, watch: Watcher) -> Structure:
 
 def _what_blocks_take(count: int) -> str:
     """Return what the limit analysis of many blocks takes."""
-    if count <= MEASURED:
+    if count <= MAX_TIMED_POLYGONS:
         return f"{count} polygons: up to about a minute and 250 MB; Ctrl-C stops it"
-    minutes = round((count / 1000) ** 2)  # at a minute for 1000
+    minutes = round((count / 1000) ** 2)  # a minute for 1000 polygons
     least = "a minute" if minutes < 2 else f"{minutes} minutes" if minutes < 120 else f"{minutes / 60:.0f} hours"
     return (
         f"{count} polygons: {least} and {0.2 * count:.0f} MB at least, and perhaps many times as much, as no more than "
-        f"{MEASURED} have been measured; Ctrl-C stops it"
+        f"{MAX_TIMED_POLYGONS} have been measured; Ctrl-C stops it"
     )
 
 

@@ -24,11 +24,11 @@ from rocking_cli.processing.reading_options import MotionArguments as MotionArgu
 from rocking_cli.processing.reading_options import ReadingArguments as ReadingArguments
 from rocking_cli.processing.steps import Resample, process
 from rocking_cli.views.processing import in_words
-from rocking_cli.views.view import FEW
+from rocking_cli.views.view import MAX_DETAILED_MOTIONS
 
 Motion = GroundMotion | Pulse | Scaled | str | Path
 """Ground motion or pulse, file of a record, or pulse as text such as `sine:0.6g:0.8s`."""
-MOST_PGA, MOST_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and too long to simulate
+MAX_PGA, MAX_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and too long to simulate
 Source = GroundMotion | Scaled | Pulse | Listed | InputError
 """What a motion is made of: a file of a pattern or a list by itself, or why a place has no file."""
 
@@ -139,7 +139,7 @@ class Motions:
         """
         self.check(with_vertical=with_vertical)
         if self.sources and all(isinstance(each, Scaled) for each in self.sources):
-            return [each for each in self.sources if isinstance(each, Scaled)]  # read before
+            return [each for each in self.sources if isinstance(each, Scaled)]  # already read
         chosen: list[Scaled] = []
         for place, source in enumerate(self.sources):
             try:
@@ -180,7 +180,7 @@ class Motions:
         except InputError as error:
             problems: list[Problem] = []
             for problem in renamed(error, arguments).problems:
-                if problem.hint and "`dt`" in problem.hint:  # it was meant for the other component
+                if problem.hint and "`dt`" in problem.hint:  # the user gave `dt`, but for the other component
                     problem = replace(problem, hint="give the interval of the vertical component with `vertical_dt`")
                 problems.append(problem)
             raise InputError(*problems) from None
@@ -219,10 +219,10 @@ class Motions:
                     raise InputError(Problem(what, motion.name))
                 by = wanted / own
         pga, pgv = abs(by) * measured.pga, abs(by) * measured.pgv
-        if not (pga <= MOST_PGA and pgv <= MOST_PGV):
+        if not (pga <= MAX_PGA and pgv <= MAX_PGV):
             scaled = f" scaled by {by:.4g}" if by != 1 else ""
             problem = f"PGA = {pga:.4g} g and PGV = {pgv:.4g} m/s{scaled} are not plausible for a ground motion"
-            hint = f"at most {MOST_PGA:g} g and {MOST_PGV:g} m/s: check unit, interval and factor"
+            hint = f"at most {MAX_PGA:g} g and {MAX_PGV:g} m/s: check unit, interval and factor"
             raise InputError(Problem(problem, motion.name, hint=hint))
         return by
 
@@ -242,7 +242,7 @@ def unprocessed(motion: Scaled) -> GroundMotion | None:
     if reading is None or motion.file is None or not reading.steps:
         return None
     allow_again(motion.file)
-    grid = tuple(step for step in reading.steps if isinstance(step, Resample))  # uneven times cannot do without
+    grid = tuple(step for step in reading.steps if isinstance(step, Resample))  # needed if times are uneven
     return replace(reading.without("floor"), steps=grid).read(motion.file)
 
 
@@ -324,7 +324,7 @@ def introduce(what: str, one: Scaled, watch: Watcher) -> None:
 
 
 def _introduce(chosen: Sequence[Scaled], watch: Watcher) -> None:
-    if len(chosen) <= FEW:
+    if len(chosen) <= MAX_DETAILED_MOTIONS:
         for one in chosen:
             introduce("motion", one, watch)
         return
@@ -340,7 +340,7 @@ def warn_about(motions: Sequence[GroundMotion], watch: Watcher, p: float = 0.0, 
         ground = motion.of_ground
         if found := doubts(ground, measure(ground)) + coarse_for(motion, p, whom):
             doubtful.append((motion, found))
-    if len(doubtful) <= FEW:
+    if len(doubtful) <= MAX_DETAILED_MOTIONS:
         for motion, found in doubtful:
             for doubt in found:
                 watch.warn(f"{motion.name}: {doubt.text}")

@@ -39,7 +39,7 @@ class Answers(MappingAnswer[str, A]):
 class OfMotions(Protocol[P, T]):
     """A verb of motions, to a type checker: one gives one answer, a list `Answers`; so does a pattern, unseen."""
 
-    @overload  # a `Scaled` is a tuple, but one motion
+    @overload  # a `Scaled` is a tuple, but a single motion
     def __call__(self, motion: Motion, *args: P.args, **options: P.kwargs) -> T: ...  # type: ignore[overload-overlap]
     @overload
     def __call__(self, motion: list[Any] | tuple[Any, ...], *args: P.args, **options: P.kwargs) -> Answers[T]: ...

@@ -20,20 +20,20 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.plugins.rooms import commands
 from rocking_cli.text import cut, did_you_mean, one_line
 
-FILE = "rocking.toml"
-PREFIX = "ROCKING_"
-LARGEST = 1_000_000  # bytes of a file
+SETTINGS_FILE = "rocking.toml"
+VARIABLE_PREFIX = "ROCKING_"
+MAX_FILE_SIZE = 1_000_000  # bytes
 
-EVERYWHERE = (
+SHARED_OPTIONS = (
     "units", "dt", "channel", "neighbours", "amplitude-deviation", "slenderness-deviation",
     "restitution-deviation", "tail", "rtol", "points",
     "fractiles", "fps", "speed", "jobs", "project", "place", "author", "logo",
 )  # fmt: skip
 """Options with one meaning in all commands; none that choose the question, the input or the output."""
-IN_TABLES = ("polarity", "model", "eta", "kappa", "shape")
+AMBIGUOUS_OPTIONS = ("polarity", "model", "eta", "kappa", "shape")
 """Options whose meaning differs between commands: only the table of a command may set them."""
-DIFFERS = "its meaning differs between commands: put it in the table of a command, such as [respond]"
-OTHERS = ("DEBUG", "BROWSER", "KERNELS")
+AMBIGUOUS_HINT = "its meaning differs between commands: put it in the table of a command, such as [respond]"
+OTHER_VARIABLES = ("DEBUG", "BROWSER", "KERNELS")
 """Other variables of the environment that the program reads."""
 
 
@@ -65,12 +65,12 @@ def user_file() -> Path:
     """Return the path of the user's own file, which may not exist."""
     import platformdirs
 
-    return platformdirs.user_config_path("rocking-cli", appauthor=False, roaming=True) / FILE
+    return platformdirs.user_config_path("rocking-cli", appauthor=False, roaming=True) / SETTINGS_FILE
 
 
 def files() -> list[Path]:
     """Return the existing files, that of this folder first."""
-    return [each for each in (Path(FILE), user_file()) if each.is_file()]
+    return [each for each in (Path(SETTINGS_FILE), user_file()) if each.is_file()]
 
 
 def in_force() -> list[Default]:
@@ -84,7 +84,7 @@ def in_force() -> list[Default]:
     """
     found = [
         Default(option, None, value, variable, variable)
-        for option in EVERYWHERE
+        for option in SHARED_OPTIONS
         if (value := os.environ.get(variable := _variable(option)))
     ]
     problems: list[Problem] = []
@@ -98,12 +98,12 @@ def in_force() -> list[Default]:
             del tables[command]
         tables[None] = {key: value for key, value in data.items() if not isinstance(value, dict)}
         for command, pairs in tables.items():
-            known = [*EVERYWHERE, *(IN_TABLES if command else ())]
+            known = [*SHARED_OPTIONS, *(AMBIGUOUS_OPTIONS if command else ())]
             for key, value in pairs.items():
                 option, place = key.replace("_", "-"), f"[{command}] {key}" if command else key
                 values = value if isinstance(value, list) else [value]
                 if option not in known:
-                    hint = DIFFERS if option in IN_TABLES else did_you_mean(option, known)
+                    hint = AMBIGUOUS_HINT if option in AMBIGUOUS_OPTIONS else did_you_mean(option, known)
                     what = "this option cannot have a default"
                     problems.append(Problem(what, shown, field=cut(one_line(place)), hint=hint))
                 elif not values or any(
@@ -121,8 +121,8 @@ def in_force() -> list[Default]:
 
 def unknown_variables() -> list[str]:
     """Return variables of the environment with our prefix that the program does not read."""
-    known = {*map(_variable, EVERYWHERE), *(PREFIX + each for each in OTHERS)}
-    return sorted(each for each in os.environ if each.startswith(PREFIX) and each not in known)
+    known = {*map(_variable, SHARED_OPTIONS), *(VARIABLE_PREFIX + each for each in OTHER_VARIABLES)}
+    return sorted(each for each in os.environ if each.startswith(VARIABLE_PREFIX) and each not in known)
 
 
 def set_for(context: click.Context) -> None:
@@ -132,7 +132,7 @@ def set_for(context: click.Context) -> None:
     found: dict[str, Default] = {}
     for each in in_force():
         if each.command == name and each.option not in options:
-            hint = did_you_mean(each.option, [*{*EVERYWHERE, *IN_TABLES} & {*options}])
+            hint = did_you_mean(each.option, [*{*SHARED_OPTIONS, *AMBIGUOUS_OPTIONS} & {*options}])
             raise InputError(Problem(f"`rocking {name}` has no option --{each.option}", each.key, hint=hint))
         if each.command in (None, name) and each.option in options:
             found.setdefault(options[each.option].name or "", each)
@@ -150,7 +150,7 @@ def as_declared(given: dict[str, Any], *names: str) -> None:
     """Take back what a user's defaults say of some options: where they have no effect, only typed ones are errors."""
     for param in click.get_current_context().command.params:
         if param.name in names and param.name in given and from_default(str(param.name)):
-            given[param.name] = param.to_info_dict()["default"]  # the attribute has an object for None
+            given[param.name] = param.to_info_dict()["default"]  # `param.default` is a sentinel instead of None
 
 
 def from_default(name: str, context: click.Context | None = None) -> bool:
@@ -183,7 +183,7 @@ def whose(message: str, context: click.Context | None) -> str:
 
 
 def _variable(option: str) -> str:
-    return PREFIX + option.upper().replace("-", "_")
+    return VARIABLE_PREFIX + option.upper().replace("-", "_")
 
 
 def _read(file: Path) -> dict[str, Any]:
@@ -192,7 +192,7 @@ def _read(file: Path) -> dict[str, Any]:
     from rocking_cli.io.files import read_bytes
 
     try:
-        return tomllib.loads(read_bytes(file, "file of defaults", LARGEST).decode("utf-8-sig"))
+        return tomllib.loads(read_bytes(file, "file of defaults", MAX_FILE_SIZE).decode("utf-8-sig"))
     except UnicodeDecodeError:
         raise InputError(Problem("not UTF-8 text", str(file), hint="save the file as UTF-8")) from None
     except (tomllib.TOMLDecodeError, RecursionError) as error:

@@ -10,8 +10,8 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import NoReturn
 
-ASKED = ("SIGTERM", "SIGHUP")  # `kill`, and a terminal that is closed; Windows has not the second
-AGAIN = 0.05  # s after which a signal that was lost is given again
+END_SIGNALS = ("SIGTERM", "SIGHUP")  # sent by `kill`, and when a terminal closes; Windows lacks SIGHUP
+RESEND_INTERVAL = 0.05  # s after which a lost signal is sent again
 
 
 class Stopped(KeyboardInterrupt):
@@ -39,13 +39,13 @@ def in_order() -> Iterator[None]:
     def not_lost(what: sys.UnraisableHookArgs) -> None:
         """Send a signal again if it came where Python drops exceptions, such as while an object is deleted."""
         if isinstance(what.exc_value, KeyboardInterrupt):
-            threading.Timer(AGAIN, _give, [_number(what.exc_value)]).start()
+            threading.Timer(RESEND_INTERVAL, _give, [_number(what.exc_value)]).start()
         else:
             unraisable(what)
 
     sys.unraisablehook = not_lost
-    if threading.current_thread() is threading.main_thread():  # nobody else may
-        for number in (getattr(signal, name) for name in ASKED if hasattr(signal, name)):
+    if threading.current_thread() is threading.main_thread():  # other threads may not set signal handlers
+        for number in (getattr(signal, name) for name in END_SIGNALS if hasattr(signal, name)):
             if signal.getsignal(number) == signal.SIG_DFL:
                 kept[number] = signal.signal(number, _stop)
     try:

@@ -68,9 +68,9 @@ class GroundMotions(ReadingOptions):
         self.check_strays(files)
         if len(files) > 1:
             raise click.UsageError(f"This command takes one structure, but {len(files)} are given: {', '.join(files)}.")
-        from rocking_cli.ask.given import HERE
+        from rocking_cli.ask.given import LOCAL_FILE
 
-        return files[0] if files else HERE
+        return files[0] if files else LOCAL_FILE
 
     def check_strays(self, files: Sequence[str]) -> None:
         """Raise if records stand in the place of a structure: the shell puts the files of a bare pattern there."""
@@ -87,7 +87,7 @@ class GroundMotions(ReadingOptions):
         self.motions.check(with_vertical=vertical is not None)
 
 
-AROUND = ("neighbours", "amplitude_deviation", "slenderness_deviation", "restitution_deviation")
+NEIGHBOUR_OPTIONS = ("neighbours", "amplitude_deviation", "slenderness_deviation", "restitution_deviation")
 """Options of the neighbours of a motion."""
 
 

@@ -8,9 +8,10 @@ from typing import Any
 
 import click
 
-OPTIONS, OF_RECORDS = "Options", "Reading and processing of records"  # headings
-MARGIN = 2  # columns that stay free, as in click
-LEAST, NARROW = 20, 52  # columns that are used at least, and from which on click has a layout
+OPTIONS_HEADING, RECORDS_HEADING = "Options", "Reading and processing of records"
+FREE_COLUMNS = 2  # at the right, as in click
+# Columns that help texts take at least, and from which on click can lay them out.
+MIN_WIDTH, MIN_WIDTH_OF_CLICK = 20, 52
 
 
 class HelpFormatter(click.HelpFormatter):
@@ -18,14 +19,14 @@ class HelpFormatter(click.HelpFormatter):
 
     def __init__(self, indent_increment: int = 2, width: int | None = None, max_width: int | None = None) -> None:
         columns = get_terminal_size().columns
-        if width is None and columns < NARROW:
-            width = max(columns, LEAST) - MARGIN
+        if width is None and columns < MIN_WIDTH_OF_CLICK:
+            width = max(columns, MIN_WIDTH) - FREE_COLUMNS
         super().__init__(indent_increment, width, max_width)
 
     def write_dl(self, rows: Iterable[tuple[str, str]], *layout: Any, **more: Any) -> None:
         """Write options, or commands, and what they mean."""
-        if self.width < NARROW - MARGIN:
-            layout, more = (2 * self.indent_increment - MARGIN,), {}
+        if self.width < MIN_WIDTH_OF_CLICK - FREE_COLUMNS:
+            layout, more = (2 * self.indent_increment - FREE_COLUMNS,), {}
         super().write_dl(rows, *layout, **more)
 
 
@@ -38,10 +39,10 @@ class Command(click.Command):
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options, heading by heading."""
-        listed: dict[str, list[tuple[str, str]]] = {OPTIONS: [], OF_RECORDS: []}
+        listed: dict[str, list[tuple[str, str]]] = {OPTIONS_HEADING: [], RECORDS_HEADING: []}
         for param in self.get_params(ctx):
             if isinstance(param, click.Option) and (record := param.get_help_record(ctx)) is not None:
-                listed[OF_RECORDS if isinstance(param, RecordOption) else OPTIONS].append(record)
+                listed[RECORDS_HEADING if isinstance(param, RecordOption) else OPTIONS_HEADING].append(record)
         for heading, records in listed.items():
             if records:
                 with formatter.section(heading):

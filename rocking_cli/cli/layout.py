@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-HANG = 2  # blanks before the lines that go on with a sentence
-NARROW = 60  # columns below which no cell is wrapped: there a column has room for a word or two
-READABLE = 18  # columns that a wrapped cell keeps
-_TRACEBACK = "Traceback (most recent call last)"  # is for who writes programs, and stays as it is to its end
+HANGING_INDENT = 2  # blanks before the continuation lines of a sentence
+MIN_WIDTH_TO_WRAP = 60  # columns: in less, a table column has room for only a word or two
+MIN_CELL_WIDTH = 18  # columns of a wrapped cell
+_TRACEBACK = "Traceback (most recent call last)"  # printed unwrapped, as it is meant for programmers
 
 
 def cells(text: str) -> int:
@@ -46,7 +46,7 @@ def wrapped(text: str, width: int | None, *, start: int = 0) -> str:
         quoted = any(each.strip() == "^" for each in lines[k : k + 2])
         blanks = " " * (len(line) - len(line.lstrip()))
         taken = "" if k else " " * start
-        folded = "\n".join(_folded(taken + line, width, blanks + " " * HANG))
+        folded = "\n".join(_folded(taken + line, width, blanks + " " * HANGING_INDENT))
         made.append(line if quoted else folded[len(taken) :])
     return "\n".join(made)
 
@@ -80,10 +80,10 @@ def grid(
     needs = _needs(lines)
     gap = 3 if width is None or _whole(needs, 3) <= width else 2
     if width is not None and _whole(needs, gap) > width:
-        free = [k for k in range(1, len(needs)) if k not in numbers] if width >= NARROW else []
+        free = [k for k in range(1, len(needs)) if k not in numbers] if width >= MIN_WIDTH_TO_WRAP else []
         while _whole(needs, gap) > width:
             widest = max(free, key=lambda k: needs[k], default=0)
-            if not widest or needs[widest] <= READABLE:
+            if not widest or needs[widest] <= MIN_CELL_WIDTH:
                 return None
             needs[widest] -= 1
         lines = [
@@ -99,7 +99,7 @@ def grid(
         parts = []
         for k, (cell, need) in enumerate(zip(line, needs, strict=True)):
             rest = [""] * (height - len(cell))
-            shown = rest + cell if line is lines[0] else cell + rest  # headings stand on the rule
+            shown = rest + cell if line is lines[0] else cell + rest  # headings are aligned at the bottom
             parts.append([_aligned(each, need, right=k in numbers) for each in shown])
         return [f" {(' ' * gap).join(row)} " for row in zip(*parts, strict=True)]
 
@@ -132,7 +132,7 @@ def stacked(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -
         deeper = " " * (len(first) - len(first.lstrip()))
         lines = [f"{deeper}{heads[0]}: {first.lstrip()}" if heads[0] and first.strip() else first]
         lines += [
-            f"{deeper}{' ' * HANG}{head}{': ' * bool(head)}{cell.strip()}"
+            f"{deeper}{' ' * HANGING_INDENT}{head}{': ' * bool(head)}{cell.strip()}"
             for head, cell in zip(heads[1:], others, strict=True)
             if cell
         ]

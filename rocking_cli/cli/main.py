@@ -19,9 +19,9 @@ from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.plugins.rooms import commands
 from rocking_cli.text import cut, one_line, printable
 
-DO_WITHOUT = ("info", "selfcheck")
+DIAGNOSTIC_COMMANDS = ("info", "selfcheck")
 """Commands that run even if the user's defaults are invalid."""
-LATEST = 11  # digits of SOURCE_DATE_EPOCH, up to the year 5138
+MAX_EPOCH_DIGITS = 11  # of SOURCE_DATE_EPOCH, up to the year 5138
 
 
 class _Helped(click.Context):
@@ -39,12 +39,12 @@ class _Context(_Helped):
         if not self.resilient_parsing:
             try:
                 defaults.set_for(self)
-            except InputError as error:  # --help does not need them
+            except InputError as error:  # --help works without the defaults
                 self.refused = error
 
     def invoke(self, callback: Any, /, *args: Any, **named: Any) -> Any:
         """Run the function of a command."""
-        if self.refused is not None and self.info_name not in DO_WITHOUT:
+        if self.refused is not None and self.info_name not in DIAGNOSTIC_COMMANDS:
             raise self.refused
         defaults.say(self)
         try:
@@ -58,9 +58,9 @@ class _Context(_Helped):
 def _check_environment() -> None:
     """Refuse a date of build that no library can read. Raises `InputError`."""
     given = os.environ.get("SOURCE_DATE_EPOCH", "0")
-    if not (given.isascii() and given.isdecimal() and len(given) <= LATEST):
+    if not (given.isascii() and given.isdecimal() and len(given) <= MAX_EPOCH_DIGITS):
         hint = "unset this environment variable, or give seconds since 1970"
-        what = f"must be a whole number of at most {LATEST} digits, got {cut(repr(given))}"
+        what = f"must be a whole number of at most {MAX_EPOCH_DIGITS} digits, got {cut(repr(given))}"
         raise InputError(Problem(what, field="SOURCE_DATE_EPOCH", hint=hint))
 
 
@@ -95,9 +95,9 @@ class LazyGroup(click.Group):
     def main(self, *args: Any, **extra: Any) -> Any:
         """Run the program; a system error ends it with a message, in help too."""
         try:
-            return super().main(*args, **extra)  # a reader that has seen enough ends it quietly there
+            return super().main(*args, **extra)  # handles a closed pipe quietly
         except OSError as error:
-            if error.errno == errno.ENAMETOOLONG:  # of a file that was named: wrong input
+            if error.errno == errno.ENAMETOOLONG:  # a file name that the user typed
                 terminal.error(f"{one_line(cut(str(error.filename)))}: the file name is too long: shorten it")
                 sys.exit(InputError.exit_code)
             terminal.error(f"the operating system reported an error: {error.strerror or error}")
@@ -106,11 +106,11 @@ class LazyGroup(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; a known error ends it with a message on standard error."""
         os.environ["MPLBACKEND"] = "agg"  # figures are written, never shown: no display is needed
-        # Nobody's plugins watch how a structure file is read, and to look for them takes as long as to read many.
+        # No plugin of pydantic is used, and a search for plugins takes as long as reading many structure files.
         os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
         for stream in (sys.stdout, sys.stderr):
             if isinstance(stream, io.TextIOWrapper):
-                stream.reconfigure(errors="replace")  # a name that an old code page cannot spell ends nothing
+                stream.reconfigure(errors="replace")  # old code pages lack some characters of names
         began = monotonic()
         try:
             _check_environment()
@@ -122,7 +122,7 @@ class LazyGroup(click.Group):
                 terminal.debug_traceback(error)
                 ctx.exit(blamed.exit_code)
             more = defaults.whose(error.message, error.ctx) if isinstance(error, click.UsageError) else ""
-            # It quotes what was typed.
+            # The message quotes what the user typed.
             said = terminal.beside(printable(error.format_message() + more), "Error: ")
             error.format_message = lambda: said  # type: ignore[method-assign]
             terminal.debug_traceback(error)
@@ -139,7 +139,7 @@ class LazyGroup(click.Group):
             terminal.error("not enough memory on this machine")
             terminal.debug_traceback(error)
             ctx.exit(1)
-        except OSError as error:  # `main` reports it
+        except OSError as error:  # reported by `main`
             terminal.debug_traceback(error)
             raise
         finally:

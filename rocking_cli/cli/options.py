@@ -13,12 +13,12 @@ import click
 from rocking_cli.cli import complete
 from rocking_cli.cli.defaults import from_default
 from rocking_cli.cli.help import RecordOption
-from rocking_cli.cli.quantities import AMPLITUDE, FRACTION, PERIOD, SHARE, Parsed, quantity_of
+from rocking_cli.cli.quantities import FRACTION, PERIOD, PULSE_AMPLITUDE, SHARE, Parsed, quantity_of
 from rocking_cli.names import OPENING
 from rocking_cli.processing.reading_options import CORRECTIONS, READING, SCALING, Option
 
 STANDARD_OUTPUT = "-"
-# The names of the models stand here again so that `--help` needs no numpy.
+# The names of the models are repeated here so that `--help` does not import numpy.
 MODELS = ("nonlinear", "linear1", "linear2")
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -267,7 +267,7 @@ def sized_pulse(*polarities: str, required: bool = False) -> Decorator:
         click.option(
             "--ag",
             required=required,
-            type=quantity_of(AMPLITUDE),
+            type=quantity_of(PULSE_AMPLITUDE),
             metavar="AMPLITUDE",
             help=HELP["ag"],
         ),
@@ -323,9 +323,9 @@ opening: Decorator = click.option(
 def _or_here(ctx: click.Context, parameter: click.Parameter, given: Any) -> Any:
     if given:
         return given
-    from rocking_cli.ask.given import HERE
+    from rocking_cli.ask.given import LOCAL_FILE
 
-    return (HERE,) if parameter.nargs == -1 else HERE
+    return (LOCAL_FILE,) if parameter.nargs == -1 else LOCAL_FILE
 
 
 structure: Decorator = click.argument("file", required=False, type=click.Path(), callback=_or_here)

@@ -74,7 +74,7 @@ class QuantityKind:
     zero: bool = False
 
 
-AMPLITUDE = QuantityKind("acceleration", "g", "0.6g", "0.1g:2g", 1e-9, 1e6)  # of a pulse
+PULSE_AMPLITUDE = QuantityKind("acceleration", "g", "0.6g", "0.1g:2g", 1e-9, 1e6)
 PERIOD = QuantityKind("period", "s", "0.8s", "0.2s:4s", 1e-6, 1e6)
 RATIO = QuantityKind("number", "", "4", "0.5:10", 1e-6, 1e6)
 INTERVAL = QuantityKind("time", "s", "0.01s")
@@ -145,7 +145,7 @@ def quantity(kind: QuantityKind, text: str, example: str = "") -> float:
         remedy = f"{hint} Give a value" if hint.endswith("?") else f"{hint}," if hint else "give a value"
         raise ValueError(f"{error.message}: {remedy} such as {example}") from None
     if not (0 < found < inf or (kind.zero and found == 0)):
-        turn = "; --polarity -1 reverses the pulse" if kind is AMPLITUDE and found < 0 else ""
+        turn = "; --polarity -1 reverses the pulse" if kind is PULSE_AMPLITUDE and found < 0 else ""
         raise ValueError(f"{text!r} is not positive: give a value such as {example}{turn}")
     if not kind.least <= found <= kind.most:
         bounds = f"{kind.least:g} to {kind.most:g} {kind.unit}".strip()
@@ -159,7 +159,7 @@ def _number(kind: QuantityKind, text: str) -> float:
         raise UnitError(f"{text!r} is not a valid {kind.name}")
     number, unit = parts
     if not unit:
-        if kind is AMPLITUDE:  # a bare 6 may be in g or in m/s2
+        if kind is PULSE_AMPLITUDE:  # a bare 6 may mean g or m/s2
             raise UnitError(f"{text!r} has no unit", f"give one of {', '.join(UNITS)}")
         return float(number)
     if kind.unit == "g":

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from rocking_cli.ask.watcher import Advance
     from rocking_cli.views.view import View
 
-PATIENCE = 1.0  # s of work before it is shown
-USUAL = 80  # columns of a terminal that does not say how many it has
+PROGRESS_DELAY = 1.0  # s of work before progress is shown
+DEFAULT_WIDTH = 80  # columns of a terminal whose width is unknown
 
 _results: TextIO | None = None
 
@@ -164,8 +164,8 @@ def _columns(stream: TextIO) -> int | None:
     if said.isdecimal() and int(said) > 0:
         return int(said)
     try:
-        return os.get_terminal_size(stream.fileno()).columns or USUAL
-    except (OSError, ValueError):  # no terminal, or nothing that the system knows
+        return os.get_terminal_size(stream.fileno()).columns or DEFAULT_WIDTH
+    except (OSError, ValueError):  # not a terminal, or one of unknown size
         return None
 
 
@@ -197,7 +197,7 @@ def progress(total: int, what: str, *, done: int = 0, failed: int = 0) -> Iterat
         nonlocal bar, bad, new
         bad, new = bad + failed, new + count
         took = monotonic() - began
-        if bar is None and took > PATIENCE:
+        if bar is None and took > PROGRESS_DELAY:
             bar = _bar()
             bar.add_task(what, total=total, rate="", failures="")
             bar.start()
@@ -275,7 +275,7 @@ def table(
         heads, body = found
         click.echo("\n".join([*(click.style(line, bold=True) for line in heads), *body]), file=_results)
     else:
-        assert room is not None  # else everything fits
+        assert room is not None  # otherwise everything fits
         click.echo("\n".join(["", *stacked(columns, rows, room), ""]), file=_results)
 
 

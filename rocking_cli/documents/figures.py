@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 
 from rocking_cli.plotting import style
 
-SANS = "system-ui, 'Segoe UI', Helvetica, Arial, 'DejaVu Sans', sans-serif"
+FONT_FAMILY = "system-ui, 'Segoe UI', Helvetica, Arial, 'DejaVu Sans', sans-serif"
 
-STILL = 'aria-hidden="true" focusable="false" style="stroke-linejoin: round; stroke-linecap: butt"'
+SVG_ATTRIBUTES = 'aria-hidden="true" focusable="false" style="stroke-linejoin: round; stroke-linecap: butt"'
 
 
 def template(name: str, **filters: Callable[[str], object]) -> Template:
@@ -39,20 +39,20 @@ def inline_svg(figure: Figure, prefix: str) -> Markup:
         Prefix of every identifier, so that those of several figures on a page differ.
     """
     stream = StringIO()
-    with rc_context({"svg.fonttype": "none", "svg.hashsalt": prefix}):  # text stays text
+    with rc_context({"svg.fonttype": "none", "svg.hashsalt": prefix}):  # keeps text as text, not as paths
         unnamed = {"Date": None, "Creator": None, "Format": None, "Type": None}
         style.save(figure, stream, format="svg", metadata=unnamed)
     text = stream.getvalue()
     text = text[text.index("<svg") :]
-    # A style would hold for all of the page; the comments repeat every text.
+    # A style sheet would apply to the whole page, and the comments repeat every text.
     text = re.sub(r"<(metadata|style)\b.*?</\1>|\s*<!--.*?-->", "", text, flags=re.DOTALL)
-    # What a name says is left alone.
+    # Text from users is left unchanged.
     return Markup(re.sub(r"<[^>]*>", lambda tag: _tag(tag[0], prefix), text))
 
 
 def _tag(tag: str, prefix: str) -> str:
     tag = re.sub(r'\bid="', f'id="{prefix}-', tag)
     tag = re.sub(r'(href="|url\()#', rf"\1#{prefix}-", tag)
-    tag = re.sub(r"'?DejaVu Sans'?[^;\"]*", SANS, tag)
-    # The picture has a description beside it: programs that read aloud take that.
-    return tag.replace("<svg ", f"<svg {STILL} ", 1)
+    tag = re.sub(r"'?DejaVu Sans'?[^;\"]*", FONT_FAMILY, tag)
+    # Screen readers take the description beside the picture.
+    return tag.replace("<svg ", f"<svg {SVG_ATTRIBUTES} ", 1)

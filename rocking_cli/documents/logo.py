@@ -10,8 +10,9 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import read_bytes
 from rocking_cli.text import cut, printable
 
-LARGEST = 1_000_000  # bytes: the page is mailed
-KINDS = {"image/png": b"\x89PNG\r\n\x1a\n", "image/jpeg": b"\xff\xd8\xff"}  # and how their files begin
+MAX_LOGO_SIZE = 1_000_000  # bytes, as the page is sent by mail
+# The first bytes of files, by media type.
+SIGNATURES = {"image/png": b"\x89PNG\r\n\x1a\n", "image/jpeg": b"\xff\xd8\xff"}
 
 
 def _check_whole(data: bytes, kind: str, path: Path) -> None:
@@ -21,13 +22,13 @@ def _check_whole(data: bytes, kind: str, path: Path) -> None:
     from PIL import Image, UnidentifiedImageError
 
     try:
-        if kind in KINDS:
-            Image.open(io.BytesIO(data)).verify()  # its checksums, which end the use of the object
+        if kind in SIGNATURES:
+            Image.open(io.BytesIO(data)).verify()  # checks the checksums; the object cannot be used afterwards
             Image.open(io.BytesIO(data)).load()
         else:
             fromstring(data)
-    except Exception as error:  # of many kinds, without a base of their own
-        unread = isinstance(error, UnidentifiedImageError)  # its text names an object of Python
+    except Exception as error:  # Pillow raises errors of many kinds, without a common base
+        unread = isinstance(error, UnidentifiedImageError)  # the text of this error names a Python object
         reason = "no picture can be read from it" if unread else " ".join(str(error).split()) or type(error).__name__
         what = f"the logo is damaged: {printable(cut(reason))}"
         raise InputError(Problem(what, str(path), hint="save the picture again")) from None
@@ -46,8 +47,8 @@ def embedded(path: Path) -> str:
     InputError
         If the file cannot be read, is too large, or is of another type.
     """
-    data = read_bytes(path, "logo", LARGEST)
-    kind = next((kind for kind, begin in KINDS.items() if data.startswith(begin)), None)
+    data = read_bytes(path, "logo", MAX_LOGO_SIZE)
+    kind = next((kind for kind, begin in SIGNATURES.items() if data.startswith(begin)), None)
     if kind is None and b"<svg" in data[:4096]:
         kind = "image/svg+xml"
     if kind is None:

@@ -9,7 +9,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from rocking_cli.core import Mechanism
-from rocking_cli.documents.sheet_page import MARKS, figure_of, runs
+from rocking_cli.documents.sheet_page import ORIGIN_MARKS, figure_of, runs
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plotting import style
 from rocking_cli.text import printable
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from docx.document import Document
     from docx.text.paragraph import Paragraph
 
-WIDTH = 17.0  # cm of an A4 page, between margins of 2 cm
-SMALL = 8.5  # pt, in tables
-LOGO = 1.6  # cm high
-PICTURES = ("data:image/png;", "data:image/jpeg;")
+TEXT_WIDTH = 17.0  # cm of an A4 page, between margins of 2 cm
+TABLE_FONT_SIZE = 8.5  # pt
+LOGO_HEIGHT = 1.6  # cm
+PICTURE_PREFIXES = ("data:image/png;", "data:image/jpeg;")
 """How the addresses begin of pictures that a document takes."""
 
 
@@ -102,13 +102,13 @@ class _Writer:
     def _logo(self, address: str) -> None:
         from docx.shared import Cm
 
-        if not address.startswith(PICTURES):
+        if not address.startswith(PICTURE_PREFIXES):
             hint = "give a PNG or JPEG picture, or a sheet that ends in .html"
             raise InputError(Problem("a .docx file cannot hold an SVG logo", field="logo", hint=hint))
         data = base64.b64decode(address.partition(",")[2])
         try:
-            self.document.add_picture(BytesIO(data), height=Cm(LOGO))
-        except Exception as error:  # what python-docx raises of a damaged picture is of many kinds
+            self.document.add_picture(BytesIO(data), height=Cm(LOGO_HEIGHT))
+        except Exception as error:  # python-docx raises errors of many kinds for a damaged picture
             raise InputError(Problem(f"the logo cannot be put into a .docx file: {error!r}", field="logo")) from None
 
     def _part(self, part: SheetPart, level: int) -> None:
@@ -132,7 +132,7 @@ class _Writer:
             stream = BytesIO()
             style.save(figure_of(self.sheet, self.mechanism), stream, format="png")
             stream.seek(0)
-            self.document.add_picture(stream, width=Cm(WIDTH))
+            self.document.add_picture(stream, width=Cm(TEXT_WIDTH))
         elif isinstance(item, Listing):
             for line in item.text.split("\n"):
                 paragraph = self.document.add_paragraph()
@@ -148,7 +148,7 @@ class _Writer:
         joined = ": " if row.formula and not row.numbers else " = "
         work = f"{row.symbol}{joined}{written}" if written else row.symbol
         result = f"{self.sheet.language.number(row.value)} {row.unit}".strip()
-        return [[str(next(self.steps))], [row.meaning, work], [result], [f"{row.clause}{MARKS[row.standing]}"]]
+        return [[str(next(self.steps))], [row.meaning, work], [result], [f"{row.clause}{ORIGIN_MARKS[row.standing]}"]]
 
     def _table(
         self, rows: Sequence[Sequence[Sequence[str]]], *, heads: bool = False, widths: Sequence[float] = ()
@@ -166,7 +166,9 @@ class _Writer:
                 for text in texts:
                     paragraph = cell.paragraphs[0] if text is texts[0] else cell.add_paragraph()
                     paragraph.paragraph_format.space_after = Pt(0)
-                    self._text(paragraph, text, bold=(heads and k == 0) or (bool(widths) and n == 2), size=SMALL)
+                    self._text(
+                        paragraph, text, bold=(heads and k == 0) or (bool(widths) and n == 2), size=TABLE_FONT_SIZE
+                    )
                 if widths:
                     cell.width = Cm(widths[n])
         self.document.add_paragraph()

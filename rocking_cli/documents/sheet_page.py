@@ -18,7 +18,7 @@ from rocking_cli.text import printable
 from rocking_cli.verification.results import MARK
 from rocking_cli.views.sheet.document import Drawing, Sheet
 
-MARKS = {"print": "", "transcription": "*", "code": "†", "ours": "‡", "plain": ""}
+ORIGIN_MARKS = {"print": "", "transcription": "*", "code": "†", "ours": "‡", "plain": ""}
 """What stands beside a formula, by how far it was checked."""
 
 
@@ -43,7 +43,7 @@ def parts(sheet: Sheet, mechanism: Mechanism, level: int = 2) -> Markup:
     has_drawing = any(isinstance(item, Drawing) for each in sheet.parts for item in each.items)
     steps = count(1)
     text = template("sheet_parts.html", formula=formula).render(
-        sheet=sheet, level=level, step=lambda: next(steps), number=sheet.language.number, marks=MARKS,
+        sheet=sheet, level=level, step=lambda: next(steps), number=sheet.language.number, marks=ORIGIN_MARKS,
         drawing=inline_svg(figure_of(sheet, mechanism), "sheet-drawing") if has_drawing else "",
     )  # fmt: skip
     return Markup(text)
@@ -55,7 +55,7 @@ def figure_of(sheet: Sheet, mechanism: Mechanism) -> Figure:
     title = f"{mechanism.name}: {say.mechanism(mechanism.mechanism, mechanism.title)}"
     figure = draw_structure(picture(mechanism), title)
     for each in figure.findobj(Text):
-        assert isinstance(each, Text)  # what was looked for
+        assert isinstance(each, Text)  # as selected above
         first, *rest = each.get_text().split("\n")
         each.set_text(say.formula("\n".join([say.texts.get(f"drawing {first}", first), *rest])))
     return figure

@@ -3,7 +3,7 @@
 import sys
 
 if "rocking_cli.cli.main" in sys.modules:
-    # In a program nobody reads the docstrings that matplotlib writes of each of its classes, for a tenth of a second.
+    # Matplotlib takes a tenth of a second to write docstrings for its classes, which this program does not need.
     import matplotlib.artist
 
     matplotlib.artist.kwdoc = lambda artist: ""

@@ -13,16 +13,16 @@ from rocking_cli.plotting import style
 from rocking_cli.plotting.labels import LabelPlace, Labels, mathematics
 from rocking_cli.plotting.panels import Panel
 
-ROW = 0.26  # inches from a dimension line to the next
-FIRST = 0.27  # inches from the structure to the first, with the ground between
-EDGE = 0.02  # of the size: how near a length is to the edge that it is drawn outside of
-ARC = 0.42  # inches: radius of an angle, at most
-BEYOND = 0.13  # inches from a dimension line to the words that it is too short for
-LOOK: dict[str, Any] = {"fontsize": style.LABEL, "color": style.MEASURE, "zorder": 6}
-BEHIND = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}  # words on a line interrupt it
-BARE, WORDS = 0.16, 0.85  # inches at a side without rows, and for words there
-WIDE = 0.5  # rad: of an angle
-FLAT = 0.2  # height over width of what has no room for angles
+ROW_SPACING = 0.26  # inches from a dimension line to the next
+FIRST_ROW_OFFSET = 0.27  # inches from the structure to the first dimension line, beyond the ground
+EDGE_TOLERANCE = 0.02  # share of the size within which a length lies at an edge, and is drawn outside of it
+MAX_ARC_RADIUS = 0.42  # inches
+LABEL_OFFSET = 0.13  # inches from a dimension line to a label that is longer than the line
+TEXT_STYLE: dict[str, Any] = {"fontsize": style.LABEL, "color": style.MEASURE, "zorder": 6}
+TEXT_BACKGROUND = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}  # interrupts the line below a label
+SIDE_MARGIN, TEXT_MARGIN = 0.16, 0.85  # inches at a side without dimension lines, and at one with labels
+MIN_WIDE_ANGLE = 0.5  # rad
+MAX_FLAT_ASPECT = 0.2  # height over width up to which there is no room for angles
 SIDES = ("left", "right", "below", "above")
 Rows = dict[str, list[list[Length]]]
 """The lengths of each side, in rows from the structure outwards."""
@@ -37,7 +37,7 @@ def in_rows(lengths: Sequence[Length], low: complex, high: complex) -> tuple[Row
         if side is None:
             inside.append(each)
             continue
-        for row in rows[side]:  # the first row in which there is room
+        for row in rows[side]:  # the first row with room
             if all(_apart(each, other, side) for other in row):
                 row.append(each)
                 break
@@ -48,12 +48,14 @@ def in_rows(lengths: Sequence[Length], low: complex, high: complex) -> tuple[Row
 
 def room(rows: Rows, low: complex, high: complex) -> tuple[float, float, float, float]:
     """Return the space for dimensions left, right, below and above a structure from `low` to `high` [inches]."""
-    left, right, below, above = (FIRST + ROW * len(rows[side]) + 0.06 if rows[side] else BARE for side in SIDES)
+    left, right, below, above = (
+        FIRST_ROW_OFFSET + ROW_SPACING * len(rows[side]) + 0.06 if rows[side] else SIDE_MARGIN for side in SIDES
+    )
     wide, tall = (high - low).real, (high - low).imag
-    if tall > wide:  # what is written inside of it may have no room there
-        right = max(right, WORDS)
-    if tall < FLAT * wide:
-        above = max(above, 1.5 * ARC)
+    if tall > wide:  # a label may have no room inside a slender structure
+        right = max(right, TEXT_MARGIN)
+    if tall < MAX_FLAT_ASPECT * wide:
+        above = max(above, 1.5 * MAX_ARC_RADIUS)
     return left, right, below, above
 
 
@@ -65,7 +67,7 @@ def draw_outside(axes: Axes, rows: Rows, panel: Panel, low: complex, high: compl
     for side, out in outwards.items():
         upright = side in ("left", "right")
         for k, row in enumerate(rows[side]):
-            level = edges[side] + (out.real + out.imag) * (FIRST - 0.06 + ROW * k) / panel.scale
+            level = edges[side] + (out.real + out.imag) * (FIRST_ROW_OFFSET - 0.06 + ROW_SPACING * k) / panel.scale
             for each in row:
                 ends = [complex(level, z.imag) if upright else complex(z.real, level) for z in (each.start, each.end)]
                 for z, end in zip((each.start, each.end), ends, strict=True):
@@ -78,13 +80,13 @@ def draw_outside(axes: Axes, rows: Rows, panel: Panel, low: complex, high: compl
                 middle = sum(ends) / 2 * panel.scale
                 if each.value * panel.scale > size.real + 0.2:
                     place = LabelPlace(middle, 90.0 if upright else 0.0, 0.0)
-                    labels.put(text, place, size, bbox=BEHIND, **LOOK)
+                    labels.put(text, place, size, bbox=TEXT_BACKGROUND, **TEXT_STYLE)
                     labels.keep_off(ends)
                 else:
                     short.append((text, out, ends, middle, size))
     for text, out, ends, middle, size in short:
         labels.keep_off(ends)
-        labels.write(text, _beside(out, middle, 0.5 * abs(ends[1] - ends[0]) * panel.scale, size), **LOOK)
+        labels.write(text, _beside(out, middle, 0.5 * abs(ends[1] - ends[0]) * panel.scale, size), **TEXT_STYLE)
 
 
 def _beside(out: complex, middle: complex, half: float, size: complex) -> list[LabelPlace]:
@@ -92,12 +94,14 @@ def _beside(out: complex, middle: complex, half: float, size: complex) -> list[L
     upright = out.imag == 0
     along, turned = (1j, 90.0) if upright else (1 + 0j, 0.0)
     slack = 0.5 * size.real + half + 0.06
-    places = [  # beyond it, shifted along it as far as past its ends
-        LabelPlace(middle + beyond * out + shift * slack * along, turned, 2 * abs(shift) + 10 * abs(beyond - BEYOND))
-        for beyond in (BEYOND, 0.2, 0.36, 0.0, -BEYOND)
+    places = [  # beyond the line, shifted along it past its ends
+        LabelPlace(
+            middle + beyond * out + shift * slack * along, turned, 2 * abs(shift) + 10 * abs(beyond - LABEL_OFFSET)
+        )
+        for beyond in (LABEL_OFFSET, 0.2, 0.36, 0.0, -LABEL_OFFSET)
         for shift in (0.0, 0.3, -0.3, 0.6, -0.6, 1.0, -1.0)
     ]
-    if upright:  # or level, at its side or past its ends
+    if upright:  # or horizontal, at the side of the line or past its ends
         places += [
             LabelPlace(middle + (size.real / 2 + 0.08) * out + 1j * up, 0.0, 2.0) for up in (0.0, 0.1, -0.1, 0.2)
         ]
@@ -112,25 +116,25 @@ def draw_inside(axes: Axes, lengths: Sequence[Length], angles: Sequence[Angle], 
         _arrow(axes, each.start, each.end)
         labels.keep_off([each.start, each.end])
     arcs = [(angle, *_draw_arc(axes, angle, panel, labels)) for angle in angles]
-    # A narrow angle has the fewest places for its words, a wide one the most.
-    for angle, radius, towards in (each for each in arcs if each[0].value < WIDE):
+    # A narrow angle has the fewest places for its label, a wide one the most.
+    for angle, radius, towards in (each for each in arcs if each[0].value < MIN_WIDE_ANGLE):
         _write_angle(angle, radius, towards, labels)
     for each in sorted(lengths, key=lambda length: length.value):
         text = mathematics(each)
-        labels.write(text, labels.along(each.start, each.end, style.size_of(text, style.LABEL)), **LOOK)
-    for angle, radius, towards in (each for each in arcs if each[0].value >= WIDE):
+        labels.write(text, labels.along(each.start, each.end, style.size_of(text, style.LABEL)), **TEXT_STYLE)
+    for angle, radius, towards in (each for each in arcs if each[0].value >= MIN_WIDE_ANGLE):
         _write_angle(angle, radius, towards, labels)
 
 
 def _write_angle(angle: Angle, radius: float, towards: complex, labels: Labels) -> None:
     text = mathematics(angle)
-    labels.write(text, labels.around(angle.apex, towards, radius, style.size_of(text, style.LABEL)), **LOOK)
+    labels.write(text, labels.around(angle.apex, towards, radius, style.size_of(text, style.LABEL)), **TEXT_STYLE)
 
 
 def _draw_arc(axes: Axes, angle: Angle, panel: Panel, labels: Labels) -> tuple[float, complex]:
     """Draw an angle; return the radius of its arc [inches], and the direction of its middle."""
     arms = angle.start - angle.apex, angle.end - angle.apex
-    radius = min(ARC / panel.scale, 0.7 * abs(arms[1]))
+    radius = min(MAX_ARC_RADIUS / panel.scale, 0.7 * abs(arms[1]))
     turn = float(np.angle(arms[1] / arms[0]))
     first = arms[0] / abs(arms[0])
     arc = angle.apex + radius * first * np.exp(1j * turn * np.linspace(0, 1, 40))
@@ -149,7 +153,7 @@ def _draw_arc(axes: Axes, angle: Angle, panel: Panel, labels: Labels) -> tuple[f
 def _side(each: Length, low: complex, high: complex) -> str | None:
     if each.direction is not None:
         return None
-    near = EDGE * abs(high - low)
+    near = EDGE_TOLERANCE * abs(high - low)
     z = (each.start, each.end)
     if abs(each.start.real - each.end.real) < 1e-9 * abs(high - low):
         if min(abs(p.real - low.real) for p in z) <= near:

@@ -11,23 +11,23 @@ from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from rocking_cli.plotting import style
-from rocking_cli.plotting.labels import MARK, Labels
+from rocking_cli.plotting.labels import MARK_COST, Labels
 from rocking_cli.plotting.panels import Panel
 from rocking_cli.studies.picture import Picture
 
 Points = NDArray[np.complex128]
-SYMBOL = 0.1  # inches: from a point to where the symbol of a short spring begins
-COIL = 0.4  # inches: the spring in a line, at most
-SHARE = 0.6  # of a line that its spring takes, at most
-TEETH, WIDE = 4, 0.045  # of a spring, and how far these go to either side [inches]
-WEIGHT = 0.075  # inches: half the width of a weight
-ARROW = 0.45  # inches: length of a force
-ANCHOR = 0.04  # inches: half the width of what holds a tie
-LONGEST = 1.7  # inches of a name
-WORDS = 0.3  # inches to either side of a structure for names
-BEHIND = 0.8  # order of what the structure may move over
+SYMBOL_OFFSET = 0.1  # inches from a point to the symbol of a short spring
+MAX_SPRING_LENGTH = 0.4  # inches
+MAX_SPRING_SHARE = 0.6  # of the length of its line
+SPRING_TEETH, SPRING_HALF_WIDTH = 4, 0.045  # number, and inches
+WEIGHT_HALF_WIDTH = 0.075  # inches
+ARROW_LENGTH = 0.45  # inches
+ANCHOR_HALF_WIDTH = 0.04  # inches
+MAX_NAME_WIDTH = 1.7  # inches
+NAME_MARGIN = 0.3  # inches at either side of a structure
+BACKGROUND_ZORDER = 0.8  # of symbols that the moving structure may cover
 SQUARE: Points = np.array([-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j], np.complex128)
-OUTLINE: Points = np.array(
+WEIGHT_OUTLINE: Points = np.array(
     [-1 - 1j, 1 - 1j, 0.7 + 0.6j, 0.3 + 0.6j, 0.3 + 1.1j, -0.3 + 1.1j, -0.3 + 0.6j, -0.7 + 0.6j], np.complex128
 )
 """A weight with its handle, of half width 1."""
@@ -56,7 +56,7 @@ class Symbols(NamedTuple):
 
 def symbols(picture: Picture, rotation: float, scale: float) -> Symbols:
     """Return the symbols of loads and ties at a signed rotation, at a scale in inches per metre."""
-    places, ties, slack = picture.hung(rotation, SYMBOL / scale)
+    places, ties, slack = picture.hung(rotation, SYMBOL_OFFSET / scale)
     lines, anchors = [], []
     for tie, ends, loose in zip(picture.ties, ties, slack, strict=True):
         for piece, (start, end) in zip(tie.pieces, ends, strict=True):
@@ -67,7 +67,7 @@ def symbols(picture: Picture, rotation: float, scale: float) -> Symbols:
     first = picture.side(rotation) is picture.directions[0]
     for load, place in zip(picture.loads, places.tolist(), strict=True):
         if load.force is None:
-            weights.append(place + OUTLINE * WEIGHT / scale)
+            weights.append(place + WEIGHT_OUTLINE * WEIGHT_HALF_WIDTH / scale)
         elif load.force:
             forces.append((_tail(load.acting(first=first), place, scale), place))
     return Symbols(lines, anchors, weights, forces)
@@ -77,19 +77,19 @@ def draw_hung(axes: Axes, picture: Picture, rotation: float, panel: Panel, label
     """Draw the loads and ties of a structure, and reserve their space against labels."""
     shown = symbols(picture, rotation, panel.scale)
     for line, loose, behind in shown.lines:
-        dashes, order = style.SLACK if loose else "-", BEHIND if behind else 4.5
+        dashes, order = style.SLACK if loose else "-", BACKGROUND_ZORDER if behind else 4.5
         axes.plot(line.real, line.imag, linestyle=dashes, zorder=order, **style.TIE)
         labels.keep_off(line)
     for at, behind in shown.anchors:
-        square = at + ANCHOR / panel.scale * SQUARE
-        order = BEHIND if behind else 5
+        square = at + ANCHOR_HALF_WIDTH / panel.scale * SQUARE
+        order = BACKGROUND_ZORDER if behind else 5
         axes.add_patch(
             Polygon(xy(square), facecolor=style.EARTH, edgecolor=style.INK, linewidth=style.THIN, zorder=order)
         )
-        labels.keep_off([at], MARK)
+        labels.keep_off([at], MARK_COST)
     for outline in shown.weights:
         axes.add_patch(Polygon(xy(outline), facecolor=style.INK, edgecolor="white", linewidth=style.THIN, zorder=5))
-        labels.keep_off([*outline, outline[0]], MARK)
+        labels.keep_off([*outline, outline[0]], MARK_COST)
     for tail, tip in shown.forces:
         axes.annotate(
             "", (tip.real, tip.imag), (tail.real, tail.imag), annotation_clip=False, zorder=6,
@@ -98,13 +98,13 @@ def draw_hung(axes: Axes, picture: Picture, rotation: float, panel: Panel, label
                 "shrinkA": 0, "shrinkB": 0,
             },
         )  # fmt: skip
-        labels.keep_off([tail, tip], MARK)
+        labels.keep_off([tail, tip], MARK_COST)
 
 
 def name_hung(picture: Picture, panel: Panel, labels: Labels) -> None:
     """Write the names of loads and ties at rest, with the size of the loads."""
     look: dict[str, Any] = {"fontsize": style.TICK, "zorder": 7}
-    places, ties, _ = picture.hung(0.0, SYMBOL / panel.scale)
+    places, ties, _ = picture.hung(0.0, SYMBOL_OFFSET / panel.scale)
     for load, place in zip(picture.loads, places.tolist(), strict=True):
         if not load.name:
             continue
@@ -113,7 +113,9 @@ def name_hung(picture: Picture, panel: Panel, labels: Labels) -> None:
             out = _tail(load.force, place, panel.scale)
             labels.write(text, labels.around(out, out - place, 0.02, size), color=style.CURSOR, **look)
         else:
-            labels.write(text, labels.around(place, 1 + 0.5j, WEIGHT, size, turning=0.6), color=style.INK, **look)
+            labels.write(
+                text, labels.around(place, 1 + 0.5j, WEIGHT_HALF_WIDTH, size, turning=0.6), color=style.INK, **look
+            )
     for tie, ends in zip(picture.ties, ties, strict=True):
         if not tie.name:
             continue
@@ -123,7 +125,9 @@ def name_hung(picture: Picture, panel: Panel, labels: Labels) -> None:
             start, end = ends[len(ends) // 2]
             away = start - end if len(ends) > 1 else 1 - 0.3j
             at = start if len(ends) > 1 else (start + end) / 2
-            labels.write(text, labels.around(at, away, SYMBOL, size, turning=0.6), color=style.TIE["color"], **look)
+            labels.write(
+                text, labels.around(at, away, SYMBOL_OFFSET, size, turning=0.6), color=style.TIE["color"], **look
+            )
         else:
             longest = max((each for each, kind in zip(ends, kinds, strict=True) if kind != "symbol"), key=_length)
             labels.write(text, labels.along(*longest, size), color=style.TIE["color"], **look)
@@ -133,9 +137,9 @@ def beside(picture: Picture) -> tuple[float, float, float, float]:
     """Return the space that springs along a face take left, right, below and above a structure [inches]."""
     left = right = below = above = 0.0
     for tie in picture.ties:
-        for away in (SYMBOL * end.lead for end in tie.ground if abs(end.lead) > 1):
-            left, right = max(left, ANCHOR - away.real), max(right, ANCHOR + away.real)
-            below, above = max(below, ANCHOR - away.imag), max(above, ANCHOR + away.imag)
+        for away in (SYMBOL_OFFSET * end.lead for end in tie.ground if abs(end.lead) > 1):
+            left, right = max(left, ANCHOR_HALF_WIDTH - away.real), max(right, ANCHOR_HALF_WIDTH + away.real)
+            below, above = max(below, ANCHOR_HALF_WIDTH - away.imag), max(above, ANCHOR_HALF_WIDTH + away.imag)
     return left, right, below, above
 
 
@@ -144,7 +148,7 @@ def margins(picture: Picture) -> tuple[float, float, float, float]:
     left = right = below = above = 0.0
     for force in (load.acting(first=first) for load in picture.loads for first in (True, False)):
         if force:
-            way = -force / abs(force) * (ARROW + 0.03)
+            way = -force / abs(force) * (ARROW_LENGTH + 0.03)
             left, right = max(left, -way.real), max(right, way.real)
             below, above = max(below, -way.imag), max(above, way.imag)
     return left, right, below, above
@@ -152,7 +156,7 @@ def margins(picture: Picture) -> tuple[float, float, float, float]:
 
 def _tail(force: complex, place: complex, scale: float) -> complex:
     """Return the tail of the arrow of a force, whose tip is at the point of action [m]."""
-    return place - force / abs(force) * ARROW / scale
+    return place - force / abs(force) * ARROW_LENGTH / scale
 
 
 def _drawn(start: complex, end: complex, kind: str, scale: float) -> Points:
@@ -160,17 +164,17 @@ def _drawn(start: complex, end: complex, kind: str, scale: float) -> Points:
     long = abs(end - start)
     if kind == "line" or long == 0:
         return np.array([start, end])
-    coil = long if kind == "symbol" else min(COIL / scale, SHARE * long)
+    coil = long if kind == "symbol" else min(MAX_SPRING_LENGTH / scale, MAX_SPRING_SHARE * long)
     unit = (end - start) / long
     first = start + unit * (long - coil) / 2
-    steps = np.arange(2 * TEETH + 1)
-    to_side = np.where(steps % 2 == 0, 0.0, np.where(steps % 4 == 1, 1.0, -1.0)) * WIDE / scale
-    return np.array([start, *(first + unit * (coil * steps / (2 * TEETH) + 1j * to_side)), end])
+    steps = np.arange(2 * SPRING_TEETH + 1)
+    to_side = np.where(steps % 2 == 0, 0.0, np.where(steps % 4 == 1, 1.0, -1.0)) * SPRING_HALF_WIDTH / scale
+    return np.array([start, *(first + unit * (coil * steps / (2 * SPRING_TEETH) + 1j * to_side)), end])
 
 
 def _fitted(name: str, more: str = "") -> tuple[str, complex]:
     """Return a name, shortened to the available width, and its size [inches]."""
-    text = style.plain(style.fitted(name, LONGEST, style.TICK)) + more
+    text = style.plain(style.fitted(name, MAX_NAME_WIDTH, style.TICK)) + more
     return text, style.size_of(text, style.TICK)
 
 

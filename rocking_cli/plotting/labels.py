@@ -17,13 +17,13 @@ from rocking_cli.plotting import style
 from rocking_cli.plotting.panels import Panel
 
 Points = NDArray[np.complex128]
-STEP = 0.025  # inches between the points of a line that words keep off
-GAPS = (0.03, 0.1, 0.18, 0.28, 0.45)  # inches between words and a line
-MOST = 10_000  # points of a line, however far it goes beyond the picture
-CLEAR = 0.02  # inches around words
-AWAY = 8.0  # what an inch between words and what they name costs, in points of a line that they would lie on
-OUTSIDE = 1000.0  # what it an inch out of the panel costs
-EDGE, LINE, MARK, WORD = 1.0, 2.0, 6.0, 30.0  # what it costs to lie on a point of each
+POINT_SPACING = 0.025  # inches between the points of a line that labels avoid
+LABEL_GAPS = (0.03, 0.1, 0.18, 0.28, 0.45)  # inches between a label and a line
+MAX_LINE_POINTS = 10_000  # as a line may extend far beyond the picture
+CLEARANCE = 0.02  # inches around a label
+DISTANCE_COST = 8.0  # per inch between a label and its object; one point of a line costs LINE_COST
+OUTSIDE_COST = 1000.0  # per inch by which a label leaves the panel
+EDGE_COST, LINE_COST, MARK_COST, LABEL_COST = 1.0, 2.0, 6.0, 30.0  # per point of each that a label covers
 SUBSCRIPTS = str.maketrans("₀₁₂₃₄₅₆₇₈₉₊₋", "0123456789+-")
 
 
@@ -57,11 +57,11 @@ class Labels:
         self._points: list[Points] = []
         self._costs: list[NDArray[np.float64]] = []
 
-    def keep_off(self, z: Iterable[complex] | Points, cost: float = LINE) -> None:
+    def keep_off(self, z: Iterable[complex] | Points, cost: float = LINE_COST) -> None:
         """Reserve the space of a line through points [m], or of a single point, against labels."""
         ends = np.asarray(z if isinstance(z, np.ndarray) else list(z), np.complex128) * self._scale
         reach = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(ends)))])
-        count = min(int(reach[-1] / STEP) + 1 + (reach[-1] > 0), MOST)
+        count = min(int(reach[-1] / POINT_SPACING) + 1 + (reach[-1] > 0), MAX_LINE_POINTS)
         along = np.linspace(0.0, reach[-1], count)
         self._note(np.interp(along, reach, ends.real) + 1j * np.interp(along, reach, ends.imag), cost)
 
@@ -75,7 +75,7 @@ class Labels:
         size = style.size_of(text, float(look["fontsize"]), str(look.get("fontweight", "normal")))
         places = list(places)
         middles = np.array([place.middle for place in places])
-        reach = abs(size) / 2 + 2 * CLEAR
+        reach = abs(size) / 2 + 2 * CLEARANCE
         near = np.ones(points.size, bool)
         for along, of in ((points.real, middles.real), (points.imag, middles.imag)):
             near &= (of.min() - reach < along) & (along < of.max() + reach)
@@ -84,13 +84,13 @@ class Labels:
         def against(place: LabelPlace) -> float:
             turn = np.exp(1j * np.radians(place.turned))
             local = (points - place.middle) / turn
-            hit = (np.abs(local.real) < size.real / 2 + CLEAR) & (np.abs(local.imag) < size.imag / 2 + CLEAR)
-            # Half of the level box around the turned words.
+            hit = (np.abs(local.real) < size.real / 2 + CLEARANCE) & (np.abs(local.imag) < size.imag / 2 + CLEARANCE)
+            # Half of the upright box around the rotated label.
             half = complex(abs(turn.real), abs(turn.imag)) * size.real / 2
             half += complex(abs(turn.imag), abs(turn.real)) * size.imag / 2
             above, below = place.middle + half - self._high, self._low - (place.middle - half)
             over = max(0.0, above.real, below.real) + max(0.0, above.imag, below.imag)
-            return float(costs[hit].sum()) + place.cost + OUTSIDE * over
+            return float(costs[hit].sum()) + place.cost + OUTSIDE_COST * over
 
         best = min(places, key=against)
         self.put(text, best, size, **look)
@@ -103,10 +103,10 @@ class Labels:
             text, (at.real, at.imag), ha="center", va="center", rotation=place.turned, rotation_mode="anchor",
             annotation_clip=False, path_effects=[withStroke(linewidth=2.5, foreground="white")], **look,
         )  # fmt: skip
-        across = np.linspace(-0.5, 0.5, 2 + int(size.real / STEP)) * size.real
+        across = np.linspace(-0.5, 0.5, 2 + int(size.real / POINT_SPACING)) * size.real
         up = np.linspace(-0.5, 0.5, 5) * size.imag
         turn = np.exp(1j * np.radians(place.turned))
-        self._note((place.middle + turn * (across[:, None] + 1j * up)).ravel(), WORD)
+        self._note((place.middle + turn * (across[:, None] + 1j * up)).ravel(), LABEL_COST)
 
     def along(self, start: complex, end: complex, size: complex) -> Iterator[LabelPlace]:
         """Yield places for a label next to a line [m]: along it if the label fits, otherwise at its sides."""
@@ -116,19 +116,21 @@ class Labels:
         turned = (float(np.degrees(np.angle(unit))) + 90 + 1e-6) % 180 - 90  # read from below or from the right
         for share in np.linspace(0.15, 0.85, 15):
             at, off_middle = start + share * (end - start), 3 * abs(share - 0.5)
-            for gap in GAPS:
+            for gap in LABEL_GAPS:
                 if min(share, 1 - share) * 2 * length > size.real:
                     for side in (1j, -1j):
-                        yield LabelPlace(at + side * unit * (gap + size.imag / 2), turned, off_middle + AWAY * gap)
+                        yield LabelPlace(
+                            at + side * unit * (gap + size.imag / 2), turned, off_middle + DISTANCE_COST * gap
+                        )
                 for side in (1.0, -1.0):
                     reach = gap + size.real / 2 + abs(unit.real) * size.imag / 2
-                    yield LabelPlace(at + side * reach, 0.0, 1.5 + off_middle + AWAY * gap)
+                    yield LabelPlace(at + side * reach, 0.0, 1.5 + off_middle + DISTANCE_COST * gap)
                     reach = gap + size.imag / 2 + abs(unit.imag) * size.real / 2
-                    yield LabelPlace(at + 1j * side * reach, 0.0, 2.0 + off_middle + AWAY * gap)
+                    yield LabelPlace(at + 1j * side * reach, 0.0, 2.0 + off_middle + DISTANCE_COST * gap)
         for tip, out in ((start, -unit), (end, unit)):
-            for gap in GAPS:
+            for gap in LABEL_GAPS:
                 reach = gap + abs(out.real) * size.real / 2 + abs(out.imag) * size.imag / 2
-                yield LabelPlace(tip + out * reach, 0.0, 8.0 + AWAY * gap)
+                yield LabelPlace(tip + out * reach, 0.0, 8.0 + DISTANCE_COST * gap)
 
     def around(
         self, apex: complex, towards: complex, radius: float, size: complex, turning: float = 4.0
@@ -138,6 +140,8 @@ class Labels:
         for turn in np.linspace(-np.pi, np.pi, 25)[1:]:
             way = towards / abs(towards) * np.exp(1j * turn)
             for gap in (0.03, 0.08, 0.15, 0.25, 0.4):
-                # The nearest edge of the words is so far from the point.
+                # Distance from the point to the nearest edge of the label.
                 reach = min(size.real / 2 / max(abs(way.real), 1e-9), size.imag / 2 / max(abs(way.imag), 1e-9))
-                yield LabelPlace(apex + (radius + gap + reach) * way, 0.0, turning * abs(float(turn)) + AWAY * gap)
+                yield LabelPlace(
+                    apex + (radius + gap + reach) * way, 0.0, turning * abs(float(turn)) + DISTANCE_COST * gap
+                )

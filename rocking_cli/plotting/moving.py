@@ -18,15 +18,15 @@ from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.io.json_text import json_text
 from rocking_cli.plotting import style
 from rocking_cli.plotting.structure import colour
-from rocking_cli.plotting.style import BINS, visible
+from rocking_cli.plotting.style import BINS_ACROSS, visible
 from rocking_cli.studies.film import Film
 from rocking_cli.views.animation import verdict_of, why_it_ends
 
 Reals = NDArray[np.float64]
-TALLEST = 1.6  # phi/phi_cr shown at most: what goes further overturns, or nearly does
-FINEST = 0.01  # s between the rotations of a page, at least
-MOST = 20_000  # of them
-POINTS = 200  # of a pulse
+MAX_SHOWN_RATIO = 1.6  # of phi to phi_cr: beyond, a structure overturns or nearly does
+MIN_FRAME_INTERVAL = 0.01  # s between the rotations of a page
+MAX_FRAMES = 20_000  # of them
+PULSE_POINTS = 200
 NAMES: Mapping[ModelName, str] = {
     "nonlinear": "nonlinear", "linear1": "linear, κ₁", "linear2": "linear, κ₂"
 }  # fmt: skip
@@ -72,7 +72,7 @@ def moving(
             for direction in picture.directions
         },
         "film": {
-            **film.as_dict(max(FINEST, film.end / MOST)),
+            **film.as_dict(max(MIN_FRAME_INTERVAL, film.end / MAX_FRAMES)),
             "ending": why_it_ends(film),
             "verdict": verdict_of(film),
         },
@@ -84,7 +84,7 @@ def moving(
     }
 
 
-def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS) -> dict[str, Any]:
+def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS_ACROSS) -> dict[str, Any]:
     """Return a chart of the rotation over the critical one (or the kinematic limit) against time.
 
     There is a curve for each model, with some two samples in each bin, until the time to which the outcome is known.
@@ -100,7 +100,7 @@ def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS) -> dic
         {"at": level, "text": "kinematic limit" if at_limit else "critical rotation"}
         for level, at_limit in zip((1, -1), first.ends_at_limit, strict=True)
     ]
-    tall = min(1.1 * reach, TALLEST) if reach else TALLEST
+    tall = min(1.1 * reach, MAX_SHOWN_RATIO) if reach else MAX_SHOWN_RATIO
     return {
         "label": f"rotation {style.over(first.ends_at_limit)}, clockwise up",
         "tall": tall,
@@ -109,7 +109,7 @@ def ratio_chart(histories: Mapping[ModelName, History], bins: int = BINS) -> dic
     }
 
 
-def ground_chart(motion: GroundMotion, fits: Sequence[PulseFit], bins: int = BINS) -> dict[str, Any]:
+def ground_chart(motion: GroundMotion, fits: Sequence[PulseFit], bins: int = BINS_ACROSS) -> dict[str, Any]:
     """Return a chart of the ground acceleration [g] against time, with the pulses in it."""
     motion = motion.kept
     ground = motion.acceleration / STANDARD_GRAVITY
@@ -117,7 +117,7 @@ def ground_chart(motion: GroundMotion, fits: Sequence[PulseFit], bins: int = BIN
     look = "record" if fits else "trace"
     series = [_series("ground", look, shown.astype(np.float64) * motion.dt, ground[shown])]
     for fit in fits:
-        t = fit.start + np.linspace(0.0, fit.pulse.duration, POINTS)
+        t = fit.start + np.linspace(0.0, fit.pulse.duration, PULSE_POINTS)
         series.append(_series(f"its pulse ({fit.pulse.title})", "pulse", t, fit.acceleration(t) / STANDARD_GRAVITY))
     tall = 1.1 * max(max(abs(value) for value in each["y"]) for each in series)
     return {"label": "ground acceleration [g]", "tall": tall or 1.0, "levels": [], "series": series}

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 
 from rocking_cli.plotting import style
 
-GAP = 0.12  # inches between panels and to the edge
-TALLEST = 3.6  # inches
-STACKED = 1.4  # how much larger a structure must become for its panels to stand above one another
+PANEL_GAP = 0.12  # inches between panels and to the edge
+MAX_PANEL_HEIGHT = 3.6  # inches
+MIN_STACKING_GAIN = 1.4  # factor of enlargement from which panels are placed above one another
 
 
 @dataclass
@@ -79,7 +79,7 @@ def lay_out(panels: Sequence[Panel], middle: Panel, head: float, foot: float) ->
         Total height [inches]; corners are measured from the lower edge.
     """
     together, apart = _largest(panels), _largest([middle])
-    if apart < STACKED * together:
+    if apart < MIN_STACKING_GAIN * together:
         return _row(panels, together, foot) + head
     others = [each for each in panels if each is not middle]
     low = _row(others, _largest(others), foot) + head
@@ -88,10 +88,10 @@ def lay_out(panels: Sequence[Panel], middle: Panel, head: float, foot: float) ->
 
 def _largest(panels: Sequence[Panel]) -> float:
     """Return the largest scale at which panels fit side by side [inches per metre]."""
-    width = style.WIDTH - GAP * (len(panels) + 1) - sum(each.room.real for each in panels)
+    width = style.PAGE_WIDTH - PANEL_GAP * (len(panels) + 1) - sum(each.room.real for each in panels)
     return min(
         width / sum(each.plane.real for each in panels),
-        *((TALLEST - each.room.imag) / each.plane.imag for each in panels),
+        *((MAX_PANEL_HEIGHT - each.room.imag) / each.plane.imag for each in panels),
     )
 
 
@@ -99,15 +99,15 @@ def _row(panels: Sequence[Panel], scale: float, base: float) -> float:
     """Place panels at one scale side by side above `base`, with their levels y = 0 in line; return the top [inches]."""
     for each in panels:
         each.scale = scale
-    spare = style.WIDTH - GAP * (len(panels) + 1) - sum(each.inches.real for each in panels)
+    spare = style.PAGE_WIDTH - PANEL_GAP * (len(panels) + 1) - sum(each.inches.real for each in panels)
     depth = max(each.depth for each in panels)
     height = max(each.inches.imag - each.depth for each in panels)  # above y = 0
-    x = GAP
+    x = PANEL_GAP
     for each in panels:
         left, right, below, above = each.around
         wider = spare / len(panels) / 2
         above += height - (each.inches.imag - each.depth)
         each.around = left + wider, right + wider, below + depth - each.depth, above
         each.corner = complex(x, base)
-        x += each.inches.real + GAP
+        x += each.inches.real + PANEL_GAP
     return base + depth + height

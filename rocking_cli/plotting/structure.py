@@ -18,25 +18,27 @@ from numpy.typing import NDArray
 
 from rocking_cli.core import Angle, Direction, Forces, Length, Line, three_digits
 from rocking_cli.plotting import dimensions, hung, style
-from rocking_cli.plotting.labels import EDGE, MARK, Labels, mathematics
-from rocking_cli.plotting.panels import GAP, Panel, lay_out
+from rocking_cli.plotting.labels import EDGE_COST, MARK_COST, Labels, mathematics
+from rocking_cli.plotting.panels import PANEL_GAP, Panel, lay_out
 from rocking_cli.studies.picture import MANY, DrawnHinge, DrawnPart, Picture, box_around
 
 Points = NDArray[np.complex128]
-HEAD, FOOT = 0.42, 0.34  # inches above a panel for its heading, and below it for the scale
-TITLE, NOTE, ROW = 0.34, 0.13, 0.17  # inches: of the title, and of a line of notes or under a panel
-NARROWEST = 0.95  # inches: a slender structure still needs room for its words
-PIN = 0.035  # inches: radius of a hinge
-EARTH = 0.08  # inches: depth of the hatches of the ground
-LONGEST_BAR = 0.8  # inches: of the scale
-WORDS = 40  # characters of a line under a panel
-NOTES = 125  # characters of a line of notes
-POINT = 72  # to an inch
-STROKE, SHORT = 0.3, 0.8  # inches, and of the smaller side of blocks: how long the stroke of a force is
-LEAST, HEAVIEST = 0.003, 2.4  # of the largest force: what is not drawn; and weight of the stroke of that [pt]
-INKED = 0.04  # of the smaller side of blocks that are drawn by the dozen: the weight of their lines
-NO_CRITICAL = "no critical rotation: displaced to a visible angle"
-STARTS = "displaced as the mechanism starts, exaggerated"
+HEADING_HEIGHT, SCALE_HEIGHT = 0.42, 0.34  # inches above a panel for its heading, and below it for the scale
+# Inches of the title, of a line of notes, and of a line under a panel.
+TITLE_HEIGHT, NOTE_HEIGHT, TEXT_ROW_HEIGHT = 0.34, 0.13, 0.17
+MIN_PANEL_WIDTH = 0.95  # inches: a slender structure still needs room for its labels
+HINGE_RADIUS = 0.035  # inches
+HATCH_DEPTH = 0.08  # inches, of the ground
+MAX_SCALE_LENGTH = 0.8  # inches
+MAX_PANEL_LINE = 40  # characters of a line under a panel
+MAX_NOTE_LINE = 125  # characters
+POINTS_PER_INCH = 72
+MAX_STROKE_LENGTH, MAX_STROKE_SHARE = 0.3, 0.8  # of a force: inches, and share of the smaller side of a block
+# Smaller forces than this share of the largest are not drawn, and the largest has a stroke of this weight [pt].
+MIN_FORCE_SHARE, MAX_STROKE_WEIGHT = 0.003, 2.4
+LINE_WEIGHT_SHARE = 0.04  # of the smaller side of a block, if there are dozens of them
+NO_CRITICAL_TEXT = "no critical rotation: displaced to a visible angle"
+STARTING_TEXT = "displaced as the mechanism starts, exaggerated"
 SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
 
 
@@ -68,21 +70,21 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
     rest = _rest_panel(picture, low, high, dimensions.room(rows, low, high))
     sides = {direction: _displaced_panel(picture, turn) for direction, turn in turned.items()}
     words = {direction: _words(picture, direction) for direction in turned}
-    foot = FOOT + ROW * max(text.count("\n") + bool(text) for text in words.values())
+    foot = SCALE_HEIGHT + TEXT_ROW_HEIGHT * max(text.count("\n") + bool(text) for text in words.values())
     orange: list[Line | Forces] = [*picture.sketch.lines, *picture.sketch.forces]
     named = [f"orange: {each.name}{_of(each)}" for each in orange if _is_at_rest(picture, each)]
-    free = [] if None not in picture.phi_cr.values() else [NO_CRITICAL if picture.start is None else STARTS]
-    notes = fill("; ".join([*named, *picture.sketch.notes, *free]), NOTES)
+    free = [] if None not in picture.phi_cr.values() else [NO_CRITICAL_TEXT if picture.start is None else STARTING_TEXT]
+    notes = fill("; ".join([*named, *picture.sketch.notes, *free]), MAX_NOTE_LINE)
     in_order = [sides.get(Direction.NEGATIVE), rest, sides.get(Direction.POSITIVE)]
-    height = lay_out([each for each in in_order if each is not None], rest, HEAD, foot)
-    below = GAP + NOTE * (notes.count("\n") + bool(notes))
-    figure = Figure(figsize=(style.WIDTH, below + height + TITLE), dpi=style.DPI)
+    height = lay_out([each for each in in_order if each is not None], rest, HEADING_HEIGHT, foot)
+    below = PANEL_GAP + NOTE_HEIGHT * (notes.count("\n") + bool(notes))
+    figure = Figure(figsize=(style.PAGE_WIDTH, below + height + TITLE_HEIGHT), dpi=style.DPI)
     for panel in (rest, *sides.values()):
         panel.corner += 1j * below
     width, height = figure.get_size_inches()
     for text, x, y, place, size in (
-        (style.fitted(title), GAP, height - 0.09, "top", style.TITLE),
-        (notes, GAP, 0.07, "bottom", style.SMALL),
+        (style.fitted(title), PANEL_GAP, height - 0.09, "top", style.TITLE),
+        (notes, PANEL_GAP, 0.07, "bottom", style.SMALL),
     ):
         figure.text(x / width, y / height, text, va=place, fontsize=size, color=style.INK, parse_math=False)
 
@@ -116,9 +118,11 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
         _draw_letters(picture, turned[direction], pins, labels)
         draw_scale(axes, panel)
         half = max((style.size_of(line, style.LABEL).real / 2 for line in words[direction].split("\n")), default=0.0)
-        middle = min(max(panel.corner.real + panel.inches.real / 2, GAP + half), style.WIDTH - GAP - half)
+        middle = min(
+            max(panel.corner.real + panel.inches.real / 2, PANEL_GAP + half), style.PAGE_WIDTH - PANEL_GAP - half
+        )
         figure.text(
-            middle / width, (panel.corner.imag - FOOT) / height, words[direction],
+            middle / width, (panel.corner.imag - SCALE_HEIGHT) / height, words[direction],
             ha="center", va="top", fontsize=style.LABEL, color=style.MEASURE,
         )  # fmt: skip
     return figure
@@ -151,7 +155,7 @@ def _rest_panel(picture: Picture, low: complex, high: complex, around: tuple[flo
     far = box_around([np.array([low, high, *picture.held(0.0)])])
     beside = np.add(around, hung.beside(picture))
     left, right, below, above = np.maximum(beside, hung.margins(picture)).tolist()
-    wider = hung.WORDS if picture.loads or picture.ties else 0.0
+    wider = hung.NAME_MARGIN if picture.loads or picture.ties else 0.0
     return Panel(*far, (left + wider, right + wider, below, above))
 
 
@@ -159,7 +163,7 @@ def _displaced_panel(picture: Picture, rotation: float) -> Panel:
     outlines, pins = picture.placed(rotation)
     moved = [*picture.extent, *pins, *picture.held(rotation)]
     low, high = box_around([np.array(moved), *(each for part in outlines for each in part)])
-    side = max(0.1, NARROWEST / 4)
+    side = max(0.1, MIN_PANEL_WIDTH / 4)
     left, right, below, above = np.maximum((side, side, 0.16, 0.12), hung.margins(picture)).tolist()
     return Panel(low, high, (left, right, below, above))
 
@@ -189,7 +193,7 @@ def _words(picture: Picture, direction: Direction) -> str:
     for each in every:
         if each.direction is direction:
             wide += len(each.text) + 2
-            if not lines or wide > WORDS:
+            if not lines or wide > MAX_PANEL_LINE:
                 lines.append(mathematics(each))
                 wide = len(each.text)
             else:
@@ -212,14 +216,14 @@ def _at_rest(picture: Picture) -> list[DrawnHinge]:
 def colour(picture: Picture, k: int, direction: Direction) -> str:
     """Return the colour of a part while it rocks in a direction: that of its link."""
     shade = picture.shades[direction][k]
-    return style.RESTING if shade is None else style.BODIES[shade]
+    return style.RESTING_COLOUR if shade is None else style.BODIES[shade]
 
 
 def weight(picture: Picture, scale: float) -> float:
     """Return the width of the lines around parts [pt] at a scale [inches per m]; thinner for many small blocks."""
     if sum(len(part.outlines) for part in picture.parts) <= MANY:
         return style.MEDIUM
-    return min(style.MEDIUM, max(style.HAIR, INKED * _smaller_side(picture) * scale * POINT))
+    return min(style.MEDIUM, max(style.HAIR, LINE_WEIGHT_SHARE * _smaller_side(picture) * scale * POINTS_PER_INCH))
 
 
 def _draw_parts(axes: Axes, picture: Picture, rotation: float, line: float) -> None:
@@ -258,12 +262,12 @@ def _labels(axes: Axes, picture: Picture, panel: Panel, rotation: float) -> Labe
     outlines, _ = picture.placed(rotation)
     for part, polygons in zip(picture.parts, outlines, strict=True):
         for each in [*polygons, *part.outlines]:
-            labels.keep_off([*each, each[0]], EDGE)
+            labels.keep_off([*each, each[0]], EDGE_COST)
     for centroid in picture.marks(rotation):
-        labels.keep_off([centroid], MARK)
+        labels.keep_off([centroid], MARK_COST)
     for line in (*picture.ground, *picture.walls):
-        labels.keep_off(line, EDGE)
-        labels.keep_off(np.concatenate([line[:1], _hatches(line, panel).ravel()]), EDGE / 2)
+        labels.keep_off(line, EDGE_COST)
+        labels.keep_off(np.concatenate([line[:1], _hatches(line, panel).ravel()]), EDGE_COST / 2)
     return labels
 
 
@@ -277,11 +281,11 @@ def _draw_pins(
     z = np.array([every[picture.pins.index(pin)] for pin in pins])
     centroids = picture.at(np.array([rotation]))[0][:, 0]
     for pin, place in zip(pins, z, strict=True):
-        labels.keep_off([place], MARK)
-        if picture.parts[pin.part].assumed:  # its shape is not known: show what carries it
+        labels.keep_off([place], MARK_COST)
+        if picture.parts[pin.part].assumed:  # its shape is unknown: an arm to its centroid is drawn
             arm = np.array([place, centroids[pin.part]])
             axes.plot(arm.real, arm.imag, color=style.INK, linewidth=style.THIN, zorder=3)
-            labels.keep_off(arm, EDGE)
+            labels.keep_off(arm, EDGE_COST)
         if pin.slide:
             guide = place + pin.slide / abs(pin.slide) * np.array([-0.22, 0.22]) / panel.scale
             axes.plot(guide.real, guide.imag, color=style.EARTH, linewidth=style.BOLD, zorder=3)
@@ -309,7 +313,7 @@ def _draw_letters(picture: Picture, rotation: float, pins: Sequence[DrawnHinge],
             side = complex(np.sign(round((pin.point - middle).real, 9)) or 1.0, 0.6)
             letter = style.plain(pin.letter)
             size = style.size_of(letter, style.LABEL, "bold")
-            labels.write(letter, labels.around(place, side, PIN, size, turning=0.6), **look)
+            labels.write(letter, labels.around(place, side, HINGE_RADIUS, size, turning=0.6), **look)
 
 
 def _draw_lines(axes: Axes, picture: Picture, labels: Labels) -> None:
@@ -327,11 +331,21 @@ def _draw_forces(axes: Axes, picture: Picture, scale: float) -> None:
         if _is_at_rest(picture, each):
             force = np.asarray(each.forces)
             share = np.abs(force) / np.abs(force).max()
-            seen = share > LEAST
-            half = force[seen] / np.abs(force[seen]) * min(STROKE, SHORT * _smaller_side(picture) * scale) / scale / 2
+            seen = share > MIN_FORCE_SHARE
+            half = (
+                force[seen]
+                / np.abs(force[seen])
+                * min(MAX_STROKE_LENGTH, MAX_STROKE_SHARE * _smaller_side(picture) * scale)
+                / scale
+                / 2
+            )
             middle = np.asarray(each.points)[seen]
             strokes = [hung.xy(np.array(ends)) for ends in zip(middle - half, middle + half, strict=True)]
-            look = {"colors": style.THRUST["color"], "linewidths": HEAVIEST * np.sqrt(share[seen]), "zorder": 3}
+            look = {
+                "colors": style.THRUST["color"],
+                "linewidths": MAX_STROKE_WEIGHT * np.sqrt(share[seen]),
+                "zorder": 3,
+            }
             axes.add_collection(LineCollection(strokes, **look), autolim=False)
 
 
@@ -354,15 +368,15 @@ def _hatches(line: Points, panel: Panel) -> Points:
     ticks: list[Points] = []
     for start, end in pairwise(line):
         along = (end - start) / abs(end - start)
-        count = max(1, int(abs(end - start) * panel.scale / EARTH))
+        count = max(1, int(abs(end - start) * panel.scale / HATCH_DEPTH))
         at = start + (end - start) * (np.arange(count) + 0.5) / count
-        ticks += [np.array([z, z + EARTH / panel.scale * along * np.exp(-2.4j)]) for z in at]
+        ticks += [np.array([z, z + HATCH_DEPTH / panel.scale * along * np.exp(-2.4j)]) for z in at]
     return np.array(ticks)
 
 
 def draw_scale(axes: Axes, panel: Panel) -> None:
     """Draw a scale bar of a round length under the panel."""
-    longest = LONGEST_BAR / panel.scale
+    longest = MAX_SCALE_LENGTH / panel.scale
     unit = 10.0 ** floor(log10(longest))
     length = next(times * unit for times in (5, 2, 1) if times * unit <= longest)
     half = length * panel.scale / panel.inches.real / 2

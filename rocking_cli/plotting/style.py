@@ -21,30 +21,30 @@ from numpy.typing import NDArray
 from rocking_cli import names
 from rocking_cli.text import printable
 
-WIDTH = 7.2  # inches: the width of a page of text
+PAGE_WIDTH = 7.2  # inches of text
 DPI = 150
-MARGIN = 0.9  # inches at the sides of a panel, at most
-LONGEST = 120  # characters of a heading
+MAX_SIDE_MARGIN = 0.9  # inches at the sides of a panel
+MAX_HEADING_LENGTH = 120  # characters
 INK, FAINT, SHADE, GRID = "#222222", "#9a9a9a", "#eeeeee", "#dddddd"
 TITLE, LABEL, TICK, SMALL, TINY = 10, 9, 8, 7, 5  # sizes of type [pt]
 HAIR, THIN, CURVE, MEDIUM, BOLD = 0.4, 0.6, 0.7, 1.0, 1.6  # weights of line [pt]
 LEGEND: dict[str, Any] = {"fontsize": TICK, "frameon": True, "framealpha": 0.9, "edgecolor": "none"}
-# A structure: bodies apart by darkness too, marks in ink, what is measured in blue, thrust in a dash of its own.
+# Structures: bodies differ in darkness too; marks are black, dimensions blue, thrust lines dashed.
 BODIES = ("#dfe6ec", "#f1e2c6", "#c2cdd8")
-RESTING = "#f4f3f0"  # what stays at rest while the links of a structure move
+RESTING_COLOUR = "#f4f3f0"  # of parts at rest while the links of a structure move
 EARTH, MEASURE = "#8a7f70", "#2b5d86"
 CURSOR = "#c4371a"
 TRACE: dict[str, Any] = {"color": INK, "linestyle": "-", "linewidth": 0.9}
 THRUST: dict[str, Any] = {"color": "#b3541e", "linestyle": (0, (3, 1)), "linewidth": 1.8}
 TIE: dict[str, Any] = {"color": "#1d6b4f", "linewidth": 1.3}
 SLACK = (0, (2.5, 2))
-# Distinct in grey by darkness, dash and weight as well as by hue; the heaviest shows on both sides of the others.
+# Curves differ in darkness, dash and weight as well as in hue; the heaviest is visible behind the others.
 LINES = {
     "nonlinear": {"color": "#111111", "linestyle": "-", "linewidth": 1.9},
     "linear1": {"color": "#e08a00", "linestyle": "--", "linewidth": 1.3},
     "linear2": {"color": "#1f77b4", "linestyle": "-.", "linewidth": 0.9},
 }
-RECORD = "#8a8a8a"  # what something bold is drawn over
+RECORD_COLOUR = "#8a8a8a"  # pale, as bold curves are drawn over it
 PULSES: tuple[dict[str, Any], ...] = (
     {"color": "#111111", "linestyle": "-", "linewidth": 2.4},
     {"color": "#e08a00", "linestyle": "--", "linewidth": 2.0},
@@ -53,14 +53,14 @@ PULSES: tuple[dict[str, Any], ...] = (
 LABELS = {"nonlinear": "nonlinear", "linear1": r"linear, $\kappa_1$", "linear2": r"linear, $\kappa_2$"}
 
 # Regions of a plane of pulses, and the boundaries between them.
-# From white to dark, so that the order is seen in grey; blue to orange to brown for the colour-blind.
+# From white to dark, so that the order is visible in grey; blue to orange to brown for the colour-blind.
 REGIONS = {
     names.NO_UPLIFT: "#ffffff",
     names.ROCKS: "#d6e6f2",
     f"{names.OVERTURNS} after one impact": "#f2b04a",
     f"{names.OVERTURNS} after two or more": "#c46a1b",
     f"{names.OVERTURNS} without impact": "#5b3a55",
-    names.UNKNOWN: "#c9c9c9",  # and hatched, as `UNKNOWN` is
+    names.UNKNOWN: "#c9c9c9",  # hatched, too
 }
 BOUNDARIES: dict[str, dict[str, Any]] = {
     "uplift": {"color": "#222222", "linestyle": "-", "linewidth": 1.0},
@@ -78,9 +78,9 @@ STAR: dict[str, Any] = {"marker": "*", "markersize": 15, "markeredgecolor": "whi
 UNKNOWN: dict[str, Any] = {"facecolor": "none", "edgecolor": FAINT, "hatch": "////", "linewidth": 0.0}
 """The look of areas in which the outcome is not known: hatched in grey."""
 
-SPARED, EXCEEDED = "#1f77b4", "#b35900"  # runs below and above a limit, apart by their marks too
+SPARED, EXCEEDED = "#1f77b4", "#b35900"  # runs below and above a limit; their marks differ, too
 
-# For any number of curves: dash and mark tell them apart in grey, and where they lie on one another.
+# For any number of curves: dashes and marks distinguish them in grey, and where they overlap.
 _DASHES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (3, 1)))
 _HUES = ("#111111", "#d98200", "#1f77b4", "#8a3b62", "#3c7d3c", "#777777")
 _MARKS = ("o", "s", "^", "D", "v", "P")
@@ -105,7 +105,7 @@ def family(k: int) -> dict[str, Any]:
 
 def new_figure(height: float) -> Figure:
     """Return an empty figure of the common width; `height` in inches."""
-    return Figure(figsize=(WIDTH, height), dpi=DPI, layout="constrained")
+    return Figure(figsize=(PAGE_WIDTH, height), dpi=DPI, layout="constrained")
 
 
 def one_panel(height: float, title: str) -> tuple[Figure, Axes]:
@@ -118,7 +118,7 @@ def one_panel(height: float, title: str) -> tuple[Figure, Axes]:
 
 def size_of(text: str, points: float, weight: str = "normal") -> complex:
     """Return width and height of a text [inches]; mathematics is between dollars, other dollars are escaped."""
-    text = printable(text)  # as it will be written
+    text = printable(text)  # as written to the file
     math = text.count("$") > text.count(r"\$")
     with catch_warnings():
         filterwarnings("ignore", "Glyph .* missing from", UserWarning)
@@ -133,9 +133,9 @@ def _measure() -> Any:
     return RendererAgg(1, 1, DPI)  # type: ignore[no-untyped-call]
 
 
-def fitted(text: str, width: float = WIDTH - 0.3, points: float = TITLE) -> str:
+def fitted(text: str, width: float = PAGE_WIDTH - 0.3, points: float = TITLE) -> str:
     """Shorten a text, without mathematics, to the words that fit a width [inches]."""
-    for most in range(LONGEST, 10, -5):
+    for most in range(MAX_HEADING_LENGTH, 10, -5):
         short = shorten(text, most, placeholder=" ...")
         if size_of(plain(short), points).real <= width:
             break
@@ -144,7 +144,7 @@ def fitted(text: str, width: float = WIDTH - 0.3, points: float = TITLE) -> str:
 
 def heading(axes: Axes, text: str) -> None:
     """Write the title of a plot above its first panel; dollars in names are plain characters."""
-    axes.set_title(fitted(text, WIDTH - MARGIN), loc="left", fontsize=TITLE, color=INK, parse_math=False)
+    axes.set_title(fitted(text, PAGE_WIDTH - MAX_SIDE_MARGIN), loc="left", fontsize=TITLE, color=INK, parse_math=False)
 
 
 def over(ends_at_limit: Sequence[bool], *, math: bool = False) -> str:
@@ -177,7 +177,7 @@ def save(figure: Figure, stream: IO[Any], **options: Any) -> None:
         if isinstance(each, Text) and each.get_text() != printable(each.get_text()):
             each.set_text(printable(each.get_text()))
     with catch_warnings():
-        filterwarnings("ignore", "Glyph .* missing from", UserWarning)  # it is drawn as an empty box
+        filterwarnings("ignore", "Glyph .* missing from", UserWarning)  # a missing glyph is drawn as an empty box
         figure.savefig(stream, **options)
 
 
@@ -190,7 +190,7 @@ def note(axes: Axes, text: str, height: float = 0.96) -> None:
         ha="right",
         va="top",
         fontsize=TICK,
-        parse_math=False,  # a $ in a name is a $
+        parse_math=False,  # a $ in a name is not mathematics
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1},
     )
 
@@ -239,10 +239,10 @@ def tidy(axes: Axes, x: str = "", y: str = "") -> None:
         axes.spines[side].set_visible(False)
 
 
-BINS = 4000  # across a picture: more than its pixels, so that nothing visible is lost even enlarged in print
+BINS_ACROSS = 4000  # more than the pixels of a picture, so that nothing is lost even enlarged in print
 
 
-def visible(values: NDArray[np.float64], bins: int = BINS) -> NDArray[np.intp]:
+def visible(values: NDArray[np.float64], bins: int = BINS_ACROSS) -> NDArray[np.intp]:
     """Return the indices of the samples to draw: all of a short curve, lowest and highest of each bin of a long one.
 
     Parameters
@@ -262,7 +262,7 @@ def visible(values: NDArray[np.float64], bins: int = BINS) -> NDArray[np.intp]:
         return np.arange(values.size)
     whole = values[: bins * size].reshape(bins, size)
     starts = np.arange(bins) * size
-    rest = np.arange(bins * size, values.size)  # fewer than bins
+    rest = np.arange(bins * size, values.size)  # the last values, fewer than the bins
     return np.unique(
         np.concatenate([[0, values.size - 1], starts + whole.argmin(axis=1), starts + whole.argmax(axis=1), rest])
     )

@@ -10,8 +10,10 @@ from rocking_cli.core.mechanism import why_none
 from rocking_cli.dynamics.resting import early_failures
 from rocking_cli.names import digits_apart
 
-OPENS = "lambda and what follows from it are unconservative: describe the structure so that this joint can move"
-SLIDES = "Stronger motions move it by sliding, which is not modelled: prevent this, for instance by dowels"
+OPENING_CAUTION = (
+    "lambda and what follows from it are unconservative: describe the structure so that this joint can move"
+)
+SLIDING_CAUTION = "Stronger motions move it by sliding, which is not modelled: prevent this, for instance by dowels"
 
 
 def cautions_of(mechanism: Mechanism) -> list[str]:
@@ -57,7 +59,7 @@ def before_rocking(mechanism: Mechanism) -> list[str]:
             digits = digits_apart(push, lambda_, 4)
             what = f"at rest {does} {push:.{digits}g} g, below lambda = {lambda_:.{digits}g}. "
             first = "Another mechanism starts first" if failure.opens else "The structure slides before it rocks"
-            what += OPENS if failure.opens else SLIDES
+            what += OPENING_CAUTION if failure.opens else SLIDING_CAUTION
         found.setdefault((first, what), []).append(direction.label)
     return [
         f"{first} in {'both directions' if len(labels) > 1 else f'the {labels[0]} direction'}: {what}."

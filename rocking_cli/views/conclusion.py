@@ -24,9 +24,9 @@ from rocking_cli.verification.results import Remark, Verification
 from rocking_cli.views.sheet.language import ENGLISH, Language
 from rocking_cli.views.verdict import REMEDIES
 
-MOST_DIGITS = 9
-WAYS = {1: "as given", -1: "reversed"}
-STEPS: Mapping[str, str] = {
+MAX_DIGITS = 9
+POLARITIES = {1: "as given", -1: "reversed"}
+NEXT_STEPS: Mapping[str, str] = {
     **REMEDIES,
     NextStep.MARGIN: "`rocking margin` shows from which scale factor on neighbours overturn, or are unknown",
     NextStep.YIELD_FORCE: "give the force at which the tie yields as a constant force in `loads`, so that it counts",
@@ -87,7 +87,7 @@ def _method(found: Verification, end: Conclusion) -> str:
 
 def digits_beside_one(ratio: float) -> int:
     """Return how many digits of a ratio show on which side of 1 it is, at least three."""
-    return next((n for n in range(3, MOST_DIGITS) if (float(f"{ratio:.{n}g}") < 1) == (ratio < 1)), MOST_DIGITS)
+    return next((n for n in range(3, MAX_DIGITS) if (float(f"{ratio:.{n}g}") < 1) == (ratio < 1)), MAX_DIGITS)
 
 
 CLAUSES = {
@@ -97,7 +97,7 @@ CLAUSES = {
     Concluded.NO_UPLIFT: names.NO_UPLIFT,
 }
 """What a structure does, the worst first."""
-NAMED = 6  # motions that a sentence names
+MAX_NAMED_MOTIONS = 6  # in a sentence
 
 
 def counted(ends: Sequence[Conclusion], over: str) -> str:
@@ -120,7 +120,7 @@ def counted(ends: Sequence[Conclusion], over: str) -> str:
         if under:
             of = f"all {count}" if len(under) == count else f"{len(under)}{'' if said else f' of {count}'}"
             bad = what in (Concluded.OVERTURNS, Concluded.UNKNOWN) and len(under) < count
-            named = f" ({in_short(under, most=NAMED)})" if bad else ""
+            named = f" ({in_short(under, most=MAX_NAMED_MOTIONS)})" if bad else ""
             said.append(f"{clause} under {of}{'' if said else ' motions'}{named}")
     *before, last = said
     return f"the structure {', '.join(before)}{' and ' if before else ''}{last}. {governing(ends, over)}"
@@ -149,7 +149,7 @@ def governing_polarity(ends: Mapping[int, Conclusion], governs: int | None, over
     """Return a sentence on which of two polarities governs; arguments are those of `governing`."""
     if governs is None:
         return f"Neither polarity governs: with the motion as given and reversed, {does(ends[1], over)}."
-    way, other = (WAYS[governs], WAYS[-governs])
+    way, other = (POLARITIES[governs], POLARITIES[-governs])
     said = f"with the motion {way}, {does(ends[governs], over)}; {other}, {does(ends[-governs], over)}"
     return f"Polarity {governs} governs: {said}."
 
@@ -189,7 +189,7 @@ def _of_neighbours(share: NeighbourShare) -> str:
 
 def next_in_words(end: Conclusion) -> str:
     """Return what to do next as a sentence; empty if there is nothing to do."""
-    said = "; ".join(STEPS[each] for each in end.next)
+    said = "; ".join(NEXT_STEPS[each] for each in end.next)
     return f"Next: {said}." if said else ""
 
 

@@ -13,7 +13,7 @@ from rocking_cli.views.column import Column, data_of, of, rounded
 from rocking_cli.views.restitution import restitution_source
 from rocking_cli.views.view import ABSENT, force_unit, number
 
-BEYOND = ": the result is not valid beyond that time"
+NOT_VALID_BEYOND = ": the result is not valid beyond that time"
 
 
 SUPPORTS: tuple[Column[SupportDemand], ...] = (
@@ -70,7 +70,7 @@ def contact_words(found: ContactDemand, mechanism: Mechanism) -> str:
     """
     if isnan(found.friction_needed):
         return ""
-    beyond = "" if found.followed else BEYOND
+    beyond = "" if found.followed else NOT_VALID_BEYOND
     said = [_friction(found, beyond)]
     if found.impact_friction > max(found.friction_needed, found.friction or 0.0):
         said.append(
@@ -119,7 +119,7 @@ def _at_impacts(found: ContactDemand, mechanism: Mechanism) -> str:
     """Return what to do about the friction that impacts require, as a clause with its colon."""
     if found.friction is None and found.impact_friction <= MASONRY:
         return ""
-    # The check has the impulses of the kinematic restitution: those of another one do not follow at each joint.
+    # The check uses impulses of the kinematic restitution; those of another one are not known at each joint.
     if not found.followed or restitution_source(mechanism) == "given":
         return ": joints with less slide at impacts, which is not simulated; prevent this, for instance by dowels"
     if found.friction is None:

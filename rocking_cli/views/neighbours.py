@@ -13,7 +13,7 @@ from rocking_cli.studies.neighbours import FRACTILES, Neighbourhood, Neighbours
 from rocking_cli.views.column import Column, only_shown
 
 R = TypeVar("R")
-ENOUGH = 20  # neighbours from which on the peaks of 16 and 84 % are told: of fewer, one or two decide them
+MIN_NEIGHBOURS_OF_QUANTILES = 20  # with fewer, one or two neighbours decide the peaks of 16 and 84 %
 
 
 def deviations(around: Neighbourhood) -> str:
@@ -35,12 +35,12 @@ def neighbours_in_words(near: Neighbours) -> str:
     low, median, high = near.peak_ratio
     if high == 0:
         return f"{said[0]}; at most one in six uplifts it."
-    enough = near.around.count >= ENOUGH
+    enough = near.around.count >= MIN_NEIGHBOURS_OF_QUANTILES
     if median == 0 or (low == 0 and enough):
         said.append(f"{'half' if median == 0 else '16 %'} do not uplift it")
     if 0 < median < inf:
         said.append(f"the median peak is {median:.2g} {near.over}")
-    # The highest of these peaks that is known.
+    # The highest known peak of these neighbours.
     part, most = ("84 %", high) if high < inf else ("16 %", low if isinf(median) else 0.0)
     if enough and 0 < most < inf:
         said.append(f"{part} stay below {most:.2g} {near.over}")

@@ -33,7 +33,7 @@ from rocking_cli.views.verdict import SENSE, unchecked, verdict, why_unknown
 from rocking_cli.views.view import Table, View, force_unit, in_degrees, number
 
 Reals = NDArray[np.float64]
-FIRST = 12  # impacts of a model in its table; the data have all
+MAX_LISTED_IMPACTS = 12  # of a model in its table; the data have all
 
 
 def record_data(motion: GroundMotion, factor: float, polarity: str, pulse: Pulse | None) -> dict[str, Any]:
@@ -107,7 +107,7 @@ def runs_data(found: Response, watched: Watched, etas: tuple[float, float] | Non
     each = {
         str(sign): {
             "responses": histories_data(found, sign, watched, etas),
-            # An equivalent block, which has no joints, is not compared with what is not known.
+            # An equivalent block has no joints, and is not compared with unknown outcomes.
             "agreement": {
                 name: data_of(AGREEMENT, found.agreement[sign][name]) if name in found.agreement[sign] else None
                 for name in histories
@@ -138,7 +138,7 @@ def histories_data(
         }
         if etas is not None:
             data[name]["impact_list"] = [data_of(IMPACTS, each) for each in _impacts(run.impacts, etas)]
-        # A linear model has no joints.
+        # Linear models have no joints.
         checked = found.contacts[sign] if name == "nonlinear" and sign in found.contacts else None
         data[name]["contact"] = contact_data(checked, watched.mechanism) if checked is not None else None
     return data
@@ -433,9 +433,9 @@ def _movements(moved: Mapping[str, Movements]) -> Iterator[Column[History]]:
 
 
 def _impact_table(title: str, history: History, etas: tuple[float, float]) -> list[Table | str]:
-    table = table_of(title, IMPACTS, _impacts(history.felt[:FIRST], etas))
+    table = table_of(title, IMPACTS, _impacts(history.felt[:MAX_LISTED_IMPACTS], etas))
     felt, chatter = len(history.felt), history.impact_count - len(history.felt)
-    said = [f"{felt - FIRST} more impacts follow"] if felt > FIRST else []
+    said = [f"{felt - MAX_LISTED_IMPACTS} more impacts follow"] if felt > MAX_LISTED_IMPACTS else []
     said += [f"{chatter} weaker than {100 * FELT:g} % of the strongest are left out"] if chatter else []
     return [table, f"{' and '.join(said)}: the JSON output lists them."] if said else [table]
 

@@ -9,8 +9,8 @@ from rocking_cli.core import Mechanism
 from rocking_cli.structure import Structure
 from rocking_cli.views.verdict import SENSE
 
-ROUNDING = 1e-9
-ELASTIC = 0.97  # a restitution from kinematics above which tests found less
+ETA_TOLERANCE = 1e-9
+MIN_DOUBTFUL_ETA = 0.97  # from kinematics; tests measured less
 
 
 def restitution_source(mechanism: Mechanism) -> str:
@@ -49,9 +49,9 @@ def restitution_used(structure: Structure) -> str:
         )
     positive, negative = structure.etas
     values, how = f"{positive:.4g}", "as given" if source == "given" else "from rigid-body kinematics, not measured"
-    if not isclose(positive, negative, rel_tol=ROUNDING):
+    if not isclose(positive, negative, rel_tol=ETA_TOLERANCE):
         values += f" at impacts that end clockwise rotation and {negative:.4g} at the others"
     said = f"Coefficient of restitution eta = {values}, {how}."
-    if source == "kinematics" and ELASTIC < max(structure.etas) < 1 + ROUNDING:
+    if source == "kinematics" and MIN_DOUBTFUL_ETA < max(structure.etas) < 1 + ETA_TOLERANCE:
         said += " Tests of such bodies found less, about 0.95."
     return said

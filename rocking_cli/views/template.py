@@ -12,9 +12,9 @@ from rocking_cli.io.json_text import json_text
 from rocking_cli.verification.code import Code, Site
 from rocking_cli.views.mechanisms import fields
 
-LONG = 40  # characters of a field and its value, above which the comment stands
-UNITS = "A number without a unit is in the unit in brackets; 800 mm or 12 ft is also accepted."
-OF_A_SITE = "Numbers are in the unit in brackets."
+MAX_INLINE_LENGTH = 40  # characters of a field and its value; a longer one has its comment on the line above
+UNITS_NOTE = "A number without a unit is in the unit in brackets; 800 mm or 12 ft is also accepted."
+SITE_UNITS_NOTE = "Numbers are in the unit in brackets."
 
 
 def template(cls: Any) -> str:
@@ -34,7 +34,7 @@ def template(cls: Any) -> str:
     usual = {"name": f"my {cls.mechanism.replace('_', ' ')}", "restitution": "0.9"}
     lines, missing = _lines(fields(cls), usual, cls.starter)
     fill_in = [f"# Fill in {', '.join(missing)}: the mechanism gives no example."] if missing else []
-    head = [f"# {cls.title}", f"# {cls.source}", *fill_in, f"# {UNITS}", f"mechanism: {cls.mechanism}"]
+    head = [f"# {cls.title}", f"# {cls.source}", *fill_in, f"# {UNITS_NOTE}", f"mechanism: {cls.mechanism}"]
     return "\n".join([*head, *lines]) + "\n"
 
 
@@ -61,7 +61,7 @@ def starter(code: Code, commands: Sequence[str] = ()) -> str:
     fill_in = [f"# Fill in {', '.join(missing)}: the code gives no example."] if missing else []
     head = [f"# A site, to verify a structure by the {_in_a_line(f'{code.name} ({code.edition})')}."]
     head += [f"#   {each}" for each in commands]
-    return "\n".join([*head, *fill_in, f"# {OF_A_SITE}", f"code: {_yaml(code.key)}", *lines]) + "\n"
+    return "\n".join([*head, *fill_in, f"# {SITE_UNITS_NOTE}", f"code: {_yaml(code.key)}", *lines]) + "\n"
 
 
 def _lines(
@@ -96,7 +96,7 @@ def _lines(
         if _is_deep(value):
             lines += [comment, *(f"{'' if used else '# '}{line}" for line in _block(row["field"], value))]
             continue
-        lines += [f"{entry:<32}  {comment}"] if len(entry) <= LONG else [comment, entry]
+        lines += [f"{entry:<32}  {comment}"] if len(entry) <= MAX_INLINE_LENGTH else [comment, entry]
     return lines, missing
 
 

@@ -16,16 +16,16 @@ from rocking_cli.dynamics.verdict import ANOTHER, CLOSE, Agreement, disagree, re
 from rocking_cli.names import percent
 
 SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
-TOGETHER = 1e-2  # s within which two motions are at one time
+TIME_TOLERANCE = 1e-2  # s within which two events are at the same time
 ASSUMED = (
     "The friction required, {:.3g}, is more than the {:g} usual for masonry: the result assumes that nothing slides."
 )
 NO_JOINTS = "The equivalent blocks have no joints, so their results are not those of the structure."
-INSTANT = 1e-6  # of D_cr: less of an opening is said to be none
-# By comparison with free blocks: a peak below this share of phi_cr is off by some 20 % if a joint opens by more than
-# that share of D_cr.
+MIN_OPENING = 1e-6  # share of D_cr: a smaller opening is reported as none
+# From a comparison with free blocks: a peak below SMALL_PEAK has an error of some 20 % if a joint opens by more than
+# SMALL_PEAK_OPENING of D_cr.
 SMALL_PEAK, SMALL_PEAK_OPENING, SMALL_PEAK_ERROR = 0.02, 0.001, 0.2
-NEXT = "Next: `rocking margin` shows up to which scale factor the outcome is known. Under this motion, {}."
+NEXT_STEP = "Next: `rocking margin` shows up to which scale factor the outcome is known. Under this motion, {}."
 OVERTURNS = "assume that it overturns"
 REMEDIES = {
     "hinge_at_joint": f"describe the structure as a linkage that hinges at the joint that opens, or {OVERTURNS}",
@@ -68,13 +68,13 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
     check = history.check
     slides = [] if assumed_friction is None else [ASSUMED.format(assumed_friction, MASONRY)]
     if history.unknown:
-        return " ".join([_until(history), *slides, NEXT.format(REMEDIES[remedy(history)])])
+        return " ".join([_until(history), *slides, NEXT_STEP.format(REMEDIES[remedy(history)])])
     if check is None:
         return " ".join(slides)
     if isnan(check.warned) and check.alone:
         return " ".join(slides)
     taken = [f"Not checked, but assumed to hold: {', '.join(check.asserted)}."] if check.asserted else []
-    if check.largest >= INSTANT * check.reach and not isnan(check.warned):
+    if check.largest >= MIN_OPENING * check.reach and not isnan(check.warned):
         return " ".join([*_opens(history, check, valid=not slides), *slides, *taken])
     which = f" ({'; '.join(check.checked)})" if check.checked else ""
     but = f", except the joint between {check.warned_joint} for an instant at {check.warned:.4g} s"
@@ -214,7 +214,7 @@ def blocks_in_words(
     called : mapping of str to str
         Names of the models in the sentences.
     """
-    if not agreed:  # without a nonlinear history: the outcomes after the first, and which blocks are unfit
+    if not agreed:  # without a nonlinear history, state the other outcomes, and the blocks that are unfit
         said = [f"By {called[name]} it {ends(run)}." for name, run in list(histories.items())[1:]]
         return said + [
             f"Disregard {called[name]}: its uplift acceleration is {uplift_in_words(run.uplift_error)}."
@@ -246,7 +246,11 @@ def _beside(found: Agreement, run: History, best: History) -> str:
     if not found.same_fate:
         return f"it {ends(run)}"
     delay = found.peak_delay or 0.0
-    later = "at the same time" if abs(delay) < TOGETHER else f"{abs(delay):.3g} s {'later' if delay > 0 else 'earlier'}"
+    later = (
+        "at the same time"
+        if abs(delay) < TIME_TOLERANCE
+        else f"{abs(delay):.3g} s {'later' if delay > 0 else 'earlier'}"
+    )
     if best.fell:
         return f"it {names.OVERTURNS}{' too' if run.fell_to == best.fell_to else ' the other way'}, {later}"
     if found.peak_error is None:

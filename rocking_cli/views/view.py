@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from rocking_cli.core import Mechanism
 
 ABSENT = "-"
-FEW = 3  # motions, or records, of which each gets its own lines; of more there is a table
+MAX_DETAILED_MOTIONS = 3  # motions or records with lines of their own; more are listed in a table
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def force_unit(mechanism: Mechanism) -> tuple[float, str]:
 
 def number(value: float | None, digits: int = 6) -> str:
     """Format a number; a dash if it does not exist."""
-    return ABSENT if value is None or isnan(value) else f"{value + 0.0:.{digits}g}"  # a sum that is never -0
+    return ABSENT if value is None or isnan(value) else f"{value + 0.0:.{digits}g}"  # adding zero turns -0 into 0
 
 
 def in_degrees(phi: float) -> str:

@@ -503,9 +503,9 @@ class TestStart:
 
 
 def test_the_default_block_is_a_structure():
-    from rocking_cli.ask.given import DEFAULT
+    from rocking_cli.ask.given import DEFAULT_STRUCTURE
 
-    assert parse_structure(DEFAULT, "default", "default").mechanism == "block"
+    assert parse_structure(DEFAULT_STRUCTURE, "default", "default").mechanism == "block"
 
 
 def test_the_units_offered_are_those_the_readers_know():

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
-from rocking_cli.cli.quantities import AMPLITUDE, quantity
+from rocking_cli.cli.quantities import PULSE_AMPLITUDE, quantity
 from rocking_cli.excitation.pulses import parse_pulse
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
@@ -91,7 +91,7 @@ def test_parts_of_g(said, pga, tmp_path):
 
 @pytest.mark.parametrize("said", ["300mg", "30%g", "30 % g", "0.3g", "2.941995m/s^2", "294.1995 cm/s²"])
 def test_an_amplitude_may_be_in_them_too(said):
-    assert quantity(AMPLITUDE, said) == pytest.approx(0.3, rel=1e-12)
+    assert quantity(PULSE_AMPLITUDE, said) == pytest.approx(0.3, rel=1e-12)
 
 
 def test_the_amplitude_of_a_pulse_may_be_in_them_too():

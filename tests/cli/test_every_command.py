@@ -254,7 +254,7 @@ def test_every_command_is_walked_or_follows_no_history():
 @pytest.mark.usefixtures("hostile")
 @pytest.mark.parametrize("line", [*HISTORIES, *WITHOUT_HISTORY, *AS_TEXT])
 def test_an_unknown_outcome_is_no_pass_and_names_harm_nothing(line, monkeypatch):
-    monkeypatch.setattr(assessment, "POINTS", 3)  # of a map
+    monkeypatch.setattr(assessment, "MAP_POINTS", 3)  # of a map
     if line.startswith("results"):
         CliRunner().invoke(main, shlex.split("fragility study.yaml --jobs 1"))
     done, screens = walked(line if line in AS_TEXT else f"{line} --json", A=A, R=R, N="n.yaml")
@@ -349,7 +349,7 @@ def examples(tmp_path_factory):
 def test_the_keys_are_those_held(command, examples, monkeypatch):
     monkeypatch.chdir(examples)
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-    monkeypatch.setattr(assessment, "POINTS", 3)  # of a map
+    monkeypatch.setattr(assessment, "MAP_POINTS", 3)  # of a map
     if command.startswith("results"):
         CliRunner().invoke(main, shlex.split("fragility examples/study/pedestal.yaml"))
     few = " --neighbours 5" if command.startswith(OF_NEIGHBOURS) and "--record" in command else ""

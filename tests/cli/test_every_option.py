@@ -258,7 +258,7 @@ def answered(verb, arguments):
 @pytest.fixture(autouse=True)
 def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(rocking_cli.questions.report.study, "POINTS", 4)
+    monkeypatch.setattr(rocking_cli.questions.report.study, "MAP_POINTS", 4)
     Path("in.yaml").write_text("mechanism: block\nwidth: 0.7\nheight: 2.8\nfriction: 0.2\n")
     rows = zip(TIME, RECORD.acceleration, strict=True)
     Path("in.txt").write_text("time,a\n" + "".join(f"{t},{a}\n" for t, a in rows))

@@ -161,7 +161,7 @@ class TestDefaults:
         for name in commands():
             for each in import_module(commands()[name]).command.params:
                 options.setdefault(max(each.opts, key=len)[2:], set()).add(name)
-        assert set(defaults.EVERYWHERE) <= set(options) and set(defaults.IN_TABLES) <= set(options)
+        assert set(defaults.SHARED_OPTIONS) <= set(options) and set(defaults.AMBIGUOUS_OPTIONS) <= set(options)
 
     @pytest.mark.rest
     def test_a_report_says_what_it_took_from_where(self, monkeypatch):

@@ -6,7 +6,7 @@ from importlib import import_module
 import click
 from click.testing import CliRunner
 
-from rocking_cli.cli.help import OF_RECORDS, OPTIONS, RecordOption
+from rocking_cli.cli.help import OPTIONS_HEADING, RECORDS_HEADING, RecordOption
 from rocking_cli.cli.main import main
 from rocking_cli.cli.options import CORRECTIONS
 from rocking_cli.plugins.rooms import commands
@@ -84,10 +84,10 @@ def test_options_of_records_have_a_heading_of_their_own():
     wrong = []
     for name in commands():
         result = CliRunner().invoke(main, [name, "--help"], env={"COLUMNS": "100"})
-        before, _, after = result.output.partition(f"\n{OF_RECORDS}:\n")
-        own = before.partition(f"\n{OPTIONS}:\n")[2]
+        before, _, after = result.output.partition(f"\n{RECORDS_HEADING}:\n")
+        own = before.partition(f"\n{OPTIONS_HEADING}:\n")[2]
         if "--help" not in own:
-            wrong.append(f"{name}: --help is not among its {OPTIONS}")
+            wrong.append(f"{name}: --help is not among its {OPTIONS_HEADING}")
         rows = re.findall(r"^  \S+", own + after, re.MULTILINE)
         wrong += [f"{name}: {row} is not an option" for row in rows if not row.startswith("  -")]
         for _, option, each in (found for found in EVERY_OPTION if found[0] == name):

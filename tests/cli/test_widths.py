@@ -87,7 +87,7 @@ def test_a_terminal_says_how_wide_it_is_and_a_file_does_not(tmp_path):
         with os.fdopen(os.dup(terminal_of), "w") as stream:
             for columns in (40, 0):
                 termios.tcsetwinsize(terminal_of, (24, columns))
-                assert terminal._columns(stream) == (columns or terminal.USUAL)
+                assert terminal._columns(stream) == (columns or terminal.DEFAULT_WIDTH)
     finally:
         os.close(asked)
         os.close(terminal_of)

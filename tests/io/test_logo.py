@@ -6,7 +6,7 @@ import io
 import pytest
 from PIL import Image
 
-from rocking_cli.documents.logo import LARGEST, embedded
+from rocking_cli.documents.logo import MAX_LOGO_SIZE, embedded
 from rocking_cli.errors import InputError
 from tests.cli.test_cli import run
 
@@ -33,7 +33,7 @@ def test_what_is_no_picture_or_too_large_is_refused(tmp_path):
     (tmp_path / "text").write_text("logo")
     with pytest.raises(InputError, match="the file is not a PNG, JPEG or SVG picture"):
         embedded(tmp_path / "text")
-    (tmp_path / "large").write_bytes(PNG + bytes(LARGEST))
+    (tmp_path / "large").write_bytes(PNG + bytes(MAX_LOGO_SIZE))
     with pytest.raises(InputError, match="large"):
         embedded(tmp_path / "large")
 

@@ -18,7 +18,7 @@ from rocking_cli.core import Direction
 from rocking_cli.studies.conclusion import ORDER, Concluded, Conclusion, LeftOut, NeighbourShare, NextStep, worst
 from rocking_cli.verification.results import Requirement
 from rocking_cli.views.conclusion import (
-    STEPS,
+    NEXT_STEPS,
     conclusion_data,
     digits_beside_one,
     governing,
@@ -277,7 +277,7 @@ def test_a_design_by_the_code_uses_the_limit_state_that_governs_and_no_mechanism
 
 
 def test_every_next_step_has_words_and_says_what_the_result_needs():
-    assert set(STEPS) == {*NextStep}
+    assert set(NEXT_STEPS) == {*NextStep}
     unknown = Conclusion(concluded=Concluded.UNKNOWN, remedy=NextStep.HOLD_JOINT)
     assert unknown.next == [NextStep.HOLD_JOINT, NextStep.MARGIN]
     assert replace(unknown, ratio=1.2).next == [NextStep.HOLD_JOINT]  # a margin need not name itself

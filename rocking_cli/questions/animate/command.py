@@ -9,7 +9,7 @@ import click
 
 from rocking_cli.cli import options, terminal
 from rocking_cli.cli.defaults import as_declared
-from rocking_cli.cli.groups import AROUND, GroundMotions
+from rocking_cli.cli.groups import NEIGHBOUR_OPTIONS, GroundMotions
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import POSITIVE
 
@@ -64,7 +64,7 @@ def command(files: tuple[str, ...], asked: GroundMotions, out: Path, as_json: bo
     if out.suffix.lower() == ".html":
         as_declared(question, "fps")
     if not question["neighbours"]:
-        as_declared(question, *AROUND[1:])
+        as_declared(question, *NEIGHBOUR_OPTIONS[1:])
     motions, watch = asked.motions, OnTerminal(as_json=as_json)
     keep_apart([("--out", out)], [*files, *(str(each.path) for each in motions.records)])
     structure = asked.structure(files)

@@ -36,15 +36,15 @@ from rocking_cli.text import printable
 from rocking_cli.views.animation import why_it_ends
 
 Reals = NDArray[np.float64]
-DOTS = 100  # an inch of a frame
-FINER = 2  # times as large when what stands still is drawn
-TALLEST = 3.4  # inches of the structure
-TITLE, FOOT, TRACE, GAP, LEFT = 0.6, 0.42, 0.95, 0.12, 0.82  # inches
-SHADES = (0.2, 0.4, 0.6, 0.8)  # between a colour and those it is drawn on, for smooth edges
-PIN = 3.0  # pixels: radius of a hinge
+DOTS_PER_INCH = 100
+SUPERSAMPLING = 2  # factor of enlargement while the parts at rest are drawn
+MAX_STRUCTURE_HEIGHT = 3.4  # inches
+TITLE_HEIGHT, FOOT_HEIGHT, TRACE_HEIGHT, PANEL_GAP, LEFT_MARGIN = 0.6, 0.42, 0.95, 0.12, 0.82  # inches
+BLENDS = (0.2, 0.4, 0.6, 0.8)  # between a colour and its background, for smooth edges
+HINGE_RADIUS = 3.0  # pixels
 NEARLY_WHITE = 0.97
-HEAD = 0.13  # inches: head of an arrow
-HOLD = 1.5  # s that the last frame stays
+ARROW_HEAD_LENGTH = 0.13  # inches
+LAST_FRAME_DURATION = 1.5  # s
 
 
 def frame_time(fps: float) -> float:
@@ -75,7 +75,7 @@ def write_gif(
     stage = _Stage(film, title, float(times[0]), float(times[-1]))
     frames = _frames(stage, film, times, advance)
     first = next(frames)
-    delay, last = round(1000 * frame_time(fps)), round(1000 * HOLD)
+    delay, last = round(1000 * frame_time(fps)), round(1000 * LAST_FRAME_DURATION)
     first.save(
         stream, format="GIF", save_all=True, append_images=frames, loop=0, optimize=True, disposal=1,
         duration=[delay] * (times.size - 1) + [last],
@@ -95,12 +95,12 @@ def _frames(stage: _Stage, film: Film, times: Reals, advance: Callable[[int], No
 def _palette() -> Image.Image:
     """Return the colours of a GIF: those of the style, and shades of them. Few colours make small files."""
     colours = {to_rgb("white"), to_rgb(style.INK)}
-    drawn = (style.RESTING, style.EARTH, style.CURSOR, style.INK, style.FAINT, style.TIE["color"])
+    drawn = (style.RESTING_COLOUR, style.EARTH, style.CURSOR, style.INK, style.FAINT, style.TIE["color"])
     for each in (*style.BODIES, *drawn):
         colour, white, ink = (np.array(to_rgb(c)) for c in (each, "white", style.INK))
         for other in (white, ink):
-            colours |= {tuple(colour + share * (other - colour)) for share in (0.0, *SHADES)}
-    # The nearest of a palette is not found to the last bit: what is nearly white must not be taken for white.
+            colours |= {tuple(colour + share * (other - colour)) for share in (0.0, *BLENDS)}
+    # The nearest colour of the palette is found approximately: nearly white must not become white.
     colours = {each for each in colours if min(each) < NEARLY_WHITE or min(each) == 1}
     image = Image.new("P", (1, 1))
     image.putpalette([round(255 * part) for colour in sorted(colours) for part in colour])
@@ -117,44 +117,57 @@ class _Stage:
         panel = Panel(low, high, (left, right, below, above))
         size = panel.plane
         panel.scale = min(
-            (style.WIDTH - 2 * GAP - panel.room.real) / size.real, (TALLEST - panel.room.imag) / size.imag
+            (style.PAGE_WIDTH - 2 * PANEL_GAP - panel.room.real) / size.real,
+            (MAX_STRUCTURE_HEIGHT - panel.room.imag) / size.imag,
         )
-        spare = style.WIDTH - 2 * GAP - panel.inches.real
+        spare = style.PAGE_WIDTH - 2 * PANEL_GAP - panel.inches.real
         panel.around = left + spare / 2, right + spare / 2, below, above
-        below = 2 * TRACE + 3 * GAP + FOOT + 0.3
-        panel.corner = complex(GAP, below)
-        tall = ceil((below + panel.inches.imag + TITLE) * DOTS) / DOTS
-        figure = Figure(figsize=(style.WIDTH, tall), dpi=DOTS * FINER)
+        below = 2 * TRACE_HEIGHT + 3 * PANEL_GAP + FOOT_HEIGHT + 0.3
+        panel.corner = complex(PANEL_GAP, below)
+        tall = ceil((below + panel.inches.imag + TITLE_HEIGHT) * DOTS_PER_INCH) / DOTS_PER_INCH
+        figure = Figure(figsize=(style.PAGE_WIDTH, tall), dpi=DOTS_PER_INCH * SUPERSAMPLING)
         figure.text(
-            GAP / style.WIDTH, 1 - 0.1 / tall, style.fitted(title), va="top",
+            PANEL_GAP / style.PAGE_WIDTH, 1 - 0.1 / tall, style.fitted(title), va="top",
             fontsize=style.TITLE, color=style.INK, parse_math=False,
         )  # fmt: skip
         axes = panel.axes(figure)
         draw_ground(axes, film.picture, panel)
         draw_scale(axes, panel)
-        lower = figure.add_axes((LEFT / style.WIDTH, FOOT / tall, 1 - (LEFT + GAP) / style.WIDTH, TRACE / tall))
+        lower = figure.add_axes(
+            (
+                LEFT_MARGIN / style.PAGE_WIDTH,
+                FOOT_HEIGHT / tall,
+                1 - (LEFT_MARGIN + PANEL_GAP) / style.PAGE_WIDTH,
+                TRACE_HEIGHT / tall,
+            )
+        )
         upper = figure.add_axes(
-            (LEFT / style.WIDTH, (FOOT + TRACE + GAP) / tall, 1 - (LEFT + GAP) / style.WIDTH, TRACE / tall)
+            (
+                LEFT_MARGIN / style.PAGE_WIDTH,
+                (FOOT_HEIGHT + TRACE_HEIGHT + PANEL_GAP) / tall,
+                1 - (LEFT_MARGIN + PANEL_GAP) / style.PAGE_WIDTH,
+                TRACE_HEIGHT / tall,
+            )
         )
         _draw_traces(upper, lower, film, start, end)
         drawn = BytesIO()
-        style.save(figure, drawn, format="png", dpi=DOTS * FINER)
-        self._still = np.asarray(Image.open(drawn).convert("RGB").reduce(FINER))
+        style.save(figure, drawn, format="png", dpi=DOTS_PER_INCH * SUPERSAMPLING)
+        self._still = np.asarray(Image.open(drawn).convert("RGB").reduce(SUPERSAMPLING))
         height, width, _ = self._still.shape
-        self._renderer: Any = RendererAgg(width, height, DOTS)  # type: ignore[no-untyped-call]
-        self._panel_scale, self._scale = panel.scale, panel.scale * DOTS
-        left = panel.low.real - panel.around[0] / panel.scale - GAP / panel.scale
+        self._renderer: Any = RendererAgg(width, height, DOTS_PER_INCH)  # type: ignore[no-untyped-call]
+        self._panel_scale, self._scale = panel.scale, panel.scale * DOTS_PER_INCH
+        left = panel.low.real - panel.around[0] / panel.scale - PANEL_GAP / panel.scale
         self._origin = complex(left, panel.low.imag - (panel.around[2] + panel.corner.imag) / panel.scale)
         self._strip = [
             (
-                *(axes.transData.transform((t, 0.0))[0] / FINER for t in (start, end)),
-                axes.bbox.y0 / FINER,
-                axes.bbox.y1 / FINER,
+                *(axes.transData.transform((t, 0.0))[0] / SUPERSAMPLING for t in (start, end)),
+                axes.bbox.y0 / SUPERSAMPLING,
+                axes.bbox.y1 / SUPERSAMPLING,
             )
             for axes in (upper, lower)
         ]
         self._times = start, end
-        # Of rotations over a limit, all of which are small, more digits.
+        # Small ratios of rotation to limit need more digits.
         self._digits = 5 if any(film.history.ends_at_limit) else 2
 
     def frame(self, time: float, rotation: float, ratio: float) -> Image.Image:
@@ -201,7 +214,7 @@ class _Stage:
         pen = self._pen(style.INK, style.MEDIUM)
         seen = [] if rotation == 0 else [k for k, pin in enumerate(picture.pins) if pin.direction is direction]
         for x, y in self._pixels(pins[seen]):
-            ring = Affine2D().scale(PIN).translate(x, y)
+            ring = Affine2D().scale(HINGE_RADIUS).translate(x, y)
             self._renderer.draw_path(pen, Path.unit_circle(), ring, to_rgb("white"))
         pen.restore()
         places = self._pixels(pins[seen]) @ np.array([1, 1j])
@@ -212,7 +225,7 @@ class _Stage:
         pen.set_foreground(colour)
         pen.set_linewidth(self._renderer.points_to_pixels(points))
         pen.set_joinstyle("round")
-        pen.set_snap(False)  # it moves by less than a pixel
+        pen.set_snap(False)  # it moves by fractions of a pixel
         return pen
 
     def _draw_ties(self, shown: hung.Symbols, *, behind: bool) -> None:
@@ -227,7 +240,7 @@ class _Stage:
         pen = self._pen(style.INK, style.THIN)
         for at, of_bed in shown.anchors:
             if of_bed is behind:
-                self._fill(pen, at + hung.ANCHOR / self._panel_scale * hung.SQUARE, style.EARTH)
+                self._fill(pen, at + hung.ANCHOR_HALF_WIDTH / self._panel_scale * hung.SQUARE, style.EARTH)
         pen.restore()
 
     def _draw_loads(self, shown: hung.Symbols) -> None:
@@ -237,7 +250,9 @@ class _Stage:
         pen.restore()
         pen = self._pen(style.CURSOR, style.BOLD)
         for tail, tip in shown.forces:
-            head = tip + (tail - tip) / abs(tail - tip) * HEAD / self._panel_scale * np.array([0, 1 + 0.45j, 1 - 0.45j])
+            head = tip + (tail - tip) / abs(tail - tip) * ARROW_HEAD_LENGTH / self._panel_scale * np.array(
+                [0, 1 + 0.45j, 1 - 0.45j]
+            )
             self._renderer.draw_path(pen, Path(self._pixels(np.array([tail, head.mean()]))), IdentityTransform())
             self._fill(pen, head, style.CURSOR)
         pen.restore()
@@ -270,7 +285,7 @@ def _draw_traces(upper: Axes, lower: Axes, film: Film, start: float, end: float)
         axes.set_xlim(start, max(end, start + 1e-3))
         tall = 1.1 * max(float(np.abs(values).max()), 1e-3)
         axes.set_ylim(-tall, tall)
-        axes.yaxis.set_label_coords(-(LEFT - 0.3) / (style.WIDTH - LEFT - GAP), 0.5)  # whatever the numbers are
+        axes.yaxis.set_label_coords(-(LEFT_MARGIN - 0.3) / (style.PAGE_WIDTH - LEFT_MARGIN - PANEL_GAP), 0.5)
         axes.yaxis.set_major_locator(MaxNLocator(4))
         axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
         style.tidy(axes, y=label)
@@ -318,5 +333,5 @@ def animation_page(film: Film, title: str, speed: float = 1.0) -> str:
     parts = {
         "TITLE": html.escape(title), "STYLE": asset("motion.css"), "SCRIPT": asset("motion.js"), "DATA": as_script(data)
     }  # fmt: skip
-    # All in one pass: a name in one part must not be taken for the place of another.
+    # One pass for all parts: a name in one part must not be replaced as a placeholder of another.
     return printable(re.sub("@(TITLE|STYLE|SCRIPT|DATA)@", lambda match: parts[match[1]], asset("animation.html")))

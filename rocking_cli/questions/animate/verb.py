@@ -26,9 +26,9 @@ from rocking_cli.views.view import heading
 if TYPE_CHECKING:
     from rocking_cli.io.tables import Columns
 
-LONGEST = 20.0  # s of a GIF whose speed is not given
-MOST_FRAMES = 3000
-FPS = 20.0
+MAX_DEFAULT_DURATION = 20.0  # s of a GIF whose speed is not given
+MAX_FRAMES = 3000
+FRAMES_PER_SECOND = 20.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +57,7 @@ def animate(
     model: str = "nonlinear",
     polarity: str | int = "1",
     speed: float | None = None,
-    fps: float = FPS,
+    fps: float = FRAMES_PER_SECOND,
     neighbours: int = Neighbourhood.count,
     amplitude_deviation: float = Neighbourhood.amplitude,
     slenderness_deviation: float | None = None,
@@ -136,7 +136,7 @@ def animate(
     if name != "nonlinear":
         refuse_idle("on a linear block, which has no joints", opening=opening != OPENING)
     if path.suffix.lower() == ".html":
-        refuse_idle("on a page, which is drawn as fast as it is shown", fps=fps != FPS)
+        refuse_idle("on a page, which is drawn as fast as it is shown", fps=fps != FRAMES_PER_SECOND)
     ready = structure_of(structure, watch, opening)
     own = ready.model(name)
     motions = Motions.of(motion, options)
@@ -152,7 +152,7 @@ def animate(
             pace, frames = speed or 1.0, None
             _write_page(place, film, heading(ready.mechanism), pace)
         else:
-            pace = speed or max(1.0, (film.end - film.start) / LONGEST)
+            pace = speed or max(1.0, (film.end - film.start) / MAX_DEFAULT_DURATION)
             frames = _write_gif(place, film, f"{heading(ready.mechanism)}, under {scaled.name}", pace, fps, watch)
         watch.note(f"wrote {place}")
         near = outcomes(own, scaled, around) if neighbours else None
@@ -212,8 +212,8 @@ def _write_gif(file: Path, film: Film, title: str, speed: float, fps: float, wat
 
     step = speed * frame_time(fps)
     count = int((film.end - film.start) / step) + 1
-    if count > MOST_FRAMES:
-        problem = f"a GIF of {count:,} frames is too long (at most {MOST_FRAMES:,})"
+    if count > MAX_FRAMES:
+        problem = f"a GIF of {count:,} frames is too long (at most {MAX_FRAMES:,})"
         raise InputError(Problem(problem, field="`speed`", hint="raise `speed`, lower `fps`, or write .html"))
     times = np.append(film.start + step * np.arange(count), film.end)
     if speed != 1:

@@ -100,7 +100,7 @@ def command(file: str, reading: ReadingOptions, output: Output, **question: Any)
     output.keep_apart(file, question["free"], question["tests"])
     watch = OnTerminal()
     if question["free"] is not None:
-        # Defaults of a user have no effect on a trace, and are no error.
+        # Defaults from the settings of a user do not apply to a trace, and are not an error.
         question |= {name: None for name in ("points", "neighbours") if from_default(name)}
         question["free"] = read_table(question["free"], parse_trace)
     answer = calibrate(file, out=output.out, watch=watch, usual=reading.usual, **question, **reading.options)

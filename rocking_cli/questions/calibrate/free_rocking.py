@@ -16,11 +16,11 @@ from scipy.interpolate import CubicSpline
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.core import Direction, Mechanism
 
-PIECES = 400  # of the spline of energy and inertia over the rotation
-KNOTS = 16  # of a quarter cycle
-COARSE = 2  # to see how many half-cycles are needed
-LEAST = 2e-3  # of the rate of the first impact: the structure is at rest when that of another is smaller
-MOST = 1000  # half-cycles
+SPLINE_PIECES = 400  # of energy and inertia over the rotation
+KNOTS_PER_QUARTER_CYCLE = 16
+COARSE_KNOTS = 2  # enough to count the half-cycles
+MIN_RATE_SHARE = 2e-3  # of the rate at the first impact, below which the structure is at rest
+MAX_HALF_CYCLES = 1000
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
@@ -52,7 +52,7 @@ class MechanismSide:
 
     @cached_property
     def _splines(self) -> tuple[CubicSpline, CubicSpline]:
-        phi = np.linspace(0, self.end, PIECES + 1)[1:]
+        phi = np.linspace(0, self.end, SPLINE_PIECES + 1)[1:]
         lift = self.mechanism.potential_energy(phi, self.direction) / phi
         return CubicSpline(phi, lift), CubicSpline(phi, self.mechanism.kinetic_inertia(phi, self.direction))
 
@@ -157,7 +157,7 @@ def free_rocking(
     first = Direction.POSITIVE if release > 0 else Direction.NEGATIVE
     factors = np.atleast_1d(np.asarray(etas, dtype=np.float64))
     mean = float(np.mean(factors))
-    count = int(min(MOST, max(2.0, np.log(LEAST) / np.log(min(mean, 0.9999)) + factors.size)))
+    count = int(min(MAX_HALF_CYCLES, max(2.0, np.log(MIN_RATE_SHARE) / np.log(min(mean, 0.9999)) + factors.size)))
     factors = np.concatenate([factors, np.full(max(0, count - factors.size), factors[-1])])[:count]
     turns = [first if rebounds or k % 2 == 0 else first.opposite for k in range(count + 1)]
     kinds = list(dict.fromkeys(turns))
@@ -171,20 +171,20 @@ def free_rocking(
     for k, each in enumerate(kinds):
         inside = which == k
         peaks[inside] = _peaks(sides[each], energy[inside])
-        quarter[inside] = _quarter(sides[each], peaks[inside], COARSE)[0][:, -1]
-    begins = np.cumsum(2 * quarter) - quarter[0]  # of the next half-cycle
-    count = min(int(np.searchsorted(0.99 * begins, until)) + 1, count + 1)  # half-cycles that are needed
+        quarter[inside] = _quarter(sides[each], peaks[inside], COARSE_KNOTS)[0][:, -1]
+    begins = np.cumsum(2 * quarter) - quarter[0]  # times at which the next half-cycle begins
+    count = min(int(np.searchsorted(0.99 * begins, until)) + 1, count + 1)  # half-cycles up to `until`
     peaks, which = peaks[:count], which[:count]
-    spans, rates = np.empty((count, KNOTS + 1)), np.empty((count, KNOTS + 1))
+    spans, rates = np.empty((count, KNOTS_PER_QUARTER_CYCLE + 1)), np.empty((count, KNOTS_PER_QUARTER_CYCLE + 1))
     for k, each in enumerate(kinds):
         inside = which == k
-        spans[inside], rates[inside] = _quarter(sides[each], peaks[inside], KNOTS)
+        spans[inside], rates[inside] = _quarter(sides[each], peaks[inside], KNOTS_PER_QUARTER_CYCLE)
     return _joined(first, which, kinds, peaks, spans, rates)
 
 
 def quarter_cycles(side: RockingSide, peaks: Reals) -> Reals:
     """Return the time from each peak to the impact [s], shape as `peaks` [rad]."""
-    return _quarter(side, peaks, KNOTS)[0][:, -1]
+    return _quarter(side, peaks, KNOTS_PER_QUARTER_CYCLE)[0][:, -1]
 
 
 def _peaks(side: RockingSide, energy: Reals) -> Reals:
@@ -220,7 +220,7 @@ def _joined(
     """Join the quarters of all half-cycles to one motion."""
     quarter = spans[:, -1]
     impacts = quarter[0] + np.concatenate([[0.0], np.cumsum(2 * quarter[1:])])
-    shape = 1 - np.linspace(0.0, 1.0, KNOTS + 1) ** 2
+    shape = 1 - np.linspace(0.0, 1.0, KNOTS_PER_QUARTER_CYCLE + 1) ** 2
     times, rotations, before, after = [spans[0]], [int(first) * peaks[0] * shape], [-int(first) * rates[0]], []
     after.append(before[0].copy())
     for k in range(1, peaks.size):
@@ -230,7 +230,7 @@ def _joined(
         times.append(np.concatenate([rise[1:], fall]))
         rotations.append(sign * peaks[k] * np.concatenate([shape[::-1][1:], shape[1:]]))
         both = sign * np.concatenate([rates[k, ::-1][1:], -rates[k, 1:]])
-        after[-1][-1] = sign * rates[k, -1]  # leaves the impact
+        after[-1][-1] = sign * rates[k, -1]  # the rate after the impact
         before.append(both)
         after.append(both.copy())
     after[-1][-1] = 0.0

@@ -7,8 +7,8 @@ from matplotlib.figure import Figure
 
 from rocking_cli.arrays import Reals
 from rocking_cli.plotting import style
-from rocking_cli.questions.calibrate.region import DROP, JointRegion
-from rocking_cli.questions.calibrate.study import GAP, TraceFit
+from rocking_cli.questions.calibrate.region import EDGE_DROP, JointRegion
+from rocking_cli.questions.calibrate.study import MIN_GAP_RATIO, TraceFit
 
 
 def draw_trace(found: TraceFit, name: str) -> Figure:
@@ -26,11 +26,12 @@ def draw_trace(found: TraceFit, name: str) -> Figure:
     style.heading(axes, f"{name}: free rocking, eta = {found.eta.value:.4f}, scatter {found.scatter:.2g}")
     times, degrees = found.trace.times, np.degrees
     start, end = found.part
-    axes.set_xlim(start - 0.15 * (end - start), end + 0.02 * (end - start))  # lifting and holding may be far longer
+    # Lifting and holding may take much longer than rocking.
+    axes.set_xlim(start - 0.15 * (end - start), end + 0.02 * (end - start))
     axes.plot(
         times,
         degrees(found.trace.angles),
-        color=style.RECORD,
+        color=style.RECORD_COLOUR,
         marker=".",
         markersize=3,
         linestyle="none",
@@ -60,7 +61,7 @@ def draw_trace(found: TraceFit, name: str) -> Figure:
 def _broken(times: Reals, values: Reals) -> tuple[Reals, Reals]:
     """Return a curve with breaks where the trace has gaps."""
     steps = np.diff(times)
-    gaps = np.flatnonzero(steps > GAP * np.median(steps)) + 1
+    gaps = np.flatnonzero(steps > MIN_GAP_RATIO * np.median(steps)) + 1
     return np.insert(times, gaps, np.nan), np.insert(values, gaps, np.nan)
 
 
@@ -79,8 +80,8 @@ def draw_region(found: JointRegion, name: str) -> Figure:
     )
     across, up = found.restitution, found.slenderness
     below = np.maximum(found.likelihood - found.likelihood.max(), -20.0)
-    filled = axes.contourf(across, up, below, levels=[-20, -15, -10, -7, -5, -DROP, -1, 0], cmap="Blues")
-    axes.contour(across, up, below, levels=[-DROP], colors=[style.INK], linewidths=style.BOLD, linestyles="solid")
+    filled = axes.contourf(across, up, below, levels=[-20, -15, -10, -7, -5, -EDGE_DROP, -1, 0], cmap="Blues")
+    axes.contour(across, up, below, levels=[-EDGE_DROP], colors=[style.INK], linewidths=style.BOLD, linestyles="solid")
     axes.plot(*found.best[::-1], color=style.CURSOR, label="likeliest", **style.STAR)
     axes.plot([], [], color=style.INK, linewidth=style.BOLD, label="joint region of 90 %")
     points = np.meshgrid(across, up)

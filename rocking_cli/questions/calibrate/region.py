@@ -16,8 +16,8 @@ from rocking_cli.questions.score.table import ObservedTest
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Draws, Neighbourhood, follow
 
-INSIDE = 0.9  # of the joint region, by the likelihood ratio
-DROP = -float(np.log(1 - INSIDE))  # of the log-likelihood at its edge: half a chi-square of two degrees of freedom
+REGION_PROBABILITY = 0.9  # of the joint region, by the likelihood ratio
+EDGE_DROP = -float(np.log(1 - REGION_PROBABILITY))  # of the log-likelihood: half a chi-square of two degrees of freedom
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +57,7 @@ class JointRegion:
     @property
     def inside(self) -> Bools:
         """Which points of the grid are in the joint region of 90 %, shape (n, m)."""
-        return np.asarray(self.likelihood >= self.likelihood.max() - DROP)
+        return np.asarray(self.likelihood >= self.likelihood.max() - EDGE_DROP)
 
     @property
     def ranges(self) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -30,33 +30,34 @@ from rocking_cli.questions.calibrate.free_rocking import (
 from rocking_cli.questions.calibrate.trace import Trace
 from rocking_cli.structure import Structure
 
-LEAST_IMPACTS = 3
-MOST_IMPACTS = 15  # that have a restitution of their own: later ones are too small to say anything of it
-LEAST_SAMPLES = 30
-LEAST_ALPHA = 0.07  # rad: for smaller slenderness, p and alpha cannot be told apart
-LEAST_ANGLE = 1e-6  # of the rotation at which the structure overturns: no instrument sees less
-LONGEST = 1e6  # s of a trace
-SEEN = 3.0  # times the noise: half-cycles with larger peaks are seen
-ABOVE = 5.0  # times the noise: the least largest angle of a trace
-FARTHEST = 0.98  # of the critical rotation: the largest release
-AFTER = 0.9  # of the quarter cycle before the first impact is fitted: what is before may be lifting, or a hand
-GROWS = 0.2  # of the release: a half-cycle that exceeds the one before on its side by more begins another test
-GAP = 3.0  # times the usual interval: what is longer is a gap
-STARTS = (0.6, 0.75, 0.85, 0.9, 0.94, 0.97, 0.985)  # restitutions, where the times of impacts do not lead to a fit
-FITS = 0.05  # of the release: a residual up to which no other start is tried; a missed impact gives more
-WINDOWS = (3, 6, 12, 24, 48, 1_000_000)  # impacts up to which the trace is fitted, one after the other
-NEAR = 0.03  # of the largest angle: levels of rest that are nearer lead to the same fit
-FURTHER = 3  # further starts, if the residual of the first is large
-POOR = 0.2  # of the release: a residual with which the trace is no free rocking of the structure
-OTHER = 0.1  # of the release: a residual, with an eta for each impact, with which it is that of another structure
-EXACT = 1e-5  # of the release: noise below which the fit itself is not exact
-PATTERN = 2.0  # times that of white noise: a variance of means of residuals that says more than noise
-STEP = 0.02  # of the errors of the geometry, by which their effect is found
-RELEASE, START, OFFSET, DRIFT, ETA = range(5)  # the parameters; further etas follow, and the geometry
-PRIOR = 1.0  # impacts with the scatter of other bodies that count with those of the trace
-DROP = 1.6  # of the log-likelihood: an interval of 5 to 95 % (1.35 of many impacts)
-OFF = 1.2  # times the noise: a residual that says more than noise
-SIDES, P, ALPHA = range(3)  # ln of the ratio of alpha of both sides, of p and of alpha, each over that of the file
+MIN_IMPACTS = 3
+MAX_FITTED_ETAS = 15  # later impacts are too small to determine their restitution
+MIN_SAMPLES = 30
+MIN_ALPHA = 0.07  # rad: for smaller slenderness, p and alpha cannot be told apart
+MIN_ANGLE_SHARE = 1e-6  # of the rotation at which the structure overturns: no instrument resolves less
+MAX_TRACE_DURATION = 1e6  # s
+MIN_PEAK_TO_NOISE = 3.0  # of the half-cycles that can be seen in the trace
+MIN_LARGEST_TO_NOISE = 5.0  # of the largest angle of a trace
+MAX_RELEASE_SHARE = 0.98  # of the critical rotation
+FITTED_QUARTER_SHARE = 0.9  # of the quarter cycle before the first impact: earlier, the structure may be lifted or held
+# Share of the release by which a half-cycle exceeds the last on its side if a new test starts.
+MIN_NEW_TEST_GROWTH = 0.2
+MIN_GAP_RATIO = 3.0  # interval over the median interval, from which there is a gap in the trace
+START_ETAS = (0.6, 0.75, 0.85, 0.9, 0.94, 0.97, 0.985)  # tried if the times of the impacts do not lead to a fit
+MAX_GOOD_RESIDUAL = 0.05  # share of the release; a missed impact gives more, and other starts are tried
+WINDOWS = (3, 6, 12, 24, 48, 1_000_000)  # numbers of impacts up to which the trace is fitted, in turn
+MIN_LEVEL_DISTANCE = 0.03  # share of the largest angle: closer levels of rest lead to the same fit
+MAX_FURTHER_STARTS = 3  # if the residual of the first is large
+MAX_RESIDUAL = 0.2  # share of the release: with more, the trace is not free rocking of this structure
+MAX_RESIDUAL_OF_ETAS = 0.1  # share of the release, with an eta per impact: with more, the structure is another one
+MIN_NOISE = 1e-5  # share of the release: the numerical error of the fit
+MAX_PATTERN_RATIO = 2.0  # variance of means of residuals over that of white noise
+GEOMETRY_STEP = 0.02  # share of the errors of the geometry, for finite differences
+RELEASE, START, OFFSET, DRIFT, ETA = range(5)  # indices of the parameters; further etas and the geometry follow
+PRIOR_IMPACTS = 1.0  # number of impacts that the scatter of other bodies counts for
+INTERVAL_DROP = 1.6  # of the log-likelihood, for an interval of 5 to 95 % (1.35 if there are many impacts)
+MAX_RESIDUAL_TO_NOISE = 1.2  # times the noise: a residual that says more than noise
+SIDES, P, ALPHA = range(3)  # indices: ln of alpha of one side over the other, of p and of alpha over those of the file
 
 
 class Estimated(NamedTuple):
@@ -175,14 +176,14 @@ class _Problem:
     angles: Reals
     origin: float
     scale: float
-    level: float  # of rest, where the fit starts
-    contact: float  # about the time of the first impact
+    level: float  # angle at rest from which the fit starts
+    contact: float  # approximate time of the first impact
     crossings: Sequence[tuple[float, bool]]  # times of the impacts, and whether they are in a gap
     sides: Mapping[Direction, RockingSide]
     first: Direction
-    sense: float  # of the trace, that of a positive rotation of the structure
-    free: Sequence[int] = ()  # what of the geometry is fitted, too: the last parameters
-    geometry: tuple[float, float, float] = (0.0, 0.0, 0.0)  # what is held, or added to
+    sense: float  # sign in the trace of a positive rotation of the structure
+    free: Sequence[int] = ()  # indices of fitted geometry, the last parameters
+    geometry: tuple[float, float, float] = (0.0, 0.0, 0.0)  # fixed part of the geometry
 
     def motion(self, x: Reals) -> FreeRocking:
         """Return the rotation over the time from the release, for parameters."""
@@ -260,13 +261,13 @@ def fit_trace(structure: Structure, trace: Trace, *, free_geometry: bool = False
             if problem is not None:
                 problems.append(problem)
                 count = max(count, len(problem.crossings))
-    if not problems or (mechanism.rocks_both_ways and count < LEAST_IMPACTS):
+    if not problems or (mechanism.rocks_both_ways and count < MIN_IMPACTS):
         raise InputError(_too_few(trace, count))
     try:
-        with np.errstate(all="ignore"):  # a trial far off has no finite residual, and is no best fit
+        with np.errstate(all="ignore"):  # a poor trial has no finite residual, and is never the best fit
             problem, x = _common(problems)
             level = float(x[OFFSET] + x[DRIFT] * problem.contact / problem.times[-1]) * problem.scale
-            again = _problem(trace, level, noise, sides, problem.first)  # so that nothing of the lifting is fitted
+            again = _problem(trace, level, noise, sides, problem.first)  # excludes the lifting from the fit
             return _each(*_common([again or problem]), trace, structure, free_geometry)
     except (ArithmeticError, np.linalg.LinAlgError):
         what = "no motion of this structure fits: check its size, and the units of times and angles"
@@ -281,9 +282,9 @@ def _check_free(structure: Structure) -> None:
             f"{structure.name}: p and alpha can be fitted of a free-standing block (mechanism: block) only"
         )
     alpha = structure.equivalence.positive.phi_cr
-    if alpha < LEAST_ALPHA:
+    if alpha < MIN_ALPHA:
         raise InputError(
-            f"{structure.name}: alpha is {alpha:.3g} rad. Below {LEAST_ALPHA:g} rad, a trace does not tell p "
+            f"{structure.name}: alpha is {alpha:.3g} rad. Below {MIN_ALPHA:g} rad, a trace does not tell p "
             "and alpha apart: hold the geometry"
         )
 
@@ -293,12 +294,12 @@ def _noise(trace: Trace) -> float:
     if not (np.isfinite(trace.angles).all() and np.isfinite(trace.times).all() and (np.diff(trace.times) > 0).all()):
         what = "times and angles must be finite numbers, and times increase: leave out samples without an angle"
         raise InputError(f"{trace.name}: {what}")
-    if trace.times.size < LEAST_SAMPLES:
-        raise InputError(f"{trace.name}: a trace needs at least {LEAST_SAMPLES} samples, got {trace.times.size}")
+    if trace.times.size < MIN_SAMPLES:
+        raise InputError(f"{trace.name}: a trace needs at least {MIN_SAMPLES} samples, got {trace.times.size}")
     length = float(trace.times[-1] - trace.times[0])
-    if length > LONGEST:
+    if length > MAX_TRACE_DURATION:
         raise InputError(f"{trace.name}: the trace lasts {length:.3g} s: check the unit of the times")
-    third = np.abs(np.diff(trace.angles, 3))  # has 20 times the variance of white noise
+    third = np.abs(np.diff(trace.angles, 3))  # its variance is 20 times that of the white noise
     return float(np.median(third) or np.mean(third)) / 0.6745 / float(np.sqrt(20))
 
 
@@ -309,7 +310,7 @@ def _rms(values: Reals) -> float:
 def _too_few(trace: Trace, count: int) -> str:
     return (
         f"{trace.name}: {count or 'no'} impact{'s' * (count != 1)} can be seen above the noise, and a fit needs "
-        f"{LEAST_IMPACTS}: release the structure from a larger angle, or record longer"
+        f"{MIN_IMPACTS}: release the structure from a larger angle, or record longer"
     )
 
 
@@ -322,7 +323,7 @@ def _levels(trace: Trace, noise: float, most: float) -> list[float]:
     size = float(np.ptp(angles)) / 2
     if not size > 0:
         raise InputError(f"{trace.name}: the angle is the same in all samples: there is no motion to fit")
-    if not size > ABOVE * noise:
+    if not size > MIN_LARGEST_TO_NOISE * noise:
         raise InputError(
             f"{trace.name}: the noise, {np.degrees(noise):.2g} deg, is not below a fifth of the largest angle, "
             f"{np.degrees(size):.2g} deg: there is no motion to fit"
@@ -332,15 +333,15 @@ def _levels(trace: Trace, noise: float, most: float) -> list[float]:
             f"{trace.name}: the largest angle, {np.degrees(size):.3g} deg, is more than twice the rotation at which "
             f"the structure overturns, {np.degrees(most):.3g} deg: check the unit of the angles, and the structure"
         )
-    if size < LEAST_ANGLE * most:
+    if size < MIN_ANGLE_SHARE * most:
         raise InputError(
-            f"{trace.name}: the largest angle, {np.degrees(size):.3g} deg, is below {LEAST_ANGLE:g} times the "
+            f"{trace.name}: the largest angle, {np.degrees(size):.3g} deg, is below {MIN_ANGLE_SHARE:g} times the "
             f"rotation at which the structure overturns, {np.degrees(most):.3g} deg: check the unit of the angles"
         )
     levels: list[float] = []
     tail = angles[-max(angles.size // 10, 5) :]
     for level in (float(np.median(tail)), 0.0, float((angles.max() + angles.min()) / 2)):
-        if all(abs(level - each) > NEAR * size for each in levels):
+        if all(abs(level - each) > MIN_LEVEL_DISTANCE * size for each in levels):
             levels.append(level)
     return levels
 
@@ -352,9 +353,9 @@ def _problem(
     times, angles = trace.times, trace.angles - level
     top = int(np.argmax(np.abs(angles)))
     release, sign = abs(float(angles[top])), float(np.sign(angles[top]))
-    sizes = np.linspace(0.002, FARTHEST, 80) * sides[first].end
+    sizes = np.linspace(0.002, MAX_RELEASE_SHARE, 80) * sides[first].end
     table = quarter_cycles(sides[first], sizes)
-    if len(sides) == 1:  # no angle changes its sign: the first impact follows soon after half of the fall
+    if len(sides) == 1:  # angles keep their sign: the first impact follows soon after half of the fall
         falls = np.flatnonzero(sign * angles[top:] < release / 2)[:1]
         crossings = [(float(times[top + k]) + 0.25 * float(np.interp(release, sizes, table)), True) for k in falls]
     else:
@@ -362,20 +363,22 @@ def _problem(
     if not crossings:
         return None
     contact = crossings[0][0]
-    for _ in range(3):  # what was lifted further before does not count
+    for _ in range(3):  # larger angles before, while the structure is lifted, do not count
         falling = (times > contact - np.interp(release, sizes, table)) & (times < contact)
         highest = float(np.max(sign * angles[falling], initial=0.0))
-        release = highest if highest > release / 2 else release  # or it falls more slowly than this structure
-    since = contact - AFTER * float(np.interp(release, sizes, table))
+        release = highest if highest > release / 2 else release  # otherwise it falls more slowly than this structure
+    since = contact - FITTED_QUARTER_SHARE * float(np.interp(release, sizes, table))
     until = np.inf
     if len(sides) > 1:
         edges = [*(each[0] for each in crossings), np.inf]
         peaks = [np.max(np.abs(angles[(times >= a) & (times < b)]), initial=0.0) for a, b in pairwise(edges)]
-        grows = np.flatnonzero(np.array(peaks[1:]) > np.array([release, *peaks[:-2]]) + GROWS * release) + 1
+        grows = (
+            np.flatnonzero(np.array(peaks[1:]) > np.array([release, *peaks[:-2]]) + MIN_NEW_TEST_GROWTH * release) + 1
+        )
         crossings = crossings[: grows[0] + 1] if grows.size else crossings
         until = crossings[-1][0] if grows.size else 2 * crossings[-1][0] - since
     inside = (times >= since) & (times <= until)
-    if inside.sum() < LEAST_SAMPLES:
+    if inside.sum() < MIN_SAMPLES:
         return None
     origin = float(times[inside][0])
     return _Problem(
@@ -394,7 +397,7 @@ def _crossings(times: Reals, angles: Reals, hold: float) -> list[tuple[float, bo
         part = slice(one, other + 1)
         share = angles[one] / (angles[one] - angles[other])
         when = float(times[one] + share * (times[other] - times[one]))
-        found.append((when, bool(np.diff(times[part]).max() > GAP * usual)))
+        found.append((when, bool(np.diff(times[part]).max() > MIN_GAP_RATIO * usual)))
     return found
 
 
@@ -403,9 +406,9 @@ def _starts(problem: _Problem) -> list[Reals]:
     side = problem.sides[problem.first]
     sizes = np.linspace(0.002, 0.98, 80) * side.end
     table = quarter_cycles(side, sizes)
-    release = min(1.0, FARTHEST * side.end / problem.scale)
+    release = min(1.0, MAX_RELEASE_SHARE * side.end / problem.scale)
     start = problem.contact - float(np.interp(release * problem.scale, sizes, table))
-    etas = list(STARTS)
+    etas = list(START_ETAS)
     spans = [
         (k, (after - when) / 2)
         for k, ((when, hidden), (after, also)) in enumerate(pairwise(problem.crossings), 1)
@@ -422,21 +425,21 @@ def _starts(problem: _Problem) -> list[Reals]:
 def _common(problems: Sequence[_Problem]) -> tuple[_Problem, Reals]:
     """Fit one restitution for all impacts to each part of a trace that may be the rocking; return the best."""
     starts = [(each, x) for each in sorted(problems, key=lambda each: -each.times[-1]) for x in _starts(each)]
-    # Those by the times of impacts first, then those that are nearest to the trace.
-    first = [each for each in starts if each[1][ETA] not in STARTS]
-    rest = sorted((each for each in starts if each[1][ETA] in STARTS), key=lambda each: each[0].distance(each[1]))
+    # Starts from the times of impacts come first, then those nearest to the trace.
+    first = [each for each in starts if each[1][ETA] not in START_ETAS]
+    rest = sorted((each for each in starts if each[1][ETA] in START_ETAS), key=lambda each: each[0].distance(each[1]))
     best, least = starts[0], np.inf
-    for problem, x in [*first, *rest[:FURTHER]]:
-        for count in WINDOWS:  # over ever longer parts of the trace, so that no impact is missed or added
+    for problem, x in [*first, *rest[:MAX_FURTHER_STARTS]]:
+        for count in WINDOWS:  # longer and longer parts of the trace, so that no impact is missed or added
             impacts = problem.motion(x).impacts + x[START]
             until = impacts[count - 1] if count <= impacts.size else np.inf
             x, _, rms = problem.fit(x, until)
-            if until >= problem.times[-1] or rms > POOR:
+            if until >= problem.times[-1] or rms > MAX_RESIDUAL:
                 break
-        same = abs(rms - least) < 1e-3 * rms  # two starts lead there
+        same = abs(rms - least) < 1e-3 * rms  # two starts lead to this fit
         if rms < least:
             best, least = (problem, x), rms
-        if least < FITS or same:
+        if least < MAX_GOOD_RESIDUAL or same:
             break
     return best
 
@@ -445,12 +448,12 @@ def _freed(problem: _Problem, x: Reals, free: Sequence[int]) -> tuple[_Problem, 
     """Fit some of the geometry, too; return the problem that holds it, the parameters, and its covariance."""
     apart = replace(problem, free=free)
     x = np.append(x, np.zeros(len(free)))
-    for _ in range(4):  # a valley, along which one fit may not come to its end
+    for _ in range(4):  # one fit may stop halfway along a valley
         x, jacobian, _ = apart.fit(x)
     geometry = np.array(problem.geometry)
     geometry[list(free)] += x[-len(free) :]
     misfit = apart.model(x, apart.times) - apart.angles
-    noise = max(_noise_of(misfit), EXACT)
+    noise = max(_noise_of(misfit), MIN_NOISE)
     factor = noise**2 * max(1.0, _pattern(misfit, noise, len(problem.crossings) * 6))
     covariance = factor * np.asarray(np.linalg.pinv(jacobian.T @ jacobian))[-len(free) :, -len(free) :]
     return replace(problem, geometry=tuple(geometry.tolist())), x[: -len(free)], covariance
@@ -460,9 +463,9 @@ def _each(problem: _Problem, x: Reals, trace: Trace, structure: Structure, free_
     """Fit a restitution for each impact, and return both fits in the units of the trace. Raises `InputError`."""
     times, scale = problem.times, problem.scale
     one = problem.distance(x)
-    if not one < POOR:
+    if not one < MAX_RESIDUAL:
         raise InputError(_is_other(problem, x, one, trace, structure))
-    # Errors of width and height alike, in ln p and ln alpha, which move the mean.
+    # Errors of width and height in ln p and ln alpha, which move the mean.
     size = structure.model("nonlinear").scatter.slenderness / np.sqrt(2)
     errors = np.array([[0.0, size], [-size / 2, -size]])
     p = alpha = sides = None
@@ -474,26 +477,27 @@ def _each(problem: _Problem, x: Reals, trace: Trace, structure: Structure, free_
             Estimated(float(v), float(v * d)) for v, d in zip(values, np.sqrt(np.diag(covariance)), strict=True)
         )
     own, count, solve, noise, pattern = _own(problem, x, trace)
-    if len(problem.sides) > 1 and problem.distance(x) > OFF * noise:
+    if len(problem.sides) > 1 and problem.distance(x) > MAX_RESIDUAL_TO_NOISE * noise:
         apart, other, covariance = _freed(problem, x, [SIDES])
         least = problem.distance(own) ** 2
-        if apart.distance(other) ** 2 - least < 0.1 * (problem.distance(x) ** 2 - least):  # it explains the scatter
+        # Different sides explain the scatter.
+        if apart.distance(other) ** 2 - least < 0.1 * (problem.distance(x) ** 2 - least):
             problem, x = apart, other
             ratio = float(np.exp(problem.sense * problem.geometry[SIDES]))
             sides = Estimated(ratio, ratio * float(np.sqrt(covariance[0, 0])))
             own, count, solve, noise, pattern = _own(problem, x, trace)
-    if not problem.distance(own) < OTHER:
+    if not problem.distance(own) < MAX_RESIDUAL_OF_ETAS:
         raise InputError(_is_other(problem, x, problem.distance(own), trace, structure))
     covariance = noise**2 * max(1.0, pattern) * solve @ solve.T
     deviation = np.sqrt(np.diag(covariance))
-    last = ETA + count - 1  # left out: it is that of all that follow, too
+    last = ETA + count - 1  # left out, as all later impacts share it
     pooled = pool(own[ETA:last], covariance[ETA:last, ETA:last], MEASURED)
     w = pooled.weights
     variance = w @ covariance[ETA:last, ETA:last] @ w + pooled.scatter**2 * (w @ w)
     for error in errors:
-        geometry = np.array(problem.geometry) + STEP * np.append(0.0, error)
+        geometry = np.array(problem.geometry) + GEOMETRY_STEP * np.append(0.0, error)
         moved = solve @ (replace(problem, geometry=tuple(geometry)).model(own, times) - problem.model(own, times))
-        variance += (w @ moved[ETA:last] / STEP) ** 2
+        variance += (w @ moved[ETA:last] / GEOMETRY_STEP) ** 2
     total, origin = float(times[-1]), problem.origin
     drift = Estimated(float(own[DRIFT]) * scale / total, float(deviation[DRIFT]) * scale / total)
     to_zero, part = np.array([1.0, -origin / total]), slice(OFFSET, DRIFT + 1)
@@ -515,7 +519,7 @@ def _each(problem: _Problem, x: Reals, trace: Trace, structure: Structure, free_
         np.where(fitted, problem.model(x, after) * scale, np.nan),
         np.where(fitted, problem.model(own, after) * scale, np.nan),
         noise * scale,
-        pattern > PATTERN,
+        pattern > MAX_PATTERN_RATIO,
         sides,
         p,
         alpha,
@@ -542,14 +546,15 @@ def _own(problem: _Problem, x: Reals, trace: Trace) -> tuple[Reals, int, Reals, 
     """
     motion, noise = problem.motion(x), _noise_of(problem.model(x, problem.times) - problem.angles)
     inside = motion.impacts[:-1] + x[START] < problem.times[-1]
-    count = int(np.count_nonzero(inside & (motion.peaks[1:] > SEEN * noise * problem.scale)))
-    if count < LEAST_IMPACTS:
+    count = int(np.count_nonzero(inside & (motion.peaks[1:] > MIN_PEAK_TO_NOISE * noise * problem.scale)))
+    if count < MIN_IMPACTS:
         raise InputError(_too_few(trace, count))
-    count = min(count, MOST_IMPACTS)
+    count = min(count, MAX_FITTED_ETAS)
     own, jacobian, _ = problem.fit(np.concatenate([x[:ETA], np.full(count, x[ETA])]))
-    rocking = problem.times < problem.motion(own).impacts[count - 1] + own[START]  # a coarse digit may hide in rest
+    # At rest, a coarse resolution may hide the noise.
+    rocking = problem.times < problem.motion(own).impacts[count - 1] + own[START]
     misfit = (problem.model(own, problem.times) - problem.angles)[rocking]
-    noise = max(_noise_of(misfit), EXACT)
+    noise = max(_noise_of(misfit), MIN_NOISE)
     return own, count, np.asarray(np.linalg.pinv(jacobian)), noise, _pattern(misfit, noise, 6 * count)
 
 
@@ -577,15 +582,15 @@ def pool(etas: Reals, covariance: Reals, usual: float) -> Pooled:
     usual : float
         Scatter of other bodies, towards which that of few impacts is drawn.
     """
-    scatters = np.geomspace(1e-5, 0.5, 400)  # the first is taken for 0
+    scatters = np.geomspace(1e-5, 0.5, 400)  # the first stands for 0
     inverse = np.linalg.inv(covariance + scatters[:, None, None] ** 2 * np.eye(etas.size))
     weights = inverse.sum(axis=2) / inverse.sum(axis=(1, 2))[:, None]
     off = etas - (weights @ etas)[:, None]
     chi = np.einsum("ki,kij,kj->k", off, inverse, off)
     likelihood = (np.linalg.slogdet(inverse)[1] - np.log(inverse.sum(axis=(1, 2))) - chi) / 2
     best = int(np.argmax(likelihood))
-    inside = scatters[likelihood > likelihood[best] - DROP]
-    drawn = likelihood - PRIOR * (np.log(scatters) + (usual / scatters) ** 2 / 2)
+    inside = scatters[likelihood > likelihood[best] - INTERVAL_DROP]
+    drawn = likelihood - PRIOR_IMPACTS * (np.log(scatters) + (usual / scatters) ** 2 / 2)
     each = np.exp(drawn - drawn.max())
     scatter = float(np.sqrt(each.sum() / (each @ scatters**-2)))
     seen, low, high = (0.0 if each == scatters[0] else float(each) for each in (scatters[best], inside[0], inside[-1]))

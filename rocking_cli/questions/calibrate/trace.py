@@ -14,8 +14,8 @@ from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Spreadsheet, read_sheet, u
 from rocking_cli.text import cut, one_line
 from rocking_cli.units import UnitError, read, units_of
 
-TIMES, ANGLES = ("time", "t"), ("angle", "rotation", "theta", "phi", "tilt")
-SHOWN = 20  # wrong cells of a file that are named
+TIME_NAMES, ANGLE_NAMES = ("time", "t"), ("angle", "rotation", "theta", "phi", "tilt")
+MAX_SHOWN_CELLS = 20  # unreadable cells that an error message names
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,13 +50,15 @@ def read_trace(path: Path) -> Trace:
 
 def parse_trace(sheet: Spreadsheet) -> Trace:
     """Return the trace in a table of text. Raises as `read_trace`."""
-    (time, seconds), (angle, unit) = (_column(sheet, names, kind) for names, kind in ((TIMES, "s"), (ANGLES, "rad")))
+    (time, seconds), (angle, unit) = (
+        _column(sheet, names, kind) for names, kind in ((TIME_NAMES, "s"), (ANGLE_NAMES, "rad"))
+    )
     problems: list[Problem] = []
     times: list[float] = []
     angles: list[float] = []
     for row in sheet.rows:
         if row.cells[angle].lower() in ("", "nan"):
-            continue  # a gap
+            continue  # a gap in the trace
         values = []
         for place, own, kind in ((time, seconds, "s"), (angle, unit, "rad")):
             cell = row.cells[place]
@@ -74,7 +76,7 @@ def parse_trace(sheet: Spreadsheet) -> Trace:
             times.append(values[0])
             angles.append(values[1])
     if problems:
-        raise InputError(*problems[:SHOWN])
+        raise InputError(*problems[:MAX_SHOWN_CELLS])
     return Trace(sheet.file, np.array(times), np.array(angles))
 
 

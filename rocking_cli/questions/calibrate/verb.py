@@ -27,8 +27,9 @@ if TYPE_CHECKING:
     from rocking_cli.questions.score.table import ObservedTest, TableOfTests
     from rocking_cli.structure import Structure
 
-SLENDERNESS, RESTITUTION, POINTS, NEIGHBOURS = (0.7, 1.3), (0.7, 0.99), 9, 40  # of the grid, by default
-LEAST_POINTS, MOST_POINTS = 3, 101
+# Defaults of the grid.
+SLENDERNESS_RANGE, RESTITUTION_RANGE, GRID_POINTS, GRID_NEIGHBOURS = (0.7, 1.3), (0.7, 0.99), 9, 40
+MIN_GRID_POINTS, MAX_GRID_POINTS = 3, 101
 
 
 @takes_numbers
@@ -114,9 +115,9 @@ def calibrate(
             )
     table = tests_of(tests)
     kept = _of_structure(table, source)
-    axes = (("slenderness", slenderness or SLENDERNESS), ("restitution", restitution or RESTITUTION))
-    grid = [_grid(name, ends, POINTS if points is None else points) for name, ends in axes]
-    around = Neighbourhood(NEIGHBOURS if neighbours is None else neighbours)
+    axes = (("slenderness", slenderness or SLENDERNESS_RANGE), ("restitution", restitution or RESTITUTION_RANGE))
+    grid = [_grid(name, ends, GRID_POINTS if points is None else points) for name, ends in axes]
+    around = Neighbourhood(GRID_NEIGHBOURS if neighbours is None else neighbours)
     from rocking_cli.questions.calibrate.region import joint_region
     from rocking_cli.questions.calibrate.view import region_columns, region_view
 
@@ -140,7 +141,7 @@ def _of_trace(
 
     trace = free if isinstance(free, Trace) else read_trace(Path(free))
     found = fit_trace(ready, trace, free_geometry=free_geometry)
-    ready.with_eta(found.eta.value)  # or it says why the structure cannot have this restitution
+    ready.with_eta(found.eta.value)  # raises an error if the structure cannot have this restitution
     if out is not None:
         if source is None:
             raise InputError(Problem("needs the file of the structure, of which it is a copy", field="`out`"))
@@ -171,7 +172,8 @@ def _write(structure: Structure, source: Path, out: Path, found: TraceFit) -> No
         for name, length in (("width", size * sin(found.alpha.value)), ("height", size * cos(found.alpha.value))):
             fields[name] = f"{length:.5g}  # of a uniform block with p and alpha as {where}"
     text = with_fields(read_text(source, "structure"), fields, str(source))
-    written = Structure(parse_structure(text, str(out), structure.name)).equivalence.positive  # as it will be read
+    # As a reader of the file gets it.
+    written = Structure(parse_structure(text, str(out), structure.name)).equivalence.positive
     if found.p is not None and found.alpha is not None:
         for one, other in ((written.p, found.p.value), (written.phi_cr, found.alpha.value)):
             if abs(one / other - 1) > 1e-3:
@@ -195,8 +197,10 @@ def _of_structure(table: TableOfTests, source: Path | None) -> Sequence[Observed
 def _grid(name: str, ends: tuple[float, float], points: int) -> np.ndarray[Any, np.dtype[np.float64]]:
     """Return the values of one axis of the grid. Raises `InputError`."""
     low, high = ends
-    if not LEAST_POINTS <= points <= MOST_POINTS:
-        raise InputError(Problem(f"must be from {LEAST_POINTS} to {MOST_POINTS}, got {points}", field="`points`"))
+    if not MIN_GRID_POINTS <= points <= MAX_GRID_POINTS:
+        raise InputError(
+            Problem(f"must be from {MIN_GRID_POINTS} to {MAX_GRID_POINTS}, got {points}", field="`points`")
+        )
     if not (0 < low < high and (name != "restitution" or high <= 1)):
         what = "from above 0 to 1" if name == "restitution" else "above 0"
         raise InputError(Problem(f"must be two increasing numbers {what}, got {low:g} and {high:g}", field=f"`{name}`"))

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 from rocking_cli.dynamics.model import MEASURED
 from rocking_cli.names import percent
-from rocking_cli.questions.calibrate.region import INSIDE, JointRegion
-from rocking_cli.questions.calibrate.study import OFF, Estimated, TraceFit
+from rocking_cli.questions.calibrate.region import REGION_PROBABILITY, JointRegion
+from rocking_cli.questions.calibrate.study import MAX_RESIDUAL_TO_NOISE, Estimated, TraceFit
 from rocking_cli.structure import Structure
 from rocking_cli.views.column import Column, of, only_shown, rounded, table_of
 from rocking_cli.views.view import Table, View, heading
@@ -102,7 +102,7 @@ def _residuals(found: TraceFit) -> str:
             "size of the structure."
         )
     said = f"The residual is {degrees(found.residual):.2g} deg, {one:.2g} times the noise"
-    if one <= OFF:
+    if one <= MAX_RESIDUAL_TO_NOISE:
         return f"{said}: free rocking with one restitution explains the trace."
     return f"{said}, and {own:.2g} times with a restitution for each impact: it differs from impact to impact."
 
@@ -165,7 +165,8 @@ def _region_parts(found: JointRegion, name: str, file: str, count: int) -> Itera
     (low, high), (least, most) = found.ranges
     points = int(found.inside.sum())
     yield (
-        f"Likeliest: slenderness times {slender:.3g}, restitution {eta:.3g}. Joint region of {percent(INSIDE)}, "
+        f"Likeliest: slenderness times {slender:.3g}, restitution {eta:.3g}. Joint region of "
+        f"{percent(REGION_PROBABILITY)}, "
         f"{points} of {found.inside.size} points: slenderness times {low:.3g} to {high:.3g}, restitution {least:.3g} "
         f"to {most:.3g}. Not every pair of values from these ranges is in it."
     )
@@ -199,7 +200,7 @@ def _region_data(found: JointRegion, name: str) -> dict[str, Any]:
         "clusters": found.clusters,
         "neighbours": found.around.count,
         "best": {"slenderness": slenderness, "restitution": restitution},
-        "region": {"probability": INSIDE, **ranges},
+        "region": {"probability": REGION_PROBABILITY, **ranges},
         "grid": {
             "slenderness": found.slenderness.tolist(),
             "restitution": found.restitution.tolist(),

@@ -14,10 +14,10 @@ from rocking_cli.text import in_short
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, rounded, table_of
 from rocking_cli.views.view import Table, View, force_unit, heading, number
 
-FEW = 6  # blocks of a part, all of which are named
-SOME = 3  # of one that has more
-REACHED = 1e-6  # of the friction given: a mechanism that requires this much uses all of it
-ROWS = 24  # joints, the forces in all of which are shown
+MAX_NAMED_BLOCKS = 6  # of a part: of a larger one, only SAMPLE_OF_BLOCKS are named
+SAMPLE_OF_BLOCKS = 3
+FRICTION_TOLERANCE = 1e-6  # relative: within it, a mechanism uses all of the given friction
+MAX_JOINT_ROWS = 24  # with more joints, only those that move are listed
 
 
 def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> View:
@@ -49,16 +49,18 @@ def _hinges(direction: Direction, found: CollapseMechanism) -> Table | str:
     title = f"{direction.label.capitalize()} direction: lambda = {number(found.lambda_)} g"
     if not found.hinges:
         return f"{title}, without hinges."
-    return table_of(title, _of_hinge(by_joint=any(len(group) > FEW for group in found.groups)), found.hinges)
+    return table_of(
+        title, _of_hinge(by_joint=any(len(group) > MAX_NAMED_BLOCKS for group in found.groups)), found.hinges
+    )
 
 
 def _part(found: CollapseMechanism, group: Sequence[str]) -> str:
     """Return the name of a group of blocks: all their names, or of many some names and the hinges."""
-    if len(group) <= FEW:
+    if len(group) <= MAX_NAMED_BLOCKS:
         return "+".join(group)
     letters = [each.letter for each in found.hinges if "+".join(group) in each.between]
     on = f", on {'hinge' if len(letters) == 1 else 'hinges'} {', '.join(letters)}" if letters else ""
-    return f"{len(group)} blocks ({in_short(group, most=SOME)}{on})"
+    return f"{len(group)} blocks ({in_short(group, most=SAMPLE_OF_BLOCKS)}{on})"
 
 
 def _sentences(mechanism: Mechanism, found: CollapseMechanism) -> list[str]:
@@ -116,7 +118,7 @@ def _required(needed: float, given: float | None) -> str:
     required = "It requires a coefficient of friction of {} in every joint"
     if given is None:
         return f"{required.format(number(needed, 4))}."
-    if isclose(needed, given, rel_tol=REACHED):
+    if isclose(needed, given, rel_tol=FRICTION_TOLERANCE):
         return f"{required.format(number(given, 4))}: all that is given."
     return f"{required.format(number(needed, digits_apart(needed, given, 4)))}; {given:g} is given."
 
@@ -124,9 +126,9 @@ def _required(needed: float, given: float | None) -> str:
 def _thrust(direction: Direction, found: CollapseMechanism, per: float, unit: str) -> list[Table | str]:
     """Return a table of the forces in the joints; of many joints only those that hinge or slide."""
     shown, rest = found.thrust, ""
-    if len(shown) > ROWS:
+    if len(shown) > MAX_JOINT_ROWS:
         moving = {*(each.joint for each in found.hinges), *found.slides}
-        shown = [each for each in shown if each[0] in moving][:ROWS]
+        shown = [each for each in shown if each[0] in moving][:MAX_JOINT_ROWS]
         rest = f"{len(found.thrust)} joints bear; the JSON output has the forces in all of them."
     if not shown:
         return [rest] if rest else []

@@ -6,7 +6,7 @@ import click
 
 from rocking_cli.cli import options, terminal
 
-VARIABLE = "_ROCKING_COMPLETE"
+COMPLETION_VARIABLE = "_ROCKING_COMPLETE"
 """Variable of the environment by which the shell requests completions, named as click expects it."""
 
 
@@ -26,8 +26,8 @@ def command(shell: str, as_json: bool) -> None:
 
     maker = get_completion_class(shell)
     assert maker is not None
-    made = maker(click.get_current_context().find_root().command, {}, "rocking", VARIABLE)
-    script = made.source_template % made.source_vars()  # `source` runs bash to see how old it is
+    made = maker(click.get_current_context().find_root().command, {}, "rocking", COMPLETION_VARIABLE)
+    script = made.source_template % made.source_vars()  # `source()` would run bash to find its version
     if as_json:
         terminal.print_json({"shell": shell, "script": script})
     else:

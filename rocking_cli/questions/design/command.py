@@ -9,7 +9,7 @@ import click
 
 from rocking_cli.cli import options
 from rocking_cli.cli.defaults import as_declared
-from rocking_cli.cli.groups import AROUND, GroundMotions, Output
+from rocking_cli.cli.groups import NEIGHBOUR_OPTIONS, GroundMotions, Output
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import Parsed
 
@@ -78,6 +78,6 @@ def command(file: str | Path, asked: GroundMotions, output: Output, **question: 
     from rocking_cli.questions.design.verb import design
 
     if not asked:
-        as_declared(question, *AROUND)
+        as_declared(question, *NEIGHBOUR_OPTIONS)
     output.keep_apart(file, *asked.motions.records)
     output.show(design(file, motions=asked.motions, polarity=asked.polarity, watch=output.watch, **question))

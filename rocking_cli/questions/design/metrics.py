@@ -164,7 +164,7 @@ def _of_codes(name: str) -> Metric | None:
         assert excitation is not None and excitation.site is not None
         key = excitation.site.site.code
         of = own[key].of
-        assert of is not None  # else it is of the structure
+        assert of is not None  # otherwise it is a metric of the structure
         verified = verify(structure, excitation.site).directions.values()
         with _blamed(key, name):
             return min((value for direction in verified if (value := of(direction)) is not None), default=nan)

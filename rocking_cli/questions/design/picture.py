@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from rocking_cli.plotting import style
 from rocking_cli.questions.design.study import Design
 
-HOLDS = "#d6e6f2"
-ROOM = 0.12  # of the height, above what is drawn
-SCAN = 60  # values of the scan that are marked, at most
+SATISFIED_COLOUR = "#d6e6f2"
+HEADROOM = 0.12  # share of the height above the curve
+MAX_MARKED_VALUES = 60  # of the scan
 
 
 def draw_design(found: Design) -> Figure:
@@ -27,9 +27,9 @@ def draw_design(found: Design) -> Figure:
     finite = np.isfinite(found.metric)
     shown = np.where(finite, found.metric, np.nan)
     for k, (low, high) in enumerate(found.holds):
-        axes.axvspan(low, high, color=HOLDS, linewidth=0, label=f"{found.aim} holds" if k == 0 else None)
+        axes.axvspan(low, high, color=SATISFIED_COLOUR, linewidth=0, label=f"{found.aim} holds" if k == 0 else None)
     axes.axhline(found.aim.level, color=style.EXCEEDED, linewidth=style.BOLD, linestyle="--", label="required level")
-    few = finite.sum() <= SCAN
+    few = finite.sum() <= MAX_MARKED_VALUES
     axes.plot(
         found.values, shown, color=style.INK, linewidth=style.BOLD, marker="o" if few else "", markersize=3,
         label=f"{found.aim.metric.name}, {len(found.values)} values tried",
@@ -43,7 +43,7 @@ def draw_design(found: Design) -> Figure:
         )
     axes.set_xlim(float(found.values[0]), float(found.values[-1]))
     low, high = axes.get_ylim()
-    axes.set_ylim(low, high + ROOM * (high - low))
+    axes.set_ylim(low, high + HEADROOM * (high - low))
     unit = f" [{found.unit}]" if found.unit else ""
     of_metric = f" [{found.aim.metric.unit}]" if found.aim.metric.unit else ""
     axes.set_xlabel(style.fitted(f"{found.field}{unit}", 5, style.LABEL), fontsize=style.LABEL, parse_math=False)

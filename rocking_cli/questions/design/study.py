@@ -23,10 +23,10 @@ from rocking_cli.units import UnitError, read, split
 OPERATORS: dict[str, Callable[[float, float], bool]] = {
     "<=": operator.le, ">=": operator.ge, "<": operator.lt, ">": operator.gt,
 }  # fmt: skip
-POINTS = 41  # of the scan
-FINEST = 1e-12  # of the range: how closely an edge is found
-COARSE = 1e-3  # the same for shares of histories, which move by steps
-ROUNDING = 1e-9  # relative: steps against the trend that rounding may make
+SCAN_POINTS = 41
+EDGE_TOLERANCE = 1e-12  # share of the range, to which an edge is found
+EDGE_TOLERANCE_OF_SHARES = 1e-3  # shares of histories change in steps, so that more precision has no meaning
+TREND_TOLERANCE = 1e-9  # relative size of steps against the trend that rounding may cause
 _AIM = re.compile(r"\s*([A-Za-z]\w*)\s*(<=|>=|<|>)\s*(\S.*?)\s*")
 
 
@@ -193,7 +193,7 @@ class Design:
     def has_effect(self) -> bool:
         """Whether the metric differs anywhere over the scan."""
         there = self.metric[~np.isnan(self.metric)]
-        return there.size < 2 or not np.allclose(there, there[0], rtol=ROUNDING, atol=0.0)
+        return there.size < 2 or not np.allclose(there, there[0], rtol=TREND_TOLERANCE, atol=0.0)
 
     @property
     def everywhere(self) -> bool:
@@ -229,7 +229,7 @@ def design(
     aim: Aim,
     excitation: Excitation | None = None,
     *,
-    points: int = POINTS,
+    points: int = SCAN_POINTS,
     progress: Callable[[int], None] | None = None,
 ) -> Design:
     """Find the values of a field at which a structure meets a requirement.
@@ -293,7 +293,7 @@ def design(
         if aim.metric.shaken and (not monotone or isnan(numbers[outside])):
             return ends[0]
         if aim.metric.shaken or isnan(numbers[outside]):
-            closest = (COARSE if aim.metric.shaken else FINEST) * abs(ends[1] - ends[0])
+            closest = (EDGE_TOLERANCE_OF_SHARES if aim.metric.shaken else EDGE_TOLERANCE) * abs(ends[1] - ends[0])
             return _last_that_holds(metric, aim, *ends, closest)
         return _edge(metric, aim, *ends)
 
@@ -330,7 +330,7 @@ def _taken_otherwise(
     for value in span:
         try:
             found |= dict.fromkeys(taken_otherwise(structure.varied(field, value), excitation.site))
-        except (InputError, MechanismError):  # its reason is among those of `not_built`
+        except (InputError, MechanismError):  # the reason is listed in `not_built`
             continue
     return list(found)
 
@@ -359,9 +359,10 @@ def _is_monotone(metric: Reals) -> bool:
         return False
     metric = metric[there]
     with np.errstate(invalid="ignore"):
-        steps = np.where(metric[1:] == metric[:-1], 0.0, metric[1:] - metric[:-1])  # two infinities are the same
+        # The difference of two infinities is NaN.
+        steps = np.where(metric[1:] == metric[:-1], 0.0, metric[1:] - metric[:-1])
     finite = np.abs(metric[np.isfinite(metric)])
-    small = ROUNDING * float(finite.max(initial=0.0))
+    small = TREND_TOLERANCE * float(finite.max(initial=0.0))
     return bool((steps >= -small).all() or (steps <= small).all())
 
 
@@ -391,10 +392,10 @@ def _edge(at: Callable[[float], float], aim: Aim, inside: float, outside: float)
         away = at(x) - aim.level
         return inf if isnan(away) else min(max(away, -bound), bound)
 
-    for end in (inside, outside):  # reached exactly, where the level itself may count or not
+    for end in (inside, outside):  # the metric equals the level, and the operator decides
         if beyond(end) == 0.0:
             return end
-    closest = FINEST * abs(outside - inside)
+    closest = EDGE_TOLERANCE * abs(outside - inside)
     return float(brentq(beyond, inside, outside, xtol=closest, rtol=4 * np.finfo(float).eps, maxiter=200))
 
 

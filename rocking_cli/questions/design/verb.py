@@ -15,7 +15,7 @@ from rocking_cli.core.mechanism import doubtful_size
 from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.names import OPENING
 from rocking_cli.questions.design.metrics import Excitation, Metric
-from rocking_cli.questions.design.study import POINTS, Aim, Design, Span
+from rocking_cli.questions.design.study import SCAN_POINTS, Aim, Design, Span
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Neighbourhood
 
@@ -33,7 +33,7 @@ def design(
     slenderness_deviation: float | None = None,
     restitution_deviation: float | None = None,
     site: SiteLike | None = None,
-    points: int = POINTS,
+    points: int = SCAN_POINTS,
     opening: float = OPENING,
     watch: Watcher = SILENT,
     **options: Unpack[MotionArguments],
@@ -146,7 +146,7 @@ def _warn_of_sizes(structure: Structure, field: str, span: tuple[float, float], 
     for value in span:
         try:
             doubt = doubtful_size(structure.varied(field, value).mechanism)
-        except RockingError:  # the scan says which values cannot be built
+        except RockingError:  # the scan lists the values that cannot be built
             continue
         if doubt is not None and doubt != doubtful_size(structure.mechanism):
             at = f"{field} = {value:g} {structure.unit_of(field)}".strip()

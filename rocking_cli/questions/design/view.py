@@ -15,12 +15,12 @@ from rocking_cli.questions.design.study import Design
 from rocking_cli.studies.conclusion import Concluded, NextStep
 from rocking_cli.text import one_line
 from rocking_cli.views.column import Column, frame_of, only_shown, table_of
-from rocking_cli.views.conclusion import STEPS, conclusion_data, not_counted
+from rocking_cli.views.conclusion import NEXT_STEPS, conclusion_data, not_counted
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View
 
-ROWS = 11  # of the scan in the table, at most
+MAX_SCAN_ROWS = 11  # in the table
 
 
 def view(found: Design, excitation: Excitation | None = None) -> View:
@@ -81,7 +81,7 @@ def _unknown(found: Design) -> Iterator[Column[int]]:
 
 def scan(found: Design) -> Table:
     """Return the table of the scan; of many values only some."""
-    shown = np.unique(np.linspace(0, len(found.values) - 1, min(ROWS, len(found.values))).round().astype(int))
+    shown = np.unique(np.linspace(0, len(found.values) - 1, min(MAX_SCAN_ROWS, len(found.values))).round().astype(int))
     return table_of("", _columns(found), shown.tolist())
 
 
@@ -114,7 +114,7 @@ def answer(found: Design) -> str:
 
 def doubts(found: Design, excitation: Excitation | None) -> list[str]:
     """Return remarks on the answer."""
-    said = [f"{each} Next: {STEPS[NextStep.YIELD_FORCE]}." for each in not_counted(found.taken_otherwise)]
+    said = [f"{each} Next: {NEXT_STEPS[NextStep.YIELD_FORCE]}." for each in not_counted(found.taken_otherwise)]
     count = len(found.values)
     if not found.has_effect and not found.aim.metric.shaken:
         said.append(f"{found.aim.metric.name} is the same at every value tried: {found.field} has no effect on it.")

@@ -180,7 +180,7 @@ def sides_of(structure: Structure) -> list[EquivalentSide]:
         k = 0 if direction > 0 else 1
         statics = structure.statics[k]
         block = structure.equivalence[direction] if structure.why_no_block is None else None
-        if block is None and statics.why_no_block is None:  # the other direction has none
+        if block is None and statics.why_no_block is None:  # the other direction has no block
             block = one_block(structure.mechanism, direction, statics)
         sides.append(EquivalentSide(direction, statics, block, structure.etas[k]))
     return sides

@@ -11,8 +11,8 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.plotting import style
 from rocking_cli.questions.equivalent.study import EquivalentResponses
 
-FALLING = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a cross
-FREE = 8.0  # p t shown after the pulse
+CUT_RATIO = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a cross
+SHOWN_AFTER_PULSE = 8.0  # p t
 
 
 def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
@@ -34,7 +34,7 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
         edges = np.concatenate([[0.0], t, [t[-1]]]), np.concatenate([[0.0], ground, [0.0]])
         above.plot(*edges, markevery=(20 + 7 * k, 80), **style.distinct(k))
         ratio = found.turned(each.history)
-        seen = np.flatnonzero(np.abs(ratio) > FALLING)
+        seen = np.flatnonzero(np.abs(ratio) > CUT_RATIO)
         if seen.size or not np.isfinite(ratio).all():
             ratio = ratio[: seen[0] if seen.size else int(np.isfinite(ratio).sum())]
         tau = found.tau[: ratio.size]
@@ -48,7 +48,7 @@ def draw_equivalent(found: EquivalentResponses, title: str) -> Figure:
             colour = style.distinct(k)["color"]
             below.plot(tau[-1], ratio[-1], marker="o", markersize=9, color=colour, markerfacecolor="white", zorder=3)
     _draw_linear(below, found)
-    end = found.pulse_end + FREE
+    end = found.pulse_end + SHOWN_AFTER_PULSE
     below.set_xlim(0.0, min(end, float(found.tau[-1])))
     above.set_xlim(left=0.0)
     below.axvline(found.pulse_end, color=style.FAINT, linewidth=style.CURVE, linestyle=":")
@@ -72,7 +72,7 @@ def _spaced(tau: Any, k: int) -> tuple[int, int]:
 def _draw_linear(axes: Any, found: EquivalentResponses) -> None:
     ratio = found.turned(found.linear)
     ratio = ratio[np.isfinite(ratio)]
-    beyond = np.flatnonzero(np.abs(ratio) > FALLING)
+    beyond = np.flatnonzero(np.abs(ratio) > CUT_RATIO)
     ratio = ratio[: beyond[0]] if beyond.size else ratio
     fate = ", overturns" if found.alone.fell else ""
     axes.plot(

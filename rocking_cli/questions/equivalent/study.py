@@ -22,8 +22,8 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies import engines
 from rocking_cli.studies.under_pulses import check_eta, uplift, weakest
 
-AFTER = 12.0  # p t shown after the pulse
-MOST_PERIODS = 1000  # of the pulse shown at most: a pulse far shorter than the motion
+SIMULATED_AFTER_PULSE = 12.0  # p t
+MAX_PULSE_PERIODS = 1000  # shown; a pulse may be far shorter than the motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +161,7 @@ def equivalent(
             raise InputError(Problem(reason, field="one_sided"))
     first = _equivalence(mechanisms[0])
     ground = pulse.sampled().scaled(polarity)
-    # The direction in which the pulse uplifts first; if it uplifts in none, the one of a stronger pulse.
+    # The direction in which the pulse uplifts first; without uplift, that of a stronger pulse.
     lifts = {d: -d * ground.acceleration > first[d].lambda_ * mechanisms[0].gravity for d in Direction}
     lifted = [d for d in Direction if lifts[d].any()]
     direction = min(lifted, key=lambda d: int(lifts[d].argmax())) if lifted else weakest(first, pulse, (polarity,))
@@ -175,7 +175,7 @@ def equivalent(
     linear = linear_model("linear block", scaling, (both, both), mechanisms[0].gravity)
     history = follow(linear, ground, tail=_tail(pulse, block.p))
     alone: OneOutcome = history
-    if pulse.segments():  # exact, where the history is that of the sampled pulse
+    if pulse.segments():  # exact, whereas the history is of the sampled pulse
         alone = exact_response(
             Equivalence(both, both), pulse, kappa=kappa, gravity=mechanisms[0].gravity, polarity=polarity
         )
@@ -235,4 +235,4 @@ def _member(
 
 
 def _tail(pulse: Pulse, p: float) -> float:
-    return min(AFTER / p, MOST_PERIODS * pulse.period)
+    return min(SIMULATED_AFTER_PULSE / p, MAX_PULSE_PERIODS * pulse.period)

@@ -15,7 +15,8 @@ from rocking_cli.views.response import known_data
 from rocking_cli.views.verdict import unchecked, why_unknown
 from rocking_cli.views.view import View
 
-NEAR, FAR = 0.05, 0.2  # spread over the linear peak up to which structures are equivalent, and so approximately
+# Spread over the linear peak, of equivalent and of approximately equivalent structures.
+MAX_SPREAD, MAX_APPROXIMATE_SPREAD = 0.05, 0.2
 
 
 def _peak(outcome: OneOutcome) -> str:
@@ -132,11 +133,11 @@ def judge(found: EquivalentResponses) -> list[str]:
                 f"{names.NO_UPLIFT} and a structure does"
             )  # fmt: skip
             said.append(f"The linear block {what}: here the equivalence breaks.")
-        elif found.relative_spread > FAR:
+        elif found.relative_spread > MAX_APPROXIMATE_SPREAD:
             far = max(peaks, key=lambda name: abs(peaks[name] - found.alone.peak_ratio))
             said.append(f"Here the equivalence breaks: {far} is the farthest from the linear block.")
         else:
-            how = "" if found.relative_spread <= NEAR else "approximately "
+            how = "" if found.relative_spread <= MAX_SPREAD else "approximately "
             said.append(f"They are {how}equivalently vulnerable to these pulses.")
     if peaks and max(peaks.values()) > CLOSE:
         said.append(

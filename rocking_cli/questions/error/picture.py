@@ -14,8 +14,8 @@ from rocking_cli.plotting import style
 from rocking_cli.questions.error.study import Linearisation, preferred
 
 Reals = NDArray[np.float64]
-PREFERRED, OTHER = {"linestyle": "-", "linewidth": 2.0}, {"linestyle": "--", "linewidth": 1.3}
-TALLEST = 0.5  # error shown at most, either way
+PREFERRED_STYLE, OTHER_STYLE = {"linestyle": "-", "linewidth": 2.0}, {"linestyle": "--", "linewidth": 1.3}
+MAX_SHOWN_ERROR = 0.5  # in either direction
 
 
 def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearisation], title: str) -> Figure:
@@ -34,7 +34,7 @@ def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearis
     -------
     matplotlib.figure.Figure
     """
-    bold = preferred(asked) or 2  # where there is nothing between them, the one that is right at uplift
+    bold = preferred(asked) or 2  # if both are equally good, kappa 2, which is exact at uplift
     figure = style.new_figure(2.9 * len(curves) + 0.3)
     panels = figure.subplots(len(curves), 2, squeeze=False, sharey="col")
     for (left, right), curve, marks in zip(panels, curves, asked, strict=True):
@@ -48,7 +48,7 @@ def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearis
                 curve.acceleration,
                 ratio,
                 rf"$\kappa_{kappa}$",
-                style.LINES[f"linear{kappa}"] | (PREFERRED if kappa == bold else OTHER),
+                style.LINES[f"linear{kappa}"] | (PREFERRED_STYLE if kappa == bold else OTHER_STYLE),
             )
             _dots(right, marks.acceleration, getattr(marks, f"overturning_ratio{kappa}"))
         right.set_xscale("log")
@@ -56,7 +56,7 @@ def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearis
         right.minorticks_off()
         right.set_xlim(1.0, curve.acceleration.max())
         ratios = np.concatenate([curve.overturning_ratio1, curve.overturning_ratio2])
-        cut = f"not drawn: beyond {100 * TALLEST:g} %" if (np.abs(ratios - 1) > TALLEST).any() else None
+        cut = f"not drawn: beyond {100 * MAX_SHOWN_ERROR:g} %" if (np.abs(ratios - 1) > MAX_SHOWN_ERROR).any() else None
         right.legend(**style.LEGEND, loc="lower right", title=cut, title_fontsize=style.TICK, alignment="left")
         if len(curves) > 1:
             left.set_title(f"{curve.direction.label} direction", fontsize=style.LABEL, loc="left")
@@ -72,10 +72,10 @@ def draw_linearisation(curves: Sequence[Linearisation], asked: Sequence[Linearis
 
 
 def _line(axes: Axes, x: Reals, ratio: Reals, label: str, look: Mapping[str, Any]) -> None:
-    error = np.where(np.abs(ratio - 1) <= TALLEST, ratio - 1, np.nan)
+    error = np.where(np.abs(ratio - 1) <= MAX_SHOWN_ERROR, ratio - 1, np.nan)
     axes.plot(x, error, label=label, **look)
 
 
 def _dots(axes: Axes, x: Reals, ratio: Reals) -> None:
-    shown = np.abs(ratio - 1) <= TALLEST
+    shown = np.abs(ratio - 1) <= MAX_SHOWN_ERROR
     axes.plot(x[shown], ratio[shown] - 1, "o", color=style.INK, markersize=4)

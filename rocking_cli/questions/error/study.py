@@ -20,14 +20,15 @@ from rocking_cli.core.advice import Grade, grade, preferred_kappa
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.structure import Structure
 
-PRECISION = 1e-10  # relative change at which doubling the nodes stops
-FEWEST, MOST = 16, 512  # nodes along the motion
-INNER = 20  # nodes of the energy between two rotations
-ROUGH = (1e-5, 128, 100)  # precision, most nodes and inner nodes where derivatives of the restoring moment have corners
-CURVE = 60  # points of a curve
-STRONGEST = 10.0  # acceleration over uplift to which the curves go
-CLOSEST = 1e-6  # to no motion, and to the critical rotation, that an energy still tells apart
-LARGEST = 1e6  # acceleration over that at uplift
+NODES_TOLERANCE = 1e-10  # relative change at which doubling the nodes stops
+MIN_NODES, MAX_NODES = 16, 512  # along the motion
+ENERGY_NODES = 20  # between two rotations
+# Tolerance, most nodes and energy nodes, if derivatives of the restoring moment have corners.
+ROUGH_INTEGRATION = (1e-5, 128, 100)
+CURVE_POINTS = 60
+MAX_CURVE_STRENGTH = 10.0  # acceleration over uplift acceleration at which the curves end
+MIN_RATIO_DISTANCE = 1e-6  # from no motion, and from the critical rotation, that energies still resolve
+MAX_STRENGTH = 1e6  # acceleration over uplift acceleration
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,8 +72,11 @@ class Linearisation:
 
 def why_no_amplitude(ratio: float) -> str:
     """Return why a number cannot be an amplitude phi/phi_cr of a free motion; empty if it can."""
-    if 0 < ratio < 1 and not CLOSEST <= ratio <= 1 - CLOSEST:
-        return f"an amplitude must stay {CLOSEST:g} of phi_cr away from 0 and 1, where rounding hides it; got {ratio:g}"
+    if 0 < ratio < 1 and not MIN_RATIO_DISTANCE <= ratio <= 1 - MIN_RATIO_DISTANCE:
+        return (
+            f"an amplitude must stay {MIN_RATIO_DISTANCE:g} of phi_cr away from 0 and 1, where rounding hides it; "
+            f"got {ratio:g}"
+        )
     return "" if 0 < ratio < 1 else f"an amplitude must be a fraction of phi_cr between 0 and 1, got {ratio:g}"
 
 
@@ -80,8 +84,11 @@ def why_no_acceleration(times: float) -> str:
     """Return why a number cannot be a constant acceleration over the uplift acceleration; empty if it can."""
     if not (times > 1 and np.isfinite(times)):
         return f"an acceleration must be above 1 times that of uplift to move anything, got {times:g}"
-    if not 1 + CLOSEST <= times <= LARGEST:
-        return f"an acceleration must be {1 + CLOSEST:.7g} to {LARGEST:g} times that of uplift, got {times:.17g}"
+    if not 1 + MIN_RATIO_DISTANCE <= times <= MAX_STRENGTH:
+        return (
+            f"an acceleration must be {1 + MIN_RATIO_DISTANCE:.7g} to {MAX_STRENGTH:g} times that of uplift, "
+            f"got {times:.17g}"
+        )
     return ""
 
 
@@ -160,8 +167,8 @@ def compare(
         return [linearisation(mechanism, each, ratios, times, equivalence=equivalence) for each in directions]
 
     asked = of(amplitudes, accelerations)
-    strongest = max(STRONGEST, *accelerations)
-    return of(np.linspace(0.01, 0.99, CURVE), np.geomspace(1.02, strongest, CURVE)), asked
+    strongest = max(MAX_CURVE_STRENGTH, *accelerations)
+    return of(np.linspace(0.01, 0.99, CURVE_POINTS), np.geomspace(1.02, strongest, CURVE_POINTS)), asked
 
 
 @dataclass(frozen=True)
@@ -216,7 +223,8 @@ def velocity_ratios(block: EquivalentBlock, gravity: float) -> tuple[float, floa
     In q.. = p^2 (q - phi_cr), a velocity step v of the ground gives the rate p^2 kappa v/g, and a rate p phi_cr just
     overturns: v = g lambda/p.
     """
-    own = gravity / (block.p * block.v_imp) if block.v_imp else np.nan  # of what overturns by itself, all but
+    # NaN for a structure that overturns by itself, or nearly does.
+    own = gravity / (block.p * block.v_imp) if block.v_imp else np.nan
     return own * block.lambda_lin, own * block.lambda_
 
 
@@ -298,7 +306,7 @@ def overturning_time(
 
 def _mean(mechanism: Mechanism, direction: Direction, low: Reals, high: Reals, push: Reals | float) -> Reals:
     """Return the mean of V'/g - push B between two rotations, without cancellation between potentials."""
-    x, weight = np.polynomial.legendre.leggauss(INNER if mechanism.smooth else ROUGH[2])
+    x, weight = np.polynomial.legendre.leggauss(ENERGY_NODES if mechanism.smooth else ROUGH_INTEGRATION[2])
     phi = low[..., None] + (high - low)[..., None] * (1 + x) / 2
     at = mechanism.coefficients(phi.ravel(), direction)
     restoring, B = (values.reshape(phi.shape) for values in (at.restoring(mechanism.gravity), at.B))
@@ -314,11 +322,11 @@ def _inertia(mechanism: Mechanism, direction: Direction, phi: Reals) -> Reals:
 def _integral(integrand: Callable[[Reals], Reals], until: Reals, *, smooth: bool) -> Reals:
     """Integrate f(u) from 0 to each `until`, by Gauss's rule with an increasing number of nodes."""
     before = np.full_like(until, np.nan)
-    precision, most, _ = (PRECISION, MOST, INNER) if smooth else ROUGH
-    nodes = FEWEST
+    precision, most, _ = (NODES_TOLERANCE, MAX_NODES, ENERGY_NODES) if smooth else ROUGH_INTEGRATION
+    nodes = MIN_NODES
     while nodes <= most:
         x, weight = np.polynomial.legendre.leggauss(nodes)
-        with np.errstate(over="ignore", invalid="ignore"):  # what is beyond the range of numbers does not converge
+        with np.errstate(over="ignore", invalid="ignore"):  # overflow means that the integral does not converge
             found: Reals = until / 2 * (integrand(until[:, None] * (1 + x) / 2) @ weight)
         if (np.abs(found - before) <= precision * np.abs(found)).all():
             return found

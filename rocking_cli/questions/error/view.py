@@ -16,9 +16,9 @@ from rocking_cli.views.column import Column, of, only_shown, table_of
 from rocking_cli.views.verdict import uplift_in_words
 from rocking_cli.views.view import ABSENT, View, heading
 
-NEVER = "infinite (it never uplifts)"
-KEPT = 1e-9  # an error of the uplift acceleration that is none
-PREFERRED = {None: None, 0: "either", 1: "kappa1", 2: "kappa2"}
+NEVER_UPLIFTS = "infinite (it never uplifts)"
+UPLIFT_TOLERANCE = 1e-9  # error of the uplift acceleration that counts as zero
+PREFERRED_KAPPA = {None: None, 0: "either", 1: "kappa1", 2: "kappa2"}
 
 
 class ErrorRow(NamedTuple):
@@ -57,7 +57,7 @@ def view(
         "name": mechanism.name,
         "symmetric": equivalence.symmetric,
         "directions": {each.direction.label: _data(each, mechanism.gravity) for each in asked},
-        "prefer": PREFERRED[preferred(list(asked))],
+        "prefer": PREFERRED_KAPPA[preferred(list(asked))],
         "grades": {f"kappa{kappa}": errors(list(asked), kappa).grade.key for kappa in (1, 2)},
         "verdict": verdict,
     }
@@ -129,8 +129,8 @@ def trust(curves: Sequence[Linearisation], asked: Sequence[Linearisation]) -> st
 
 def _on(kappa: int, found: Errors) -> str:
     """Describe what the block with a kappa is good for, with its errors."""
-    uplift = "kept" if abs(found.uplift) < KEPT else uplift_in_words(found.uplift)
-    overturning = f"off by {percent(found.overturning)}" if isfinite(found.overturning) else NEVER
+    uplift = "kept" if abs(found.uplift) < UPLIFT_TOLERANCE else uplift_in_words(found.uplift)
+    overturning = f"off by {percent(found.overturning)}" if isfinite(found.overturning) else NEVER_UPLIFTS
     numbers = (
         f"uplift acceleration {uplift}, free period off by {percent(found.period)}, overturning time {overturning}"
     )

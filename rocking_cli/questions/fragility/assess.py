@@ -19,14 +19,14 @@ from rocking_cli.questions.fragility.curves import (
     fit_curve,
     fit_surface,
 )
-from rocking_cli.questions.fragility.definition import LAMBDA, UPLIFT, Definition, Limit, implies
+from rocking_cli.questions.fragility.definition import UPLIFT, UPLIFT_MEASURE, Definition, Limit, implies
 from rocking_cli.questions.fragility.hazard_curve import HazardCurve, Rate, annual_rate
 from rocking_cli.questions.fragility.observed import Observations
 from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.tally import Cells, Counted, Onset, Tally, count, intensities
 
-MOST_UNKNOWN = 0.02  # share of runs of which it is not known whether they exceed, up to which one curve is enough
+MAX_UNKNOWN_SHARE = 0.02  # of runs: with more, a second curve counts unknown runs the other way
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class _FittedTwice:
     @property
     def is_band(self) -> bool:
         """Whether so many runs are undecided that the result is the band between both fits, not one of them."""
-        return self.share is not None and self.share > MOST_UNKNOWN
+        return self.share is not None and self.share > MAX_UNKNOWN_SHARE
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,7 +211,7 @@ def curves(
     for measure in definition.fitted_measures:
         cells = tally.over(measure)
         x = cells.intensities(measure)
-        if not (x > 0).any():  # or not known, either
+        if not (x > 0).any():  # or none is known
             continue
         runs, found = tally.ladders is None, []
         for limit in definition.limit_states:
@@ -245,7 +245,7 @@ def _consistent(found: Sequence[Fragility], onset: Onset | None) -> Iterator[Fra
     if onset is not None and onset.exact and any(each.limit == UPLIFT for each in found):
         found = [_exact(each, onset.at) if each.limit == UPLIFT else each for each in found]
     elif onset is not None:
-        floor = {LAMBDA: exact_step(FragilityCurve("none", "", 1.0, 0, 0), onset.at, "")}
+        floor = {UPLIFT_MEASURE: exact_step(FragilityCurve("none", "", 1.0, 0, 0), onset.at, "")}
 
     def below(curve: FragilityCurve, weaker: Mapping[Limit, FragilityCurve]) -> FragilityCurve:
         known = floor | {limit: each for limit, each in weaker.items() if each.kind != "none"}
@@ -319,7 +319,7 @@ def _capacities(tally: Tally, measure: str, limit: Limit, cells: Cells) -> tuple
     assert tally.ladders is not None
     first, last = tally.ladders.first[limit], tally.ladders.below(limit)
     levels = len(tally.plan.levels)
-    known = (first < levels) | (last >= 0)  # a ladder none of whose runs could be followed says nothing
+    known = (first < levels) | (last >= 0)  # a ladder without a simulated run gives no information
     sample, record, _, _ = np.nonzero(known)
     began, last = first[known].astype(np.int64), last[known]
     if cells.together:
@@ -329,7 +329,7 @@ def _capacities(tally: Tally, measure: str, limit: Limit, cells: Cells) -> tuple
         return intensities(tally.plan, measure, sample + tally.samples.start, record, np.clip(level, 0, levels - 1))
 
     lower, upper = np.where(last >= 0, at(last), 0.0), np.where(began < levels, at(began), np.inf)
-    sound = lower < upper  # else it does not grow with the level, or is not known
+    sound = lower < upper  # otherwise the peak decreases with the level, or is unknown
     return lower[sound], upper[sound], record[sound]
 
 

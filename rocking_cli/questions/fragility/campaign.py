@@ -21,15 +21,15 @@ from rocking_cli.questions.fragility.plan import Plan, Trial, complete, weaker
 from rocking_cli.questions.fragility.sources import KeptMotions
 from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.study import Sample, Study, digest
-from rocking_cli.questions.fragility.tally import ONSET, accelerations, rotations
+from rocking_cli.questions.fragility.tally import UPLIFT_FACT, accelerations, rotations
 from rocking_cli.questions.fragility.work_units import carry_out, unit_size, units
 from rocking_cli.questions.fragility.workers import Workers
 from rocking_cli.studies.fragility.quantities import FACT, PGA, PGV, asked_for
 
 Progress = Callable[[int, int], None]
 """Called with how many runs have finished since the last call, and how many of these failed."""
-SAME = 1e-9  # relative difference of parameters that come from the same mechanics, on whatever machine
-MOST = 10  # changes of samples named
+PARAMETER_TOLERANCE = 1e-9  # relative difference between machines of parameters from the same mechanics
+MAX_NAMED_CHANGES = 10  # of samples
 Examined = Callable[[int], None]
 
 
@@ -91,7 +91,7 @@ def prepare(
     asked = {
         "name": study.name,
         "definition": given.model_dump(mode="json", exclude_unset=True, by_alias=True),
-        # As plain data, so that the store does not need the file.
+        # Plain data, so that the store does not depend on the file.
         "hazard": study.hazard and [study.hazard.intensity.tolist(), study.hazard.annual_rate.tolist()],
         "weights": [source.entry.weight for source in study.sources],
     }
@@ -102,7 +102,7 @@ def prepare(
     every = [str(each) for each in all_measures()] if rank_measures else []
     told = examined if examined is not None and _measures(study, rank_measures=rank_measures) else lambda count: None
     plan = measured(study, plan, motions, [*given.asked_measures, *every], told, origins=rank_measures)
-    asked |= {ONSET: accelerations(study, plan)}
+    asked |= {UPLIFT_FACT: accelerations(study, plan)}
     if known is None:
         asked |= _displacements(study, plan, {})
         store.begin(plan, {**facts, **asked, "libraries": libraries()})
@@ -295,9 +295,9 @@ def _refuse_changes(store: Store, facts: dict[str, Any], known: Plan, now: Plan)
         old = before.get(record.name)
         if old is not None and old.reason is None and old.checksum != record.checksum:
             changes.append(f"the record {record.name} has changed, or cannot be read any more")
-    if not changes:  # the same fields: a mechanism may still make something else of them
+    if not changes:  # equal fields, from which the mechanism may still derive other parameters
         changes = [change for pair in zip(known.trials, now.trials, strict=True) for change in _other_mechanics(*pair)][
-            :MOST
+            :MAX_NAMED_CHANGES
         ]
     if changes:
         hint = "give `restart` to run everything again, or `store` OTHER.db to keep both"
@@ -315,7 +315,7 @@ def _other_mechanics(before: Trial, now: Trial) -> list[str]:
     return [
         f"{key.rstrip('_')} of {name} was {old:.10g}, is now {new:.10g}"
         for key, (old, new) in pairs.items()
-        if isinstance(old, float) and not isclose(old, new, rel_tol=SAME)
+        if isinstance(old, float) and not isclose(old, new, rel_tol=PARAMETER_TOLERANCE)
     ]
 
 
@@ -342,7 +342,7 @@ def differences(before: Any, now: Any, where: str = "") -> list[str]:
         parts = [f"without {_told(gone)}"] if gone else []
         parts += [f"with {_told(new)}"] if new else []
         return [f"{where} is now {' and '.join(parts) or 'another number of the same'}"]
-    if isinstance(before, float) and isinstance(now, float) and isclose(before, now, rel_tol=SAME):
+    if isinstance(before, float) and isinstance(now, float) and isclose(before, now, rel_tol=PARAMETER_TOLERANCE):
         return []
     return [] if before == now else [f"{where} was {_one(before)}, is now {_one(now)}"]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.questions.fragility.goodness import Goodness, goodness_of_brackets, goodness_of_runs
-from rocking_cli.questions.fragility.observed import SAME, Observations, few_records, one_of_each
+from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE, Observations, few_records, one_of_each
 from rocking_cli.studies.fit import (
     Counts,
     Estimate,
@@ -26,15 +26,15 @@ from rocking_cli.studies.fit import (
 
 Kind = Literal["lognormal", "logistic", "step", "none"]
 LINKS: dict[Kind, Link] = {"lognormal": "probit", "logistic": "logit"}
-REJECTED = 0.05  # p-value below which a curve is rejected
-WIDEST = 5.0  # dispersion beyond which the limit state does not depend on the measure: exp(5) is 150
-LIKELIER = 1e-6  # of a log-likelihood: less is rounding
+MIN_P_VALUE = 0.05  # of a curve that is not rejected
+MAX_DISPERSION = 5.0  # beyond, the limit state does not depend on the measure: exp(5) is 150
+LIKELIHOOD_TOLERANCE = 1e-6  # smaller differences of log-likelihoods are rounding
 _DECREASING = (
     "no increasing curve exists: fewer runs count as exceeding the limit at higher intensities, so no curve fits this "
     "measure"
 )
-TINY = 1e-300  # stands for an intensity of zero, which has no logarithm
-NOTICEABLE = 0.001  # of a probability: a curve that is cut by less is not said to be
+ZERO_INTENSITY = 1e-300  # replaces zero, which has no logarithm
+MIN_CUT = 0.001  # of a probability: smaller cuts of a curve are not reported
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ class FragilityCurve(FittedToRuns):
         found = [each for each in medians if each is not None]
         if medians[0] is None:
             return None
-        # The smallest of increasing curves crosses one half where the last of them does.
+        # The minimum of increasing curves crosses one half at the largest of their medians.
         return Estimate(*(max(getattr(each, end) for each in found) for end in ("value", "low", "high")))
 
     @property
@@ -135,14 +135,14 @@ class FragilityCurve(FittedToRuns):
         low, high = _root_interval(self.fit)
         if self.kind == "logistic":
             return Estimate(float(-a / b), low, high)
-        with np.errstate(over="ignore"):  # an end that the data hardly bound
+        with np.errstate(over="ignore"):  # the data may hardly bound an end
             return Estimate(float(np.exp(-a / b)), float(np.exp(low)), float(np.exp(high)))
 
     @property
     def dispersion(self) -> Estimate | None:
         """Standard deviation of the logarithm of the capacity; None unless the curve is lognormal, or above 5."""
         found = self._inverse_slope() if self.kind == "lognormal" else None
-        return found if found is None or found.value <= WIDEST else None
+        return found if found is None or found.value <= MAX_DISPERSION else None
 
     @property
     def scale(self) -> Estimate | None:
@@ -165,7 +165,7 @@ class FragilityCurve(FittedToRuns):
         if self.fit is not None:
             found = self.fit.probability(self._design(x)).reshape(x.shape)
         elif self.step is not None:
-            known = self.step.low == self.step.high  # by the uplift acceleration, which a motion must exceed
+            known = self.step.low == self.step.high  # from the uplift acceleration, which a motion must exceed
             found = np.heaviside(x - self.step.value, 0.0 if known else 0.5)
         else:
             return np.full(x.shape, np.nan)
@@ -197,7 +197,7 @@ class FragilityCurve(FittedToRuns):
         own, others = self.own, list(self.implied)
         lines = np.array([[each.probability(x), *each.band(x)] for each in (own, *self.implied.values())])
         above = lines[0] - lines[1:]
-        if above.max() <= NOTICEABLE:
+        if above.max() <= MIN_CUT:
             return None
         k, line, place = (int(each) for each in np.unravel_index(above.argmax(), above.shape))
         return Cut(others[k], float(above[k, line, place]), float(x[place]))
@@ -296,7 +296,7 @@ def fit_capacities(
     if not (lower > 0).any():
         return replace(bare, why=f"all of the {_capacities(bare)} exceed at their first level: take lower ones")
     highest, lowest = upper[above].max(), lower[lower > 0].min()
-    if highest <= lowest:  # no capacity lies between two levels
+    if highest <= lowest:  # no capacity is known to lie between two levels
         why = f"every capacity lies below {highest:.4g} or above {lowest:.4g}: levels beyond these are needed"
         return replace(bare, why=why)
     special = _step_or_none(bare, lower[lower > 0], upper[above])
@@ -318,7 +318,7 @@ def _capacities(bare: FragilityCurve) -> str:
 
 
 def _design(kind: Kind, x: Reals) -> Reals:
-    return np.column_stack([np.ones(x.size), x if kind == "logistic" else np.log(np.maximum(x, TINY))])
+    return np.column_stack([np.ones(x.size), x if kind == "logistic" else np.log(np.maximum(x, ZERO_INTENSITY))])
 
 
 def _step_or_none(bare: FragilityCurve, below: Reals, above: Reals) -> FragilityCurve | None:
@@ -356,7 +356,11 @@ def _choice(curves: dict[Kind, FragilityCurve]) -> tuple[Kind, str]:
         return "logistic", f"the lognormal does not increase; {_tested(logistic)}"
     if not _rejected(lognormal):
         return "lognormal", f"lognormal is the default; {_tested(lognormal)}"
-    if logistic is None or _slope(logistic) <= 0 or _likelihood(logistic) < _likelihood(lognormal) + LIKELIER:
+    if (
+        logistic is None
+        or _slope(logistic) <= 0
+        or _likelihood(logistic) < _likelihood(lognormal) + LIKELIHOOD_TOLERANCE
+    ):
         return "lognormal", f"lognormal is the default, and logistic is no likelier; {_tested(lognormal)}"
     assert lognormal.goodness is not None
     why = f"the lognormal is rejected (p = {lognormal.goodness.p_value:.2g}) and logistic is likelier"
@@ -375,7 +379,7 @@ def _likelihood(curve: FragilityCurve) -> float:
 
 def _rejected(curve: FragilityCurve) -> bool:
     goodness = curve.goodness
-    return goodness is not None and goodness.p_value is not None and goodness.p_value < REJECTED
+    return goodness is not None and goodness.p_value is not None and goodness.p_value < MIN_P_VALUE
 
 
 def _tested(curve: FragilityCurve) -> str:
@@ -412,7 +416,7 @@ def _root_interval(fit: Fit) -> tuple[float, float]:
     a, b = fit.coefficients
     squared = fit.quantile**2 * fit.covariance
     leading, middle, constant = b * b - squared[1, 1], a * b - squared[0, 1], a * a - squared[0, 0]
-    if leading <= 0:  # the slope may be none: the band then contains one half for ever, on one side or both
+    if leading <= 0:  # the slope may be zero: the band then contains one half up to infinity, on one or both sides
         return -np.inf, np.inf
     root = np.sqrt(max(middle * middle - leading * constant, 0.0))
     return float((-middle - root) / leading), float((-middle + root) / leading)
@@ -424,8 +428,8 @@ def exact_step(fitted: FragilityCurve, at: float, why: str) -> FragilityCurve:
     return replace(fitted, kind="step", why=why, fit=None, step=step, goodness=None, aic=None)
 
 
-ADDS = 0.05  # p-value below which a second measure adds something
-PARALLEL = 1e-4  # 1 - |correlation| of two measures that are one
+MAX_P_VALUE_TO_ADD = 0.05  # p-value below which a second measure improves the fit
+MAX_PARALLEL_DISTANCE = 1e-4  # 1 - |correlation| up to which two measures count as one
 
 
 @dataclass(frozen=True, eq=False)
@@ -503,16 +507,16 @@ def fit_surface(
         number, beyond = number * each, beyond * each
         seen = Counts(seen.record, seen.term, number, weighted=True)
     design = _plane(x1, x2)
-    if (np.ptp(design[:, 1:], axis=0) < SAME).any():
+    if (np.ptp(design[:, 1:], axis=0) < INTENSITY_TOLERANCE).any():
         return replace(bare, why="one of the measures is the same in all runs: take a curve over the other one")
     if bare.runs <= design.shape[1]:
         return replace(bare, why=f"{bare.runs} runs cannot tell {design.shape[1]} coefficients")
     correlation = float(np.corrcoef(design[:, 1], design[:, 2])[0, 1])
-    if 1 - abs(correlation) < PARALLEL:
+    if 1 - abs(correlation) < MAX_PARALLEL_DISTANCE:
         return replace(
             bare, why="the two measures are in proportion (of their logarithms): take a curve over either one"
         )
-    standard, some, none = standardised(design)[0], beyond > 0, beyond < number  # both where outcomes are mixed
+    standard, some, none = standardised(design)[0], beyond > 0, beyond < number  # both if outcomes are mixed
     rows = np.concatenate([standard[some], standard[none]])
     if separable(rows, np.arange(len(rows)) < some.sum()):
         why = "a line in the plane of the two measures separates what exceeds from what does not"
@@ -550,12 +554,13 @@ def _gain(both: Fit, alone: Fit, column: int, clustered: bool) -> float:
 
 def _words(both: Fit, p_values: tuple[float, float], aic: dict[str, float]) -> str:
     said = [
-        f"the {name} measure {'adds to' if p < ADDS else 'adds nothing detectable to'} the {other} (p = {p:.2g})"
+        f"the {name} measure {'adds to' if p < MAX_P_VALUE_TO_ADD else 'adds nothing detectable to'} the {other} "
+        f"(p = {p:.2g})"
         for name, other, p in (("second", "first", p_values[1]), ("first", "second", p_values[0]))
     ]
-    if max(p_values) >= ADDS:
-        alike = min(p_values) >= ADDS  # neither adds to the other: then the likelier one
-        better = "first" if (aic["first"] <= aic["second"] if alike else p_values[0] < ADDS) else "second"
+    if max(p_values) >= MAX_P_VALUE_TO_ADD:
+        alike = min(p_values) >= MAX_P_VALUE_TO_ADD  # if neither adds to the other, the likelier one
+        better = "first" if (aic["first"] <= aic["second"] if alike else p_values[0] < MAX_P_VALUE_TO_ADD) else "second"
         said.append(f"a curve over the {better} measure alone is sufficient")
     falls = [name for name, c in zip(("first", "second"), both.coefficients[1:], strict=True) if c < 0]
     said += [

@@ -21,14 +21,14 @@ from rocking_cli.processing.reading import Reading, reading_of
 from rocking_cli.processing.steps import parse_steps
 from rocking_cli.questions.fragility.distributions import Distribution, Positive, in_units_of_fields
 from rocking_cli.questions.fragility.hazard_curve import wrong_points
-from rocking_cli.questions.fragility.observed import SAME
+from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
 from rocking_cli.studies.file_part import Part, Sound, problems_of
 from rocking_cli.studies.fragility.quantities import PGA, is_quantity, metres, no_levels, spelled, spelt
 from rocking_cli.studies.fragility.quantities import SCALE as SCALE
 
 UPLIFT, OVERTURNING, SLIDING = "uplift", "overturning", "sliding"
-LAMBDA = "lambda"  # what a motion reaches that uplifts a structure, though no limit state to be asked of
-MOST = 100_000  # levels or samples: more is a slip of the keyboard
+UPLIFT_MEASURE = "lambda"  # the measure that a motion must exceed to uplift a structure; not a limit state of a study
+MAX_LEVELS = 100_000  # of intensity, or samples: more is a typing error
 
 
 def _measure(value: object) -> object:
@@ -151,10 +151,10 @@ class Levels(Part):
     """Intensities to which every record is scaled."""
 
     measure: LevelMeasure = Field(description="what the levels are of")
-    values: list[Intensity] | None = Field(None, min_length=1, max_length=MOST, description="the levels")
+    values: list[Intensity] | None = Field(None, min_length=1, max_length=MAX_LEVELS, description="the levels")
     least: Intensity | None = Field(None, description="the smallest")
     most: Intensity | None = Field(None, description="the largest")
-    count: int | None = Field(None, ge=2, le=MOST, description="how many")
+    count: int | None = Field(None, ge=2, le=MAX_LEVELS, description="how many")
     spacing: Literal["even", "log"] = Field("even", description="steps of equal size, or of equal ratio")
     scaled: bool = Field(True, description="false: sets of records are used as they are, and a level names its set")
 
@@ -195,7 +195,7 @@ def _spaced(least: float, most: float, count: int, spacing: str) -> list[float]:
 
 def _apart(one: float, other: float) -> bool:
     """Return whether `other` is above `one` by more than rounding."""
-    return other > one * (1 + SAME)
+    return other > one * (1 + INTENSITY_TOLERANCE)
 
 
 class HazardEntry(Part):
@@ -222,7 +222,7 @@ class HazardEntry(Part):
 class Sampling(Part):
     """How samples of the structures are drawn."""
 
-    samples: int = Field(1, ge=1, le=MOST, description="how many structures are drawn from the distributions")
+    samples: int = Field(1, ge=1, le=MAX_LEVELS, description="how many structures are drawn from the distributions")
     sampling: Literal["random", "latin hypercube"] = Field("latin hypercube", description="how they are drawn")
     seed: int = Field(0, ge=0, lt=2**63, description="of the random numbers")
 
@@ -328,7 +328,7 @@ def _wrong_sets(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, st
     known = Levels.model_validate(levels).levels()
     for k in of_sets:
         level = entries[k]["level"] if sound("records", k) else None
-        if level is not None and not any(abs(level - each) <= SAME * abs(each) for each in known):
+        if level is not None and not any(abs(level - each) <= INTENSITY_TOLERANCE * abs(each) for each in known):
             shown = ", ".join(f"{level:g}" for level in known[:10]) + (", ..." if len(known) > 10 else "")
             yield ("records", k, "level"), f"{level:g} is not one of the levels {shown}"
 
@@ -340,7 +340,8 @@ def checks_sliding(given: dict[str, Any]) -> bool:
 
 
 HINT = "see the example in docs/fragility.md"
-PARTS = (("file", "name"), ("file", "vertical"), ("file",), ("pulse",))  # of an entry, each worth a look by itself
+# Keys of an entry for which hints are looked up in turn.
+ENTRY_PARTS = (("file", "name"), ("file", "vertical"), ("file",), ("pulse",))
 Piece = TypeVar("Piece", bound=BaseModel)
 
 
@@ -371,7 +372,7 @@ def usable_entries(document: Document, field: str, model: type[Piece]) -> list[t
         given = _file(entry)
         if not isinstance(given, dict):
             continue
-        parts = [given, *({name: given.get(name) for name in names} for names in PARTS)]
+        parts = [given, *({name: given.get(name) for name in names} for names in ENTRY_PARTS)]
         usable = [each for each in (usable_part(model, part) for part in parts) if each is not None]
         found += [(k, each) for each in usable[:1]]
     return found

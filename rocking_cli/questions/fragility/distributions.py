@@ -16,7 +16,7 @@ from rocking_cli.studies.file_part import Part, Sound
 from rocking_cli.units import UnitError, read, split
 
 Positive = Annotated[float, Field(gt=0)]
-LEAST = 2.0**-54  # a random number may be zero, where a normal distribution has no quantile
+MIN_RANDOM = 2.0**-54  # a random number may be zero, where a normal distribution has no quantile
 
 
 def _bounds_in_order(given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
@@ -136,7 +136,7 @@ def _standard_normal(probability: Reals, low: float, high: float) -> Reals:
     """Return quantiles of the standard normal distribution between two bounds, without underflow in its tails."""
     from scipy.special import log_ndtr, ndtri_exp
 
-    if low > 0:  # by symmetry, where the distribution function has its digits
+    if low > 0:  # by symmetry, as the lower tail has more digits
         upper: Reals = -_standard_normal(1 - probability, -high, -low)
         return upper
     below, above = log_ndtr(low), log_ndtr(high)
@@ -172,11 +172,11 @@ def draw(
     uniform = rng.random(count)
     if method == "latin hypercube":
         uniform = (rng.permutation(count) + uniform) / count
-    with np.errstate(over="ignore"):  # what is beyond all numbers is infinite, and no structure can be built of it
-        return distribution.quantile(np.clip(uniform, LEAST, 1 - 2 * LEAST))
+    with np.errstate(over="ignore"):  # overflow gives infinity, from which no structure can be built
+        return distribution.quantile(np.clip(uniform, MIN_RANDOM, 1 - 2 * MIN_RANDOM))
 
 
-PURE = ("dispersion",)  # what a distribution is given by and has no unit
+DIMENSIONLESS = ("dispersion",)  # parameters of a distribution without a unit
 
 
 def in_units_of_fields(document: Document, load: Callable[[str], Mechanism]) -> list[Problem]:
@@ -201,7 +201,7 @@ def in_units_of_fields(document: Document, load: Callable[[str], Mechanism]) -> 
                 continue
             try:
                 structure = structure or load(entry["file"])
-            except RockingError:  # the study says so for itself
+            except RockingError:  # reported when the study itself is read
                 break
             info = type(structure).model_fields.get(name)
             extra = info.json_schema_extra if info is not None else None
@@ -225,7 +225,7 @@ def _numbers(document: Document, value: Any, unit: str, place: Place, problems: 
     if not _has_units(value):
         return value
     try:
-        return read(value, "" if place[-1] in PURE else unit)
+        return read(value, "" if place[-1] in DIMENSIONLESS else unit)
     except UnitError as error:
         problems.append(document.at(place, error.message, error.hint))
         return value

@@ -10,7 +10,7 @@ from rocking_cli.arrays import Integers, Reals
 from rocking_cli.questions.fragility.observed import Observations
 from rocking_cli.studies.fit import FARTHEST, Brackets, Counts, Fit, cumulative, density, standardised, totals
 
-LEAST = 2.0 - 1e-6  # records expected on either side in a group, or in a cell: two less rounding are two
+MIN_EXPECTED = 2.0 - 1e-6  # records on either side, in a group or cell: two, less rounding
 BY_RECORD = ", corrected for repeated records"
 
 
@@ -119,8 +119,8 @@ def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, seen: Counts, lev
         return Goodness(name, why="the levels that were tried are not the same for all capacities")
     total = seen.number.sum()
     begun, ended = np.searchsorted(np.sort(lower), levels, "left"), np.searchsorted(np.sort(upper), levels, "right")
-    whole = levels[begun == ended]  # no bracket has them within
-    # P and its derivatives by the coefficients at the bounds of the cells, 0 and 1 at infinity.
+    whole = levels[begun == ended]  # levels that lie within no bracket
+    # P and its derivatives with respect to the coefficients, at the bounds of the cells; 0 and 1 at infinity.
     eta = fit.coefficients[0] + fit.coefficients[1] * whole
     expected = total * np.diff(cumulative(fit.link, eta), prepend=0.0, append=1.0)
     slope = density(fit.link, eta)
@@ -197,6 +197,6 @@ def _merged(table: Reals, part: Reals | None = None) -> tuple[Integers, int]:
         there += row.sum() * (1.0 if part is None else part[k])
         runs, squares = gathered.sum(), (gathered**2).sum()
         sides = (there,) if part is None else (there, runs - there)
-        if squares > 0 and min(sides) * runs / squares >= LEAST:
+        if squares > 0 and min(sides) * runs / squares >= MIN_EXPECTED:
             number, gathered, there = number + 1, np.zeros(table.shape[1]), 0.0
-    return np.minimum(new, max(number - 1, 0)), number  # what is left over joins the last
+    return np.minimum(new, max(number - 1, 0)), number  # the last group takes the remainder

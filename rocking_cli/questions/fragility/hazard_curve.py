@@ -12,12 +12,12 @@ import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.questions.fragility.curves import FragilityCurve
-from rocking_cli.questions.fragility.observed import SAME
+from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
 from rocking_cli.studies.points_file import read_points
 
-NODES = 16  # of Gauss's rule in a piece
-PIECE = 0.05  # of ln x: a curve of dispersion 0.02 is still smooth in it
-LIFE = 50.0  # years
+NODES_PER_PIECE = 16  # of Gauss's rule
+PIECE_WIDTH = 0.05  # of ln x: a curve of dispersion 0.02 is still smooth within it
+REFERENCE_LIFE = 50.0  # years
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +111,7 @@ class Rate:
     @property
     def in_50_years(self) -> float:
         """Probability of at least one exceedance in 50 years, as events of a Poisson process."""
-        return -math.expm1(-LIFE * self.rate)
+        return -math.expm1(-REFERENCE_LIFE * self.rate)
 
 
 def annual_rate(curve: FragilityCurve, hazard: HazardCurve) -> Rate:
@@ -131,12 +131,12 @@ def annual_rate(curve: FragilityCurve, hazard: HazardCurve) -> Rate:
     """
     last = float(hazard.annual_rate[-1])
     if curve.step is not None and not curve.implied:
-        first, end = hazard.intensity[[0, -1]]  # below the first point its rate, beyond the last one none
+        first, end = hazard.intensity[[0, -1]]  # the rate is constant below the first point, and zero beyond the last
         at, low, high = (
-            0.0 if x > end * (1 + SAME) else float(hazard.rate(np.clip([x], first, end))[0])
+            0.0 if x > end * (1 + INTENSITY_TOLERANCE) else float(hazard.rate(np.clip([x], first, end))[0])
             for x in (curve.step.value, curve.step.high, curve.step.low)
         )
-        above = last if curve.step.value > hazard.intensity[-1] * (1 + SAME) else 0.0
+        above = last if curve.step.value > hazard.intensity[-1] * (1 + INTENSITY_TOLERANCE) else 0.0
         return Rate(at, low, high, above, _beyond(hazard, curve.step.value))
     end = hazard.intensity[-1:]
     jumps = [x for step in curve.steps for x in (step.low, step.value, step.high)]
@@ -149,16 +149,16 @@ def annual_rate(curve: FragilityCurve, hazard: HazardCurve) -> Rate:
 
 def _integral(hazard: HazardCurve, probability: Callable[[Reals], Reals], jumps: Sequence[float]) -> float:
     """Return the integral of P |d rate| between the first and the last point of the hazard curve [1/year]."""
-    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    nodes, weights = np.polynomial.legendre.leggauss(NODES_PER_PIECE)
     logs = np.log(hazard.intensity)
     ends = np.concatenate(
         [
-            np.linspace(start, stop, max(1, math.ceil((stop - start) / PIECE)), endpoint=False)
+            np.linspace(start, stop, max(1, math.ceil((stop - start) / PIECE_WIDTH)), endpoint=False)
             for start, stop in pairwise(logs)
         ]
         + [logs[-1:]]
     )
-    ends = np.union1d(ends, [x for x in np.log(jumps) if logs[0] < x < logs[-1]])  # P is smooth between them
+    ends = np.union1d(ends, [x for x in np.log(jumps) if logs[0] < x < logs[-1]])  # P is smooth between these ends
     half, middle = np.diff(ends)[:, None] / 2, (ends[:-1, None] + ends[1:, None]) / 2
     at = middle + half * nodes
     slope = -np.diff(np.log(hazard.annual_rate)) / np.diff(logs)  # k of each power law
@@ -199,10 +199,10 @@ def _below_alone(curve: FragilityCurve, hazard: HazardCurve) -> float:
     if k == 0:
         return 0.0
     if curve.dispersion is None or curve.median is None:
-        return math.inf  # a logistic curve stays positive down to no shaking, where the power law is infinite
+        return math.inf  # a logistic curve is positive at zero intensity, where the rate of the power law is infinite
     beta = curve.dispersion.value
     z = math.log(hazard.intensity[0] / curve.median.value) / beta
-    # The integral of Phi(z) k rate d ln x from none to the first point, by parts and by completing the square.
+    # The integral of Phi(z) k rate d ln x from zero to the first point, by parts and by completing the square.
     with np.errstate(over="ignore"):
         whole = np.exp(k * beta * z + (k * beta) ** 2 / 2 + log_ndtr(z + k * beta))
     return float(hazard.annual_rate[0] * max(whole - ndtr(z), 0.0))

@@ -20,13 +20,13 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.questions.fragility.assess import Fragility
-from rocking_cli.questions.fragility.curves import REJECTED, WIDEST
+from rocking_cli.questions.fragility.curves import MAX_DISPERSION, MIN_P_VALUE
 from rocking_cli.questions.fragility.definition import OVERTURNING, SLIDING, UPLIFT, Limit
 from rocking_cli.studies.fragility.quantities import metres
 from rocking_cli.text import one_line
 
-LONGEST = 60  # characters of a name
-# The intensity measure type of a measure here, and what one unit here is there: PGV is in m/s here, in cm/s there.
+MAX_NAME_LENGTH = 60  # characters
+# Intensity measure types of OpenQuake, and their units in one unit of here: PGV is in m/s here, there in cm/s.
 TYPES: Mapping[str, tuple[str, float]] = {
     "PGA": ("PGA", 1.0),
     "PGV": ("PGV", 100.0),
@@ -34,10 +34,10 @@ TYPES: Mapping[str, tuple[str, float]] = {
     "Arias": ("IA", 1.0),
     "CAV": ("CAV", 1 / STANDARD_GRAVITY),
 }
-SPECTRAL = re.compile(r"SA\(\s*([0-9.]+)\s*s?\s*\)", re.IGNORECASE)  # g here and there
-NEGLIGIBLE = 3.719  # standard deviations below the median: a probability of 1e-4
-NOTICEABLE = 0.001  # of a probability: curves that cross by less are said to have one value
-FINE = 400  # intensities at which it is looked whether curves cross
+SPECTRAL_MEASURE = re.compile(r"SA\(\s*([0-9.]+)\s*s?\s*\)", re.IGNORECASE)  # in g, here as in OpenQuake
+NEGLIGIBLE_DEVIATIONS = 3.719  # standard deviations below the median: a probability of 1e-4
+MIN_CROSSING = 0.001  # of a probability: curves that cross by less are written with the same value
+CROSSING_POINTS = 400  # intensities at which curves are checked for crossing
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,7 @@ class Function:
         The lowest is where all curves are below 1e-4, or that of the data if lower; the highest is that of the data.
         """
         medians, spreads = zip(*map(_median_and_spread, self.curves), strict=True)
-        low = min(m * np.exp(-NEGLIGIBLE * b) for m, b in zip(medians, spreads, strict=True))
+        low = min(m * np.exp(-NEGLIGIBLE_DEVIATIONS * b) for m, b in zip(medians, spreads, strict=True))
         x = np.concatenate([each.seen.x for each in self.curves])
         return float(self.factor * min(low, x.min())), float(self.factor * x.max())
 
@@ -125,7 +125,7 @@ def _median_and_spread(found: Fragility) -> tuple[float, float]:
 
 def intensity_type(measure: str) -> tuple[str, float] | None:
     """Return the name of a measure in OpenQuake, and the factor to its unit; None if OpenQuake lacks the measure."""
-    if spectral := SPECTRAL.fullmatch(measure):
+    if spectral := SPECTRAL_MEASURE.fullmatch(measure):
         return f"SA({float(spectral[1]):g})", 1.0
     return TYPES.get(measure)
 
@@ -177,7 +177,7 @@ def _why_not(found: Fragility) -> str:
     if found.curve.kind != "lognormal":
         return f"{of}: its curve is a {found.curve.kind} one, and OpenQuake accepts only lognormal curves"
     if found.curve.dispersion is None:
-        return f"{of}: its dispersion is above {WIDEST:g}: it does not depend on this measure"
+        return f"{of}: its dispersion is above {MAX_DISPERSION:g}: it does not depend on this measure"
     if not np.isfinite(moments(found)).all():
         return f"{of}: its dispersion is so large that its mean is not a finite number"
     return ""
@@ -260,13 +260,13 @@ def _doubts(functions: Sequence[Function]) -> Iterable[str]:
                 yield f"{_name(each)}: {runs} of {UNKNOWN} outcome are counted as exceeding"
             if each.curve.unbounded:
                 yield f"{_name(each)}: the data do not bound its median"
-            if goodness is not None and goodness.p_value is not None and goodness.p_value < REJECTED:
+            if goodness is not None and goodness.p_value is not None and goodness.p_value < MIN_P_VALUE:
                 yield f"{_name(each)}: the data reject a lognormal curve (p = {goodness.p_value:.2g})"
-        x = np.geomspace(function.without_damage, function.ends[1], FINE) / function.factor
+        x = np.geomspace(function.without_damage, function.ends[1], CROSSING_POINTS) / function.factor
         for milder, graver in pairwise(function.curves):
             above = graver.curve.own.probability(x) - milder.curve.own.probability(x)
             k = int(above.argmax())
-            if above[k] > NOTICEABLE:
+            if above[k] > MIN_CROSSING:
                 yield (
                     f"{first.structure} over {first.measure}: the curves of {milder.limit} and {graver.limit} cross: "
                     f"at {x[k]:.3g} the probability of the graver is larger by {above[k]:.2g}, a share below zero"
@@ -296,9 +296,9 @@ def _digits(value: float) -> str:
 def identifier(text: str, taken: Iterable[str] = ()) -> str:
     """Return a name as a unique identifier of OpenQuake: letters, digits, - and _, different from those taken."""
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
-    name = re.sub(r"[^A-Za-z0-9_-]+", "_", plain).strip("_")[:LONGEST] or "structure"
+    name = re.sub(r"[^A-Za-z0-9_-]+", "_", plain).strip("_")[:MAX_NAME_LENGTH] or "structure"
     used, k = set(taken), 1
-    while (numbered := name if k == 1 else f"{name[: LONGEST - 6]}-{k}") in used:
+    while (numbered := name if k == 1 else f"{name[: MAX_NAME_LENGTH - 6]}-{k}") in used:
         k += 1
     return numbered
 

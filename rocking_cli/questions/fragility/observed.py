@@ -10,12 +10,14 @@ import numpy as np
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.studies.fit import Counts, totals
 
-SAME = 1e-9  # relative difference of intensities that are one: rounding is far below it, shaking far above
-A_STRIPE = 5  # records at one intensity, on average, from which on intensities are looked at one by one
-STRIPES = 50  # of them at most: more are looked at in tenths
-GROUPS = 10  # of runs otherwise
-FEW = 20  # records below which intervals may hold less, or more, often than they say
-HELD = {5: (89, 100), 10: (90, 98)}  # of so many records, how often those of 95 % did: docs/make_coverage.py
+# Relative difference of equal intensities: far above rounding, far below a change of shaking.
+INTENSITY_TOLERANCE = 1e-9
+MIN_STRIPE_RECORDS = 5  # average number of records at one intensity from which each intensity is a group
+MAX_STRIPES = 50  # with more intensities, they are grouped in tenths
+RUN_GROUPS = 10  # if intensities are no groups
+MIN_RELIABLE_RECORDS = 20  # with fewer, the coverage of intervals may differ from the nominal one
+# Measured coverage [%] of 95 % intervals, by number of records: docs/make_coverage.py.
+MEASURED_COVERAGE = {5: (89, 100), 10: (90, 98)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +112,7 @@ class Observations:
     @property
     def stripes(self) -> bool:
         """Whether so many records share each intensity that every intensity can be a group of its own."""
-        return self.x.size <= STRIPES and A_STRIPE * self.x.size <= self.counts.record.size
+        return self.x.size <= MAX_STRIPES and MIN_STRIPE_RECORDS * self.x.size <= self.counts.record.size
 
     @cached_property
     def group(self) -> Integers:
@@ -118,14 +120,14 @@ class Observations:
         place = self.counts.term
         if self.stripes:
             return place
-        tenth = np.searchsorted(place, place) * GROUPS // place.size  # one intensity stays together
+        tenth = np.searchsorted(place, place) * RUN_GROUPS // place.size  # runs of equal intensity stay in one group
         return np.unique(tenth, return_inverse=True)[1].astype(np.int64)
 
     def group_of(self, x: Reals, record: Integers, level: Integers | None = None) -> Integers:
         """Return the group of each run that `of` counted, from its intensity, record and level."""
         place = np.searchsorted(self.x, one_of_each(x if level is None else _of_levels(x, level)))
         who = np.unique(record, return_inverse=True)[1]
-        cells = self.counts.term * self.records + self.counts.record  # growing
+        cells = self.counts.term * self.records + self.counts.record  # sorted
         return np.asarray(self.group[np.searchsorted(cells, place * self.records + who)])
 
     def parts(self, confidence: float) -> ObservedParts:
@@ -202,7 +204,7 @@ def one_of_each(x: Reals) -> Reals:
     """Replace intensities that differ only by rounding by the least of them."""
     order = np.argsort(x, kind="stable")
     rising = x[order]
-    new = np.concatenate([[True], ~(rising[1:] <= rising[:-1] * (1 + SAME))])
+    new = np.concatenate([[True], ~(rising[1:] <= rising[:-1] * (1 + INTENSITY_TOLERANCE))])
     result = np.empty_like(rising)
     result[order] = rising[new][np.cumsum(new) - 1]
     return result
@@ -216,10 +218,10 @@ def _of_levels(x: Reals, level: Integers) -> Reals:
 
 def few_records(records: int) -> str:
     """Return a warning that intervals and bands rest on few records; empty if there are enough."""
-    if records >= FEW:
+    if records >= MIN_RELIABLE_RECORDS:
         return ""
-    trials = max([each for each in HELD if each <= records], default=min(HELD))
-    low, high = HELD[trials]
+    trials = max([each for each in MEASURED_COVERAGE if each <= records], default=min(MEASURED_COVERAGE))
+    low, high = MEASURED_COVERAGE[trials]
     return (
         f"only {records} distinct record{'s' * (records != 1)}: intervals and bands are a rough guide: in trials with "
         f"{trials} records those that should hold in 95 % of cases held in {low} to {high} %"

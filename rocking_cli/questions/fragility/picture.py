@@ -20,26 +20,26 @@ from rocking_cli.plotting import style
 from rocking_cli.questions.fragility.assess import Bivariate, Fragility
 from rocking_cli.questions.fragility.curves import FragilityCurve, Surface
 from rocking_cli.questions.fragility.observed import Observations
-from rocking_cli.questions.fragility.quantiles import FEWEST
+from rocking_cli.questions.fragility.quantiles import MIN_RECORDS
 
 Reals = NDArray[np.float64]
 Integers = NDArray[np.int64]
-WIDEST = 30.0  # ratio of the ends of an axis from which on it is logarithmic
-FINE = 400  # points of a curve
-MARKS = {True: 25, False: 10}  # observed parts at most, of one curve alone and of each of several
-FILLED = 2  # bands in one picture that are filled: of more the edges are drawn
-SHADED = 0.14  # how dark they are
-BAND = 0.35  # inches of the legend of a band between two curves
-HATCHED = 0.4  # how dark such a band is
+MIN_LOG_RATIO = 30.0  # of the ends of an axis that is logarithmic
+CURVE_POINTS = 400
+MAX_MARKS = {True: 25, False: 10}  # observed shares of a single curve (True), and of each of several (False)
+MAX_FILLED_BANDS = 2  # if there are more, their edges are drawn
+BAND_OPACITY = 0.14
+LEGEND_BAND_WIDTH = 0.35  # inches, of a band between two curves
+HATCH_OPACITY = 0.4
 HATCHES = ("////", "\\\\\\\\", "||||", "----")
-WIDEST_LINE = 96  # characters of a line of the legend
-DRAWN_RUNS = 3000  # runs and records that are drawn one by one, at most
-DRAWN_LADDERS = 300
-LEVELS = (0.1, 0.25, 0.5, 0.75, 0.9)  # probabilities of the contours
-EDGES = (f"if {names.UNKNOWN} runs exceed", f"if {names.UNKNOWN} runs do not")
+MAX_LEGEND_LINE = 96  # characters
+MAX_DRAWN_RUNS = 3000  # runs and records that are drawn one by one
+MAX_DRAWN_LADDERS = 300
+CONTOUR_LEVELS = (0.1, 0.25, 0.5, 0.75, 0.9)  # probabilities
+EDGE_LABELS = (f"if {names.UNKNOWN} runs exceed", f"if {names.UNKNOWN} runs do not")
 FRACTILES = ((0.16, "16 %"), (0.5, "median"), (0.84, "84 %"))
-MARGIN = 0.08  # of the plane: without names of contours
-CROWDED = 15  # levels of shaking from which on not every one is counted out
+LABEL_FREE_MARGIN = 0.08  # share of the plane at its edges without names of contours
+MAX_COUNTED_LEVELS = 15  # with more levels of shaking, not every one is labelled with its counts
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,22 +96,22 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = style.one_panel(4.6 + BAND * sum(each.lower is not None for each in drawn), title)
+    figure, axes = style.one_panel(4.6 + LEGEND_BAND_WIDTH * sum(each.lower is not None for each in drawn), title)
     reach = np.concatenate([each.observations.x for each in drawn])
     start, stop = float(reach.min()), float(reach.max())
-    if stop > WIDEST * start:
-        fine = np.geomspace(start / 1.1, stop * 1.1, FINE)
+    if stop > MIN_LOG_RATIO * start:
+        fine = np.geomspace(start / 1.1, stop * 1.1, CURVE_POINTS)
         style.logarithmic(axes.xaxis)
     else:
-        fine = np.linspace(0.0, stop * 1.05, FINE)
+        fine = np.linspace(0.0, stop * 1.05, CURVE_POINTS)
     for k, each in enumerate(drawn):
         look = style.distinct(k)
         if each.lower is not None:
-            _draw_band(axes, each, look, fine, HATCHES[k % len(HATCHES)], filled=len(drawn) <= FILLED)
+            _draw_band(axes, each, look, fine, HATCHES[k % len(HATCHES)], filled=len(drawn) <= MAX_FILLED_BANDS)
             _draw_observed(axes, each, look, alone=len(drawn) == 1)
             continue
         _draw_observed(axes, each, look, alone=len(drawn) == 1)
-        _draw_curve(axes, each, look, fine, filled=len(drawn) <= FILLED)
+        _draw_curve(axes, each, look, fine, filled=len(drawn) <= MAX_FILLED_BANDS)
     axes.set_xlim(fine[0], fine[-1])
     axes.set_ylim(-0.03, 1.06 if len(drawn) > 1 else 1.1)
     style.in_percent(axes.yaxis)
@@ -121,7 +121,7 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
         shares = ", ".join(f"{each.name} {names.percent(each.share)}" for each in doubtful)
         said = f"band between the two curves: runs of {names.UNKNOWN} outcome ({shares})"
         handles.append(Patch(**style.UNKNOWN, label=_lines(said)))
-    bands = "shades" if len(drawn) <= FILLED else "thin lines"
+    bands = "shades" if len(drawn) <= MAX_FILLED_BANDS else "thin lines"
     marks = f"marks: observed shares; bars and {bands}: {100 * drawn[0].curve.confidence:.3g} % confidence, by record"
     most = max(int(each.observations.group.max()) + 1 for each in drawn)
     if (every := _every(most, alone=len(drawn) == 1)) > 1:
@@ -145,8 +145,8 @@ def _remarks(drawn: Sequence[LabelledCurve]) -> list[str]:
 
 def _lines(text: str) -> str:
     """Break a text into lines that fit the width of a plot."""
-    whole = style.plain(text).replace(" %", "\u00a0%")  # a number and its sign stay together
-    return "\n".join(wrap(whole, WIDEST_LINE, subsequent_indent="    "))
+    whole = style.plain(text).replace(" %", "\u00a0%")  # no line break between a number and its sign
+    return "\n".join(wrap(whole, MAX_LEGEND_LINE, subsequent_indent="    "))
 
 
 def _draw_observed(axes: Axes, each: LabelledCurve, look: dict[str, Any], *, alone: bool) -> None:
@@ -169,13 +169,13 @@ def _draw_observed(axes: Axes, each: LabelledCurve, look: dict[str, Any], *, alo
         for place, n, m, top in zip(x, counts[some], seen.runs[some], high, strict=True):
             axes.annotate(
                 f"{n}/{m}", (place, top), xytext=(0, 2), textcoords="offset points", ha="center",
-                fontsize=style.SMALL if x.size <= CROWDED else style.TINY, color=style.INK,
+                fontsize=style.SMALL if x.size <= MAX_COUNTED_LEVELS else style.TINY, color=style.INK,
             )  # fmt: skip
 
 
 def _every(groups: int, *, alone: bool) -> int:
     """Return the step at which groups are marked: each group, or only every second, third, ..."""
-    return -(-groups // MARKS[alone])
+    return -(-groups // MAX_MARKS[alone])
 
 
 def _draw_curve(axes: Axes, each: LabelledCurve, look: dict[str, Any], fine: Reals, *, filled: bool) -> None:
@@ -185,9 +185,9 @@ def _draw_curve(axes: Axes, each: LabelledCurve, look: dict[str, Any], fine: Rea
         return
     fine = _with_steps(fine, [curve])
     if curve.step is not None:
-        axes.axvspan(curve.step.low, curve.step.high, color=look["color"], alpha=SHADED, linewidth=0.0)
+        axes.axvspan(curve.step.low, curve.step.high, color=look["color"], alpha=BAND_OPACITY, linewidth=0.0)
     elif filled and not curve.unbounded:
-        axes.fill_between(fine, *curve.band(fine), color=look["color"], alpha=SHADED, linewidth=0.0)
+        axes.fill_between(fine, *curve.band(fine), color=look["color"], alpha=BAND_OPACITY, linewidth=0.0)
     elif not curve.unbounded:
         for edge in curve.band(fine):
             axes.plot(fine, edge, color=look["color"], linestyle=look["linestyle"], linewidth=style.THIN, zorder=2)
@@ -216,11 +216,11 @@ def _draw_band(
         values.append(edge.curve.probability(fine))
         if not edge.curve.unbounded:
             bands += edge.curve.band(fine)
-    hatched = style.UNKNOWN | {"edgecolor": look["color"], "hatch": hatch, "alpha": HATCHED}
+    hatched = style.UNKNOWN | {"edgecolor": look["color"], "hatch": hatch, "alpha": HATCH_OPACITY}
     axes.fill_between(fine, np.minimum(*values), np.maximum(*values), **hatched)
     ends = [between([*bands, *values], axis=0) for between in (np.min, np.max)]
     if filled:
-        axes.fill_between(fine, *ends, color=look["color"], alpha=SHADED, linewidth=0.0)
+        axes.fill_between(fine, *ends, color=look["color"], alpha=BAND_OPACITY, linewidth=0.0)
     else:
         for end in ends:
             axes.plot(fine, end, color=look["color"], linestyle=look["linestyle"], linewidth=style.THIN, zorder=2)
@@ -234,7 +234,9 @@ def _named(each: LabelledCurve, look: dict[str, Any]) -> list[tuple[LabelledCurv
     """Return the legend entries of a curve, or of both edges of a band, with their styles."""
     if each.lower is None:
         return [(each, look)]
-    upper, lower = (replace(edge, name=f"{each.name}, {word}") for edge, word in zip(each.edges, EDGES, strict=True))
+    upper, lower = (
+        replace(edge, name=f"{each.name}, {word}") for edge, word in zip(each.edges, EDGE_LABELS, strict=True)
+    )
     return [(upper, look), (lower, look | {"linewidth": style.MEDIUM})]
 
 
@@ -280,7 +282,7 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str, records: in
     """
     figure, axes = style.one_panel(4.6, title)
     fallen, doubtful = np.isnan(peaks), np.isposinf(peaks)
-    floor = 1.05 * max(1.0, float(np.max(peaks, initial=0.0, where=np.isfinite(peaks))))  # of the bands
+    floor = 1.05 * max(1.0, float(np.max(peaks, initial=0.0, where=np.isfinite(peaks))))  # lower edge of the bands
     high = 0.15 * floor
     places = {names.UNKNOWN: floor + 0.4 * high} if doubtful.any() else {}
     floor += high * len(places)
@@ -291,28 +293,28 @@ def draw_ida(intensity: Reals, peaks: Reals, label: str, title: str, records: in
         axes.axhspan(floor - high, floor, **style.UNKNOWN, alpha=0.5)
     peaks = np.where(fallen, middle, np.where(doubtful, places.get(names.UNKNOWN, middle), peaks))
     axes.axhline(1.0, color=style.FAINT, linewidth=style.CURVE)
-    some = np.linspace(0, len(peaks) - 1, min(len(peaks), DRAWN_LADDERS)).round().astype(int)
+    some = np.linspace(0, len(peaks) - 1, min(len(peaks), MAX_DRAWN_LADDERS)).round().astype(int)
     for each in peaks[some]:
         axes.plot(intensity, each, color=style.FAINT, linewidth=style.THIN, alpha=0.8)
     ranked = np.sort(peaks, axis=0)
     name = "one record" if some.size == len(peaks) else f"one record, {some.size} drawn"
     handles = [Line2D([], [], color=style.FAINT, linewidth=style.THIN, label=name)]
-    for k, (fractile, name), fewest in zip((1, 0, 2), FRACTILES, FEWEST, strict=True):
+    for k, (fractile, name), fewest in zip((1, 0, 2), FRACTILES, MIN_RECORDS, strict=True):
         if (len(peaks) if records is None else records) < fewest:
             continue
-        place = int(np.ceil(fractile * len(ranked))) - 1  # the lowest peak that so many records do not exceed
+        place = int(np.ceil(fractile * len(ranked))) - 1  # the lowest peak that this share of records does not exceed
         look = style.distinct(k) | {"marker": "none", "linewidth": 2.0}
         line = ranked[place].copy()
         above = line > min(places.values()) * (1 - 1e-9)
-        line[1:][above[1:] & above[:-1]] = np.nan  # it ends where it overturns, or is not known
+        line[1:][above[1:] & above[:-1]] = np.nan  # the line ends at overturning or unknown outcomes
         handles += axes.plot(intensity, line, label=name, **look)
-    every = max(1, int(np.ceil(intensity.size / CROWDED)))
+    every = max(1, int(np.ceil(intensity.size / MAX_COUNTED_LEVELS)))
     for which, edge in ((fallen, top), (doubtful, floor)):
         for x, count in list(zip(intensity, which.sum(axis=0), strict=True))[::every]:
             if count:
                 axes.annotate(f"{count}", (x, edge), xytext=(0, -2), textcoords="offset points", ha="center", va="top",
                               fontsize=style.SMALL)  # fmt: skip
-    if intensity[-1] > WIDEST * intensity[0]:
+    if intensity[-1] > MIN_LOG_RATIO * intensity[0]:
         style.logarithmic(axes.xaxis)
     axes.set_xlim(float(intensity[0]), float(intensity[-1]))
     axes.set_ylim(0.0, top)
@@ -347,7 +349,7 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
     surface, spared, exceeding = found.surface, found.runs - found.exceeding, (found.lower or found).exceeding
     doubtful = found.exceeding - exceeding
     share = max(sum(int(np.count_nonzero(each)) for each in (spared, exceeding, doubtful)), 1)
-    every = int(np.ceil(share / DRAWN_RUNS))
+    every = int(np.ceil(share / MAX_DRAWN_RUNS))
     handles: list[Any] = [
         axes.scatter(*_some(found, spared, every), s=14, facecolors="none", edgecolors=style.SPARED,
                      linewidths=style.CURVE, label=f"does not exceed ({spared.sum()})"),
@@ -361,11 +363,11 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
         )  # fmt: skip
     for axis in (axes.xaxis, axes.yaxis):
         style.logarithmic(axis)
-    across, up = (np.geomspace(x.min() / 1.15, x.max() * 1.15, FINE) for x in (found.x1, found.x2))
+    across, up = (np.geomspace(x.min() / 1.15, x.max() * 1.15, CURVE_POINTS) for x in (found.x1, found.x2))
     band = found.is_band and found.lower is not None
     if band and found.lower is not None:
-        handles.append(_contours(axes, found.lower.surface, across, up, style.RECORD, EDGES[1]))
-    handles.append(_contours(axes, surface, across, up, style.INK, EDGES[0] if band else ""))
+        handles.append(_contours(axes, found.lower.surface, across, up, style.RECORD_COLOUR, EDGE_LABELS[1]))
+    handles.append(_contours(axes, surface, across, up, style.INK, EDGE_LABELS[0] if band else ""))
     said = [surface.warning] if surface.warning else []
     said += [f"one of every {every} runs is drawn"] if every > 1 else []
     handles += [Line2D([], [], linestyle="none", label=_lines(each)) for each in said]
@@ -382,14 +384,14 @@ def _contours(axes: Axes, surface: Surface, across: Reals, up: Reals, color: str
     if surface.kind == "none":
         return Line2D([], [], linestyle="none", label=_lines(f"no surface{which and f' {which}'}: {surface.why}"))
     drawn = axes.contour(
-        across, up, surface.probability(*np.meshgrid(across, up)), levels=LEVELS, colors=color,
+        across, up, surface.probability(*np.meshgrid(across, up)), levels=CONTOUR_LEVELS, colors=color,
         linewidths=[0.8, 0.8, 1.8, 0.8, 0.8], linestyles=["--", "--", "-", "--", "--"],
     )  # fmt: skip
     for name in axes.clabel(
         drawn, manual=_label_places(drawn, across, up), fmt=lambda level: f"{100 * level:g} %", fontsize=style.TICK
     ):
         name.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5})
-        name.set_zorder(6)  # over the marks
+        name.set_zorder(6)  # above the marks
     return Line2D([], [], color=color, label=f"probability of exceedance{which and f', {which}'}")
 
 
@@ -400,9 +402,9 @@ def _label_places(drawn: QuadContourSet, across: Reals, up: Reals) -> list[tuple
         line = np.asarray(path.vertices, np.float64)
         ends = np.array([[across[0], up[0]], [across[-1], up[-1]]])
         shares = np.log(line / ends[0]) / np.log(ends[1] / ends[0])
-        inside = line[(np.abs(shares - 0.5) < 0.5 - MARGIN).all(axis=1)]
+        inside = line[(np.abs(shares - 0.5) < 0.5 - LABEL_FREE_MARGIN).all(axis=1)]
         if len(inside):
-            x, y = inside[int((k + 0.5) / len(LEVELS) * len(inside))].tolist()
+            x, y = inside[int((k + 0.5) / len(CONTOUR_LEVELS) * len(inside))].tolist()
             places.append((x, y))
     return places
 

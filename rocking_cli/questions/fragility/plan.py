@@ -16,7 +16,7 @@ from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.core import Equivalence, EquivalentBlock, Mechanism, NoEquivalentBlock, equivalent_block
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.processing.intensity import Measure, Reference, RunMeasure, parse_measure
-from rocking_cli.questions.fragility.observed import SAME
+from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
 from rocking_cli.questions.fragility.sources import KeptMotions, Record
 from rocking_cli.studies.fragility.quantities import PGA, PGV, SCALE
 from rocking_cli.studies.under_pulses import uplift
@@ -74,7 +74,7 @@ class Sets:
     @property
     def weighted(self) -> bool:
         """Whether the records have different weights."""
-        return bool(np.ptp(self.weight) > SAME * self.weight.max()) if self.weight.size else False
+        return bool(np.ptp(self.weight) > INTENSITY_TOLERANCE * self.weight.max()) if self.weight.size else False
 
     def there(self, record: int, levels: int) -> Bools:
         """Return a mask of the levels at which a record is run."""
@@ -383,7 +383,7 @@ def complete(
     plan = _with_samples(plan, mechanisms, model, measures)
     bases = {str(each.base): each.base for each in measures if each.base is not None}
     of_run = {str(each): each for each in measures if isinstance(each, RunMeasure)}
-    if plan.measure != SCALE:  # without these no run has a factor
+    if plan.measure != SCALE:  # without intensities, no run has a factor
         base = parse_measure(plan.measure).base
         assert base is not None
         bases[str(base)] = base
@@ -441,7 +441,7 @@ def _without_unscalable(plan: Plan) -> Plan:
         for record, value in zip(plan.records, values, strict=True)
     ]
     known = dict(plan.measured.of_record)
-    if str(base) in known:  # to be measured anew when it is put right
+    if str(base) in known:  # measured again once the record is corrected
         known[str(base)] = np.where(values > 0, values, nan)
     return replace(plan, records=records, measured=replace(plan.measured, of_record=known))
 

@@ -19,12 +19,12 @@ from rocking_cli.questions.fragility.definition import Definition
 from rocking_cli.questions.fragility.observed import Observations
 from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.store import Store
-from rocking_cli.questions.fragility.tally import UNSEEN, Tally, endings_of, samples_of
+from rocking_cli.questions.fragility.tally import UNKNOWN_PEAK, Tally, endings_of, samples_of
 
-SHARES = (0.16, 0.5, 0.84)
-FEWEST = (names.FEWEST, names.FEWEST_OF_MEDIAN, names.FEWEST)
+QUANTILES = (0.16, 0.5, 0.84)
+MIN_RECORDS = (names.FEWEST, names.FEWEST_OF_MEDIAN, names.FEWEST)
 """Records from which on each quantile is told."""
-ROUNDING = 1e-9  # of a number of runs
+COUNT_TOLERANCE = 1e-9  # of a number of runs, for rounding
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class Group:
     rocking: tuple[float, ...]
     every: tuple[float, ...]
     unknown: int = 0
-    doubtful: tuple[bool, ...] = (False,) * len(SHARES)
+    doubtful: tuple[bool, ...] = (False,) * len(QUANTILES)
 
 
 @dataclass(frozen=True)
@@ -117,12 +117,12 @@ def quantiles(store: Store, plan: Plan, structure: str, measures: Sequence[str])
         One for each measure; none if no run is finished.
     """
     table = np.moveaxis(endings_of(store, plan, structure), 2, 3)  # sample, record, level; restitution and polarity
-    runs: NDArray[Any] = (~np.isnan(table)).sum(axis=(3, 4), dtype=np.int32)  # of many samples there are many
+    runs: NDArray[Any] = (~np.isnan(table)).sum(axis=(3, 4), dtype=np.int32)  # the table of many samples is large
     counted = Tally(plan, samples_of(plan, structure), runs, {}, None)
     for measure in measures if runs.any() else ():
         cells = counted.over(measure)
         x = cells.intensities(measure)
-        there = x > 0  # not of those that are not known, either
+        there = x > 0  # False for unknown values, too
         if not there.any():
             continue
         x, record = x[there], cells.record[there]
@@ -143,12 +143,12 @@ def quantiles(store: Store, plan: Plan, structure: str, measures: Sequence[str])
 
 def _group(peaks: Reals, record: Integers, x: Reals, mean: float, records: int) -> Group:
     ranked = np.sort(peaks[~np.isnan(peaks)])
-    rocks = (peaks > 0) & (peaks < UNSEEN)
+    rocks = (peaks > 0) & (peaks < UNKNOWN_PEAK)
     rocking = np.sort(peaks[rocks])
     every = _not_exceeded(ranked, records)
     low, high = float(x.min()), float(x.max())
     return Group(
-        min(max(mean, low), high),  # rounding aside it is between them
+        min(max(mean, low), high),  # the mean lies between them, except for rounding
         low,
         high,
         ranked.size,
@@ -156,15 +156,17 @@ def _group(peaks: Reals, record: Integers, x: Reals, mean: float, records: int) 
         int((ranked == 0).sum()),
         int(np.isinf(ranked).sum()),
         _not_exceeded(rocking, np.unique(record[rocks.any(axis=(1, 2))]).size),
-        tuple(np.inf if value == UNSEEN else value for value in every),
-        int((ranked == UNSEEN).sum()),
-        tuple(value == UNSEEN for value in every),
+        tuple(np.inf if value == UNKNOWN_PEAK else value for value in every),
+        int((ranked == UNKNOWN_PEAK).sum()),
+        tuple(value == UNKNOWN_PEAK for value in every),
     )
 
 
 def _not_exceeded(ranked: Reals, records: int) -> tuple[float, ...]:
     """Return the lowest of increasing observed values that each share of them does not exceed; NaN of too few."""
     return tuple(
-        float(ranked[int(np.ceil(share * ranked.size - ROUNDING)) - 1]) if ranked.size and records >= fewest else np.nan
-        for share, fewest in zip(SHARES, FEWEST, strict=True)
+        float(ranked[int(np.ceil(share * ranked.size - COUNT_TOLERANCE)) - 1])
+        if ranked.size and records >= fewest
+        else np.nan
+        for share, fewest in zip(QUANTILES, MIN_RECORDS, strict=True)
     )

@@ -15,11 +15,11 @@ from rocking_cli.plotting import style
 from rocking_cli.questions.fragility.quantiles import Quantiles
 
 Reals = NDArray[np.float64]
-WIDEST = 30.0  # ratio of the ends of an axis from which on it is logarithmic
-SHADED = 0.16  # how dark the shade from the lowest quantile to the highest is
-HIGHEST = 0.85  # where in the band of overturning the lines end
+MIN_LOG_RATIO = 30.0  # of the ends of an axis that is logarithmic
+BAND_OPACITY = 0.16  # between the lowest quantile and the highest
+LINE_END = 0.85  # height in the band of overturning at which the lines end
 ORDER = (names.NO_UPLIFT, names.ROCKS, names.UNKNOWN, names.OVERTURNS)
-FALLEN = "#c46a1b"  # light enough for its line, and darker in grey than those that rock
+OVERTURNED_COLOUR = "#c46a1b"  # light enough for its line, and darker in grey than that of runs that rock
 
 
 def draw_quantiles(found: Quantiles, label: str) -> Figure:
@@ -45,7 +45,7 @@ def draw_quantiles(found: Quantiles, label: str) -> Figure:
     style.heading(above, f"{found.structure}: peak rotation")
     x = np.array([each.x for each in found.groups])
     handles = _peaks(above, x, found) + _shares(below, x, found)
-    if x[-1] > WIDEST * x[0]:
+    if x[-1] > MIN_LOG_RATIO * x[0]:
         style.logarithmic(below.xaxis)
     else:
         below.set_xlim(0.0, 1.03 * x[-1])
@@ -63,18 +63,18 @@ def _peaks(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
     floor = 1.06 * max(1.0, largest) if falls or largest > 0.5 else 1.15 * max(largest, 1e-3)
     top = 1.12 * floor if falls else floor
     color = style.distinct(2)["color"]
-    shade = axes.fill_between(x, rocking[0], rocking[2], color=color, alpha=SHADED, linewidth=0.0)
+    shade = axes.fill_between(x, rocking[0], rocking[2], color=color, alpha=BAND_OPACITY, linewidth=0.0)
     shade.set_label("runs that rock, 16 to 84 %")
-    blank = Line2D([], [], linestyle="none", label="")  # so that each column is of one kind
+    blank = Line2D([], [], linestyle="none", label="")  # so that each column of the legend has one kind
     handles: list[Any] = [shade if np.isfinite(rocking[0]).any() else blank]
     handles += axes.plot(x, rocking[1], color=color, linewidth=style.BOLD, marker="o", markersize=3.5,
                          label="runs that rock, median", zorder=4)  # fmt: skip
     handles += [blank, blank] if found.unknown else [blank]
     for line, dash, name in zip(every, ("--", "-", "-."), ("16 %", "median", "84 %"), strict=True):
-        end = np.where(np.isinf(line), floor + HIGHEST * (top - floor), line)
+        end = np.where(np.isinf(line), floor + LINE_END * (top - floor), line)
         end[1:][np.isinf(line[1:]) & np.isinf(line[:-1])] = np.nan
         (drawn,) = axes.plot(x, end, color=style.INK, linestyle=dash, linewidth=style.MEDIUM, label=f"all runs, {name}")
-        handles.append(blank if np.isnan(line).all() else drawn)  # of too few records there is none
+        handles.append(blank if np.isnan(line).all() else drawn)  # too few records give no line
     handles += [blank] if found.unknown else []
     ticks = np.arange(0.0, floor, 0.2 if floor > 0.5 else floor / 5).tolist()
     if falls:
@@ -93,7 +93,7 @@ def _shares(axes: Axes, x: Reals, found: Quantiles) -> list[Any]:
     still, unknown, fallen = (
         np.array([getattr(each, of) for each in found.groups]) / runs for of in ("no_uplift", "unknown", "overturned")
     )  # fmt: skip
-    colors = (style.REGIONS[names.NO_UPLIFT], style.REGIONS[names.ROCKS], style.SHADE, FALLEN)
+    colors = (style.REGIONS[names.NO_UPLIFT], style.REGIONS[names.ROCKS], style.SHADE, OVERTURNED_COLOUR)
     shares = [still, 1 - still - unknown - fallen, unknown, fallen]
     those = [k for k in range(len(ORDER)) if ORDER[k] != names.UNKNOWN or found.unknown]
     drawn = axes.stackplot(

@@ -9,7 +9,7 @@ from typing import Any
 from rocking_cli.names import OVERTURNS, UNKNOWN, percent
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.questions.fragility.assess import UnknownRuns
-from rocking_cli.questions.fragility.quantiles import FEWEST, SHARES, Group, Quantiles
+from rocking_cli.questions.fragility.quantiles import MIN_RECORDS, QUANTILES, Group, Quantiles
 from rocking_cli.studies.fragility.quantities import label
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.view import ABSENT, Table, View, number
@@ -25,7 +25,7 @@ def with_quantiles(shown: View, found: Sequence[Quantiles], outcomes: Sequence[U
         note = (
             "Quantiles of the peak phi/phi_cr. For all runs, a run without uplift counts as 0 and an overturning run "
             f"ranks above every finite peak; '{OVERTURNS}' marks quantiles that are such runs. The median needs "
-            f"{min(FEWEST)} distinct records, the others {max(FEWEST)}; of fewer, they are '{ABSENT}'."
+            f"{min(MIN_RECORDS)} distinct records, the others {max(MIN_RECORDS)}; of fewer, they are '{ABSENT}'."
         )
         if any(each.unknown for each in found):
             note += (
@@ -39,7 +39,7 @@ def with_quantiles(shown: View, found: Sequence[Quantiles], outcomes: Sequence[U
 def _tables(found: Quantiles) -> Iterator[Table | str]:
     """Yield two tables: runs that rock without overturning, with the shares of the others; and all runs."""
     over = f"against {label(found.measure)}{'' if found.stripes else ', in tenths'}"
-    shares = [f"{100 * share:g} %" for share in SHARES]
+    shares = [f"{100 * share:g} %" for share in QUANTILES]
     columns = _columns(found, checked=True)
     peaks = [_quantile(k, f"rocking\n{share}", of("rocking")) for k, share in enumerate(shares)]
     every = [_quantile(k, share, lambda group: list(_ranks(group))) for k, share in enumerate(shares)]
@@ -69,7 +69,7 @@ def _data(found: Quantiles, *, checked: bool) -> dict[str, Any]:
         "measure": found.measure,
         "unit": parse_measure(found.measure).unit,
         "groups": "stripes" if found.stripes else "tenths",
-        "shares": list(SHARES),
+        "shares": list(QUANTILES),
         "intensities": [data_of(_columns(found, checked=checked), each) for each in found.groups],
     }
 

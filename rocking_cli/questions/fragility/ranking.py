@@ -21,12 +21,12 @@ from rocking_cli.questions.fragility.store import STANDS, Store
 from rocking_cli.questions.fragility.tally import samples_of
 from rocking_cli.studies.fragility.quantities import PGA, PGV
 
-TREND = 0.05  # p-value below which residuals have a trend
+MIN_P_VALUE = 0.05  # of residuals without a trend
 OF_MOTION = ("Tm", "D5-95")
 """What residuals are tested against if not all records state magnitude and distance."""
-STRAIGHT = ("magnitude",)  # it is a logarithm already
-FEWEST = 3  # runs, and records
-SAME = 1e-9  # of a logarithm: measures that differ by no more than a factor are one
+LOGARITHMIC = ("magnitude",)  # quantities that are logarithms already
+MIN_RUNS = 3  # and records
+RATIO_TOLERANCE = 1e-9  # of a logarithm: measures whose ratio is constant within it count as one
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class Ranked:
     def sufficient(self) -> bool | None:
         """Whether the residuals show no trend; None if no trend could be tested."""
         known = [p for p in self.trends.values() if p == p]
-        return min(known) >= TREND if known else None
+        return min(known) >= MIN_P_VALUE if known else None
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ def line(x: Reals, y: Reals) -> FittedLine | None:
     free = x.size - 2
     spread = x - x.mean() if x.size else x
     squares = float(spread @ spread)
-    if free < 1 or squares <= (SAME * x.size) ** 2:
+    if free < 1 or squares <= (RATIO_TOLERANCE * x.size) ** 2:
         return None
     slope = float(spread @ y) / squares
     rest = y - y.mean() - slope * spread
@@ -154,7 +154,7 @@ def covariates(plan: Plan) -> dict[str, Reals]:
             values = plan.of_records(name)
             if not (np.isfinite(values[usable]).all() and (values[usable] > 0).all()):
                 return {}
-            found[name] = values if name in STRAIGHT else np.log(np.where(usable, values, 1.0))
+            found[name] = values if name in LOGARITHMIC else np.log(np.where(usable, values, 1.0))
         return found
 
     return of(ORIGIN) or of(OF_MOTION)
@@ -205,7 +205,7 @@ def _rank(
     """Rank the measures of one structure."""
     runs, y = rocking(store, plan, structure)
     sample, record, _, level, _ = plan.places(runs)
-    factors, one = plan.factors(sample, record, level), plan.of_sets.one[record]  # alike in several sets
+    factors, one = plan.factors(sample, record, level), plan.of_sets.one[record]  # repeated in several sets
     ranked: list[Ranked] = []
     alike: dict[str, str] = {}
     left_out: dict[str, str] = {}
@@ -218,7 +218,8 @@ def _rank(
             continue
         log = np.log(np.where(there, x, 1.0))
         twin = next(
-            (other for other, its in logs.items() if there.all() and its.size and np.ptp(log - its) <= SAME), None
+            (other for other, its in logs.items() if there.all() and its.size and np.ptp(log - its) <= RATIO_TOLERANCE),
+            None,
         )
         if twin is not None:
             alike[name] = twin
@@ -255,7 +256,8 @@ def serves(
         return None
     residuals = y - fit.intercept - fit.slope * x
     records, place, count = np.unique(record, return_inverse=True, return_counts=True)
-    means = np.bincount(place, weights=residuals) / count  # runs of a record are not independent
+    # One mean per record, as runs of a record are not independent.
+    means = np.bincount(place, weights=residuals) / count
     trends = {}
     for name, values in against.items():
         of = line(values[records], means) if name != measure else None

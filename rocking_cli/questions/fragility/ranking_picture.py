@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rocking_cli.plotting import style
-from rocking_cli.questions.fragility.ranking import TREND, Ranking
+from rocking_cli.questions.fragility.ranking import MIN_P_VALUE, Ranking
 
-LEAST = 1e-4  # p-values below it are drawn at it
+MIN_DRAWN_P_VALUE = 1e-4  # smaller values are drawn here
 
 
 def draw_ranking(ranking: Ranking) -> Figure:
@@ -40,10 +40,10 @@ def draw_ranking(ranking: Ranking) -> Figure:
         for k, name in enumerate(ranking.against):
             values = np.array([each.trends[name] for each in shown])
             look = style.distinct(k) | {"linestyle": ""}
-            panels[1].plot(np.maximum(values, LEAST), places, **look, label=name)
-        panels[1].axvline(TREND, color=style.INK, linewidth=style.MEDIUM, linestyle="--")
-        panels[1].set_xlim(LEAST / 1.3, 1.3)
-        panels[1].set_xlabel(f"p-value of no trend; trend if below {TREND:g}", fontsize=style.LABEL)
+            panels[1].plot(np.maximum(values, MIN_DRAWN_P_VALUE), places, **look, label=name)
+        panels[1].axvline(MIN_P_VALUE, color=style.INK, linewidth=style.MEDIUM, linestyle="--")
+        panels[1].set_xlim(MIN_DRAWN_P_VALUE / 1.3, 1.3)
+        panels[1].set_xlabel(f"p-value of no trend; trend if below {MIN_P_VALUE:g}", fontsize=style.LABEL)
         style.logarithmic(panels[1].xaxis, (1.0,))
         panels[1].legend(loc="best", fontsize=style.TICK, frameon=True)
     for axes in panels:

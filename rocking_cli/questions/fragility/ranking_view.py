@@ -8,12 +8,12 @@ from typing import Any
 
 from rocking_cli.names import UNKNOWN
 from rocking_cli.questions.fragility.definition import Limit
-from rocking_cli.questions.fragility.ranking import FEWEST, TREND, Ranked, Ranking
+from rocking_cli.questions.fragility.ranking import MIN_P_VALUE, MIN_RUNS, Ranked, Ranking
 from rocking_cli.questions.fragility.view import limit_name
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_of
 from rocking_cli.views.view import Table, View
 
-NARROW = 12  # characters of a heading
+MAX_HEADING_WIDTH = 12  # characters
 
 
 COLUMNS: tuple[Column[Ranked], ...] = (
@@ -64,7 +64,7 @@ def _entry(field: str, key: Limit, head: str, digits: int) -> Column[Ranked]:
 
 def _dispersion(limit: Limit) -> str:
     """Return the heading of the dispersions of a limit state."""
-    return "\n".join(["dispersion", *wrap(limit_name(limit), NARROW)])
+    return "\n".join(["dispersion", *wrap(limit_name(limit), MAX_HEADING_WIDTH)])
 
 
 def _data(ranking: Ranking) -> dict[str, Any]:
@@ -106,7 +106,7 @@ def _of_trends(ranking: Ranking) -> list[str]:
         return ["What its residuals depend on is not tested: the store has no data to test them against."]
     tested = [each for each in ranking.measures if each.sufficient is not None]
     if not tested:
-        return [f"With fewer than {FEWEST} records no trend with {' and '.join(ranking.against)} can be told."]
+        return [f"With fewer than {MIN_RUNS} records no trend with {' and '.join(ranking.against)} can be told."]
     free = [each for each in tested if each.sufficient]
     over = " or ".join(ranking.against)
     if not free:
@@ -115,5 +115,5 @@ def _of_trends(ranking: Ranking) -> list[str]:
     which = "It" if best is ranking.measures[0] else f"{best.measure}, with {best.efficiency:.2g},"
     return [
         f"{which} is the most efficient of the {len(free)} whose residuals show no trend with {over} "
-        f"(p of {TREND:g} or more); the absence of a detected trend does not prove that there is none."
+        f"(p of {MIN_P_VALUE:g} or more); the absence of a detected trend does not prove that there is none."
     ]

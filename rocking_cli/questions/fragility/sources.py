@@ -17,7 +17,7 @@ from rocking_cli.excitation.pulses.base import SAMPLING
 from rocking_cli.processing.reading import Reading
 from rocking_cli.questions.fragility.definition import RecordEntry
 
-KEPT = 32_000_000  # samples of records held in memory at most, a quarter of a gigabyte
+MAX_SAMPLES_IN_MEMORY = 32_000_000  # of all records: a quarter of a gigabyte
 
 
 @dataclass(frozen=True)
@@ -115,9 +115,8 @@ def examine(source: Source) -> tuple[Record, GroundMotion | None]:
         return Record(source.name, checksum, reason=str(error).splitlines()[0]), None
     if measured.pga == 0:
         return Record(source.name, checksum, reason=f"{source.name}: zero throughout: there is nothing to scale"), None
-    doubtful = (
-        len(doubts(motion.of_ground, measured)) if source.path is not None else 0
-    )  # what a formula gives is meant
+    # Only records are checked: a pulse is exactly what its formula gives.
+    doubtful = len(doubts(motion.of_ground, measured)) if source.path is not None else 0
     found = Record(source.name, checksum, None, motion.dt, motion.npts, measured.pga, measured.pgv, doubtful)
     return found, motion
 
@@ -143,7 +142,7 @@ class KeptMotions:
         if known is not None and known.reason is None:
             try:
                 checksum = source.checksum()
-            except InputError:  # it cannot be read any more
+            except InputError:  # the record cannot be read any more
                 checksum = ""
             record = replace(known, checksum=checksum)
         else:
@@ -166,7 +165,7 @@ class KeptMotions:
     def _keep(self, k: int, motion: GroundMotion) -> GroundMotion:
         self._kept[k] = motion
         self._size += motion.npts
-        while self._size > KEPT and len(self._kept) > 1:
+        while self._size > MAX_SAMPLES_IN_MEMORY and len(self._kept) > 1:
             _, dropped = self._kept.popitem(last=False)
             self._size -= dropped.npts
         return motion

@@ -29,17 +29,17 @@ from rocking_cli.io.json_text import json_text
 from rocking_cli.questions.fragility.definition import SLIDING
 from rocking_cli.questions.fragility.plan import Measured, Plan, Trial, Value, described
 from rocking_cli.questions.fragility.sources import Record
-from rocking_cli.questions.fragility.workers import GOES_ON
+from rocking_cli.questions.fragility.workers import CONTINUE_HINT
 
-PATIENCE = 1.0  # s between transactions: what is finished in between is run again after a crash
-READ = 100_000  # runs read at a time
-BEYOND = 2**63 - 1  # any number of a run
+COMMIT_INTERVAL = 1.0  # s: runs finished in between are repeated after a crash
+RUNS_PER_READ = 100_000
+MAX_RUN_NUMBER = 2**63 - 1  # above the number of any run
 STANDS, FAILED, UNKNOWN = 0, 2, 3  # outcomes; 1 and -1: overturns in the positive or the negative direction
-SEAL = "seal"  # the name in the table `study` of the checksum of all but the runs
-NAMED = 5  # damaged runs named one by one
-SLIDE = "slide_time"  # the column of runs that only studies of sliding have
+SEAL = "seal"  # key of the checksum of everything but the runs, in the table `study`
+MAX_NAMED_RUNS = 5  # damaged runs that an error message names
+SLIDE_COLUMN = "slide_time"  # only studies of sliding have this column
 
-TABLES = """
+CREATE_TABLES = """
 CREATE TABLE study (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE sample (
     id INTEGER PRIMARY KEY, structure TEXT NOT NULL, number INTEGER NOT NULL, drawn TEXT NOT NULL, reason TEXT,
@@ -62,9 +62,9 @@ CREATE TABLE measured (
     id INTEGER PRIMARY KEY, measure TEXT NOT NULL, sample INTEGER, record INTEGER, level INTEGER, value REAL
 )
 """
-PLAN = ("sample", "record", "eta", "level", "polarity")  # what a run is of
-# Numbers of runs become words and values again for whoever opens the file with another program.
-VIEW = """
+PLAN_COLUMNS = ("sample", "record", "eta", "level", "polarity")  # coordinates of a run in the plan
+# A view with words and values, for users who open the file with another program.
+CREATE_VIEW = """
 CREATE VIEW runs AS SELECT
     run.id, sample.structure, sample.number AS sample, record.name AS record, level.value AS level,
     polarity.value AS polarity, run.eta, run.scale, run.scale * record.pga AS pga, run.scale * record.pgv AS pgv,
@@ -145,7 +145,7 @@ class RunRows:
         return tuple(each.name for each in fields(self) if getattr(self, each.name) is not None)
 
 
-COLUMNS = tuple(each.name for each in fields(RunRows) if each.name != SLIDE)
+COLUMNS = tuple(each.name for each in fields(RunRows) if each.name != SLIDE_COLUMN)
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,7 +200,7 @@ class Store:
         self.path = path
         self.columns = COLUMNS
         self._connection = connection
-        self._old: sqlite3.Connection | None = None  # the store that is put aside as this one begins
+        self._old: sqlite3.Connection | None = None  # the previous store, renamed when this one starts
         self._say: Say = lambda text: None
         self._salt = 0
         self._last = monotonic()
@@ -262,7 +262,7 @@ class Store:
                 if store.empty:
                     raise InputError(Problem("this is not the store of a study, or it is still empty", str(path)))
                 store._check(to_write=False)
-                yield store  # in short reads: a long one would keep a study that runs from adding to it
+                yield store  # a long read would block a running study that adds to the store
             finally:
                 store._connection.close()
 
@@ -288,7 +288,7 @@ class Store:
             try:
                 self._check(to_write=True)
             except BaseException:
-                self._connection.rollback()  # with damaged pages there is no commit
+                self._connection.rollback()  # damaged pages make a commit impossible
                 raise
             self._name_who_is_at_work()
 
@@ -305,9 +305,9 @@ class Store:
     def _let_go(self) -> None:
         """Commit the finished runs, and release the lock."""
         try:
-            if self._connection.in_transaction:  # not after a full disk, which has undone the last one
+            if self._connection.in_transaction:  # a full disk has already rolled back the transaction
                 self._connection.execute("COMMIT")
-            with suppress(sqlite3.Error):  # it tells nobody anything any more
+            with suppress(sqlite3.Error):  # nothing depends on this entry any more
                 self._connection.execute("PRAGMA busy_timeout = 0")
                 self._connection.execute("DELETE FROM study WHERE key = ? AND value = ?", (AT_WORK, this_process()))
         finally:
@@ -342,23 +342,23 @@ class Store:
 
     def _fill(self, plan: Plan, facts: Mapping[str, Any]) -> None:
         self.columns = _columns(facts["description"])
-        slides = SLIDE in self.columns
-        for statement in TABLES.format(columns=f", {SLIDE} REAL" if slides else "").split(";\n"):
+        slides = SLIDE_COLUMN in self.columns
+        for statement in CREATE_TABLES.format(columns=f", {SLIDE_COLUMN} REAL" if slides else "").split(";\n"):
             self._connection.execute(statement)
         levels, polarities = plan.shape[3:]
         self._connection.execute(
-            VIEW.format(
+            CREATE_VIEW.format(
                 sample=len(plan.records) * plan.block,
                 record=plan.block,
                 records=len(plan.records),
                 level=polarities,
                 levels=levels,
                 polarities=polarities,
-                columns=f", run.{SLIDE}" if slides else "",
+                columns=f", run.{SLIDE_COLUMN}" if slides else "",
             )
         )
-        self._connection.execute(f"PRAGMA application_id = {MARK}")
-        self._connection.execute(f"PRAGMA user_version = {VERSION}")
+        self._connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+        self._connection.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
         trials = ({**asdict(trial), "drawn": json_text(trial.drawn, sort_keys=True)} for trial in plan.trials)
         self._insert("sample", [tuple(trial.values()) for trial in trials])
         self._insert("record", [tuple(asdict(each).values()) for each in plan.records])
@@ -392,10 +392,11 @@ class Store:
     def _digest(self) -> str:
         """Return the SHA-256 of everything in the store except the runs."""
         found = hashlib.sha256()
-        queries = [f"SELECT * FROM {table} ORDER BY id" for table in PLAN]
+        queries = [f"SELECT * FROM {table} ORDER BY id" for table in PLAN_COLUMNS]
         for query in (*queries, f"SELECT * FROM study WHERE key NOT IN ('{SEAL}', '{AT_WORK}') ORDER BY key"):
             found.update(repr(self._connection.execute(query).fetchall()).encode())
-        for row in self._connection.execute("SELECT * FROM measured ORDER BY id"):  # there may be millions
+        # Row by row, as there may be millions.
+        for row in self._connection.execute("SELECT * FROM measured ORDER BY id"):
             found.update(repr(row).encode())
         return found.hexdigest()
 
@@ -410,11 +411,12 @@ class Store:
         Runs that are missing are not finished: they are run again.
         """
         if not (alone := self._connection.in_transaction):
-            self._connection.execute("BEGIN")  # at one moment: somebody may be at work
+            self._connection.execute("BEGIN")  # a consistent snapshot, as another process may be writing
         layout = self._connection.execute("PRAGMA user_version").fetchone()[0]
-        if layout != VERSION:
-            other = f"this store has the layout {layout}, and this version of rocking reads the layout {VERSION} only"
-            raise InputError(Problem(other, str(self.path), hint=RESTART))
+        if layout != SCHEMA_VERSION:
+            other = f"this store has the layout {layout}, and this version of rocking reads the layout "
+            other += f"{SCHEMA_VERSION} only"
+            raise InputError(Problem(other, str(self.path), hint=RESTART_HINT))
         found = self._connection.execute("SELECT value FROM study WHERE key = ?", (SEAL,)).fetchone()
         if found is None or found[0] != self._digest():
             raise damaged(self.path, "the description of the study does not match its checksum")
@@ -425,10 +427,12 @@ class Store:
             self._connection.execute("COMMIT")
         whole, bad, what = self._count_whole(plan.size)
         if bad:
-            named = "; ".join(plan.name(k) for k in bad[:NAMED]) + ("; ..." if len(bad) > NAMED else "")
+            named = "; ".join(plan.name(k) for k in bad[:MAX_NAMED_RUNS]) + (
+                "; ..." if len(bad) > MAX_NAMED_RUNS else ""
+            )
             count = "1 run does not match its checksum" if len(bad) == 1 else f"{len(bad)} runs do not match theirs"
             what.append(f"{count}: {named}")
-        if to_write and not what:  # writing to damaged pages would make the damage worse
+        if to_write and not what:  # writing to damaged pages would increase the damage
             said = self._connection.execute("PRAGMA quick_check(1)").fetchone()[0]
             what += [] if said == "ok" else [" ".join(said.split())]
         if what:
@@ -448,16 +452,17 @@ class Store:
         """
         whole, bad, unreadable = 0, [], []
         query = f"SELECT {', '.join((*self.columns, 'checksum'))} FROM run WHERE id >= ? AND id < ?"
-        for first, stop in pairwise([-BEYOND, *range(READ, size, READ), BEYOND]):
+        for first, stop in pairwise([-MAX_RUN_NUMBER, *range(RUNS_PER_READ, size, RUNS_PER_READ), MAX_RUN_NUMBER]):
             found: list[tuple[Any, ...]] = []
             try:
-                found.extend(self._connection.execute(query, (first, stop)))  # row by row, up to what is unreadable
+                # Row by row, up to the first unreadable one.
+                found.extend(self._connection.execute(query, (first, stop)))
             except sqlite3.DatabaseError as error:
                 if code_of(error) != sqlite3.SQLITE_CORRUPT:
                     raise
                 unreadable = [str(error)]
             table = _numbers(found, len(self.columns) + 1)
-            # Where pages are damaged a run may be met twice, or out of its place.
+            # Damaged pages may give a run twice, or in the wrong place.
             sound = (np.diff(table[:, 0], prepend=-1.0) > 0) & (_checksums(table[:, :-1], self._salt) == table[:, -1])
             whole += int(sound.sum())
             bad += [row[0] for row, is_sound in zip(found, sound.tolist(), strict=True) if not is_sound]
@@ -523,7 +528,7 @@ class Store:
         columns = [*(getattr(rows, name).tolist() for name in self.columns), _checksums(table, self._salt)]
         marks = ", ".join("?" * len(columns))
         self._connection.executemany(f"INSERT INTO run VALUES ({marks})", zip(*columns, strict=True))
-        if monotonic() - self._last > PATIENCE:
+        if monotonic() - self._last > COMMIT_INTERVAL:
             self.commit()
 
     def commit(self) -> None:
@@ -542,8 +547,9 @@ class Store:
         """Return some columns of the runs between two numbers, shape (columns, runs)."""
         query = f"SELECT {', '.join(names)} FROM run WHERE id >= ? AND id < ?"
         blocks = [np.empty((0, len(names)))]
-        for start in range(first, stop, READ):  # as Python's numbers they take ten times the memory
-            found = self._connection.execute(query, (start, min(start + READ, stop))).fetchall()
+        # In parts, as Python numbers take ten times the memory of an array.
+        for start in range(first, stop, RUNS_PER_READ):
+            found = self._connection.execute(query, (start, min(start + RUNS_PER_READ, stop))).fetchall()
             blocks.append(np.array(found, dtype=np.float64).reshape(-1, len(names)))
         return np.concatenate(blocks).T
 
@@ -560,10 +566,10 @@ class Store:
             Called with the number of runs read since the last call.
         """
         names = "id", "outcome", "peak_ratio", "peak_positive", "peak_negative", "uplift_time", "lower_bound", "opening"
-        slides = SLIDE in self.columns
-        for start in range(first, stop, READ):
-            end = min(start + READ, stop)
-            table = self._table((*names, SLIDE) if slides else names, start, end)
+        slides = SLIDE_COLUMN in self.columns
+        for start in range(first, stop, RUNS_PER_READ):
+            end = min(start + RUNS_PER_READ, stop)
+            table = self._table((*names, SLIDE_COLUMN) if slides else names, start, end)
             number, outcome = table[:2].astype(np.int64)
             uplifts, checked = np.isfinite(table[5]), np.isfinite(table[7])
             slips = np.isfinite(table[8]) if slides else np.zeros(len(uplifts), dtype=bool)
@@ -573,7 +579,7 @@ class Store:
 
 def _columns(description: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the names of the columns of a study's runs."""
-    return (*COLUMNS, SLIDE) if SLIDING in description else COLUMNS
+    return (*COLUMNS, SLIDE_COLUMN) if SLIDING in description else COLUMNS
 
 
 def _numbers(found: Sequence[tuple[Any, ...]], columns: int) -> Reals:
@@ -588,7 +594,8 @@ def _numbers(found: Sequence[tuple[Any, ...]], columns: int) -> Reals:
 
 def _checksums(table: Reals, salt: int) -> list[int]:
     """Return the CRC-32 of each row, as little-endian doubles, starting from the salt of the study."""
-    table = (np.where(np.isnan(table), np.nan, table) + 0.0).astype("<f8")  # SQLite keeps neither NaNs nor zeros apart
+    # SQLite distinguishes neither kinds of NaN nor signs of zero.
+    table = (np.where(np.isnan(table), np.nan, table) + 0.0).astype("<f8")
     row = 8 * table.shape[1]
     data = memoryview(table.tobytes())
     return [crc32(data[k : k + row], salt) for k in range(0, len(data), row)]
@@ -599,20 +606,20 @@ def _salt(hash_: Any) -> int:
     return int(str(hash_)[:8], 16)
 
 
-MARK = 0x526F636B  # "Rock", in the header of the file
-VERSION = 7  # of the tables of a store
-WAITING = 60.0  # s for somebody who reads the store meanwhile
-AT_WORK = "at work"  # the name in the table `study` under which the process is that adds runs
+APPLICATION_ID = 0x526F636B  # "Rock", in the header of the file
+SCHEMA_VERSION = 7
+LOCK_TIMEOUT = 60.0  # s, while another process reads the store
+AT_WORK = "at work"  # key of the process that adds runs, in the table `study`
 
-RESTART = "run the study again with `restart`, which keeps this file under another name"
+RESTART_HINT = "run the study again with `restart`, which keeps this file under another name"
 HINTS = {
-    sqlite3.SQLITE_FULL: f"make room: {GOES_ON}",
-    sqlite3.SQLITE_IOERR: f"see to the disk: {GOES_ON}",
-    sqlite3.SQLITE_BUSY: f"another program has kept it open for long: {GOES_ON}",
-    sqlite3.SQLITE_READONLY: f"see to its rights, and whether somebody has moved it: {GOES_ON}",
+    sqlite3.SQLITE_FULL: f"make room: {CONTINUE_HINT}",
+    sqlite3.SQLITE_IOERR: f"see to the disk: {CONTINUE_HINT}",
+    sqlite3.SQLITE_BUSY: f"another program has kept it open for long: {CONTINUE_HINT}",
+    sqlite3.SQLITE_READONLY: f"see to its rights, and whether somebody has moved it: {CONTINUE_HINT}",
 }
 
-# What SQLite says of a damaged header, or of pages that are not there.
+# Errors of SQLite for a damaged header or missing pages.
 BEYOND_READING = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR, sqlite3.SQLITE_READONLY)
 
 
@@ -622,7 +629,9 @@ class StoreError(Refused):
 
 def damaged(path: Path, what: str) -> InputError:
     """Return the error for a damaged store."""
-    return InputError(Problem(f"the store is damaged: {what}", str(path), hint=f"restore a copy of it, or {RESTART}"))
+    return InputError(
+        Problem(f"the store is damaged: {what}", str(path), hint=f"restore a copy of it, or {RESTART_HINT}")
+    )
 
 
 def code_of(error: sqlite3.Error) -> int:
@@ -636,16 +645,18 @@ def in_words(path: Path) -> Iterator[None]:
     try:
         yield
     except sqlite3.Error as error:
-        if getattr(error, "sqlite_errorcode", 0) == sqlite3.SQLITE_READONLY_DBMOVED:  # by a restart elsewhere
+        # Another process has restarted the study.
+        if getattr(error, "sqlite_errorcode", 0) == sqlite3.SQLITE_READONLY_DBMOVED:
             what = "another process has moved this store: it has just started the study from scratch"
             raise InputError(Problem(what, str(path), hint="run the same command again to continue")) from None
         if code_of(error) == sqlite3.SQLITE_NOTADB:
             raise InputError(Problem("this is not the store of a study", str(path))) from None
-        if code_of(error) in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR):  # the latter: a table or column is missing
+        # SQLITE_ERROR: a table or column is missing.
+        if code_of(error) in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR):
             raise damaged(path, str(error)) from error
         problem = Problem(f"the store cannot be used: {error}", str(path), hint=HINTS.get(code_of(error)))
         raise StoreError(str(problem)) from error
-    except UnicodeDecodeError as error:  # of a name in its tables, which `sqlite3` reads itself
+    except UnicodeDecodeError as error:  # raised by `sqlite3` for a damaged name of a column
         raise damaged(path, "its tables are not those of a store") from error
 
 
@@ -656,10 +667,10 @@ def open_store(path: Path) -> sqlite3.Connection:
         raise InputError(Problem(f"this is {what}, not the store of a study", str(path)))
     connection = sqlite3.connect(path, isolation_level=None)
     try:
-        connection.text_factory = lambda text: text.decode(errors="replace")  # what is damaged is told by its checksum
-        connection.execute(f"PRAGMA busy_timeout = {int(1000 * WAITING)}")
-        # The tables before the mark: somebody may write both between two looks.
-        if tables(connection) and connection.execute("PRAGMA application_id").fetchone()[0] != MARK:
+        connection.text_factory = lambda text: text.decode(errors="replace")  # checksums detect the damage
+        connection.execute(f"PRAGMA busy_timeout = {int(1000 * LOCK_TIMEOUT)}")
+        # Tables are read before the application id, as another process may write both in between.
+        if tables(connection) and connection.execute("PRAGMA application_id").fetchone()[0] != APPLICATION_ID:
             raise InputError(Problem("this is another database, not the store of a study", str(path)))
     except BaseException:
         connection.close()
@@ -676,7 +687,7 @@ def is_beyond_reading(path: Path, error: sqlite3.DatabaseError) -> bool:
     """Return whether an error means that a file, a store by its first bytes, cannot even be locked."""
     with path.open("rb") as file:
         start = file.read(100)
-    is_store = start.startswith(b"SQLite format 3\0") and start[68:72] == MARK.to_bytes(4, "big")
+    is_store = start.startswith(b"SQLite format 3\0") and start[68:72] == APPLICATION_ID.to_bytes(4, "big")
     return is_store and code_of(error) in BEYOND_READING
 
 
@@ -709,7 +720,7 @@ def _locked(path: Path) -> sqlite3.Connection:
     try:
         connection.execute("PRAGMA busy_timeout = 0")
         connection.execute("BEGIN IMMEDIATE")
-        connection.execute(f"PRAGMA busy_timeout = {int(1000 * WAITING)}")
+        connection.execute(f"PRAGMA busy_timeout = {int(1000 * LOCK_TIMEOUT)}")
     except sqlite3.OperationalError as error:
         who = _at_work(connection)
         connection.close()
@@ -752,14 +763,14 @@ def put_aside(path: Path, connection: sqlite3.Connection) -> Path:
         Its new path: study.before.db, study.before-2.db, ...
     """
     names = (path.with_name(f"{path.stem}.before{f'-{k}' if k > 1 else ''}{path.suffix}") for k in count(1))
-    # A journal that waits for its database would be played into whatever takes this name.
+    # SQLite would apply a journal that is left to any new file of this name.
     ends = ("", "-journal", "-wal", "-shm")
     aside = next(name for name in names if not any(os.path.lexists(f"{name}{end}") for end in ends))
-    if os.name == "nt":  # where an open file cannot be renamed
+    if os.name == "nt":  # Windows cannot rename an open file
         connection.close()
     path.rename(aside)
     connection.close()
-    # Locked, a store has no journal that matters; one that is left must not meet the new store.
+    # While the store is locked, no journal is needed; a stale one must not be applied to the new store.
     with suppress(FileNotFoundError):
         Path(f"{path}-journal").rename(f"{aside}-journal")
     return aside

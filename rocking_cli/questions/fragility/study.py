@@ -263,7 +263,7 @@ def _structure(
         raise of_structure(error, entry.file) from error
     fields = [name for name, info in type(structure).model_fields.items() if info.annotation in (float, float | None)]
     known = [*fields, RESTITUTION]
-    written = document.data["structures"][place[1]]  # also what no valid distribution is given for
+    written = document.data["structures"][place[1]]  # as written, with invalid distributions too
     varied = written.get("vary") if isinstance(written, dict) else None
     for name in varied if isinstance(varied, dict) else []:
         if name not in known:
@@ -305,7 +305,7 @@ def _sources(document: Document, place: Place, folder: Path, entry: RecordEntry,
         what = "a second component belongs to one record: give each record an entry of its own"
         document.problems.append(document.at((*place, "with"), what))
         return []
-    if other:  # a pattern stands for the one file
+    if other:  # a pattern that matches only this file
         entry = entry.model_copy(update={"other": _shown(other[0], folder)})
     return [one for file in files for one in _of_file_or_list(document, place, folder, entry, common, file, vertical)]
 

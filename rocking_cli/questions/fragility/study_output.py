@@ -41,7 +41,7 @@ def show_study(answer: StudyAnswer, shown: StudyOutput, watch: OnTerminal) -> No
     if shown.plot is not None:
         _draw_all(Path(shown.plot), answer)
     terminal.show(answer.view, as_json=shown.as_json)
-    if shown.nrml is not None:  # last: curves that OpenQuake cannot read have been shown
+    if shown.nrml is not None:  # last, so that curves which OpenQuake cannot read have been shown
         write_nrml(answer, shown.nrml, watch)
     if answer.failed:
         terminal.error(f"{answer.failed} runs could not be simulated and are left out of the curves")

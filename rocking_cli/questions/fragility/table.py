@@ -13,16 +13,16 @@ from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.questions.fragility.assess import Fragility
 from rocking_cli.questions.fragility.curves import FragilityCurve
 from rocking_cli.questions.fragility.plan import Plan
-from rocking_cli.questions.fragility.store import FAILED, SLIDE, STANDS, UNKNOWN, RunRows, Store
+from rocking_cli.questions.fragility.store import FAILED, SLIDE_COLUMN, STANDS, UNKNOWN, RunRows, Store
 from rocking_cli.studies.fragility.quantities import ALWAYS, label
 
-POINTS = 101  # of a curve
-WIDEST = 30.0  # ratio of the least and the largest intensity from which on steps are of equal ratio
-WORDS = ("structure", "limit_state", "measure", "unit", "kind")
-NUMBERS = ("median", "dispersion", "scale", "x", "probability", "low", "high")
-OTHER = tuple(f"lower_{name}" for name in ("median", "dispersion", "scale", "probability", "low", "high"))
+CURVE_POINTS = 101
+MIN_LOG_RATIO = 30.0  # of the largest intensity over the least, from which intensities are spaced by a factor
+TEXT_COLUMNS = ("structure", "limit_state", "measure", "unit", "kind")
+NUMBER_COLUMNS = ("median", "dispersion", "scale", "x", "probability", "low", "high")
+LOWER_COLUMNS = tuple(f"lower_{name}" for name in ("median", "dispersion", "scale", "probability", "low", "high"))
 """Columns of the fit in which runs of unknown outcome do not exceed, beside those of that in which they do."""
-COLUMNS = (*NUMBERS, "unknown", *OTHER)
+COLUMNS = (*NUMBER_COLUMNS, "unknown", *LOWER_COLUMNS)
 
 
 def curve_blocks(curves: Sequence[Fragility]) -> Iterator[Mapping[str, Sequence[object] | NDArray[Any]]]:
@@ -37,7 +37,7 @@ def curve_blocks(curves: Sequence[Fragility]) -> Iterator[Mapping[str, Sequence[
     """
     drawn = [each for each in curves if any(fit.curve.kind != "none" for fit in (each, each.lower or each))]
     if not drawn:
-        yield {**{name: np.array([], dtype=str) for name in WORDS}, **{name: np.array([]) for name in COLUMNS}}
+        yield {**{name: np.array([], dtype=str) for name in TEXT_COLUMNS}, **{name: np.array([]) for name in COLUMNS}}
     for each in drawn:
         x, share = _intensities(each), each.share
         words = (each.structure, f"{each.limit}", each.measure, parse_measure(each.measure).unit, each.curve.kind)
@@ -45,7 +45,7 @@ def curve_blocks(curves: Sequence[Fragility]) -> Iterator[Mapping[str, Sequence[
         one, other = (_fit(found.curve, x) for found in (each, each.lower or each))
         numbers = [*one[:3], x, *one[3:], unknown, *other]
         columns = zip(COLUMNS, numbers, strict=True)
-        yield {**{name: [word] * x.size for name, word in zip(WORDS, words, strict=True)}, **dict(columns)}
+        yield {**{name: [word] * x.size for name, word in zip(TEXT_COLUMNS, words, strict=True)}, **dict(columns)}
 
 
 def _fit(curve: FragilityCurve, x: NDArray[np.float64]) -> list[NDArray[np.float64]]:
@@ -57,15 +57,16 @@ def _fit(curve: FragilityCurve, x: NDArray[np.float64]) -> list[NDArray[np.float
 def _intensities(found: Fragility) -> NDArray[np.float64]:
     """Return the intensities of a curve's rows, with the ends of the interval of a step, and both sides of it."""
     least, most = float(found.seen.x.min()), float(found.seen.x.max())
-    between = np.geomspace if most > WIDEST * least else np.linspace
-    x: NDArray[np.float64] = between(least, most, POINTS)
+    between = np.geomspace if most > MIN_LOG_RATIO * least else np.linspace
+    x: NDArray[np.float64] = between(least, most, CURVE_POINTS)
     steps = [step for curve in (found.curve, (found.lower or found).curve) for step in curve.steps]
     return np.union1d(x, [end for step in steps for end in (step.low, step.value, step.high)])
 
 
-ROWS = 100_000  # runs of a block
+RUNS_PER_BLOCK = 100_000
 HEADINGS = {
-    "known_to": "known to [s]", "lower_bound": "phi/phi_cr at least", "opening": "opening/D_cr", SLIDE: "sliding [s]",
+    "known_to": "known to [s]", "lower_bound": "phi/phi_cr at least", "opening": "opening/D_cr",
+    SLIDE_COLUMN: "sliding [s]",
 }  # fmt: skip
 """Headings of the columns that not every store has."""
 
@@ -88,8 +89,8 @@ def run_blocks(store: Store, plan: Plan, measures: Sequence[str] = ()) -> Iterat
         The columns by heading, with units; the first block is yielded even if it is empty.
     """
     end, asked = int(np.prod(plan.shape)), tuple(dict.fromkeys([*ALWAYS, *measures]))
-    for first in range(0, end, ROWS):
-        rows = store.runs(first, min(first + ROWS, end))
+    for first in range(0, end, RUNS_PER_BLOCK):
+        rows = store.runs(first, min(first + RUNS_PER_BLOCK, end))
         if len(rows) or first == 0:
             yield _of_runs(plan, rows, asked)
 

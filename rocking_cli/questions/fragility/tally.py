@@ -20,7 +20,7 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.questions.fragility.definition import OVERTURNING, SLIDING, UPLIFT, Limit
-from rocking_cli.questions.fragility.observed import SAME
+from rocking_cli.questions.fragility.observed import INTENSITY_TOLERANCE
 from rocking_cli.questions.fragility.plan import Plan, Trial
 from rocking_cli.questions.fragility.store import FAILED, STANDS, Endings, Store
 from rocking_cli.questions.fragility.study import RESTITUTION, Sample, Study
@@ -29,9 +29,9 @@ from rocking_cli.studies.movements import is_held, top
 from rocking_cli.studies.under_pulses import uplift
 
 Places = NDArray[np.int32]
-UNSEEN = float(np.finfo(np.float64).max)
+UNKNOWN_PEAK = float(np.finfo(np.float64).max)
 """The peak of a run of unknown outcome: more than any that was seen, less than that of one that overturns."""
-ROUNDING = 1e-9  # of a rotation
+ROTATION_TOLERANCE = 1e-9  # relative, for rounding
 Counted = Callable[[int], None]
 """Called with how many numbers of runs have been looked at since the last call."""
 
@@ -178,8 +178,8 @@ class Cells:
         if known is None or UPLIFT not in self.tally.exceeding:
             return known
         x, uplifted = self.intensities(measure), self.exceeding(UPLIFT)
-        early = (x < known.at * (1 - SAME)) & (uplifted > 0)
-        late = (x > known.at * (1 + SAME)) & (uplifted < self.runs)
+        early = (x < known.at * (1 - INTENSITY_TOLERANCE)) & (uplifted > 0)
+        late = (x > known.at * (1 + INTENSITY_TOLERANCE)) & (uplifted < self.runs)
         return None if early.any() or (known.exact and late.any()) else known
 
 
@@ -251,7 +251,7 @@ def count(
         checked &= bool(found.checked.all())
         doubtful = int(found.unknown.sum())
         unknown += doubtful
-        if doubtful and lower is None:  # so far the two are the same
+        if doubtful and lower is None:  # the bounds are equal so far
             lower = deepcopy(upper)
         for limit in limits:
             rotations = reach[limit][sample] if limit in reach else None
@@ -260,13 +260,13 @@ def count(
                 known = known_to_exceed(found, limit, rotations, phi_cr[sample])
                 lower.add(limit, known, cell, ladder, level)
 
-    uplifts = store.facts().get(ONSET, {}).get(structure)
+    uplifts = store.facts().get(UPLIFT_FACT, {}).get(structure)
 
     def tally(counts: _Counts, of_known: Tally | None) -> Tally:
         found = Ladders(counts.first, there) if ladders else None
         return Tally(plan, samples, runs, counts.exceeding, found, unknown, checked, of_known, uplifts)
 
-    checked |= store.fact("description")["model"] != "nonlinear"  # of an equivalent block there are no joints
+    checked |= store.fact("description")["model"] != "nonlinear"  # equivalent blocks have no joints
     return tally(upper, tally(lower, None) if lower is not None else None)
 
 
@@ -316,10 +316,10 @@ def known_to_exceed(found: Endings, limit: Limit, reach: Reals | None, phi_cr: R
     known = _exceeds(found, limit, reach, np.where(found.unknown, found.lower_bound, found.peak_ratio))
     if reach is None:
         return known
-    # The bound is of one direction, which must have come as far later on, too.
+    # The lower bound was reached in one direction, the peak of which cannot be smaller.
     bound = found.lower_bound[:, None] * phi_cr
     with np.errstate(invalid="ignore"):
-        could = found.peaks >= bound * (1 - ROUNDING)
+        could = found.peaks >= bound * (1 - ROTATION_TOLERANCE)
         surely = (bound > reach) | ~could
     return np.asarray(np.where(found.unknown, could.any(axis=1) & surely.all(axis=1), known))
 
@@ -330,7 +330,8 @@ def _exceeds(found: Endings, limit: Limit, reach: Reals | None, ratio: Reals) ->
         return found.slides
     overturned = found.overturned
     if reach is not None:
-        return np.asarray(overturned | (found.peaks > reach).any(axis=1))  # NaN, where it overturned, exceeds nothing
+        # A NaN, of a run that overturned, exceeds nothing.
+        return np.asarray(overturned | (found.peaks > reach).any(axis=1))
     if isinstance(limit, str):
         return overturned if limit == OVERTURNING else found.uplifts
     with np.errstate(invalid="ignore"):
@@ -345,13 +346,13 @@ def peaks(store: Store, plan: Plan, structure: str) -> Reals:
     table = endings_of(store, plan, structure)
     ladders = np.moveaxis(table, 3, -1).reshape(-1, table.shape[3])
     complete = ladders[~np.isnan(ladders).any(axis=1)]
-    return np.where(np.isinf(complete), np.nan, np.where(complete == UNSEEN, np.inf, complete))
+    return np.where(np.isinf(complete), np.nan, np.where(complete == UNKNOWN_PEAK, np.inf, complete))
 
 
 def endings_of(store: Store, plan: Plan, structure: str) -> Reals:
     """Return how the runs of a structure end, shape (samples, records, etas, levels, polarities).
 
-    Each entry is the peak phi/phi_cr; 0 without uplift, infinite if the run overturns, `UNSEEN` if the outcome is
+    Each entry is the peak phi/phi_cr; 0 without uplift, infinite if the run overturns, `UNKNOWN_PEAK` if the outcome is
     unknown, NaN if there is no run that could be simulated.
     """
     samples = samples_of(plan, structure)
@@ -360,7 +361,7 @@ def endings_of(store: Store, plan: Plan, structure: str) -> Reals:
     for found in store.endings(start, start + table.size):
         found = found.select(found.outcome != FAILED)
         rocks = np.where(found.uplifts, np.maximum(found.peak_ratio, np.finfo(np.float64).tiny), 0.0)
-        ends = np.where(found.unknown, UNSEEN, np.inf)
+        ends = np.where(found.unknown, UNKNOWN_PEAK, np.inf)
         table.ravel()[found.id - start] = np.where(found.outcome == STANDS, rocks, ends)
     return table
 
@@ -387,9 +388,9 @@ def _add(table: Integers, cell: Integers) -> None:
 Pair = tuple[float | None, float | None]
 """Values in the positive and the negative direction; None where a structure never gets there."""
 
-WAY = 512  # rotations from rest to the end of a mechanism at which it is looked how far the top has moved
-CLOSER = 32  # of a step, in each look at it from closer by
-LOOKS = 10  # which are as many as leave no more than rounding
+TOP_POINTS = 512  # rotations between rest and the end of a mechanism at which the displacement of its top is computed
+REFINEMENT = 32  # parts of a step in each refinement
+MAX_REFINEMENTS = 10  # after which only rounding is left
 
 
 def rotations(
@@ -441,7 +442,7 @@ def of_a_structure(mechanism: Mechanism, displacements: Sequence[float]) -> list
     _, spot = top(mechanism)
     sides: dict[Direction, list[float | None]] = {}
     for direction in Direction:
-        if direction not in mechanism.directions:  # it never turns there
+        if direction not in mechanism.directions:  # the mechanism does not rotate in this direction
             sides[direction] = [None] * len(displacements)
             continue
 
@@ -449,7 +450,7 @@ def of_a_structure(mechanism: Mechanism, displacements: Sequence[float]) -> list
             return np.abs((mechanism.followed(phi, side)(spot).z - spot.at).real)
 
         end = float(np.nextafter(mechanism.limit(direction), 0.0))
-        phi = np.linspace(0.0, end, WAY + 1)
+        phi = np.linspace(0.0, end, TOP_POINTS + 1)
         at = moved(phi)
         sides[direction] = [first_reached(moved, phi, at, each) for each in displacements]
     return list(zip(sides[Direction.POSITIVE], sides[Direction.NEGATIVE], strict=True))
@@ -478,8 +479,8 @@ def first_reached(moved: Callable[[Reals], Reals], phi: Reals, at: Reals, wanted
 
 def _crossing(moved: Callable[[Reals], Reals], low: float, high: float, wanted: float) -> float:
     """Find by successive refinement where between two rotations a displacement is first reached."""
-    for _ in range(LOOKS):
-        fine = np.linspace(low, high, CLOSER + 1)
+    for _ in range(MAX_REFINEMENTS):
+        fine = np.linspace(low, high, REFINEMENT + 1)
         k = max(int(np.argmax(moved(fine) >= wanted)), 1)
         low, high = float(fine[k - 1]), float(fine[k])
     return high
@@ -490,17 +491,17 @@ def _peak(moved: Callable[[Reals], Reals], low: float, high: float, wanted: floa
 
     None if there is no such rotation.
     """
-    for _ in range(LOOKS):
-        fine = np.linspace(low, high, CLOSER + 1)
+    for _ in range(MAX_REFINEMENTS):
+        fine = np.linspace(low, high, REFINEMENT + 1)
         at = moved(fine)
         k = int(np.argmax(at))
         if at[k] >= wanted:
             return float(fine[k])
-        low, high = float(fine[max(k - 1, 0)]), float(fine[min(k + 1, CLOSER)])
+        low, high = float(fine[max(k - 1, 0)]), float(fine[min(k + 1, REFINEMENT)])
     return None
 
 
-ONSET = "uplift"
+UPLIFT_FACT = "uplift"
 """Name under which a store keeps the uplift accelerations of its structures."""
 
 
@@ -553,9 +554,10 @@ def onset(plan: Plan, samples: range, pair: Pair | None, measure: str) -> Onset 
         return None
     usable = [k for k in samples if plan.trials[k].reason is None]
     accelerations = np.array([plan.trials[k].lambda_ * plan.trials[k].gravity for k in usable])
-    if np.ptp(accelerations) > SAME * accelerations.max():  # a property varies on which it depends
+    # The uplift acceleration depends on a property that varies.
+    if np.ptp(accelerations) > INTENSITY_TOLERANCE * accelerations.max():
         return None
     pga = accelerations[:1] / STANDARD_GRAVITY
     at = float(asked.relative(pga, plan.reference(np.array(usable[:1])))[0])
     one, other = pair
-    return Onset(at, one is not None and other is not None and isclose(one, other, rel_tol=SAME))
+    return Onset(at, one is not None and other is not None and isclose(one, other, rel_tol=INTENSITY_TOLERANCE))

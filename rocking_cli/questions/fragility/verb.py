@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rocking_cli.questions.fragility.study import Study
     from rocking_cli.questions.fragility.workers import Workers
 
-NAMED = 10  # bad records or samples named one by one
+MAX_NAMED_PROBLEMS = 10  # bad records or samples
 
 
 @takes_numbers
@@ -92,7 +92,7 @@ def fragility(
     file = Path("study") if isinstance(study, Mapping) else Path(study)
     asked = load_study(study, Path(store or file).stem)
     place = Path(store) if store is not None else file.with_suffix(".db")
-    # What varies may be far from the file: the first sample stands for all.
+    # Varied properties may differ much from the file, so the first sample is checked.
     for mechanism in {sample.structure: sample.mechanism for sample in asked.samples if sample.number == 0}.values():
         warn_of(mechanism, watch)
     for sentence in held(asked):
@@ -142,7 +142,7 @@ def _bring_up_to_date(
     from rocking_cli.questions.fragility.store import Store
 
     with ExitStack() as stack:
-        # The old store gives way only when there is somebody to run the study anew.
+        # The old store is replaced only when workers are available to run the study again.
         hands = stack.enter_context(workers) if restart else None
         store = stack.enter_context(Store.writing(place, anew=restart, say=watch.note))
         with watch.progress(steps(study, rank_measures=rank_measures), "records and structures") as advance:
@@ -170,7 +170,9 @@ def _leave_out(plan: Plan, watch: Watcher) -> None:
     from rocking_cli.questions.fragility.view import left_out
 
     bad = left_out(plan)
-    for sentence in bad[:NAMED]:
+    for sentence in bad[:MAX_NAMED_PROBLEMS]:
         watch.leave_out(InputError(sentence))
-    if len(bad) > NAMED:
-        watch.leave_out(InputError(f"and {len(bad) - NAMED} more: the JSON of `rocking results` names all"))
+    if len(bad) > MAX_NAMED_PROBLEMS:
+        watch.leave_out(
+            InputError(f"and {len(bad) - MAX_NAMED_PROBLEMS} more: the JSON of `rocking results` names all")
+        )

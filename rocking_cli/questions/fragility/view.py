@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from rocking_cli.names import UNKNOWN, percent
-from rocking_cli.questions.fragility.definition import LAMBDA
+from rocking_cli.questions.fragility.definition import UPLIFT_MEASURE
 from rocking_cli.studies.fragility.quantities import kept, label, metres
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.view import Table, View, number
 
-if TYPE_CHECKING:  # fits need scipy, and what would be run needs no fit
+if TYPE_CHECKING:  # avoids importing scipy, which only fits need
     from rocking_cli.questions.fragility.assess import Bivariate, Fragility, UnknownRuns
     from rocking_cli.questions.fragility.curves import Cut, FragilityCurve, Surface
     from rocking_cli.questions.fragility.definition import Definition, Limit
@@ -33,7 +33,7 @@ PLANNED: tuple[Column[tuple[str, str]], ...] = (
 )
 Named = tuple[str, Any]
 """A fit, and the name of its row."""
-FINE = 200  # intensities at which it is looked whether a curve is cut
+CUT_POINTS = 200  # intensities at which curves are checked for cuts
 
 
 def planned(study: Study, plan: Plan) -> View:
@@ -309,17 +309,17 @@ def _warnings(fitted: Sequence[FragilityCurve | Surface]) -> Iterator[str]:
 
 def _senseless(curve: FragilityCurve) -> str:
     """Say that a dispersion is not shown because it is too large; empty if it is not."""
-    from rocking_cli.questions.fragility.curves import WIDEST
+    from rocking_cli.questions.fragility.curves import MAX_DISPERSION
 
     if curve.kind != "lognormal" or curve.dispersion is not None:
         return ""
-    return f" Its dispersion is above {WIDEST:g}: this limit state does not depend on the measure."
+    return f" Its dispersion is above {MAX_DISPERSION:g}: this limit state does not depend on the measure."
 
 
 def cut_of(found: Fragility) -> Cut | None:
     """Return by how much a curve is cut, over the intensities of its runs."""
     least, most = float(found.seen.x.min()), float(found.seen.x.max())
-    return found.curve.cut(np.geomspace(least, most, FINE))
+    return found.curve.cut(np.geomspace(least, most, CUT_POINTS))
 
 
 def _cut_in_words(found: Fragility) -> str:
@@ -328,7 +328,9 @@ def _cut_in_words(found: Fragility) -> str:
     if cut is None:
         return ""
     by = (
-        "lambda, up to which nothing uplifts" if cut.by == LAMBDA else f"that of {limit_name(cut.by)}, which it implies"
+        "lambda, up to which nothing uplifts"
+        if cut.by == UPLIFT_MEASURE
+        else f"that of {limit_name(cut.by)}, which it implies"
     )
     return f" Curve and band are cut by {by}: by up to {cut.most:.2g} at {cut.at:.3g}."
 

@@ -24,11 +24,11 @@ from rocking_cli.questions.fragility.study import Sample
 from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.contact import Contacts
 
-SMALLEST, LARGEST = 64, 4096  # runs of a unit: some 10 ms to 1 s of work, against 1 to 10 ms for handing it out
-CHECKED = 256  # of a unit whose runs are checked for sliding: each takes some ms
-SHARE = 16  # units for each worker at least, so that all end together
-SAMPLES = 4_000_000  # of the records of a unit, at most: 64 megabytes
-MODELS = 16  # of a unit, at most: some 30 megabytes, of arches 120
+MIN_RUNS, MAX_RUNS = 64, 4096  # of a unit: some 10 ms to 1 s of work, against 1 to 10 ms for handing it out
+MAX_CHECKED_RUNS = 256  # of a unit that is checked for sliding: each run takes some ms
+MIN_UNITS_PER_WORKER = 16  # so that all workers end together
+MAX_SAMPLES = 4_000_000  # of the records of a unit: 64 megabytes
+MAX_MODELS = 16  # of a unit: some 30 megabytes, 120 for arches
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +88,7 @@ def _slide_times(unit: WorkUnit, found: Outcomes) -> tuple[Reals, Bools]:
     runs = unit.runs
     times, lost = np.full(len(runs), np.nan), np.zeros(len(runs), dtype=bool)
     checks: dict[tuple[int, float | None], Contacts] = {}
-    for k in np.flatnonzero(np.isfinite(found.uplift_time) & ~found.failed):  # at rest there is nothing to check
+    for k in np.flatnonzero(np.isfinite(found.uplift_time) & ~found.failed):  # a structure at rest has nothing to check
         model, eta = int(runs.model[k]), float(runs.eta[k])
         own = None if isnan(eta) else eta
         if (model, own) not in checks:
@@ -137,14 +137,14 @@ def units(
         Largest opening of a joint up to which a run holds, over D_cr.
     """
     models = _Models(samples, plan.etas, model, opening)
-    size = min(size, CHECKED) if checked else size
+    size = min(size, MAX_CHECKED_RUNS) if checked else size
     waiting: list[Integers] = []
     trials: set[int] = set()
     records: set[int] = set()
     held, npts = 0, 0
     for sample, record, part in _parts(plan, finished, size):
         more = plan.records[record].npts if record not in records else 0
-        if waiting and (held + len(part) > size or len(trials | {sample}) > MODELS or npts + more > SAMPLES):
+        if waiting and (held + len(part) > size or len(trials | {sample}) > MAX_MODELS or npts + more > MAX_SAMPLES):
             yield _unit(plan, np.concatenate(waiting), models, motions, checked=checked)
             waiting, trials, records, held, npts = [], set(), set(), 0, 0
             more = plan.records[record].npts
@@ -177,7 +177,7 @@ def _parts(
 
 def unit_size(runs: int, workers: int) -> int:
     """Return the number of runs of a unit, for a number of runs and of workers."""
-    return min(max(ceil(runs / (SHARE * workers)), SMALLEST), LARGEST)
+    return min(max(ceil(runs / (MIN_UNITS_PER_WORKER * workers)), MIN_RUNS), MAX_RUNS)
 
 
 def _unit(plan: Plan, runs: Integers, models: _Models, motions: KeptMotions, *, checked: bool) -> WorkUnit:
@@ -218,7 +218,7 @@ class _Models:
         if key not in self._kept:
             if len(self._kept) == self.KEPT:
                 del self._kept[next(iter(self._kept))]
-            # With a restitution that every run replaces, so that none is asked of the kinematics, which may have none.
+            # The restitution is a placeholder that every run replaces, as the kinematics may not give any.
             given = sample.mechanism if self._eta is None else with_restitution(sample.mechanism, self._eta)
             self._kept[key] = Structure(given, opening=self._opening).model(self._name)
         return self._kept[key]

@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 A = TypeVar("A")
 B = TypeVar("B")
-GOES_ON = "finished runs are kept: run the same command again to continue"
-AHEAD = 2  # units on their way for each worker: one at work, one that waits
-TRIES = 5  # workers that may be lost with a unit before it is given up
-QUIET = 20.0  # s without anything finished after which to see whether anybody is at work
-PATIENCE = 10.0  # s for an answer of the scheduler
+CONTINUE_HINT = "finished runs are kept: run the same command again to continue"
+UNITS_PER_WORKER = 2  # one at work, one waiting
+MAX_LOST_WORKERS = 5  # with one unit, before the study gives up
+CHECK_INTERVAL = 20.0  # s without a finished unit, after which the workers are checked
+SCHEDULER_TIMEOUT = 10.0  # s
 
 
 @dataclass(frozen=True)
@@ -50,17 +50,17 @@ class Workers:
         try:
             for item in items:
                 on_the_way.add(self.executor.submit(function, item))
-                while len(on_the_way) >= AHEAD * self.count:
+                while len(on_the_way) >= UNITS_PER_WORKER * self.count:
                     on_the_way = yield from self._finished(on_the_way)
             while on_the_way:
                 on_the_way = yield from self._finished(on_the_way)
-        finally:  # an error or an interrupt: what has not begun is not begun
+        finally:  # after an error or an interrupt, no further unit starts
             for each in on_the_way:
                 each.cancel()
 
     def _finished(self, on_the_way: set[Future[B]]) -> Generator[B, None, set[Future[B]]]:
         """Yield the next finished results; return the calls that are still running."""
-        done, rest = wait(on_the_way, QUIET, return_when=FIRST_COMPLETED)
+        done, rest = wait(on_the_way, CHECK_INTERVAL, return_when=FIRST_COMPLETED)
         if not done:
             self.still_there()
         yield from (each.result() for each in done)
@@ -109,18 +109,18 @@ def cluster(address: str) -> Iterator[Workers]:
         raise InputError("a cluster needs dask.distributed: pip install 'rocking-cli[cluster]'") from None
     try:
         with _quiet(), warnings.catch_warnings():
-            warnings.filterwarnings("ignore", "Sending large graph")  # a unit is as large as it must be
+            warnings.filterwarnings("ignore", "Sending large graph")  # large units are intended
             with _client(address) as client:
                 workers = _threads(client, address)
 
                 def still_there() -> None:
                     if not client.nthreads():
-                        raise ClusterError(f"the cluster at {address} has no workers left: {GOES_ON}")
+                        raise ClusterError(f"the cluster at {address} has no workers left: {CONTINUE_HINT}")
 
-                yield Workers(client.get_executor(pure=False, retries=TRIES), workers, still_there)
+                yield Workers(client.get_executor(pure=False, retries=MAX_LOST_WORKERS), workers, still_there)
     except (CancelledError, OSError, distributed.KilledWorker) as error:
         reason = str(error) or "its scheduler does not answer any more"
-        raise ClusterError(f"the cluster at {address} was lost ({reason}): {GOES_ON}") from error
+        raise ClusterError(f"the cluster at {address} was lost ({reason}): {CONTINUE_HINT}") from error
 
 
 @contextmanager
@@ -141,7 +141,7 @@ def _client(address: str) -> distributed.Client:
     import distributed
 
     try:
-        return distributed.Client(address, timeout=PATIENCE, set_as_default=False)
+        return distributed.Client(address, timeout=SCHEDULER_TIMEOUT, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise ClusterError(f"no scheduler answers at {address}: {error}") from None
 
@@ -149,7 +149,7 @@ def _client(address: str) -> distributed.Client:
 def _threads(client: distributed.Client, address: str) -> int:
     """Check the workers of a cluster, and return how many units they run at a time."""
     try:
-        client.wait_for_workers(1, timeout=PATIENCE)
+        client.wait_for_workers(1, timeout=SCHEDULER_TIMEOUT)
     except TimeoutError:
         raise ClusterError(
             f"the scheduler at {address} has no workers: start one with `dask worker {address}`"

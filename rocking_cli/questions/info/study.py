@@ -20,8 +20,8 @@ from rocking_cli.plugins.registry import Plugins
 from rocking_cli.processing.intensity import IntensityMeasures
 from rocking_cli.verification.code import Codes
 
-OURS = "rocking-cli"
-WITHOUT = ("dev", "docs", "bench", "release")
+OWN_PACKAGE = "rocking-cli"
+IGNORED_EXTRAS = ("dev", "docs", "bench", "release")
 """Extras that add nothing to a command."""
 
 
@@ -78,7 +78,7 @@ def examine() -> Installation:
     """Return what is installed; a broken package or plugin is noted and raises no error."""
     libraries, extras = _packages()
     return Installation(
-        version(OURS),
+        version(OWN_PACKAGE),
         f"{platform.python_implementation()} {platform.python_version()}",
         platform.platform(),
         libraries,
@@ -108,9 +108,9 @@ def _packages() -> tuple[dict[str, str | None], dict[str, dict[str, str | None]]
     """Return the versions of the packages that this one requires, and of those of each of its extras."""
     needed: dict[str, str | None] = {}
     extras: dict[str, dict[str, str | None]] = {}
-    for line in requires(OURS) or []:
+    for line in requires(OWN_PACKAGE) or []:
         name, extra = re.match(r"[\w.-]+", line), re.search(r"extra == ['\"]([\w-]+)", line)
-        if name is not None and (extra is None or extra[1] not in WITHOUT):
+        if name is not None and (extra is None or extra[1] not in IGNORED_EXTRAS):
             (needed if extra is None else extras.setdefault(extra[1], {}))[name[0]] = _version(name[0])
     return needed, extras
 

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from operator import itemgetter
 from typing import Any
 
-from rocking_cli.questions.info.study import OURS, Installation, Plugin
+from rocking_cli.questions.info.study import OWN_PACKAGE, Installation, Plugin
 from rocking_cli.views.column import Column, only_shown, table_of, text_columns
 from rocking_cli.views.view import Table, View
 
@@ -34,7 +34,7 @@ def view(found: Installation, defaults: Mapping[str, Any]) -> View:
     """
     data, slow = {**asdict(found), "defaults": defaults}, found.slow_kernels
     rows = [
-        [OURS, found.version],
+        [OWN_PACKAGE, found.version],
         ["Python", found.python],
         ["platform", found.platform],
         ["processors", f"{found.processors}, {found.threads} of them for this process"],
@@ -59,7 +59,7 @@ def view(found: Installation, defaults: Mapping[str, Any]) -> View:
 def _extra(name: str, packages: Mapping[str, str | None]) -> list[str]:
     missing = [package for package, version in packages.items() if version is None]
     if missing:
-        return [f"extra {name}", f"no {', '.join(missing)}: pip install '{OURS}[{name}]'"]
+        return [f"extra {name}", f"no {', '.join(missing)}: pip install '{OWN_PACKAGE}[{name}]'"]
     return [f"extra {name}", ", ".join(f"{package} {version}" for package, version in packages.items())]
 
 

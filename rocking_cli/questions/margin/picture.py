@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from rocking_cli.plotting import style
-from rocking_cli.questions.margin.study import LEVELS, Margin
+from rocking_cli.questions.margin.study import SHARE_LEVELS, Margin
 
-NAME = 40  # characters of a motion's name in the legend
-TICKS = (0.2, 0.5, 1, 2, 5)
+MAX_NAME_LENGTH = 40  # characters of a motion's name in the legend
+FACTOR_TICKS = (0.2, 0.5, 1, 2, 5)
 
 
 def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
@@ -28,13 +28,15 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
         Heading.
     """
     figure, axes = style.one_panel(3.6 + 0.16 * ((len(margins) + 1) // 2 if len(margins) > 1 else 0), title)
-    for level in LEVELS:
+    for level in SHARE_LEVELS:
         axes.axhline(level, color=style.FAINT, linewidth=style.THIN, linestyle=":")
     axes.axvline(1.0, color=style.FAINT, linewidth=style.CURVE)
     beyond = False
     for k, (name, each) in enumerate(margins.items()):
         look = style.distinct(k) | {"marker": "", "linewidth": style.BOLD}
-        axes.plot(each.factors, each.overturned, label=style.plain(shorten(name, NAME, placeholder=" ...")), **look)
+        axes.plot(
+            each.factors, each.overturned, label=style.plain(shorten(name, MAX_NAME_LENGTH, placeholder=" ...")), **look
+        )
         axes.plot(1.0, each.share.lowest, color=look["color"], clip_on=False, **style.STAR)
         if each.unknown.any():
             between = style.UNKNOWN | {"edgecolor": look["color"]}
@@ -43,7 +45,7 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
                 each.factors, each.at_most, color=look["color"], linestyle=look["linestyle"], linewidth=style.CURVE
             )
         if each.uplift is not None:
-            # What lifts it may lie beyond the factors: an arrowhead at that end points to it.
+            # The uplift factor may lie beyond the axis: an arrowhead at that end points to it.
             low, high = each.factors[0], each.factors[-1]
             mark = "<" if each.uplift < low else ">" if each.uplift > high else "|"
             beyond |= mark != "|"
@@ -52,7 +54,7 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
                 markersize=12 if mark == "|" else 7, linestyle="none",
             )  # fmt: skip
     axes.set_xscale("log")
-    axes.xaxis.set_major_locator(FixedLocator(TICKS))
+    axes.xaxis.set_major_locator(FixedLocator(FACTOR_TICKS))
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.set_ylim(-0.03, 1.03)

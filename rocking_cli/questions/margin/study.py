@@ -22,8 +22,8 @@ from rocking_cli.studies.engines import respond
 from rocking_cli.studies.neighbours import Draws, Neighbourhood, follow, least_uplift
 from rocking_cli.studies.response import concluded
 
-LEVELS = (LEAST_SHARE, 0.5, 0.9)
-SAME = 1e-9  # relative difference of factors that are one
+SHARE_LEVELS = (LEAST_SHARE, 0.5, 0.9)
+FACTOR_TOLERANCE = 1e-9  # relative difference of equal factors
 FACTORS: Reals = np.geomspace(0.2, 5.0, 60)
 
 
@@ -133,11 +133,11 @@ def margin(
         raise InputError(Problem("neighbouring motions are needed: at least 1", field="`neighbours`"))
     if not (factors.ndim == 1 and factors.size and np.isfinite(factors).all() and (np.diff([0.0, *factors]) > 0).all()):
         raise InputError("scale factors must be positive and in ascending order")
-    factors = np.union1d(factors[np.abs(factors - 1) > SAME], 1.0)
-    # The same neighbours at every factor: what differs between two factors is the factor.
+    factors = np.union1d(factors[np.abs(factors - 1) > FACTOR_TOLERANCE], 1.0)
+    # The same neighbours at every factor, so that differences come from the factor alone.
     draws, overturned, at_most = around.drawn(model), np.zeros(factors.size), np.zeros(factors.size)
     for k, sign in enumerate(polarities):
-        # What overturns each time cannot overturn more often; a symmetric structure has the same shares under the
+        # Neighbours that always overturn cannot do so more often; a symmetric structure has the same shares under the
         # motion reversed.
         left = overturned < (0.0 if k and model.symmetric else 1.0)
         if progress is not None:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.core import Mechanism
 from rocking_cli.names import peaks_over, percent
-from rocking_cli.questions.margin.study import LEVELS, Margin
+from rocking_cli.questions.margin.study import SHARE_LEVELS, Margin
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion
 from rocking_cli.studies.neighbours import Neighbourhood
@@ -21,9 +21,9 @@ from rocking_cli.views.column import Column, of, only_shown, rounded, table_of
 from rocking_cli.views.conclusion import conclusion_data, of_margin
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.verdict import unchecked
-from rocking_cli.views.view import FEW, Table, View, heading, number
+from rocking_cli.views.view import MAX_DETAILED_MOTIONS, Table, View, heading, number
 
-MAY = "overturn or unknown"  # name of the row that governs
+GOVERNING_ROW = "overturn or unknown"
 
 
 class MarginRow(NamedTuple):
@@ -51,7 +51,7 @@ def _lines(rows: Sequence[MarginRow]) -> Iterator[_Line]:
     """Yield the line of each motion that governs, and below it, if outcomes are unknown, what is known to overturn."""
     for name, _, pga, found, _ in rows:
         doubt = bool(found.unknown.any())
-        governing = f"{name}: {MAY}" if doubt else name
+        governing = f"{name}: {GOVERNING_ROW}" if doubt else name
         yield _Line(governing, number(pga, 3), number(found.uplift, 3), found.share.highest, found, unknown=True)
         if doubt:
             yield _Line("  known to overturn", "", "", found.share.lowest, found, unknown=False)
@@ -66,8 +66,11 @@ COLUMNS: tuple[Column[_Line], ...] = (
     only_shown("PGA\n[g]", of("pga")),
     only_shown("uplift\nat", of("uplift")),
     only_shown("overturn\nat 1", of("share"), percent),
-    *(only_shown(f"{percent(level)}\nfirst\nat", _at_level(Margin.first, level), rounded(3)) for level in LEVELS),
-    *(only_shown(f"{percent(level)}\nalways\nfrom", _at_level(Margin.always, level), rounded(3)) for level in LEVELS),
+    *(only_shown(f"{percent(level)}\nfirst\nat", _at_level(Margin.first, level), rounded(3)) for level in SHARE_LEVELS),
+    *(
+        only_shown(f"{percent(level)}\nalways\nfrom", _at_level(Margin.always, level), rounded(3))
+        for level in SHARE_LEVELS
+    ),
 )
 
 
@@ -76,7 +79,7 @@ def view(
 ) -> View:
     """Show the margins of a structure under some motions, what is concluded of all of them first."""
     mechanism, over = structure.mechanism, peaks_over([side.phi_cr is None for side in structure.statics])
-    around = rows[0].margin.around if rows else around  # with the deviations of the structure
+    around = rows[0].margin.around if rows else around  # includes the deviations of the structure
     either = {
         "1": "motions as given",
         "-1": "motions reversed",
@@ -90,8 +93,12 @@ def view(
         table_of("", COLUMNS, _lines(rows)),
     ]
     if any(row.margin.unknown.any() for row in rows):
-        parts.append(f"The row '{MAY}' governs; the row below it alone does not prove that the structure stands.")
-    parts += [f"{row.name}: {in_words(row.margin, row.pga)}" for row in rows] if len(rows) <= FEW else []
+        parts.append(
+            f"The row '{GOVERNING_ROW}' governs; the row below it alone does not prove that the structure stands."
+        )
+    parts += (
+        [f"{row.name}: {in_words(row.margin, row.pga)}" for row in rows] if len(rows) <= MAX_DETAILED_MOTIONS else []
+    )
     parts += [f"Caution: {text}" for text in cautions_of(mechanism)]
     if not all(row.margin.checked for row in rows):
         parts.append(unchecked(why=mechanism.unchecked))
@@ -134,7 +141,7 @@ def margin_data(found: Margin) -> dict[str, Any]:
                 "last_below_or_unknown": found.last_below(level, unknown=True),
                 "islands": found.islands(level),
             }
-            for level in LEVELS
+            for level in SHARE_LEVELS
         },
     }
 
@@ -160,10 +167,12 @@ def in_words(found: Margin, pga: float) -> str:
         f" From a factor of {at(first)} on, some outcomes are unknown, as the model no longer holds (see `rocking "
         "respond`): there, the structure may overturn."
     )
-    known = [f"{percent(level)} from {at(least)}" for level in LEVELS if (least := found.first(level)) is not None]
+    known = [
+        f"{percent(level)} from {at(least)}" for level in SHARE_LEVELS if (least := found.first(level)) is not None
+    ]
     if known:
         return f"{said} Shares known to overturn it: {', '.join(known)}."
-    few = f"At no factor tried are {percent(LEVELS[0])} or more known to overturn it"
+    few = f"At no factor tried are {percent(SHARE_LEVELS[0])} or more known to overturn it"
     return f"{said} {few}; this does not prove that it stands."
 
 
@@ -171,16 +180,18 @@ def _reached(found: Margin, shares: NDArray[np.float64], does: str, pga: float) 
     """Return in words at which factors the shares of neighbours that do something first reach each level."""
     at = partial(_at, pga)
     low, high = found.factors[[0, -1]]
-    reached = [(level, float(found.factors[(shares >= level).argmax()])) for level in LEVELS if (shares >= level).any()]
+    reached = [
+        (level, float(found.factors[(shares >= level).argmax()])) for level in SHARE_LEVELS if (shares >= level).any()
+    ]
     if not reached:
         return (
             f"At no scale factor from {low:.2g} to {high:.2g} (PGA from {low * pga:.3g} g to {high * pga:.3g} g) do "
-            f"{percent(LEVELS[0])} or more of the neighbouring motions {does.removesuffix(',')}."
+            f"{percent(SHARE_LEVELS[0])} or more of the neighbouring motions {does.removesuffix(',')}."
         )
     (level, first), *others = reached
     parts = [f"{percent(level)} of the neighbouring motions first {does} at a factor of {at(first, 'PGA ')}"]
     parts += [f"{percent(level)} at {at(first)}" for level, first in others]
-    parts += [f"{percent(level)} at none up to {high:.2g}" for level in LEVELS[len(reached) :]]
+    parts += [f"{percent(level)} at none up to {high:.2g}" for level in SHARE_LEVELS[len(reached) :]]
     said = f"At least {', '.join(parts[:-1])} and {parts[-1]}"
     if found.factors.size > 2:
         said += f"; the factors tried are {percent(float(np.median(found.factors[1:] / found.factors[:-1])) - 1)} apart"

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 PARTS = ("loads", "ties", "interlock", "strength", "crushing", "uncertainty")
 """Additions to any mechanism, with fields of their own."""
-LOADS = "The plugin can be loaded, and is a mechanism."
-MADE = "The file that `rocking new` prints is a structure."
+LOADS_CHECK = "The plugin can be loaded, and is a mechanism."
+TEMPLATE_CHECK = "The file that `rocking new` prints is a structure."
 
 
 @click.command(short_help="List, describe or check the installed mechanisms.")
@@ -129,12 +129,12 @@ def _verdicts(name: str, file: str | None, registry: Registry) -> list[Verdict]:
             found.append(load_structure(file, registry))
 
     if name not in registry:
-        registry[name]  # raises, with a guess
-    loads = verdict("loads", LOADS, lambda: registry[name])
+        registry[name]  # raises an error that suggests similar names
+    loads = verdict("loads", LOADS_CHECK, lambda: registry[name])
     if not loads.passed:
         return [loads]
     if file is None:
-        made = verdict("makes_a_structure", MADE, make)
+        made = verdict("makes_a_structure", TEMPLATE_CHECK, make)
         return [loads, made, *(contract(found[0]) if found else [])]
     make()
     if found[0].mechanism != name:

@@ -70,7 +70,7 @@ def command(
       rocking new --plugin my_code --code
     """
     if plugin and code and name is None:
-        name, code = code, ""  # `--code NAME` is as clear
+        name, code = code, ""  # `--code NAME` is accepted, too
     if name is None:
         raise click.MissingParameter(ctx=ctx, param=next(each for each in ctx.command.params if each.name == "name"))
     if plugin:

@@ -16,8 +16,8 @@ from rocking_cli.cli import terminal
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.text import cut
 
-NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
-LONGEST = 40  # characters of a name, so that no line of the package is too long
+NAME_PATTERN = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+MAX_NAME_LENGTH = 40  # characters, so that no line of the package is too long
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class PluginKind:
         """Return the files of the package for a plugin of this name, by their paths in the folder."""
         package = Path(__file__).parents[2]
         source = package / "data" / self.folder
-        if not source.is_dir():  # in a checkout
+        if not source.is_dir():  # a checkout has the files in examples/
             source = package.parent / "examples" / self.folder
         return {
             self.named(file, name): self.named((source / file).read_text(encoding="utf-8"), name).encode()
@@ -117,7 +117,7 @@ def write(name: str, out: str | None, kind: PluginKind, *, printed: Collection[s
     check_name(name, kind, printed)
     folder = Path(f"rocking-{_hyphened(name)}" if out is None else out)
     write_folder(folder, kind.package(name))
-    found = shutil.which("python")  # the one that has rocking-cli, or else a path
+    found = shutil.which("python")  # the interpreter with rocking-cli
     here = found is not None and Path(found).parent == Path(sys.executable).parent
     python = "python" if here or not sys.executable else quoted(sys.executable)
     commands = [f"cd {quoted(str(folder))}"] if folder.resolve() != Path.cwd() else []
@@ -128,7 +128,7 @@ def write(name: str, out: str | None, kind: PluginKind, *, printed: Collection[s
     if not as_json:
         terminal.sentence("Next:")
         for each in commands:
-            terminal.result(f"  {each}")  # as it is: it is copied
+            terminal.result(f"  {each}")  # without wrapping, so that it can be copied
 
 
 def check_name(name: str, kind: PluginKind, printed: Collection[str]) -> None:
@@ -139,9 +139,11 @@ def check_name(name: str, kind: PluginKind, printed: Collection[str]) -> None:
     from rocking_cli.questions.mechanisms.command import PARTS
     from rocking_cli.verification.code import Codes
 
-    if not NAME.fullmatch(name) or len(name) > LONGEST:
-        guess = re.sub(r"[^a-z0-9]+", "_", name.lower()).lstrip("_0123456789")[:LONGEST].rstrip("_") or kind.example
-        hint = f"use at most {LONGEST} of a-z, 0-9 and _, a letter first, such as {guess}"
+    if not NAME_PATTERN.fullmatch(name) or len(name) > MAX_NAME_LENGTH:
+        guess = (
+            re.sub(r"[^a-z0-9]+", "_", name.lower()).lstrip("_0123456789")[:MAX_NAME_LENGTH].rstrip("_") or kind.example
+        )
+        hint = f"use at most {MAX_NAME_LENGTH} of a-z, 0-9 and _, a letter first, such as {guess}"
         raise InputError(Problem(f"{cut(repr(name))} cannot be the name of a {kind.word}", hint=hint))
     for word, installed in (("mechanism", Registry()), ("code", Codes())):
         if name in installed:

@@ -9,7 +9,7 @@ import click
 from rocking_cli.cli import options
 from rocking_cli.cli.groups import Output
 from rocking_cli.cli.help import Command
-from rocking_cli.cli.quantities import AMPLITUDE, NUMBER, PERIOD, RATIO, range_of
+from rocking_cli.cli.quantities import NUMBER, PERIOD, PULSE_AMPLITUDE, RATIO, range_of
 
 MODELS = ("linear2", "linear1", "nonlinear")
 
@@ -33,7 +33,7 @@ MODELS = ("linear2", "linear1", "nonlinear")
 @options.polarity("1", "-1", "both")
 @click.option("--dimensionless", is_flag=True, help="Use the dimensionless axes omega and a, also with FILE.")
 @click.option("--period", type=range_of(PERIOD), metavar="LOW:HIGH", help=options.HELP["period"])
-@click.option("--ag", type=range_of(AMPLITUDE), metavar="LOW:HIGH", help=options.HELP["ag"])
+@click.option("--ag", type=range_of(PULSE_AMPLITUDE), metavar="LOW:HIGH", help=options.HELP["ag"])
 @click.option("--omega", type=range_of(RATIO), metavar="LOW:HIGH", help=f"{options.HELP['omega']}  [default: 0.5:10]")
 @click.option("--a", type=range_of(RATIO), metavar="LOW:HIGH", help=f"{options.HELP['a']}  [default: 0.5:10]")
 @click.option(

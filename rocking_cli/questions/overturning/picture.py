@@ -19,8 +19,8 @@ from rocking_cli.plotting import style
 from rocking_cli.questions.overturning.study import Comparison, OverturningMap, Region
 
 Reals = NDArray[np.float64]
-FINE = 500  # points along either axis of the grid on which boundaries are traced
-PEAKS = (0.1, 0.25, 0.5, 0.75)  # phi/phi_cr of the contour lines
+GRID_POINTS = 500  # along either axis, on which boundaries are traced
+CONTOUR_LEVELS = (0.1, 0.25, 0.5, 0.75)  # phi/phi_cr
 
 
 def draw_map(
@@ -86,17 +86,17 @@ def _hatch(axes: Axes, across: Reals, up: Reals, unknown: NDArray[np.bool_]) -> 
 
 def _draw_peaks(axes: Axes, across: Reals, up: Reals, peaks: Reals) -> list[Line2D]:
     """Draw the longest contour of each level; the many short ones are islands of a point or two near overturning."""
-    if not (peaks > PEAKS[0]).any():
+    if not (peaks > CONTOUR_LEVELS[0]).any():
         return []
-    traced = axes.contour(across, up, np.ma.masked_invalid(peaks), levels=PEAKS, linewidths=0)
+    traced = axes.contour(across, up, np.ma.masked_invalid(peaks), levels=CONTOUR_LEVELS, linewidths=0)
     pieces = [[piece for piece in each if len(piece) > 1] for each in traced.allsegs]
     traced.remove()
-    for level, each in zip(PEAKS, pieces, strict=True):
+    for level, each in zip(CONTOUR_LEVELS, pieces, strict=True):
         if not each:
             continue
         line = max(each, key=len)
         axes.plot(*line.T, color=style.MEASURE, linewidth=style.CURVE)
-        # Where it has half of its height: there the lines are apart.
+        # At half of the height, where the lines are farther apart.
         place = line[np.abs(line[:, 1] - line[:, 1].mean()).argmin()]
         axes.annotate(
             f"{level:g}", place, ha="center", va="center", fontsize=style.SMALL, color=style.MEASURE,
@@ -112,10 +112,10 @@ def _kinds(found: OverturningMap) -> NDArray[np.int64]:
 
 
 def _draw_boundaries(axes: Axes, found: OverturningMap, *, dimensionless: bool) -> list[Line2D]:
-    omega = np.linspace(found.omega.min(), found.omega.max(), FINE)
-    a = np.linspace(found.a.min(), found.a.max(), FINE)
-    if not dimensionless:  # evenly over the axis that is drawn
-        omega = 2 * np.pi / np.linspace(2 * np.pi / omega[-1], 2 * np.pi / omega[0], FINE)
+    omega = np.linspace(found.omega.min(), found.omega.max(), GRID_POINTS)
+    a = np.linspace(found.a.min(), found.a.max(), GRID_POINTS)
+    if not dimensionless:  # evenly spaced along the drawn axis
+        omega = 2 * np.pi / np.linspace(2 * np.pi / omega[-1], 2 * np.pi / omega[0], GRID_POINTS)
     across, up = np.meshgrid(omega, a)
     drawn = []
     for boundary in found.boundaries:
@@ -154,10 +154,10 @@ def draw_comparison(found: Comparison, title: str) -> Figure:
         _draw_doubt(axes, found, k)
     if found.doubtful.any():
         axes.fill_between([], [], [], label="hatched down to the thin line: unknown outcome", **style.UNKNOWN)
-    for axis in (axes.xaxis, axes.yaxis):  # a curve is steep where pulses are short
+    for axis in (axes.xaxis, axes.yaxis):  # logarithmic, as the curve is steep for short pulses
         style.logarithmic(axis)
     if np.isnan(found.possible).all():
-        axes.set_ylim(found.top / 10, found.top)  # there is no curve to choose them by
+        axes.set_ylim(found.top / 10, found.top)  # without a curve, limits must be set
         style.note(axes, "no structure overturns")
     axes.set_xlim(float(found.periods[0]), float(found.periods[-1]))
     axes.legend(**style.LEGEND, handlelength=4)

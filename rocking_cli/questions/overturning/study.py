@@ -21,15 +21,15 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.studies.under_pulses import Progress, PulsedModel, outcomes
 
-SCAN = 200  # amplitudes tried at a time: overturning has islands below larger amplitudes that do not overturn
-NEAREST = 1e-3  # a - 1 of the first of them
-BELOW = 4  # from this part of the least a - 1 on they are tried anew: islands crowd just below it
-HALVINGS = 25  # of the interval that the scan leaves, some thousandths of a - 1
-PASSES = 2  # of the scan, in most cases
-TIE = 1e-6  # relative difference of least amplitudes below which structures go together
-OMEGAS, AMPLITUDES = (0.5, 10.0), (0.5, 10.0)  # omega_g/p and a shown unless asked otherwise
-SLOWEST = 1.0  # omega up to which periods go unless asked otherwise
-LARGEST = 1e6  # a or omega, and 1/omega: slower pulses would be followed for ever
+SCAN_AMPLITUDES = 200  # simulated together: overturning has islands below larger amplitudes that do not overturn
+MIN_SCAN_EXCESS = 1e-3  # a - 1 at the start of the scan
+RESCAN_RATIO = 4  # a scan is repeated from the least a - 1 over this: islands crowd just below it
+HALVINGS = 25  # of the interval left by the scan, some thousandths of a - 1
+USUAL_PASSES = 2  # of the scan
+TIE_TOLERANCE = 1e-6  # relative difference of least amplitudes below which structures overturn together
+OMEGA_RANGE, AMPLITUDE_RANGE = (0.5, 10.0), (0.5, 10.0)  # defaults of omega_g/p and a
+MIN_OMEGA = 1.0  # default at which the range of periods ends
+MAX_PARAMETER = 1e6  # a or omega, and 1/omega: slower pulses would be simulated for ever
 
 
 class Region(IntEnum):
@@ -175,13 +175,13 @@ def overturning_map(
 def usual_periods(structures: Sequence[PulsedModel]) -> tuple[float, float]:
     """Return the default range of pulse periods for some structures [s]."""
     p = [each.p for each in structures]
-    return _round(2 * pi / (OMEGAS[1] * max(p))), _round(2 * pi / (SLOWEST * min(p)))
+    return _round(2 * pi / (OMEGA_RANGE[1] * max(p))), _round(2 * pi / (MIN_OMEGA * min(p)))
 
 
 def usual_amplitudes(structures: Sequence[PulsedModel]) -> tuple[float, float]:
     """Return the default range of pulse amplitudes, from below uplift to far above it [standard gravity]."""
     unit = max(each.unit for each in structures) / STANDARD_GRAVITY
-    return _round(AMPLITUDES[0] * unit), _round(AMPLITUDES[1] * unit)
+    return _round(AMPLITUDE_RANGE[0] * unit), _round(AMPLITUDE_RANGE[1] * unit)
 
 
 def _round(value: float) -> float:
@@ -190,15 +190,15 @@ def _round(value: float) -> float:
 
 def _check_range(structure: PulsedModel, periods: Reals, a: float) -> None:
     """Raise `InputError` if pulses are beyond the range of omega or of a that can be computed."""
-    low, high = (structure.period(np.array(omega)).item() for omega in (LARGEST, 1 / LARGEST))
+    low, high = (structure.period(np.array(omega)).item() for omega in (MAX_PARAMETER, 1 / MAX_PARAMETER))
     if not (low <= periods.min() and periods.max() <= high):
         raise InputError(
             f"{structure.name}: pulses from {periods.min():.4g} to {periods.max():.4g} s have omega = omega_g/p from "
             f"{structure.period(periods.max()):.4g} to {structure.period(periods.min()):.4g}: it must be from "
-            f"{1 / LARGEST:g} to {LARGEST:g}, periods from {low:.4g} to {high:.4g} s"
+            f"{1 / MAX_PARAMETER:g} to {MAX_PARAMETER:g}, periods from {low:.4g} to {high:.4g} s"
         )
-    if a > LARGEST:
-        raise InputError(f"{structure.name}: a = a_g/(g lambda) up to {a:.4g}: it must be at most {LARGEST:g}")
+    if a > MAX_PARAMETER:
+        raise InputError(f"{structure.name}: a = a_g/(g lambda) up to {a:.4g}: it must be at most {MAX_PARAMETER:g}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -243,7 +243,7 @@ class Comparison:
         """Whether a structure is known to overturn first at a period, shape (k, n); several if they are equal."""
         least, possible = (np.where(np.isnan(each), np.inf, each) for each in (self.least, self.possible))
         lowest = [np.delete(possible, k, axis=0).min(axis=0, initial=np.inf) for k in range(len(least))]
-        first: Bools = np.isfinite(least) & (least <= np.array(lowest) * (1 + TIE))
+        first: Bools = np.isfinite(least) & (least <= np.array(lowest) * (1 + TIE_TOLERANCE))
         return first
 
     @property
@@ -302,13 +302,13 @@ def _least(
     progress: Progress | None,
 ) -> tuple[Reals, Reals]:
     """Return for each period the least amplitude known to overturn, and the least that may overturn [m/s2]."""
-    beyond = np.full(periods.size, top * STANDARD_GRAVITY / structure.unit - 1)  # a - 1 up to which to look
+    beyond = np.full(periods.size, top * STANDARD_GRAVITY / structure.unit - 1)  # a - 1 at the end of the search
     search = _OverturningSearch(structure, shape, periods, polarities, progress)
     least = search.least(beyond, np.full(periods.size, np.nan), _overturns)
     possible = least
     if structure.may_open:
         possible = search.least(np.fmin(least, beyond), least, _may_overturn)
-        possible = np.where(possible >= least * (1 - TIE), least, possible)
+        possible = np.where(possible >= least * (1 - TIE_TOLERANCE), least, possible)
     return (1 + least) * structure.unit, (1 + possible) * structure.unit
 
 
@@ -340,17 +340,23 @@ class _OverturningSearch:
         for turn in count():
             if not left.size:
                 break
-            start = (np.minimum(NEAREST, beyond[left] / BELOW) if turn == 0 else beyond[left] / BELOW)[:, None]
-            scan = start * (beyond[left, None] / start) ** np.linspace(0, 1, SCAN)
-            shaken = self._shaken(np.repeat(self.periods[left], SCAN), scan.ravel(), report=turn < PASSES)
+            start = (
+                np.minimum(MIN_SCAN_EXCESS, beyond[left] / RESCAN_RATIO) if turn == 0 else beyond[left] / RESCAN_RATIO
+            )[:, None]
+            scan = start * (beyond[left, None] / start) ** np.linspace(0, 1, SCAN_AMPLITUDES)
+            shaken = self._shaken(
+                np.repeat(self.periods[left], SCAN_AMPLITUDES), scan.ravel(), report=turn < USUAL_PASSES
+            )
             falls = counts(shaken).reshape(scan.shape).copy()
-            falls[:, -1] |= np.isfinite(high[left])  # the least so far
+            falls[:, -1] |= np.isfinite(high[left])  # the least amplitude so far
             some = falls.any(axis=1)
             left, scan, first = left[some], scan[some], falls[some].argmax(axis=1)
             row = np.arange(left.size)
             low[left] = np.where(first > 0, scan[row, np.maximum(first - 1, 0)], 0.0)
             high[left] = beyond[left] = scan[row, first]
-            left = left[(first < SCAN - 1) & (high[left] > TIE)]  # at uplift there is nothing below
+            left = left[
+                (first < SCAN_AMPLITUDES - 1) & (high[left] > TIE_TOLERANCE)
+            ]  # no amplitude below uplift overturns
         some = np.isfinite(high)
         for _ in range(HALVINGS if some.any() else 0):
             middle = (low + high) / 2
@@ -378,7 +384,7 @@ def count_histories(structures: Sequence[PulsedModel], pulses: int, polarities: 
 
 def count_scans(structures: Sequence[PulsedModel], periods: int, polarities: Sequence[int]) -> int:
     """Estimate the number of histories that `compare` takes: two scans of each period for each search."""
-    scans = SCAN * PASSES * periods
+    scans = SCAN_AMPLITUDES * USUAL_PASSES * periods
     return sum(count_histories([each], scans * (1 + each.may_open), polarities) for each in structures)
 
 

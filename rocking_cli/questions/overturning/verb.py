@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rocking_cli.questions.overturning.study import Comparison, OverturningMap
     from rocking_cli.structure import Structure
 
-PLANE, CURVE = 256, 60  # points, of each side of a map and of a curve
+MAP_POINTS, CURVE_POINTS = 256, 60  # along each side of a map, and of a curve
 ETA = 0.9  # of the linear block
 Range = tuple[float, float]
 
@@ -110,11 +110,11 @@ def overturning(
     if compare:
         return overturning_curves(
             ready, shape=shape, model=model, eta=eta, period=period, top=ag[1] if ag is not None else None,
-            polarity=polarity, points=points or CURVE, opening=opening, watch=watch,
+            polarity=polarity, points=points or CURVE_POINTS, opening=opening, watch=watch,
         )  # fmt: skip
     return overturning_map(
         ready[0] if ready else None, shape=shape, model=model, eta=eta, period=period, ag=ag, omega=omega, a=a,
-        dimensionless=dimensionless, polarity=polarity, points=points or PLANE, opening=opening, watch=watch,
+        dimensionless=dimensionless, polarity=polarity, points=points or MAP_POINTS, opening=opening, watch=watch,
     )  # fmt: skip
 
 
@@ -224,7 +224,10 @@ def overturning_map(
         more = "" if bare else ", or add `dimensionless`"
         raise InputError(f"`{name}` has no effect {why}: give `{right[name]}`{more}")
     if bare:
-        columns, rows = np.linspace(*(omega or study.OMEGAS), points), np.linspace(*(a or study.AMPLITUDES), points)
+        columns, rows = (
+            np.linspace(*(omega or study.OMEGA_RANGE), points),
+            np.linspace(*(a or study.AMPLITUDE_RANGE), points),
+        )
     else:
         columns = subject.period(np.linspace(*(period or study.usual_periods([subject])), points))
         rows = np.linspace(*(ag or study.usual_amplitudes([subject])), points) * STANDARD_GRAVITY / subject.unit

@@ -19,7 +19,7 @@ from rocking_cli.views.column import only_shown, rounded, table_of
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View, number
 
-ROWS = 9  # of a table: the curves themselves are in --out and --json
+MAX_TABLE_ROWS = 9  # --out and --json have the whole curves
 FROM_KINEMATICS = " (from kinematics, not measured)"
 NO_JOINTS = (
     "The equivalent block has no joints, so whether those of the structure stay closed is not checked here: the real "
@@ -167,7 +167,7 @@ def numbers(values: Reals) -> list[float | None]:
     return [None if value != value else value for value in values.tolist()]
 
 
-def spaced(count: int, most: int = ROWS) -> list[int]:
+def spaced(count: int, most: int = MAX_TABLE_ROWS) -> list[int]:
     """Return the indices of a few columns, including the first and the last."""
     return sorted({round(place) for place in np.linspace(0, count - 1, min(most, count)).tolist()})
 

@@ -42,7 +42,7 @@ def command(file: str | None, as_json: bool, **question: Any) -> None:
 
     structure: str | Path | None = file
     if file is None and (question["ag"] is not None or question["period"] is not None or question["polarity"] != "1"):
-        from rocking_cli.ask.given import HERE
+        from rocking_cli.ask.given import LOCAL_FILE
 
-        structure = HERE
+        structure = LOCAL_FILE
     terminal.show(pulse(structure, watch=OnTerminal(), **question).view, as_json=as_json)

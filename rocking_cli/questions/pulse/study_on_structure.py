@@ -72,8 +72,8 @@ def scaled(mechanism: Mechanism, block: EquivalentBlock, pulse: Pulse) -> dict[s
     }
 
 
-COARSEST, FINEST = 1000, 32_000  # samples to a period
-WITHIN = 1e-6
+MIN_SAMPLES_PER_PERIOD, MAX_SAMPLES_PER_PERIOD = 1000, 32_000
+PEAK_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,12 +125,12 @@ def sampled_history(structure: Structure, model: ModelName, pulse: Pulse, polari
     With n samples to a period, the error of the motion is of order n^-4 of its peak, n^-3 if it only just uplifts: the
     last halving of the interval changes the result at least seven times as much as the error that remains.
     """
-    before, per_period = None, COARSEST
+    before, per_period = None, MIN_SAMPLES_PER_PERIOD
     while True:
         motion = pulse.sampled(per_period).scaled(polarity)
         history = follow(structure, motion, model=model, tail=0.0)
         converged = before is not None and _alike(before, history)
-        if converged or per_period >= FINEST:
+        if converged or per_period >= MAX_SAMPLES_PER_PERIOD:
             return SampledHistory(history, motion, per_period, converged)
         before, per_period = history, 2 * per_period
 
@@ -140,4 +140,4 @@ def _alike(one: History, other: History) -> bool:
         return one.unknown and other.unknown
     if one.fell or other.fell:
         return (one.fell_to, one.impact_count) == (other.fell_to, other.impact_count)
-    return abs(one.peak_ratio - other.peak_ratio) <= WITHIN * other.peak_ratio
+    return abs(one.peak_ratio - other.peak_ratio) <= PEAK_TOLERANCE * other.peak_ratio

@@ -141,7 +141,8 @@ def _columns(answers: Mapping[str, Answer], *, unknown: bool = False) -> list[Co
         if unknown and not found.unknown:
             return None
         said = names.outcome(uplifts=found.lifted, overturned=found.fell, unknown=found.unknown)
-        return f"{said}\n{after_impacts(found)}" if found.fell else said  # one that is still rocking rocks
+        # Impacts are stated only if the structure overturns; one that is still rocking counts as rocking.
+        return f"{said}\n{after_impacts(found)}" if found.fell else said
 
     def bound(answer: Answer) -> float | None:
         return outcome(answer).lower_bound if outcome(answer).unknown else None

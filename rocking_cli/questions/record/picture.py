@@ -16,12 +16,12 @@ from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.plotting import style
 from rocking_cli.processing.oscillator import DAMPING, response_spectrum
 
-PERIODS = np.geomspace(0.02, 10.0, 120)  # s
-WITHIN = 3.0  # times the peak after: what was there before may be far beyond, and is cut off
-BEFORE: dict[str, Any] = {"color": style.RECORD, "linewidth": style.CURVE}
-AFTER: dict[str, Any] = {"color": style.INK, "linewidth": style.MEDIUM}
-AROUND = 2.0  # durations of a pulse that are shown after it, at least
-POINTS = 2000  # of a pulse
+SPECTRUM_PERIODS = np.geomspace(0.02, 10.0, 120)  # s
+MAX_BEFORE_RATIO = 3.0  # the series before processing is cut off at this multiple of the peak after it
+BEFORE_STYLE: dict[str, Any] = {"color": style.RECORD_COLOUR, "linewidth": style.CURVE}
+AFTER_STYLE: dict[str, Any] = {"color": style.INK, "linewidth": style.MEDIUM}
+MIN_PULSE_DURATIONS = 2.0  # shown after a pulse
+PULSE_POINTS = 2000
 
 
 def draw_record(motion: GroundMotion, measures: Measures) -> Figure:
@@ -68,7 +68,7 @@ def _quantities(motion: GroundMotion) -> list[tuple[str, NDArray[np.float64]]]:
 
 def _draw_build_up(axes: Axes, motion: GroundMotion, measures: Measures) -> None:
     """Draw the Husid plot, with 5 and 95 % marked unless the motion is zero."""
-    axes.set_ylim(-15.0, 105.0)  # room for a word below 5 %
+    axes.set_ylim(-15.0, 105.0)  # room for a label below 5 %
     if measures.t_5 is None or measures.t_95 is None:
         return
     built = 100 * arias_build_up(motion) / measures.arias
@@ -76,7 +76,7 @@ def _draw_build_up(axes: Axes, motion: GroundMotion, measures: Measures) -> None
     for time, level in ((measures.t_5, 5), (measures.t_95, 95)):
         axes.plot(time, level, marker="o", markersize=4.5, color=style.INK)
         text = f"{level} % at {time:.4g} s"
-        # Below and to the right: a curve that only grows leaves that corner free.
+        # An increasing curve leaves the lower right corner free.
         axes.annotate(text, (time, level), (6, -3), textcoords="offset points", va="top", fontsize=style.TICK)
     style.note(axes, f"{measures.arias:.3g} m/s; 5 to 95 % in {measures.t_95 - measures.t_5:.4g} s", height=0.5)
 
@@ -99,15 +99,15 @@ def draw_before_and_after(before: GroundMotion, after: GroundMotion, shift: floa
     panels = figure.subplots(4, 1, height_ratios=[1, 1, 1, 1.3])
     style.heading(panels[0], after.name)
     for axes, (label, old), (_, new) in zip(panels, _quantities(before), _quantities(after), strict=False):
-        style.draw_samples(axes, old, before.dt, label="as read", **BEFORE)
-        style.draw_samples(axes, new, after.dt, shift, label="processed", **AFTER)
+        style.draw_samples(axes, old, before.dt, label="as read", **BEFORE_STYLE)
+        style.draw_samples(axes, new, after.dt, shift, label="processed", **AFTER_STYLE)
         _set_height(axes, old, new)
         axes.set_xlim(0.0, max(before.duration, shift + after.duration))
         style.tidy(axes, y=label)
     panels[0].legend(loc="upper right", ncols=2, **style.LEGEND)
     panels[2].set_xlabel(f"time [s]; {', '.join(after.processing)}", fontsize=style.LABEL)
-    for motion, look in ((before, BEFORE), (after, AFTER)):
-        found = response_spectrum(motion, PERIODS[2 * motion.dt < PERIODS])
+    for motion, look in ((before, BEFORE_STYLE), (after, AFTER_STYLE)):
+        found = response_spectrum(motion, SPECTRUM_PERIODS[2 * motion.dt < SPECTRUM_PERIODS])
         panels[3].plot(found.periods, found.sa, **look)
     style.logarithmic(panels[3].xaxis)
     panels[3].set_yscale("log")
@@ -119,7 +119,7 @@ def draw_before_and_after(before: GroundMotion, after: GroundMotion, shift: floa
 def _set_height(axes: Axes, old: NDArray[np.float64], new: NDArray[np.float64]) -> None:
     """Set the height so that the corrected curve is shown whole, and the curve as read as far as both stay legible."""
     most, all_ = float(np.abs(new).max()), float(np.abs(old).max())
-    top = max(min(all_, WITHIN * most), most) * 1.05 or 1.0
+    top = max(min(all_, MAX_BEFORE_RATIO * most), most) * 1.05 or 1.0
     axes.set_ylim(-top, top)
     if all_ > top:
         style.note(axes, f"as read up to {all_:.3g}", height=0.14)
@@ -145,14 +145,14 @@ def draw_pulses(motion: GroundMotion, fits: Sequence[PulseFit], end: float) -> F
     above, below = figure.subplots(2, 1, sharex=True)
     style.heading(above, motion.name)
     for axes, values in ((above, motion.acceleration / STANDARD_GRAVITY), (below, motion.velocity)):
-        style.draw_samples(axes, values, motion.dt, color=style.RECORD, linewidth=style.CURVE)
+        style.draw_samples(axes, values, motion.dt, color=style.RECORD_COLOUR, linewidth=style.CURVE)
         axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
     for fit, look in zip(fits, style.PULSES, strict=False):
-        t = fit.start + np.linspace(0.0, fit.pulse.duration, POINTS)
+        t = fit.start + np.linspace(0.0, fit.pulse.duration, PULSE_POINTS)
         label = f"{fit.pulse.title}, fitted in {fit.criterion}: {100 * fit.captured:.0f} % of its energy"
         above.plot(t, fit.acceleration(t) / STANDARD_GRAVITY, label=label, **look)
         below.plot(t, fit.velocity(t), **look)
-        end = max(end, fit.start + (1 + AROUND) * fit.pulse.duration)
+        end = max(end, fit.start + (1 + MIN_PULSE_DURATIONS) * fit.pulse.duration)
     style.tidy(above, y="acceleration [g]")
     style.tidy(below, "time [s]", "velocity [m/s]")
     below.set_xlim(min([0.0, *(fit.start for fit in fits)]), min(end, motion.duration))

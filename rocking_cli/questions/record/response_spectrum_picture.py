@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from rocking_cli.plotting import style
 from rocking_cli.processing.oscillator import ResponseSpectrum
 
-NAMED = 6  # curves that are told apart; more are drawn in one look
+MAX_NAMED_CURVES = 6  # more curves are all drawn in one style
 QUANTITIES = (("sa", "Sa, pseudo [g]"), ("sv", "Sv, pseudo [m/s]"), ("sd", "Sd [m]"))
 
 
@@ -33,7 +33,11 @@ def draw_response_spectra(spectra: Mapping[str, ResponseSpectrum]) -> Figure:
     style.heading(panels[0], f"{title}: response spectra, {100 * first.damping:g} % damping")
     for axes, (quantity, label) in zip(panels, QUANTITIES, strict=True):
         for k, (name, each) in enumerate(spectra.items()):
-            look = style.distinct(k) | {"marker": ""} if len(names) <= NAMED else {"color": style.INK, "alpha": 0.5}
+            look = (
+                style.distinct(k) | {"marker": ""}
+                if len(names) <= MAX_NAMED_CURVES
+                else {"color": style.INK, "alpha": 0.5}
+            )
             width = {"linewidth": style.CURVE if len(names) == 1 else style.MEDIUM}
             axes.plot(each.periods, getattr(each, quantity), **look | width, label=style.plain(style.fitted(name, 3.2)))
         axes.set_ylim(bottom=0.0)
@@ -42,6 +46,6 @@ def draw_response_spectra(spectra: Mapping[str, ResponseSpectrum]) -> Figure:
         style.tidy(axes, y=label)
     panels[-1].set_xlabel("period [s]", fontsize=style.LABEL)
     figure.align_ylabels()
-    if 1 < len(names) <= NAMED:
+    if 1 < len(names) <= MAX_NAMED_CURVES:
         style.legend_below(figure, panels[0].get_lines())
     return figure

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from rocking_cli.processing.oscillator import ResponseSpectrum
     from rocking_cli.structure import Structure
 
-PATIENCE = 1.0  # s without a word
+PROGRESS_DELAY = 1.0  # s
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -304,7 +304,7 @@ def _fit(motion: GroundMotion, watch: Watcher) -> list[PulseFit]:
     since = perf_counter()
     for fit in fit_pulses(motion):
         fits.append(fit)
-        if perf_counter() - since > PATIENCE:
+        if perf_counter() - since > PROGRESS_DELAY:
             watch.note(f"{motion.name}: {len(fits)} of {len(CRITERIA) * len(FITTED)} pulses fitted")
             since = perf_counter()
     return fits

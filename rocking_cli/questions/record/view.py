@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from rocking_cli.processing.intensity import Measure
     from rocking_cli.processing.oscillator import ResponseSpectrum
 
-HEADING = 14  # characters of a line of a record's name above its column, where blanks in it allow
-SHORT = 9  # characters of a line of a heading above a quantity
-LEFT = 26  # characters that labels and units take of a table
-BESIDE = 3  # blanks between columns
+MAX_NAME_LINE = 14  # characters of a line of a record's name above its column, broken at blanks
+MAX_HEADING_LINE = 9  # characters of a line of a heading above a quantity
+LABELS_WIDTH = 26  # characters that labels and units take in a table
+COLUMN_GAP = 3  # blanks between columns
 
 
 class Examined(NamedTuple):
@@ -51,7 +51,7 @@ def _channel(record: Examined) -> str | None:
     return record.motion.name.partition(f"{Path(record.file).name} channel ")[2] or None
 
 
-def _folded(name: str, width: int = HEADING) -> str:
+def _folded(name: str, width: int = MAX_NAME_LINE) -> str:
     """Break a name at blanks into lines of a column's width."""
     return "\n".join(wrap(name, width, break_long_words=False, break_on_hyphens=False))
 
@@ -129,8 +129,8 @@ def _side_by_side(
     names = [_folded(record.label) for record in records]
     fitting = len(records)
     if width is not None:
-        widest = max(HEADING, *(len(line) for name in names for line in name.split("\n")))
-        fitting = max((width - LEFT) // (widest + BESIDE), 1)
+        widest = max(MAX_NAME_LINE, *(len(line) for name in names for line in name.split("\n")))
+        fitting = max((width - LABELS_WIDTH) // (widest + COLUMN_GAP), 1)
     for start in range(0, len(records), fitting):
         part = slice(start, start + fitting)
         title, headings = ("", names[part])
@@ -148,12 +148,13 @@ def _long(records: Sequence[Examined], columns: Sequence[Column[Examined]]) -> T
 def _narrow(column: Column[Examined]) -> Column[Examined]:
     """Return a column with its unit in the heading, which is folded."""
     unit = f"\n[{column.unit}]" if column.unit else ""
-    return replace(column, head=f"{_folded(column.head or '', SHORT)}{unit}")
+    return replace(column, head=f"{_folded(column.head or '', MAX_HEADING_LINE)}{unit}")
 
 
 def _columns(records: Sequence[Examined]) -> list[Column[Examined]]:
     """Return the columns that tables show: those that say something of any record, and the measures asked for."""
-    silent = {"channel": ABSENT, "processed": ABSENT, "scaled by": "1", "p dt": ABSENT}  # says nothing if all are this
+    # Rows in which all records have these values are left out.
+    silent = {"channel": ABSENT, "processed": ABSENT, "scaled by": "1", "p dt": ABSENT}
     silent |= dict.fromkeys(("earthquake", "station", "magnitude", "distance"), ABSENT)
     said = [
         column

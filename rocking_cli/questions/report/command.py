@@ -9,7 +9,7 @@ import click
 
 from rocking_cli.cli import complete, options, terminal
 from rocking_cli.cli.defaults import as_declared
-from rocking_cli.cli.groups import AROUND, GroundMotions
+from rocking_cli.cli.groups import NEIGHBOUR_OPTIONS, GroundMotions
 from rocking_cli.cli.help import Command
 from rocking_cli.questions.verify import heads
 
@@ -61,7 +61,7 @@ def command(
 
     question["polarity"] = asked.polarity
     if not asked:
-        as_declared(question, "polarity", *AROUND)
+        as_declared(question, "polarity", *NEIGHBOUR_OPTIONS)
     file = asked.structure(files)
     if out is None and not as_json:
         out = Path(f"{options.stem(file)}.html")

@@ -93,7 +93,7 @@ def _tie(tie: Element) -> list[str]:
     if isinstance(tie, SpringBed):
         where = f"along a face, {_spot(tie.start)} to {_spot(tie.end)}"
         return [tie.name, where, "tension and compression", _kilo(tie.count * tie.stiffness), _kilo(0.0)]
-    assert isinstance(tie, Stretched)  # there is no other
+    assert isinstance(tie, Stretched)  # the only other kind of element
     prestress, stiffness = tie.at_rest
     sense = {"tension": "tension only", "compression": "compression only", None: "tension and compression"}[tie.only]
     number = f", {tie.count:g} ties" if tie.count != 1 else ""

@@ -49,17 +49,17 @@ from rocking_cli.views.sheet.document import Sheet, SheetPart
 from rocking_cli.views.verdict import SENSE
 from rocking_cli.views.verification import showing
 
-BINS = 6000  # of all motions together: each curve has some two samples for a bin
-FEWEST, MOST = 300, 2500  # of one motion
+TOTAL_BINS = 6000  # of all motions: each curve has some two samples in a bin
+MIN_BINS, MAX_BINS = 300, 2500  # of one motion
 ABSENT = "-"
 PER_MASS = " Per unit mass of the whole structure: the file gives no masses."
 SUBSCRIPT = re.compile(r"([φθλωψ]|\b[A-Za-z])_([A-Za-z]+(?:,\d)?)")
 GREEK = {"lambda": "λ", "kappa1": "κ₁", "kappa2": "κ₂", "phi": "φ"}
-RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 Rows = list[list[str]]
 
 
-OWN = frozenset({"drawing", "structure_text"})
+OWN_FIELDS = frozenset({"drawing", "structure_text"})
 """The parts of a sheet that a report has anyway."""
 
 
@@ -73,15 +73,15 @@ class VerifiedReport:
     @property
     def within(self) -> Sheet:
         """The sheet without parts that the report has already, with anchors distinct from the report's."""
-        return replace(self.sheet, parts=[_apart(each) for each in self.sheet.parts if each.key not in OWN])
+        return replace(self.sheet, parts=[_apart(each) for each in self.sheet.parts if each.key not in OWN_FIELDS])
 
 
 def _apart(part: SheetPart) -> SheetPart:
-    below = [_apart(each) for each in part.parts if each.key not in OWN]
+    below = [_apart(each) for each in part.parts if each.key not in OWN_FIELDS]
     return replace(part, key=f"verification-{part.key}", parts=below)
 
 
-BAD = frozenset({Concluded.OVERTURNS, Concluded.UNKNOWN, Concluded.NOT_SATISFIED, Concluded.NOT_CHECKED})
+BAD_CONCLUSIONS = frozenset({Concluded.OVERTURNS, Concluded.UNKNOWN, Concluded.NOT_SATISFIED, Concluded.NOT_CHECKED})
 
 
 def cautioned(found: Verification) -> list[str]:
@@ -92,7 +92,7 @@ def cautioned(found: Verification) -> list[str]:
 
 
 def _is_bad(end: Conclusion | None) -> bool:
-    return end is not None and end.concluded in BAD
+    return end is not None and end.concluded in BAD_CONCLUSIONS
 
 
 def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
@@ -105,7 +105,7 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
     verified : VerifiedReport, optional
         A verification to include in the report.
     """
-    bins = int(np.clip(BINS // max(1, len(content.results)), FEWEST, MOST))
+    bins = int(np.clip(TOTAL_BINS // max(1, len(content.results)), MIN_BINS, MAX_BINS))
     sides = _shown(content)
     lengths: list[Length | Angle] = [*content.picture.sketch.lengths, *content.picture.sketch.angles]
     demands = [column for column in contact_columns(content.mechanism) if column.head is not None]
@@ -162,7 +162,7 @@ def render(content: Assessment, verified: VerifiedReport | None = None) -> str:
         style=Markup(asset("motion.css")),
         script=Markup(asset("motion.js")),
     )
-    return printable(page)  # a file may be called, and contain, what no page can hold
+    return printable(page)  # names and contents of files may have characters that a page cannot hold
 
 
 def symbols(text: str) -> Markup:
@@ -184,7 +184,7 @@ def _number(value: float | None, digits: int = 4) -> str:
     if value is None or isnan(value):
         return ABSENT
     mantissa, _, power = f"{value:.{digits}g}".partition("e")
-    return f"{mantissa} \N{MULTIPLICATION SIGN} 10{str(int(power)).translate(RAISED)}" if power else mantissa
+    return f"{mantissa} \N{MULTIPLICATION SIGN} 10{str(int(power)).translate(SUPERSCRIPTS)}" if power else mantissa
 
 
 def _shown(content: Assessment) -> list[EquivalentSide]:
@@ -265,7 +265,7 @@ def _response(content: Assessment, result: MotionResult, k: int, bins: int) -> d
     pulses = [replace(each, sign=each.sign * result.polarity) for each in result.fits[:1] if result.file]
     charts = [ratio_chart(result.histories, bins), ground_chart(result.motion, pulses, bins)]
     moment = film.start
-    if best.fell:  # when it passes the critical rotation, else that of the peak
+    if best.fell:  # the time of overturning, or else of the peak
         moment = min(float(best.time[int(np.searchsorted(best.time, best.overturning_time))]), film.end)
     elif best.peak_ratio:
         moment = float(best.time[int(np.nanargmax(np.abs(best.ratio)))])

@@ -20,7 +20,7 @@ from rocking_cli.excitation.pulse_fit import PulseFit, fit_pulses
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.processing.listed import Scaled
 from rocking_cli.questions.error.study import Linearisation, compare
-from rocking_cli.questions.margin.study import LEVELS, Margin, margin
+from rocking_cli.questions.margin.study import SHARE_LEVELS, Margin, margin
 from rocking_cli.questions.overturning.study import OverturningMap, Region, overturning_map
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Conclusion, worst
@@ -31,13 +31,14 @@ from rocking_cli.studies.provenance import File, TitleBlock, file_of_motion, ver
 from rocking_cli.studies.response import Question, Response, response_of
 from rocking_cli.studies.under_pulses import parse_shape, pulsed_model
 
-AMPLITUDES, ACCELERATIONS = (0.25, 0.5, 0.75), (1.5, 2.0, 4.0)  # at which the error of the block is said
-FITTED = ("sine", "ricker")  # the pulses with an amplitude and a period and nothing else: a map has these two axes
-LARGE = 2.0  # a factor on a record that asks for a word of caution
-NEAR = 1.25  # a factor on the motion within which the opposite outcome of some neighbours makes a result a close one
-POINTS = 80  # of each side of a map
-OMEGAS, TALLEST = (1.0, 10.0), 10.0  # omega_g/p of a map, and a_g/(g lambda) up to which it goes at least
-BEYOND = 1.15  # times a mark, that a map goes further
+# Values of phi/phi_cr, and multiples of the uplift acceleration, at which errors of the block are stated.
+ERROR_AMPLITUDES, ERROR_ACCELERATIONS = (0.25, 0.5, 0.75), (1.5, 2.0, 4.0)
+FITTED_PULSES = ("sine", "ricker")  # those whose only parameters are the two axes of a map, amplitude and period
+MIN_CAUTIONED_FACTOR = 2.0  # on a record
+MAX_CLOSE_FACTOR = 1.25  # on the motion: if neighbours within it have the opposite outcome, the result is a close one
+MAP_POINTS = 80  # along each side
+MAP_OMEGAS, MIN_MAP_TOP = (1.0, 10.0), 10.0  # omega_g/p of a map, and least a_g/(g lambda) at its top
+MAP_HEADROOM = 1.15  # factor by which a map extends beyond a mark
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -87,7 +88,7 @@ class MotionResult(Response):
     @property
     def scaled_much(self) -> bool:
         """Whether the scale factor exceeds `LARGE` in size, for which a report has a caution."""
-        return abs(self.given.factor) > LARGE
+        return abs(self.given.factor) > MIN_CAUTIONED_FACTOR
 
     @property
     def close(self) -> bool:
@@ -97,9 +98,9 @@ class MotionResult(Response):
             return False
         if disagree(self.histories) or self.neighbours[self.polarity].sensitive or best.peak_ratio > CLOSE:
             return True
-        near = (self.margin.factors > 1 / NEAR) & (self.margin.factors < NEAR)
+        near = (self.margin.factors > 1 / MAX_CLOSE_FACTOR) & (self.margin.factors < MAX_CLOSE_FACTOR)
         falls, may_fall = self.margin.overturned[near], self.margin.at_most[near]
-        return bool((falls < LEVELS[-1]).any() if best.fell else (may_fall >= LEVELS[0]).any())
+        return bool((falls < SHARE_LEVELS[-1]).any() if best.fell else (may_fall >= SHARE_LEVELS[0]).any())
 
     @property
     def unknown(self) -> bool:
@@ -252,8 +253,8 @@ def _error_of_block(structure: Structure) -> tuple[Sequence[Linearisation], Sequ
     if why := structure.why_no_block or structure.refuses("linear models"):
         return [], [], why.removeprefix(f"{structure.name}: ")
     try:
-        return *compare(structure, AMPLITUDES, ACCELERATIONS), ""
-    except SolverError as error:  # the rest of the report stands without it
+        return *compare(structure, ERROR_AMPLITUDES, ERROR_ACCELERATIONS), ""
+    except SolverError as error:  # the rest of the report does not need it
         return [], [], str(error)
 
 
@@ -290,7 +291,7 @@ def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:
         pulse = replace(given.pulse, amplitude=given.pulse.amplitude * abs(given.factor))
         return (PulseFit(pulse, 0.0, 1 if given.factor > 0 else -1, "acceleration", 1.0),)
     try:
-        fits = list(fit_pulses(scaled, FITTED, ("velocity",)))
+        fits = list(fit_pulses(scaled, FITTED_PULSES, ("velocity",)))
     except InputError:
         return ()
     return tuple(sorted(fits, key=lambda fit: -fit.captured))
@@ -299,7 +300,7 @@ def _fits(given: Scaled, scaled: GroundMotion) -> tuple[PulseFit, ...]:
 def _maps(structure: Structure, results: Sequence[MotionResult]) -> list[PulseMap]:
     """Compute a map for each shape among the best pulses of the motions; for the sine if no motion has a pulse."""
     if structure.why_no_block or structure.refuses("sizes") or min(structure.etas) <= 0:
-        return []  # nothing measures a pulse here, or no history can be computed
+        return []  # no block to scale pulses by, or no histories
     marks: dict[Pulse, list[tuple[str, PulseFit]]] = {}
     for result in results:
         if result.fits:
@@ -314,12 +315,16 @@ def _maps(structure: Structure, results: Sequence[MotionResult]) -> list[PulseMa
 def _map(structure: Structure, shape: Pulse, marks: Sequence[tuple[str, PulseFit]]) -> OverturningMap:
     """Return the map of a pulse shape that shows all marked pulses."""
     under = pulsed_model(structure, "nonlinear", shape, (1, -1))
-    usual = [2 * pi / (omega * under.p) for omega in OMEGAS]
+    usual = [2 * pi / (omega * under.p) for omega in MAP_OMEGAS]
     pulses = [fit.pulse for _, fit in marks]
-    periods = [*usual, *(pulse.period / BEYOND for pulse in pulses), *(pulse.period * BEYOND for pulse in pulses)]
-    strongest = max([TALLEST, *(BEYOND * pulse.amplitude / under.unit for pulse in pulses)])
-    omega = under.period(np.linspace(min(periods), max(periods), POINTS))
-    a = np.linspace(strongest / POINTS, strongest, POINTS)
+    periods = [
+        *usual,
+        *(pulse.period / MAP_HEADROOM for pulse in pulses),
+        *(pulse.period * MAP_HEADROOM for pulse in pulses),
+    ]
+    strongest = max([MIN_MAP_TOP, *(MAP_HEADROOM * pulse.amplitude / under.unit for pulse in pulses)])
+    omega = under.period(np.linspace(min(periods), max(periods), MAP_POINTS))
+    a = np.linspace(strongest / MAP_POINTS, strongest, MAP_POINTS)
     return overturning_map(under, shape, omega, a, polarities=(1, -1))
 
 

@@ -25,7 +25,15 @@ from rocking_cli.verification.results import Verification
 from rocking_cli.views import processing, verification
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.column import Column, of, only_shown, table_of
-from rocking_cli.views.conclusion import WAYS, conclusion_data, counted, does, headline, next_in_words, of_verification
+from rocking_cli.views.conclusion import (
+    POLARITIES,
+    conclusion_data,
+    counted,
+    does,
+    headline,
+    next_in_words,
+    of_verification,
+)
 from rocking_cli.views.contact import contact_words
 from rocking_cli.views.neighbours import neighbour_columns, neighbours_in_words
 from rocking_cli.views.response import fit_data, runs_data
@@ -226,7 +234,7 @@ def _verdict(content: Assessment, result: MotionResult) -> MotionAnswers:
         "Which model to trust?": _trusted(content, result),
     }
     run, contact = result.histories["nonlinear"], result.contacts[result.polarity]
-    if demands := contact_words(contact, content.mechanism):  # empty for a structure that does not rock
+    if demands := contact_words(contact, content.mechanism):  # empty if the structure does not rock
         joints = joints_in_words(run, contact.assumed_friction).replace("`", "") if run.check is not None else ""
         answers["Do its joints hold?"] = f"{joints} {demands}".lstrip()
     close = " (close)" if result.close else ""
@@ -234,7 +242,8 @@ def _verdict(content: Assessment, result: MotionResult) -> MotionAnswers:
 
 
 def _uplift(content: Assessment, result: MotionResult) -> str:
-    best, pga = result.histories["nonlinear"], result.measured.pga  # that which reaches it: of a floor its own
+    # PGA of the motion at the base of the structure, which may stand on a floor.
+    best, pga = result.histories["nonlinear"], result.measured.pga
     least = _least(content)
     one, other = (side.lambda_ for side in content.structure.statics)
     both = "" if isclose(one, other, rel_tol=AGREEMENT) else " in its weaker direction"
@@ -255,7 +264,7 @@ def _overturning(result: MotionResult) -> str:
     for sign in sorted(result.runs, key=lambda sign: sign != result.polarity):
         run = result.runs[sign]["nonlinear"]
         at = f" at {run.overturning_time:.2f} s" if run.fell else f" after {run.known_to:.4g} s" if run.unknown else ""
-        said.append(f"With the motion {WAYS[sign]}, it {ends(run)}{at}.")
+        said.append(f"With the motion {POLARITIES[sign]}, it {ends(run)}{at}.")
     if len(said) == 1:
         said.append("Only this polarity of the motion was analysed; the reverse may be worse.")
     return " ".join(said)

@@ -17,7 +17,7 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.processing.reading import turned
 from rocking_cli.structure import Structure
 
-STEP = 2  # degrees
+AZIMUTH_STEP = 2  # degrees
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +82,7 @@ def all_around(
     SolverError
         If a motion cannot be followed.
     """
-    azimuths = np.arange(0.0, 360.0, STEP)
+    azimuths = np.arange(0.0, 360.0, AZIMUTH_STEP)
     motions = [turned(*pair, azimuth).scaled(scale) for azimuth in azimuths.tolist()]
     followed = structure.models(models)
     responses = respond_many(

@@ -13,8 +13,9 @@ from rocking_cli import names
 from rocking_cli.plotting import style
 from rocking_cli.questions.respond.azimuths import AzimuthResponses
 
-OUTSIDE = 1.08  # phi/phi_cr at which directions that overturn are marked: beyond all that can come back, as a rule
-LONGEST = 32  # characters of a name
+# Ratio phi/phi_cr at which directions that overturn are marked; motions that come back rarely reach it.
+OVERTURNED_RADIUS = 1.08
+MAX_NAME_LENGTH = 32  # characters
 
 
 def draw_azimuths(found: AzimuthResponses, title: str, free: Sequence[bool]) -> Figure:
@@ -44,7 +45,7 @@ def draw_azimuths(found: AzimuthResponses, title: str, free: Sequence[bool]) -> 
     falls = any(each.fell.any() for each in found.outcomes.values())
     doubtful = any(each.unknown.any() for each in found.outcomes.values())
     marked = falls or doubtful
-    outside = max(OUTSIDE, reach * OUTSIDE)
+    outside = max(OVERTURNED_RADIUS, reach * OVERTURNED_RADIUS)
     for k, (name, each) in enumerate(found.outcomes.items()):
         look: Any = style.LINES[name]
         axes.plot(angles, np.append(peaks[name], peaks[name][0]), label=style.LABELS[name], **look)
@@ -59,7 +60,7 @@ def draw_azimuths(found: AzimuthResponses, title: str, free: Sequence[bool]) -> 
         around = np.linspace(0.0, 2 * np.pi, 361)
         axes.plot(around, np.ones(around.size), color=style.FAINT, linewidth=style.MEDIUM, linestyle=":")
     axes.set_ylim(0.0, outside * (1 + 0.07 * len(found.outcomes)) if marked else max(1.1 * reach, 1e-3))
-    one, other = (shorten(name, LONGEST, placeholder=" ...") for name in found.names)
+    one, other = (shorten(name, MAX_NAME_LENGTH, placeholder=" ...") for name in found.names)
     axes.set_xticks(np.radians(np.arange(0, 360, 30)))
     axes.tick_params(labelsize=style.TICK, colors=style.INK)
     axes.set_rlabel_position(67)

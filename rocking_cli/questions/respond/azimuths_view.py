@@ -36,11 +36,11 @@ class _Model(NamedTuple):
         return (float(standing[k]), float(self.azimuths[k])) if standing[k] > 0 else None
 
 
-UNKNOWN = "are\nunknown"
+UNKNOWN_HEADING = "are\nunknown"
 MODELS: tuple[Column[_Model], ...] = (
     only_shown("model", of("name"), text=True),
     only_shown("directions\noverturn", lambda row: percent(float(row.each.fell.mean()))),
-    only_shown(UNKNOWN, lambda row: percent(float(row.each.unknown.mean()))),
+    only_shown(UNKNOWN_HEADING, lambda row: percent(float(row.each.unknown.mean()))),
     only_shown("do not\nuplift", lambda row: percent(float((~row.each.lifted).mean()))),
     only_shown("largest peak\nof the others", lambda row: row.highest and row.highest[0]),
     only_shown("at\n[deg]", lambda row: row.highest and row.highest[1]),
@@ -51,7 +51,7 @@ def view(structure: Structure, found: AzimuthResponses, doubts: Iterable[str] = 
     """Show the responses of a structure to a pair of components in all directions."""
     one, other = found.names
     unknown = any(each.unknown.any() for each in found.outcomes.values())
-    models = [column for column in MODELS if unknown or column.head != UNKNOWN]
+    models = [column for column in MODELS if unknown or column.head != UNKNOWN_HEADING]
     rows = [_Model(name, found.azimuths, each) for name, each in found.outcomes.items()]
     said = (
         f"0 degrees is {one}, 90 degrees {other}; {found.azimuths.size} directions of the structure's plane, one every "

@@ -10,14 +10,14 @@ from click.core import ParameterSource
 
 from rocking_cli.cli import complete, options, terminal
 from rocking_cli.cli.defaults import as_declared
-from rocking_cli.cli.groups import AROUND, GroundMotions, Output
+from rocking_cli.cli.groups import NEIGHBOUR_OPTIONS, GroundMotions, Output
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import INTERVAL, POSITIVE, TAIL, TILT, Parsed, quantity_of
 from rocking_cli.processing.reading_options import ALL
 
-# The pulses that are fitted stand here again so that `--help` needs no numpy.
-FITTED = ("sine", "ricker", "mavroeidis")
-BEST = "best"
+# The names of fitted pulses are repeated here so that `--help` does not import numpy.
+FITTED_PULSES = ("sine", "ricker", "mavroeidis")
+BEST_FIT = "best"
 
 
 def _models(text: str) -> tuple[str, ...]:
@@ -45,9 +45,9 @@ def _models(text: str) -> tuple[str, ...]:
 @options.scaling("1", "-1", "both")
 @click.option(
     "--with-pulse",
-    type=click.Choice((BEST, *FITTED)),
+    type=click.Choice((BEST_FIT, *FITTED_PULSES)),
     is_flag=False,
-    flag_value=BEST,
+    flag_value=BEST_FIT,
     help="Shape of the pulse in the record whose response is computed as well; without a value, the best-fitting one.",
 )
 @click.option(
@@ -122,11 +122,11 @@ def command(files: tuple[str, ...], asked: GroundMotions, output: Output, **ques
     around = motions.reading.azimuth == ALL
     several = motions.count > 1 and not around
     if around or not motions:
-        as_declared(question, *AROUND)
+        as_declared(question, *NEIGHBOUR_OPTIONS)
         if click.get_current_context().get_parameter_source("neighbours") is not ParameterSource.COMMANDLINE:
             question["neighbours"] = 0
     if not question["neighbours"]:
-        as_declared(question, *AROUND[1:])
+        as_declared(question, *NEIGHBOUR_OPTIONS[1:])
     output.keep_apart(*files, *motions.records, question["vertical"])
     if several:
         if str(output.out) == options.STANDARD_OUTPUT:

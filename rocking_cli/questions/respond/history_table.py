@@ -13,7 +13,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.studies.movements import Watched
 
 Reals = NDArray[np.float64]
-ROWS = 25_000  # of a block
+ROWS_PER_BLOCK = 25_000
 
 
 def _ratio(run: History) -> str:
@@ -25,7 +25,7 @@ def _ratio(run: History) -> str:
 def blocks(
     histories: Mapping[str, History],
     motion: GroundMotion | None,
-    rows: int = ROWS,
+    rows: int = ROWS_PER_BLOCK,
     watched: Watched | None = None,
     base_shear: Mapping[str, Reals] = MappingProxyType({}),
 ) -> Iterator[dict[str, Reals]]:
@@ -56,7 +56,8 @@ def blocks(
     for start in range(0, longest.time.size, rows):
         part = slice(start, min(start + rows, longest.time.size))
         found = {"t [s]": longest.time[part], "a_g [g]": _padded(shaken, part, 0.0) / STANDARD_GRAVITY}
-        if motion is not None and (up := motion.vertical) is not None:  # zero after its last sample
+        # The vertical component is zero after its last sample.
+        if motion is not None and (up := motion.vertical) is not None:
             found["v_g [g]"] = np.interp(longest.time[part], up.time, up.acceleration, right=0.0) / STANDARD_GRAVITY
         for name, run in histories.items():
             series = {"phi [rad]": run.phi, "phi_dot [rad/s]": run.rate, _ratio(run): run.ratio}

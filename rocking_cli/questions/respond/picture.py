@@ -21,16 +21,16 @@ from rocking_cli.plotting import style
 from rocking_cli.studies.contact import ContactDemand
 from rocking_cli.studies.movements import Watched
 
-TALLEST = 1.6  # phi/phi_cr shown at most
-FALLING = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a cross
-SHORTEST = 0.1  # s of the time axis
-POINTS = 1000  # of a pulse
-MOST_NEEDED = 2.0  # friction shown at most: a joint with almost no normal force may need any
-IMPACTS = f"impacts of {100 * FELT:g} % of the strongest or more, in the order of the legend"
-FORCE = " force [N]"  # what columns of forces end with
-MOST_TIES, LONGEST = 6, 30  # ties in a panel, and characters of their names
-NARROW = 0.7  # of the time axis: words do not fit beyond an outcome that is known further than that
-LANE = 0.025  # of the panel's height: where the impacts of each model are marked
+MAX_SHOWN_RATIO = 1.6  # phi/phi_cr
+CUT_RATIO = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a cross
+MIN_TIME_AXIS = 0.1  # s
+PULSE_POINTS = 1000
+MAX_SHOWN_FRICTION = 2.0  # a joint with almost no normal force may require any
+IMPACTS_LABEL = f"impacts of {100 * FELT:g} % of the strongest or more, in the order of the legend"
+FORCE_SUFFIX = " force [N]"  # of columns of forces
+MAX_TIES, MAX_TIE_NAME = 6, 30  # in a panel; characters
+MAX_LABELLED_SHARE = 0.7  # of the time axis: beyond, the right of it has no room for a label
+LANE_HEIGHT = 0.025  # share of the panel's height for the impacts of each model
 
 
 def draw_history(
@@ -86,7 +86,7 @@ def draw_history(
     panels = list(figure.subplots(len(ratios), 1, sharex=True, squeeze=False, height_ratios=ratios)[:, 0])
     style.heading(panels[0], title)
     runs = [run for each in responses.values() for run in each.values()]
-    end = max(SHORTEST, *(1.1 * run.end_time if run.fell else float(run.time[-1]) for run in runs))
+    end = max(MIN_TIME_AXIS, *(1.1 * run.end_time if run.fell else float(run.time[-1]) for run in runs))
     if motion is not None:
         _draw_motion(panels[0], motion, end, pulse[0] if pulse is not None else None)
         if uplift is not None and motion.vertical is None and not any(run.lifted for run in runs):
@@ -97,7 +97,7 @@ def draw_history(
         for what, each in responses.items()
         for run in each.values()
     )
-    tall = min(max(1.1 * reach, 1e-3), TALLEST)
+    tall = min(max(1.1 * reach, 1e-3), MAX_SHOWN_RATIO)
     below = panels[shaken : shaken + len(each_has) * len(responses)]
     for axes, (what, each) in zip(below[:: len(each_has)], responses.items(), strict=True):
         _draw_responses(axes, each, what, tall, until[what])
@@ -131,7 +131,7 @@ def _hatch_unknown(axes: Axes, until: float, end: float) -> None:
     if not isfinite(until):
         return
     axes.axvspan(until, end, zorder=0.5, **style.UNKNOWN)
-    place, side = (end, "right") if until > NARROW * end else ((until + end) / 2, "center")
+    place, side = (end, "right") if until > MAX_LABELLED_SHARE * end else ((until + end) / 2, "center")
     axes.annotate(
         f"{names.UNKNOWN} after {until:.4g} s", (place, 0.55), xycoords=axes.get_xaxis_transform(), ha=side,
         va="center", fontsize=style.LABEL, bbox={"facecolor": "white", "edgecolor": "none", "pad": 2},
@@ -142,10 +142,10 @@ def _draw_motion(axes: Axes, motion: GroundMotion, end: float, pulse: PulseFit |
     """Draw the record up to the end of the plot [s], and the pulse over it."""
     motion = motion.kept
     ground = motion.acceleration[: int(min(end, motion.duration) / motion.dt) + 2] / STANDARD_GRAVITY
-    color = style.INK if pulse is None else style.RECORD
+    color = style.INK if pulse is None else style.RECORD_COLOUR
     style.draw_samples(axes, ground, motion.dt, color=color, linewidth=style.CURVE)
     if pulse is not None:
-        t = pulse.start + np.linspace(0.0, pulse.pulse.duration, POINTS)
+        t = pulse.start + np.linspace(0.0, pulse.pulse.duration, PULSE_POINTS)
         axes.plot(t, pulse.acceleration(t) / STANDARD_GRAVITY, **style.PULSES[0])
     what = "floor, peak" if motion.ground is not None else "PGA"
     named = f"{motion.name}, {what} {motion.pga_g:.3g} g"
@@ -165,20 +165,21 @@ def _draw_responses(
     axes: Axes, histories: Mapping[ModelName, History], what: str, tall: float, until: float = inf
 ) -> None:
     for lane, (name, run) in enumerate(histories.items()):
-        _draw_run(axes, name, run, (len(histories) - lane) * LANE, until)
+        _draw_run(axes, name, run, (len(histories) - lane) * LANE_HEIGHT, until)
     for level in (-1.0, 1.0):
         axes.axhline(level, color=style.FAINT, linewidth=style.CURVE, linestyle=":")
     axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
     axes.set_ylim(-1.3 * tall, tall)  # room for the impacts below
     over = style.over(next(iter(histories.values())).ends_at_limit, math=True)
-    place = (0.005, (len(histories) + 1.2) * LANE)
+    place = (0.005, (len(histories) + 1.2) * LANE_HEIGHT)
     axes.annotate(
-        IMPACTS, place, xycoords="axes fraction", fontsize=style.SMALL, color=style.INK,
+        IMPACTS_LABEL, place, xycoords="axes fraction", fontsize=style.SMALL, color=style.INK,
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1},
     )  # fmt: skip
     if not any(run.lifted for run in histories.values()):
         axes.text(0.5, 0.6, names.NO_UPLIFT, transform=axes.transAxes, ha="center", fontsize=style.LABEL)
-    falls_up = any(run.fell_to == Direction.POSITIVE for run in histories.values())  # into the right corner
+    # If so, the curve ends in the upper right corner.
+    falls_up = any(run.fell_to == Direction.POSITIVE for run in histories.values())
     axes.legend(
         loc="upper left" if falls_up else "upper right",
         title=what,
@@ -200,7 +201,7 @@ def _draw_contacts(axes: Axes, contacts: Sequence[ContactDemand]) -> None:
     if there is not None:
         axes.axhline(there, color=style.CURSOR, linewidth=style.MEDIUM, linestyle=":", label=f"available: {there:.3g}")
     most = max(float(found.demand.max(initial=0.0)) for found in contacts)
-    axes.set_ylim(0.0, 1.15 * min(max(most, there or 0.0, 1e-3), MOST_NEEDED))
+    axes.set_ylim(0.0, 1.15 * min(max(most, there or 0.0, 1e-3), MAX_SHOWN_FRICTION))
     axes.legend(loc="upper right", ncols=3, **style.LEGEND)
     style.tidy(axes, y="friction required")
 
@@ -210,7 +211,7 @@ def _draw_wall(axes: Axes, free: Direction, tall: float) -> None:
     edge = -0.1 * free * tall
     axes.axhspan(min(0.0, edge), max(0.0, edge), facecolor="none", edgecolor=style.EARTH, hatch="////", linewidth=0)
     axes.axhline(0.0, color=style.EARTH, linewidth=style.BOLD)
-    side = "right" if free > 0 else "left"  # away from the legend, and from the words on impacts
+    side = "right" if free > 0 else "left"  # away from the legend and the note on impacts
     axes.annotate(
         "supports", (0.995 if free > 0 else 0.005, edge), (0, -3 * free), xycoords=axes.get_yaxis_transform(),
         textcoords="offset points", ha=side, va="top" if free > 0 else "bottom", fontsize=style.SMALL, color=style.INK,
@@ -222,15 +223,21 @@ def _draw_forces(axes: Axes, histories: Mapping[ModelName, History], watched: Wa
     """Draw the forces of the ties against time in one history, the nonlinear one if there is one."""
     model: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
     run = histories[model]
-    forces = {name.removesuffix(FORCE): values / 1000 for name, values in watched.columns(run.phi) if FORCE in name}
-    strongest = sorted(forces, key=lambda name: -float(np.nanmax(np.abs(forces[name]))))[:MOST_TIES]
+    forces = {
+        name.removesuffix(FORCE_SUFFIX): values / 1000
+        for name, values in watched.columns(run.phi)
+        if FORCE_SUFFIX in name
+    }
+    strongest = sorted(forces, key=lambda name: -float(np.nanmax(np.abs(forces[name]))))[:MAX_TIES]
     for k, name in enumerate(each for each in forces if each in strongest):
         known = forces[name][np.isfinite(forces[name])]
         shown = style.visible(known)
         look = {key: value for key, value in style.distinct(k).items() if "marker" not in key}
-        axes.plot(run.time[shown], known[shown], label=style.plain(shorten(name, LONGEST, placeholder=" ...")), **look)
+        axes.plot(
+            run.time[shown], known[shown], label=style.plain(shorten(name, MAX_TIE_NAME, placeholder=" ...")), **look
+        )
     axes.axhline(0.0, color=style.FAINT, linewidth=style.THIN)
-    some = f", the {MOST_TIES} strongest of {len(forces)}" if len(forces) > MOST_TIES else ""
+    some = f", the {MAX_TIES} strongest of {len(forces)}" if len(forces) > MAX_TIES else ""
     style.make_room(axes, 0.3)
     axes.legend(
         loc="upper right", title=f"tension up, {model} model{some}", title_fontsize=style.TICK, alignment="left",
@@ -243,9 +250,9 @@ def _draw_run(axes: Axes, name: str, run: History, height: float, until: float) 
     look = style.LINES[name]
     falls = run.fell and run.overturning_time <= until
     fate = f", {names.OVERTURNS}" if falls else f", {names.UNKNOWN} after {run.known_to:.4g} s" if run.unknown else ""
-    followed = run.ratio[np.isfinite(run.ratio) & (run.time <= until)]  # all, or all before overturning
+    followed = run.ratio[np.isfinite(run.ratio) & (run.time <= until)]  # the known part, up to overturning
     if falls:
-        followed = followed[: np.flatnonzero(np.abs(followed) <= FALLING)[-1] + 1]
+        followed = followed[: np.flatnonzero(np.abs(followed) <= CUT_RATIO)[-1] + 1]
         axes.plot(run.time[followed.size - 1], followed[-1], marker="x", markersize=6, color=look["color"])
     shown = style.visible(followed)
     axes.plot(run.time[shown], followed[shown], label=style.LABELS[name] + fate, **look)  # type: ignore[arg-type]

@@ -21,7 +21,7 @@ from rocking_cli.studies.response import Histories, Response
 from rocking_cli.text import in_short
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.column import Column, of, only_shown, table_of
-from rocking_cli.views.conclusion import NAMED, counted
+from rocking_cli.views.conclusion import MAX_NAMED_MOTIONS, counted
 from rocking_cli.views.contact import contact_words
 from rocking_cli.views.neighbours import deviations, neighbour_columns
 from rocking_cli.views.response import apart, model_heads, models_used
@@ -110,7 +110,7 @@ class Several:
         """Yield how many motions overturn the structure, which governs and which are left out, and the table."""
         yield f"By the {self._best} model, {counted(self._ends, peaks_over(self._free))}"
         if (lost := self._asked - len(self._ends)) > 0:
-            named = f" ({in_short(left_out, most=NAMED)})" if left_out else ""
+            named = f" ({in_short(left_out, most=MAX_NAMED_MOTIONS)})" if left_out else ""
             yield f"Not counted: {lost} of {self._asked} motions{named}, which could not be used."
         yield table_of(self._title, self._columns(), self._rows)
         if self._around is not None:
@@ -119,7 +119,9 @@ class Several:
         yield from models_used(self._models)
         yield self._restitution
         yield from (f"Caution: {text}" for text in self._cautions)
-        yield from (f"Caution: under {in_short(each, most=NAMED)}, {text}" for text, each in self._torn.items())
+        yield from (
+            f"Caution: under {in_short(each, most=MAX_NAMED_MOTIONS)}, {text}" for text, each in self._torn.items()
+        )
         if not self._checked:
             yield unchecked(why=self._mechanism.unchecked)
 
@@ -140,7 +142,7 @@ class Several:
         if not fail and asks:
             fail = {f"The joints hold under all motions, of which {order[0]} demands most of them": asks[order[0]]}
         for name, found in fail.items():
-            if said := contact_words(found, self._mechanism):  # nothing of a structure that does not rock
+            if said := contact_words(found, self._mechanism):  # empty if the structure does not rock
                 yield f"{name}: {said.removeprefix('Contact: ')}"
 
     def _friction(self, asks: Mapping[str, ContactDemand], order: Sequence[str]) -> str:
@@ -149,12 +151,12 @@ class Several:
         there, of = (MASONRY, "usual for masonry") if given is None else (given, "available")
         needs = {name: asks[name].friction_needed for name in order}
         shown = [f"{number(need, digits_apart(need, there, 3))} under {name}" for name, need in needs.items()]
-        each = in_short(shown, most=NAMED)
+        each = in_short(shown, most=MAX_NAMED_MOTIONS)
         more = [name for name, need in needs.items() if need > there]
         if not more:
             return f"{each}; the {there:g} {of} is enough under all"
         assumed = ": the results assume that nothing slides" if given is None else ""
-        return f"{each}; it is more than the {there:g} {of} under {in_short(more, most=NAMED)}{assumed}"
+        return f"{each}; it is more than the {there:g} {of} under {in_short(more, most=MAX_NAMED_MOTIONS)}{assumed}"
 
 
 def _fate_of(model: ModelName, row: MotionRow) -> str:

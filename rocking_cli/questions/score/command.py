@@ -11,7 +11,7 @@ from rocking_cli.cli import options, terminal
 from rocking_cli.cli.groups import Output, ReadingOptions, read_table
 from rocking_cli.cli.help import Command
 
-NAMED = 20  # tests that cannot be simulated, named one by one
+MAX_NAMED_TESTS = 20  # that cannot be simulated
 
 
 @click.command(cls=Command, short_help="Score stated shares of overturning against tests.")
@@ -54,9 +54,11 @@ def command(file: str, reading: ReadingOptions, output: Output, **around: Any) -
     table = read_table(file, lambda sheet: parse_tests(sheet, Path()))
     answer = score(table, watch=output.watch, usual=reading.usual, **around, **reading.options)
     failed = answer.failed
-    for each in failed[:NAMED]:
+    for each in failed[:MAX_NAMED_TESTS]:
         terminal.error(f"{name_of(file)}:{each.test.line}: {reason(each)}")
-    if len(failed) > NAMED:
-        terminal.error(f"{len(failed) - NAMED} more tests could not be simulated: JSON and --out have their errors")
+    if len(failed) > MAX_NAMED_TESTS:
+        terminal.error(
+            f"{len(failed) - MAX_NAMED_TESTS} more tests could not be simulated: JSON and --out have their errors"
+        )
     output.watch.left_out += len(failed)
     output.show(answer)

@@ -10,8 +10,8 @@ from rocking_cli.errors import InputError
 from rocking_cli.plotting import style
 from rocking_cli.questions.score.study import Scored
 
-FINE = 20  # bins of the counts below
-MANY = 10  # tests of a bin, above which counts are drawn by their logarithm
+HISTOGRAM_BINS = 20
+MAX_LINEAR_COUNT = 10  # tests in a bin: with more, the axis of counts is logarithmic
 
 
 def draw_reliability(found: Scored) -> Figure:
@@ -55,11 +55,11 @@ def draw_reliability(found: Scored) -> Figure:
         for overturned in (False, True)
     ]
     counts, _, _ = below.hist(
-        shares, bins=np.linspace(0, 1, FINE + 1),
+        shares, bins=np.linspace(0, 1, HISTOGRAM_BINS + 1),
         color=[style.SHADE, style.EXCEEDED], edgecolor=style.INK, linewidth=style.HAIR, label=["stood", "overturned"],
     )  # fmt: skip
-    if np.max(counts) > MANY:
-        below.set_yscale("symlog", linthresh=MANY)
+    if np.max(counts) > MAX_LINEAR_COUNT:
+        below.set_yscale("symlog", linthresh=MAX_LINEAR_COUNT)
         below.yaxis.set_major_formatter(lambda count, _: f"{count:g}")
     else:
         below.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=4))

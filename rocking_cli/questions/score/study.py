@@ -21,15 +21,15 @@ from rocking_cli.errors import InputError, Problem, RockingError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import measure
 from rocking_cli.processing.steps import parse_step, process
-from rocking_cli.questions.score.table import OWN, ObservedTest
+from rocking_cli.questions.score.table import OWN_PREDICTORS, ObservedTest
 from rocking_cli.structure import Structure
 from rocking_cli.studies.fit import Counts, fit_outcomes
 from rocking_cli.studies.neighbours import Neighbourhood, follow
 
 SEED = 1963
 DRAWS = 2000
-RANGE = (0.05, 0.95)  # of the draws, between which an interval lies
-BINS = 5  # of stated shares, equally wide
+INTERVAL_QUANTILES = (0.05, 0.95)  # of the draws
+SHARE_BINS = 5  # of equal width, for the predicted shares
 
 
 class ScoreEstimate(NamedTuple):
@@ -107,7 +107,7 @@ class ClusterDraws:
     def __init__(self, names: Sequence[str]) -> None:
         clusters = list(dict.fromkeys(names))
         places = {name: k for k, name in enumerate(clusters)}
-        self.of = np.array([places[name] for name in names], dtype=np.int64)  # the cluster of each test
+        self.of = np.array([places[name] for name in names], dtype=np.int64)  # cluster of each test
         self.count = len(clusters)
 
     @cached_property
@@ -131,7 +131,7 @@ class ClusterDraws:
         fell, stood = kept & (seen == 1), kept & (seen == 0)
         if not (fell.any() and stood.any()):
             return ScoreEstimate(np.nan, np.nan, np.nan)
-        above = np.zeros((self.count, self.count))  # pairs that are in order, by the clusters of both
+        above = np.zeros((self.count, self.count))  # correctly ordered pairs, by their clusters
         one, other = stated[fell][:, None], stated[stood][None, :]
         np.add.at(above, (self.of[fell][:, None], self.of[stood][None, :]), (one > other) + 0.5 * (one == other))
         fallen, standing = (np.bincount(self.of[part], minlength=self.count).astype(float) for part in (fell, stood))
@@ -152,7 +152,7 @@ def _estimate(value: float, counts: Reals, drawn: Callable[[], tuple[Reals, Real
         return ScoreEstimate(value, np.nan, np.nan)
     above, below = drawn()
     there = below > 0
-    low, high = np.quantile(above[there] / below[there], RANGE)
+    low, high = np.quantile(above[there] / below[there], INTERVAL_QUANTILES)
     return ScoreEstimate(value, float(low), float(high))
 
 
@@ -210,12 +210,12 @@ def calibration(stated: Reals, places: Integers, seen: Reals, draws: ClusterDraw
         Draws of the clusters of these tests.
     """
     bins = []
-    for k in range(BINS):
+    for k in range(SHARE_BINS):
         inside = places == k
         mean = float(stated[inside].mean()) if inside.any() else np.nan
         clusters = len(np.unique(draws.of[inside]))
         observed = draws.mean(seen, inside)
-        bins.append(CalibrationBin(k / BINS, (k + 1) / BINS, int(inside.sum()), clusters, mean, observed))
+        bins.append(CalibrationBin(k / SHARE_BINS, (k + 1) / SHARE_BINS, int(inside.sum()), clusters, mean, observed))
     return bins
 
 
@@ -282,7 +282,7 @@ def _logistic(x: Reals, seen: Reals, at: Reals) -> Reals:
     fell, stood = x[seen == 1], x[seen == 0]
     if not (fell.size and stood.size):
         return np.full(at.size, np.nan)
-    if stood.max() <= fell.min():  # the curve is ever steeper: a step in the middle of the gap
+    if stood.max() <= fell.min():  # the slope is unbounded: use a step in the middle of the gap
         return np.where(np.isnan(at), np.nan, np.heaviside(at - (stood.max() + fell.min()) / 2, 0.5))
     each = np.arange(x.size)
     fit = fit_outcomes("logit", _design(x), Counts(each, each, np.ones(x.size)), seen, 0.9)
@@ -301,8 +301,8 @@ def _apart(clusters: Sequence[str], halves: Sequence[str]) -> Iterator[tuple[Boo
         yield (names == cluster) & (parts == half), others
 
 
-TOOL, WITH_UNKNOWN, BASE_RATE, WEST, VELOCITY, FITTED_PGV = OWN
-DRIFT = "0.1"  # Hz, below which the velocity of a record is drift
+TOOL, WITH_UNKNOWN, BASE_RATE, WEST, VELOCITY, FITTED_PGV = OWN_PREDICTORS
+DRIFT_CORNER = "0.1"  # Hz: below it, the velocity of a record is drift
 
 
 class PeakRank(NamedTuple):
@@ -467,7 +467,8 @@ def score_tests(
     if not around.count:
         raise InputError(Problem("must be at least 1", field="neighbours"))
     first = {test.record: k for k, test in reversed(list(enumerate(tests)))}
-    order = sorted(range(len(tests)), key=lambda k: (first[tests[k].record], k))  # each record is read once
+    # Sorted so that each record is read once.
+    order = sorted(range(len(tests)), key=lambda k: (first[tests[k].record], k))
     stated: dict[int, Stated] = {}
 
     def work(start: int, stop: int) -> None:
@@ -540,8 +541,8 @@ def _peaks(found: Outcomes) -> Reals:
 
 def _pgv(motion: GroundMotion) -> float:
     """Return the peak velocity of a record [m/s], without its drift."""
-    with suppress(InputError):  # too short to be filtered, and to drift
-        motion = process(motion, [parse_step("highpass", DRIFT)])
+    with suppress(InputError):  # the record is too short to be filtered, or to drift
+        motion = process(motion, [parse_step("highpass", DRIFT_CORNER)])
     return measure(motion).pgv
 
 
@@ -577,7 +578,7 @@ def scored(stated: Sequence[Stated], around: Neighbourhood) -> Scored:
     rules = stated_by(kept, seen)
     draws = ClusterDraws([each.test.cluster for each in kept])
     tool = rules[TOOL]
-    places = np.array([min(BINS * each.overturned // each.count, BINS - 1) for each in kept])
+    places = np.array([min(SHARE_BINS * each.overturned // each.count, SHARE_BINS - 1) for each in kept])
     bins = calibration(tool, places, seen, draws)
     return Scored(
         around,

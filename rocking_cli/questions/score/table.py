@@ -14,11 +14,11 @@ from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Spreadsheet, read_she
 from rocking_cli.text import cut, did_you_mean, one_line
 from rocking_cli.units import UnitError, read, units_of
 
-FORECAST = "pred_"
+FORECAST_PREFIX = "pred_"
 """How a heading begins whose column has the shares that another rule foretells."""
-OWN = ("tool", "tool_with_unknown", "base_rate", "west", "velocity", "fitted_pgv")
+OWN_PREDICTORS = ("tool", "tool_with_unknown", "base_rate", "west", "velocity", "fitted_pgv")
 """Names of the rules that `rocking score` computes itself."""
-NOTE = "#"
+COMMENT_SIGN = "#"
 """How a heading begins whose column is for people only."""
 HEADINGS = (
     "structure", "record", "overturned", "peak", "censored", "scale", "polarity", "cluster", "half", "motion",
@@ -143,20 +143,20 @@ def parse_tests(sheet: Spreadsheet, folder: Path) -> TableOfTests:
 def _check_headings(sheet: Spreadsheet, problems: list[Problem]) -> dict[str, tuple[int, str]]:
     """Return the place and the unit of each column by its heading without the unit, and add what is wrong."""
     places: dict[str, tuple[int, str]] = {}
-    wrong: set[str] = set()  # columns that are there, but cannot be read
+    wrong: set[str] = set()  # columns that exist, but cannot be read
     at = partial(Problem, file=sheet.file, line=sheet.line)
     for k, heading in enumerate(sheet.headings):
-        if not heading or heading.startswith(NOTE):
+        if not heading or heading.startswith(COMMENT_SIGN):
             continue
         name, unit = unit_in(heading, [each for kind in UNITS.values() for each in units_of(kind)])
         shown = cut(one_line(heading))
-        if name.startswith(FORECAST):
-            if name == FORECAST or name.removeprefix(FORECAST) in OWN:
-                taken = f"pred_ must be followed by a name other than {', '.join(OWN)}"
+        if name.startswith(FORECAST_PREFIX):
+            if name == FORECAST_PREFIX or name.removeprefix(FORECAST_PREFIX) in OWN_PREDICTORS:
+                taken = f"pred_ must be followed by a name other than {', '.join(OWN_PREDICTORS)}"
                 problems.append(at(taken, field=shown))
         elif name not in HEADINGS:
             guess = did_you_mean(name, list(HEADINGS))
-            hint = f"{guess}; other predictions are headed pred_NAME, and columns for people {NOTE}"
+            hint = f"{guess}; other predictions are headed pred_NAME, and columns for people {COMMENT_SIGN}"
             problems.append(at("is not a column of a table of tests", field=shown, hint=hint))
         kind = UNITS.get(name)
         if unit and (kind is None or unit not in units_of(kind)):
@@ -232,7 +232,8 @@ class _Cells:
             return read(given, unit)
         if not unit:
             return plain
-        return read(f"{given} {own}", unit) if own or unit == "rad" else plain  # a rotation has no usual unit
+        # A number without a unit is in the unit of its heading; a rotation without any is refused.
+        return read(f"{given} {own}", unit) if own or unit == "rad" else plain
 
 
 def _test(cells: _Cells) -> ObservedTest:
@@ -241,9 +242,9 @@ def _test(cells: _Cells) -> ObservedTest:
             cells.wrong(name, "is empty")
     overturned, peak = cells.flag("overturned"), cells.number("peak", "rad", zero=True)
     forecasts = {
-        name.removeprefix(FORECAST): cells.number(name, zero=True, most=1.0)
+        name.removeprefix(FORECAST_PREFIX): cells.number(name, zero=True, most=1.0)
         for name in cells.places
-        if name.startswith(FORECAST)
+        if name.startswith(FORECAST_PREFIX)
     }
     scale, time_scale = cells.number("scale"), cells.number("time_scale")
     return ObservedTest(

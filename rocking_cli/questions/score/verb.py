@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rocking_cli.questions.score.study import Scored
     from rocking_cli.questions.score.table import TableOfTests
 
-KEPT = 16  # records in memory at a time; tests under one record are simulated together
+MAX_RECORDS_IN_MEMORY = 16  # tests under one record are simulated together
 
 
 @takes_numbers
@@ -119,7 +119,7 @@ def motions_of(
 ) -> Callable[[str], GroundMotion]:
     """Return the function that reads the record of a test, or samples its pulse; it keeps the last ones."""
     motions = Motions((), reading_of(options, usual).check())
-    return lru_cache(KEPT)(partial(_motion, table.folder, motions))
+    return lru_cache(MAX_RECORDS_IN_MEMORY)(partial(_motion, table.folder, motions))
 
 
 def _structures(table: TableOfTests, watch: Watcher, opening: float) -> dict[str, Structure | RockingError]:

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from rocking_cli.processing.reading import Reading
     from rocking_cli.questions.select.view import ShownSet
 
-LIST = "set.yaml"
-ELSEWHERE = "move it, or name another folder"
-MARK = "# A set of records, chosen by rocking select."
+LIST_FILE = "set.yaml"
+OVERWRITE_HINT = "move it, or name another folder"
+LIST_HEADER = "# A set of records, chosen by rocking select."
 
 
 def write_set(folder_: Path, results: ShownSet, readings: Sequence[Reading | None]) -> None:
@@ -44,15 +44,17 @@ def write_set(folder_: Path, results: ShownSet, readings: Sequence[Reading | Non
     place = folder(str(folder_))
     motions = found.motions
     paths = _paths(place, [found.candidates.motions[k] for k in found.chosen.tolist()])
-    stale = [each for name in sorted(_earlier(place / LIST)) if (each := place / name).is_file() and each not in paths]
+    stale = [
+        each for name in sorted(_earlier(place / LIST_FILE)) if (each := place / name).is_file() and each not in paths
+    ]
     for path in stale:
         path.unlink()
     for path, motion in zip(paths, motions, strict=True):
         write_whole(path, lambda stream, motion=motion: write_record_csv(stream, motion))  # type: ignore[misc]
     text = _list(place, results, readings, paths)
-    write_whole(place / LIST, lambda stream: stream.write(text.encode("utf-8", "surrogateescape")))
+    write_whole(place / LIST_FILE, lambda stream: stream.write(text.encode("utf-8", "surrogateescape")))
     gone = f"; {len(stale)} of an earlier set removed" if stale else ""
-    terminal.note(f"wrote {len(paths)} record{'s' * (len(paths) > 1)} and {LIST} to {place.resolve()}{gone}")
+    terminal.note(f"wrote {len(paths)} record{'s' * (len(paths) > 1)} and {LIST_FILE} to {place.resolve()}{gone}")
 
 
 def _paths(place: Path, motions: list[GroundMotion]) -> list[Path]:
@@ -82,14 +84,14 @@ def check_folder(folder_: Path, inputs: Sequence[Path]) -> None:
         if each.exists() and each.resolve().parent == place.resolve():
             hint = "name a separate folder for the set"
             raise InputError(Problem("`out` is the folder of an input file", str(each), hint=hint))
-    check_writable(place / LIST)
-    earlier = _earlier(place / LIST)
+    check_writable(place / LIST_FILE)
+    earlier = _earlier(place / LIST_FILE)
     for each in sorted(place.glob("*.csv")):
         if not (each.name in earlier and is_record_csv(each)):
             message = (
                 "this file is in the folder of the set, and would be overwritten or mistaken for one of its records"
             )
-            raise InputError(Problem(message, str(each), hint=ELSEWHERE))
+            raise InputError(Problem(message, str(each), hint=OVERWRITE_HINT))
 
 
 def _earlier(path: Path) -> set[str]:
@@ -97,8 +99,10 @@ def _earlier(path: Path) -> set[str]:
     if not path.exists():
         return set()
     lines = path.read_text(encoding="utf-8", errors="replace").splitlines() if path.is_file() else []
-    if lines[:1] != [MARK]:
-        raise InputError(Problem("`out` would overwrite a file that rocking did not write", str(path), hint=ELSEWHERE))
+    if lines[:1] != [LIST_HEADER]:
+        raise InputError(
+            Problem("`out` would overwrite a file that rocking did not write", str(path), hint=OVERWRITE_HINT)
+        )
     return {line.removeprefix("#   ") for line in lines if line.startswith("#   ")}
 
 
@@ -115,7 +119,12 @@ def _list(place: Path, results: ShownSet, readings: Sequence[Reading | None], pa
         else {"file": path.name}
         for k, factor, reading, path in zip(found.chosen.tolist(), found.factors.tolist(), readings, paths, strict=True)
     ]
-    said = [MARK, f"# Target: {results.target.name}", f"# {verdict(results)}", "# The same records, scaled already:"]
+    said = [
+        LIST_HEADER,
+        f"# Target: {results.target.name}",
+        f"# {verdict(results)}",
+        "# The same records, scaled already:",
+    ]
     head = "".join(f"{one_line(line)}\n" for line in said) + "".join(f"#   {path.name}\n" for path in paths)
     body = yaml.safe_dump({"records": entries}, sort_keys=False, allow_unicode=True, width=1000)
     return f"{head}{body}"

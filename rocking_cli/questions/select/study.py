@@ -21,14 +21,14 @@ from rocking_cli.processing.oscillator import DAMPING, response_spectrum
 from rocking_cli.questions.select import subsets
 from rocking_cli.questions.select.target_spectrum import TargetSpectrum
 
-WITHIN = (0.9, 1.3)  # NTC 2018, 3.2.3.6; EN 1998-1:2004, 3.2.3.1.2(4)c, has the lower one alone
-FACTORS = (0.2, 5.0)
+MEAN_LIMITS = (0.9, 1.3)  # NTC 2018, 3.2.3.6; EN 1998-1:2004, 3.2.3.1.2(4)c, has only the lower one
+FACTOR_LIMITS = (0.2, 5.0)
 ONE_PER = ("event", "station", "none")
-SPACING = (0.01, 0.05)  # of ln T, at least and at most: the damping ratio is half the width of a resonance
-POINTS = 50  # periods of a band, at least
-OWN_POINTS = 100  # of the target within the band that are added to these, if there are no more
-SAME_PERIOD = 1e-6  # ratio, less one, of periods that are one
-FEWEST = 4  # intervals of a record to a period, for its samples to show it
+PERIOD_SPACING = (0.01, 0.05)  # bounds of the step of ln T: the damping ratio is half the width of a resonance
+MIN_BAND_PERIODS = 50
+MAX_TARGET_PERIODS = 100  # periods of the target within the band that are added, if there are no more
+PERIOD_TOLERANCE = 1e-6  # relative difference of equal periods
+MIN_SAMPLES_PER_PERIOD = 4  # for the samples of a record to resolve a period
 
 
 @dataclass(frozen=True)
@@ -62,9 +62,9 @@ class SetRequirements:
 
     count: int
     band: tuple[float, float]
-    within: tuple[float, float] = WITHIN
+    within: tuple[float, float] = MEAN_LIMITS
     damping: float = DAMPING
-    factors: tuple[float, float] = FACTORS
+    factors: tuple[float, float] = FACTOR_LIMITS
     one_per: str = "event"
     same_factor: bool = False
     seed: int = 0
@@ -165,12 +165,12 @@ class RecordSet:
     @property
     def too_low(self) -> Bools:
         """Mask of the periods at which the mean is below the lower limit by more than rounding, shape (n,)."""
-        return self.ratio < self.wanted.within[0] * (1 - subsets.SAME)
+        return self.ratio < self.wanted.within[0] * (1 - subsets.MISFIT_TOLERANCE)
 
     @property
     def too_high(self) -> Bools:
         """Mask of the periods at which the mean is above the upper limit by more than rounding, shape (n,)."""
-        return self.ratio > self.wanted.within[1] * (1 + subsets.SAME)
+        return self.ratio > self.wanted.within[1] * (1 + subsets.MISFIT_TOLERANCE)
 
     @property
     def fits(self) -> bool:
@@ -205,7 +205,8 @@ def candidates(
     """
     target.check(wanted.band)
     names = [key_of(motion, wanted.one_per) for motion in motions]
-    _check_enough(len(motions), len(motions), int(_groups(names).max(initial=-1)) + 1, wanted)  # before any work
+    # Before long computations.
+    _check_enough(len(motions), len(motions), int(_groups(names).max(initial=-1)) + 1, wanted)
     periods = periods_of(wanted.band, target, wanted.damping)
     spectra = np.zeros((len(motions), periods.size))
     for k, motion in enumerate(motions):
@@ -216,16 +217,18 @@ def candidates(
 
 def periods_of(band: tuple[float, float], target: TargetSpectrum, damping: float = DAMPING) -> Reals:
     """Return periods [s] at equal ratios over a band, with those of the target inside it unless they are too many."""
-    count = max(POINTS, ceil(log(band[1] / band[0]) / min(max(damping, SPACING[0]), SPACING[1])) + 1)
+    count = max(
+        MIN_BAND_PERIODS, ceil(log(band[1] / band[0]) / min(max(damping, PERIOD_SPACING[0]), PERIOD_SPACING[1])) + 1
+    )
     found = np.geomspace(*band, count)
     found[[0, -1]] = band
     own = target.periods[(target.periods > band[0]) & (target.periods < band[1])]
-    if own.size > OWN_POINTS:
-        count += OWN_POINTS
+    if own.size > MAX_TARGET_PERIODS:
+        count += MAX_TARGET_PERIODS
         return np.concatenate([band[:1], np.geomspace(*band, count)[1:-1], band[1:]])
-    # Of two that are one the target's stays, where its slope changes, but not in the place of an end.
-    away = np.abs(found[1:-1, None] / own - 1).min(axis=1, initial=1.0) > SAME_PERIOD
-    own = own[(own > band[0] * (1 + SAME_PERIOD)) & (own < band[1] * (1 - SAME_PERIOD))]
+    # Of equal periods that of the target is kept, as its slope changes there, but the ends of the band stay.
+    away = np.abs(found[1:-1, None] / own - 1).min(axis=1, initial=1.0) > PERIOD_TOLERANCE
+    own = own[(own > band[0] * (1 + PERIOD_TOLERANCE)) & (own < band[1] * (1 - PERIOD_TOLERANCE))]
     return np.sort(np.concatenate([found[:1], found[1:-1][away], own, found[-1:]]))
 
 
@@ -290,7 +293,7 @@ def own_factors(found: Candidates, wanted: SetRequirements) -> tuple[Reals, dict
             left_out[k] = None
         elif not wanted.same_factor:
             factor = float(np.exp(log_weights(found.periods) @ np.log(found.target / spectrum)))
-            if low * (1 - subsets.SAME) <= factor <= high * (1 + subsets.SAME):
+            if low * (1 - subsets.MISFIT_TOLERANCE) <= factor <= high * (1 + subsets.MISFIT_TOLERANCE):
                 factors[k] = min(max(factor, low), high)
             else:
                 left_out[k] = factor
@@ -314,7 +317,7 @@ def key_of(motion: GroundMotion, one_per: str) -> str | None:
 
 def coarse(found: Candidates) -> list[GroundMotion]:
     """Return the records whose sampling interval is too long for the shortest period of the band."""
-    return [motion for motion in found.motions if found.periods[0] < FEWEST * motion.dt * (1 - 1e-9)]
+    return [motion for motion in found.motions if found.periods[0] < MIN_SAMPLES_PER_PERIOD * motion.dt * (1 - 1e-9)]
 
 
 def _groups(names: Sequence[str | None]) -> NDArray[np.intp]:

@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 from rocking_cli.arrays import Reals
 
 Integers = NDArray[np.intp]
-MOST_TRIED = 200_000  # sets
-MOST_MEMBERS = 3_000_000  # of all these sets together
-BLOCK = 30_000  # members of sets that are judged at once
-STARTS = 20  # of the searches
-SAME = 1e-9  # differences, in logarithms, that are rounding: what comes first goes before
-INSIDE = 1e-12  # of a mean at a limit, so that rounding does not take it over
-EXCHANGES = 1000  # in a search, at most
+MAX_SETS = 200_000  # that are all tried
+MAX_MEMBERS = 3_000_000  # of all these sets together
+MEMBERS_PER_BLOCK = 30_000  # judged at once
+SEARCH_STARTS = 20
+MISFIT_TOLERANCE = 1e-9  # in logarithms: within it sets are equal, and the earlier one is chosen
+LIMIT_MARGIN = 1e-12  # relative: keeps a mean at a limit within it in spite of rounding
+MAX_EXCHANGES = 1000  # in a search
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +60,7 @@ class SubsetProblem:
     @property
     def steps(self) -> int:
         """Number of steps of which `best` reports the progress: sets or searches."""
-        return count_sets(self.groups, self.count) if all_tried(self.groups, self.count) else STARTS
+        return count_sets(self.groups, self.count) if all_tried(self.groups, self.count) else SEARCH_STARTS
 
 
 class Judged(NamedTuple):
@@ -84,7 +84,7 @@ class Best(NamedTuple):
         if other is None:
             return True
         for mine, theirs in ((self.excess, other.excess), (self.rms, other.rms)):
-            if abs(mine - theirs) > SAME:
+            if abs(mine - theirs) > MISFIT_TOLERANCE:
                 return mine < theirs
         return tuple(self.members.tolist()) < tuple(other.members.tolist())
 
@@ -101,7 +101,7 @@ def count_sets(groups: Integers, count: int) -> int:
 def all_tried(groups: Integers, count: int) -> bool:
     """Return whether the sets are so few and so small that `best` tries all."""
     sets = count_sets(groups, count)
-    return sets <= MOST_TRIED and sets * count <= MOST_MEMBERS
+    return sets <= MAX_SETS and sets * count <= MAX_MEMBERS
 
 
 def best(problem: SubsetProblem, seed: int, progress: Callable[[int], object] = lambda done: None) -> Best:
@@ -120,7 +120,7 @@ def best(problem: SubsetProblem, seed: int, progress: Callable[[int], object] = 
         return _best_of_all(problem, progress)
     found: Best | None = None
     rng = np.random.default_rng(seed)
-    for start in range(STARTS):
+    for start in range(SEARCH_STARTS):
         members = [] if start == 0 else [int(rng.integers(len(problem.curves)))]
         while len(members) < problem.count:
             members.append(_added(problem, members)[0])
@@ -149,16 +149,16 @@ def judge(problem: SubsetProblem, sums: Reals, count: int, least: Reals, most: R
     logs = np.log(sums / count)
     low, high = logs.min(axis=1), logs.max(axis=1)
     floor, roof = log(problem.within[0]), log(problem.within[1])
-    # What the limits on the factors leave for the common one: zero is among it, as the own factors keep to them.
+    # Bounds of the common factor by the limits on factors; they contain zero, as the own factors obey the limits.
     down, up = log(problem.factors[0]) - least, log(problem.factors[1]) - most
     balanced = np.clip((floor - low + roof - high) / 2, down, up)
     excess = np.maximum(floor - low - balanced, balanced + high - roof)
-    fits = excess <= SAME
+    fits = excess <= MISFIT_TOLERANCE
     centre = logs @ problem.weights
     nearest = np.clip(
         -centre,
-        np.minimum(np.maximum(floor - low, down) + INSIDE, balanced),
-        np.maximum(np.minimum(roof - high, up) - INSIDE, balanced),
+        np.minimum(np.maximum(floor - low, down) + LIMIT_MARGIN, balanced),
+        np.maximum(np.minimum(roof - high, up) - LIMIT_MARGIN, balanced),
     )
     common = np.where(fits, nearest, balanced)
     rms = np.sqrt(((logs + common[:, None]) ** 2) @ problem.weights)
@@ -175,7 +175,7 @@ def _judge_members(problem: SubsetProblem, members: Integers) -> Judged:
 def _best_of_all(problem: SubsetProblem, progress: Callable[[int], object]) -> Best:
     blocks, judged = [], []
     sets = _all_sets(problem)
-    while block := list(islice(sets, max(BLOCK // problem.count, 1))):
+    while block := list(islice(sets, max(MEMBERS_PER_BLOCK // problem.count, 1))):
         members = np.sort(np.array(block, dtype=np.intp), axis=1)
         blocks.append(members)
         judged.append(_judge_members(problem, members))
@@ -196,8 +196,8 @@ def _all_sets(problem: SubsetProblem) -> Iterator[tuple[int, ...]]:
 
 def _picked(members: Integers, judged: Judged) -> Best:
     """Return the first of the best sets, shape (sets, count), ignoring differences due to rounding."""
-    kept = np.flatnonzero(judged.excess <= judged.excess.min() + SAME)
-    kept = kept[judged.rms[kept] <= judged.rms[kept].min() + SAME]
+    kept = np.flatnonzero(judged.excess <= judged.excess.min() + MISFIT_TOLERANCE)
+    kept = kept[judged.rms[kept] <= judged.rms[kept].min() + MISFIT_TOLERANCE]
     k = int(kept[0])
     return Best(members[k], float(judged.excess[k]), float(judged.rms[k]), float(np.exp(judged.common[k])))
 
@@ -205,7 +205,7 @@ def _picked(members: Integers, judged: Judged) -> Best:
 def _exchanged(problem: SubsetProblem, members: list[int]) -> Best:
     """Improve a set by exchanging one curve at a time, always in the best way, until no exchange improves it."""
     now = _picked(every := np.sort(np.array([members], dtype=np.intp)), _judge_members(problem, every))
-    for _ in range(EXCHANGES):
+    for _ in range(MAX_EXCHANGES):
         tried = now
         for member in now.members.tolist():
             kept = [each for each in now.members.tolist() if each != member]

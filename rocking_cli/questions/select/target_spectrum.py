@@ -17,7 +17,7 @@ from rocking_cli.excitation.records.record_units import CHOICES, UNITS, canonica
 from rocking_cli.studies.points_file import read_points, separator_in
 
 COLUMNS = "a line has two columns with a comma between: period [s], Sa [g]"
-ODD = 10.0  # g; no code asks for more
+MAX_ORDINATE = 10.0  # g; no code requires more
 
 _OTHER_PERIOD = re.compile(r"\b(?:m(?:illi)?s(?:ec)?|min(?:utes?)?|k?hz|freq\w*)\b", re.IGNORECASE)
 _BRACKETS = re.compile(r"[\[(]\s*([^\])]*?)\s*[\])]")
@@ -62,7 +62,7 @@ class TargetSpectrum:
     def highest_if_odd(self) -> float | None:
         """The largest ordinate, if it is more than any code asks for [standard gravity]."""
         highest = float(self.sa.max())
-        return highest if highest > ODD else None
+        return highest if highest > MAX_ORDINATE else None
 
     def check(self, band: tuple[float, float]) -> None:
         """Raise `InputError` if the spectrum does not cover a band of periods [s], or is zero inside it."""

@@ -117,7 +117,8 @@ def select(
     if coarse := record_set.coarse(spectra):
         worst = max(motion.dt for motion in coarse)
         watch.warn(
-            f"the band begins at {wanted.band[0]:g} s, which is less than {record_set.FEWEST} intervals of "
+            f"the band begins at {wanted.band[0]:g} s, which is less than "
+            f"{record_set.MIN_SAMPLES_PER_PERIOD} intervals of "
             f"{len(coarse)} of {len(candidates)} records (dt up to {worst:g} s): at such periods their spectra lack "
             "the motion between samples"
         )

@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.questions.select.study import RecordSet
-from rocking_cli.questions.select.subsets import STARTS
+from rocking_cli.questions.select.subsets import SEARCH_STARTS
 from rocking_cli.questions.select.target_spectrum import TargetSpectrum
 from rocking_cli.text import cut
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_of
 from rocking_cli.views.view import Table, View
 
-NAME = 40  # characters of an event or a station in the table
-LISTED = 5  # records that are left out, in words
-SPANS = 4  # of periods, in a sentence
+MAX_NAME_LENGTH = 40  # characters of an event or a station in the table
+MAX_LISTED_RECORDS = 5  # left-out records that a sentence names
+MAX_LISTED_SPANS = 4  # of periods, in a sentence
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class _Extreme(NamedTuple):
 
 
 def _shortened(name: str) -> str:
-    return cut(name, NAME)
+    return cut(name, MAX_NAME_LENGTH)
 
 
 RECORDS: tuple[Column[_Chosen], ...] = (
@@ -182,7 +182,8 @@ def search(results: ShownSet) -> str:
         return f"This is {one}."
     count = f"{found.sets:,}" if found.sets < 1e6 else f"{found.sets:.3g}".replace("e+0", "e").replace("e+", "e")
     return (
-        f"This is the best set found by {STARTS} searches among {count} sets, which are too many to try all; another "
+        f"This is the best set found by {SEARCH_STARTS} searches among {count} sets, which are too many to try all; "
+        "another "
         "seed may find a better one."
     )
 
@@ -220,8 +221,8 @@ def _spans(periods: NDArray[np.float64], where: NDArray[np.bool_]) -> str:
     for start, end in edges.tolist():
         first, last = f"{periods[start]:.3g}", f"{periods[end - 1]:.3g}"
         said.append(f"at {first} s" if first == last else f"from {first} to {last} s")
-    if len(said) > SPANS:
-        said = [*said[:SPANS], f"in {len(said) - SPANS} more ranges"]
+    if len(said) > MAX_LISTED_SPANS:
+        said = [*said[:MAX_LISTED_SPANS], f"in {len(said) - MAX_LISTED_SPANS} more ranges"]
     return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"
 
 
@@ -231,8 +232,8 @@ def _left_out(results: ShownSet) -> str:
     said = [f"{found.candidates.motions[k].name}: {_why(found, each)}" for k, each in found.left_out.items()]
     if not said:
         return ""
-    more = f"; and {len(said) - LISTED} more" if len(said) > LISTED else ""
-    return f"Left out: {'; '.join(said[:LISTED])}{more}."
+    more = f"; and {len(said) - MAX_LISTED_RECORDS} more" if len(said) > MAX_LISTED_RECORDS else ""
+    return f"Left out: {'; '.join(said[:MAX_LISTED_RECORDS])}{more}."
 
 
 def _why(found: RecordSet, needed: float | None) -> str:

@@ -37,7 +37,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies import neighbours as near
 from rocking_cli.units import KINDS, read
 
-GRAVITY = 9.80665  # m/s2, written here as all that the checks expect
+GRAVITY = 9.80665  # m/s2, repeated here as are all expected values
 MOTIONS = tuple(
     GroundMotion(f"motion {k}", dt, np.array(samples, dtype=np.float64))
     for k, (dt, samples) in enumerate(
@@ -102,11 +102,12 @@ class Rocker:
         """Return the times of the first impacts after a release from a fraction of the critical rotation [s]."""
         times: list[float] = []
         phi = self.alpha * tilt
-        time = -self.fall(phi)  # it starts in the middle of an excursion
-        for _ in range(IMPACTS):
+        time = -self.fall(phi)  # the release is in the middle of an excursion
+        for _ in range(RELEASE_IMPACTS):
             time += 2 * self.fall(phi)
             times.append(time)
-            left = cos(self.alpha) + self.eta**2 * (cos(self.alpha - phi) - cos(self.alpha))  # of the energy
+            # Share of the energy that is left.
+            left = cos(self.alpha) + self.eta**2 * (cos(self.alpha - phi) - cos(self.alpha))
             phi = self.alpha - atan(sqrt(1 - left**2) / left)
         return times
 
@@ -134,7 +135,7 @@ def wall(thickness: float, height: float) -> Rocker:
     return Rocker(made("wall", thickness=thickness, height=height, restitution=0.9), alpha, p, 0.9, 1)
 
 
-IMPACTS = 8
+RELEASE_IMPACTS = 8
 TILTS = (0.5, 0.05, -0.9, 0.99)
 """Releases, as fractions of the critical rotation."""
 
@@ -144,7 +145,7 @@ def release(quick: bool) -> float:
     rockers = (block(0.7, 2.8), wall(0.3, 3.0), block(0.05, 0.3), block(2.0, 5.0), block(1.0, 8.0), wall(0.2, 6.0))
     return max(
         largest_difference(
-            follow(each.structure.model("nonlinear"), None, release=tilt).impacts[:IMPACTS, 0],
+            follow(each.structure.model("nonlinear"), None, release=tilt).impacts[:RELEASE_IMPACTS, 0],
             each.impact_times(abs(tilt)),
         )
         for each in (rockers[:2] if quick else rockers)
@@ -159,7 +160,7 @@ OMEGAS = (5.0, 2.5, 8.0, 1.5, 1.9, 3.2, 4.0, 6.3, 10.0, 20.0)
 """Frequencies omega_g/p of the pulses; up to some 6 blocks also overturn after an impact, in ranges of amplitudes."""
 AMPLITUDES = np.geomspace(1.01, 100.0, 250)
 """Amplitudes a_g/(g lambda), two of which enclose each threshold."""
-HALVINGS = 50  # beyond the last bit
+HALVINGS = 50  # to below the last bit
 
 
 def pulses(quick: bool) -> float:
@@ -220,8 +221,8 @@ def _threshold(overturns: Callable[[Reals], Bools], low: Reals, high: Reals, beg
 
 # --- time histories --------------------------------------------------------------------------------------------------
 
-FEW_IMPACTS = 6  # of later ones the times depend on rounding
-FREE = 10.0  # s after the motion within which each excursion ends
+MAX_COMPARED_IMPACTS = 6  # the times of later ones depend on rounding
+FREE_DURATION = 10.0  # s after the motion within which each excursion ends
 MODELS: tuple[ModelName, ...] = ("nonlinear", "linear2", "linear1")
 
 
@@ -234,7 +235,7 @@ def histories(quick: bool) -> float:
 
 def _history(of: Rocker, motion: GroundMotion, name: ModelName) -> float:
     history = follow(of.structure.model(name), motion)
-    found = [history.uplift_time, *history.impacts[:FEW_IMPACTS, 0]]
+    found = [history.uplift_time, *history.impacts[:MAX_COMPARED_IMPACTS, 0]]
     if history.fell:
         found.append(history.overturning_time)
     return largest_difference(found, event_times(of, motion, name))
@@ -255,8 +256,8 @@ def event_times(of: Rocker, motion: GroundMotion, name: ModelName) -> list[float
             return y[1], p**2 * (y[0] - alpha - kappa * push)
         return y[1], -(p**2) * (sin(alpha - y[0]) + push * cos(alpha - y[0]))
 
-    while len(found) <= FEW_IMPACTS:
-        stop = time[k + 1] if k + 1 < time.size else t + FREE
+    while len(found) <= MAX_COMPARED_IMPACTS:
+        stop = time[k + 1] if k + 1 < time.size else t + FREE_DURATION
         run = solve_ivp(
             slopes, (t, stop), y, "DOP853", events=_events(alpha), rtol=1e-12, atol=1e-14, max_step=0.02
         )  # fmt: skip
@@ -323,7 +324,7 @@ def _blocks() -> Iterator[tuple[Structure, dict[str, float]]]:
     frame["eta"] = (1 - 1.5 * sin(alpha) ** 2 + 3 * gamma * cos(2 * alpha)) / (1 + 3 * gamma)
     fields = {"columns": 2, "column_width": 0.7, "column_height": 2.8, "mass_ratio": gamma}
     yield made("symmetric_frame", **fields), common | frame
-    h, r = 2.0, 0.2  # of a solid cone
+    h, r = 2.0, 0.2  # height and radius of a solid cone
     alpha = atan(4 * r / h)
     p = sqrt(5 * GRAVITY * hypot(h, 4 * r) / (2 * h**2 + 23 * r**2))
     cone = {"lambda_": 4 * r / h, "phi_cr": alpha, "kappa1": 1.0, "p": p}
@@ -389,7 +390,7 @@ def joints(quick: bool) -> float:
     compared half-way between their nodes, where they are least right.
     """
     of, radius = block(0.7, 2.8), hypot(0.35, 1.4)
-    model = of.structure.model("nonlinear")  # of 1 kg
+    model = of.structure.model("nonlinear")  # a mass of 1 kg
     assert model.joints is not None and model.tables is not None
     cells, inertia, worst = len(model.joints.rows), 4 / 3 * radius**2, 0.0
     up = of.alpha - (np.arange(cells) + 0.5) / cells * model.tables[0].end / sqrt(inertia)  # angle from the vertical
@@ -420,7 +421,7 @@ def _sliding(of: Rocker, radius: float, mu: float, tilt: float) -> float:
     for _ in range(HALVINGS):
         phi = (low + high) / 2
         turn, up = -(of.p**2) * sin(of.alpha - phi), of.alpha - phi  # rotation acceleration, angle from the vertical
-        square = 4 * of.p**2 * sin(of.alpha - (phi + top) / 2) * sin((top - phi) / 2)  # of the rotation rate
+        square = 4 * of.p**2 * sin(of.alpha - (phi + top) / 2) * sin((top - phi) / 2)  # square of the rotation rate
         shear = radius * (turn * cos(up) + square * sin(up))
         force = GRAVITY + radius * (turn * sin(up) - square * cos(up))
         low, high = (phi, high) if abs(shear) > mu * force else (low, phi)
@@ -485,7 +486,7 @@ def threads(quick: bool) -> float:
 
 def _histories_in(parts: int) -> int:
     """Compare histories in so many parts, each of which is done by one thread."""
-    models = [wall(0.3, 3.0).structure.model("nonlinear")]  # with a joint that is checked
+    models = [wall(0.3, 3.0).structure.model("nonlinear")]  # a wall with a joint that is checked for opening
     models += block(0.7, 2.8).structure.models(("nonlinear", "linear2"))
     scales = np.linspace(0.5, 2.0, parts * batch.UNIT // (len(models) * len(MOTIONS)))
     runs = Runs.every(len(models), len(MOTIONS), scales=scales.tolist())
@@ -502,7 +503,7 @@ def _pulses_in(parts: int) -> int:
 
 def _wrong(one: Outcomes, other: Outcomes) -> int:
     different = sum(different_values(getattr(one, name), getattr(other, name)) for name in OUTCOME)
-    return different + int(one.failed.sum() + other.failed.sum())  # what was never computed has failed
+    return different + int(one.failed.sum() + other.failed.sum())  # runs that were never computed count as failed
 
 
 def another_way() -> bool:
@@ -599,7 +600,7 @@ OBSPY_FILES = {
     "sac": RecordFile("SAC", 0.01, FOLDER / "sac", {"units": "cm/s2"}),
 }
 """The same for the formats that are read by obspy."""
-SPELLED = {
+UNIT_SPELLINGS = {
     "g": GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "mg": GRAVITY / 1000, "%g": GRAVITY / 100,
 }  # fmt: skip
 """Units of the accelerations of text files, as their headings spell them, and their sizes [m/s2]."""
@@ -609,7 +610,7 @@ def records(quick: bool) -> float:
     """Return the largest deviation of a sample, over the largest sample; quick or not, all formats are read."""
     with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         of_units = {}
-        for k, (unit, size) in enumerate(SPELLED.items()):
+        for k, (unit, size) in enumerate(UNIT_SPELLINGS.items()):
             path = Path(folder) / str(k)
             text = FILES["text"].path.read_text(encoding="utf-8")
             path.write_text(text.replace("[m/s2]", f"[{unit}]"), encoding="utf-8")

@@ -51,7 +51,7 @@ class Check:
         found, error = None, None
         try:
             found = float(self.deviation(quick))
-        except Exception as raised:  # whatever is wrong with the installation
+        except Exception as raised:  # any fault of the installation
             error = raised
         return Checked(self, found, error, monotonic() - began)
 

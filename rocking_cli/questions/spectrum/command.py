@@ -11,7 +11,7 @@ from rocking_cli.cli.groups import GroundMotions, Output
 from rocking_cli.cli.help import Command
 from rocking_cli.cli.quantities import NUMBER, Parsed, QuantityKind, angle, share, span
 
-SIZES, MOST = 60, 2000  # of a curve: by default, and at most
+DEFAULT_SIZES, MAX_SIZES = 60, 2000  # of a curve
 SIZE = QuantityKind("period", "s", "0.8s", "1s:10s", 1e-3, 1e4)  # blocks of 0.2 um to 19,000 km
 
 
@@ -29,9 +29,9 @@ def _sizes(text: str) -> tuple[float, float, int]:
     """Return two periods in s, the smaller first, and the number of sizes between them."""
     *ends, last = text.split(":")
     if len(ends) != 2:
-        return *span(SIZE, text), SIZES
-    if not (last.strip().isdecimal() and 2 <= int(last) <= MOST):
-        raise ValueError(f"{last!r} is not a number of sizes from 2 to {MOST}: give a range such as 1:10:60")
+        return *span(SIZE, text), DEFAULT_SIZES
+    if not (last.strip().isdecimal() and 2 <= int(last) <= MAX_SIZES):
+        raise ValueError(f"{last!r} is not a number of sizes from 2 to {MAX_SIZES}: give a range such as 1:10:60")
     return *span(SIZE, ":".join(ends)), int(last)
 
 
@@ -97,9 +97,9 @@ def command(files: tuple[str, ...], asked: GroundMotions, output: Output, **ques
         raise click.UsageError("No ground motion given: add --record PLACE or --pulse PULSE, each repeatable.")
     asked.check()
     asked.check_strays(files)
-    from rocking_cli.ask.given import HERE
+    from rocking_cli.ask.given import LOCAL_FILE
     from rocking_cli.questions.spectrum.verb import spectrum
 
     output.keep_apart(*files, *asked.motions.records)
-    given = files or (() if question["slenderness"] else (HERE,))
+    given = files or (() if question["slenderness"] else (LOCAL_FILE,))
     output.show(spectrum(given, asked.motions, polarity=asked.polarity, watch=output.watch, **question))

@@ -21,11 +21,11 @@ from rocking_cli.names import FEWEST
 from rocking_cli.plotting import style
 from rocking_cli.questions.spectrum.study import Spectrum
 
-NAME = 40  # characters of a structure's name in the legend
-SHORT = 8.0  # ratio of the ends of an axis up to which it has more ticks
-SHADED = 2  # curves up to which the spread of the motions is drawn: more shades cannot be told apart
-CLEAR = 20  # motions up to which the line of each is opaque
-ROW = 0.06  # height of the row of marks where a curve overturns, or is unknown, over that of the peaks
+MAX_NAME_LENGTH = 40  # characters of a structure's name in the legend
+MAX_TICKED_RATIO = 8.0  # of the ends of an axis, up to which it has more ticks
+MAX_SHADED_CURVES = 2  # more shades of the spread of motions cannot be told apart
+MAX_OPAQUE_LINES = 20  # with more motions, their lines are transparent
+MARK_ROW_HEIGHT = 0.06  # share of the height of the peaks, for a row of marks of overturning or unknown outcomes
 
 
 def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title: str) -> Figure:
@@ -53,7 +53,12 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
     doubtful = [np.isinf(median) & ~fall for median, fall in zip(medians, falls, strict=True)]
     rows = [(k, True) for k, some in enumerate(falls) if some.any()]
     rows += [(k, False) for k, some in enumerate(doubtful) if some.any()]
-    shaded = many and low < high and len(spectra) <= SHADED and any((each.followed >= FEWEST).any() for each in spectra)
+    shaded = (
+        many
+        and low < high
+        and len(spectra) <= MAX_SHADED_CURVES
+        and any((each.followed >= FEWEST).any() for each in spectra)
+    )
     top = _top(spectra, high if shaded else 0.5)
     for k, (each, median) in enumerate(zip(spectra, medians, strict=True)):
         if shaded:
@@ -61,7 +66,9 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
         if many:
             _draw_doubt(panels[1], each, k)
             _draw_line(panels[1], each, k, each.share)
-        heights = {known: top * (1 + ROW * (place + 0.5)) for place, (of, known) in enumerate(rows) if of == k}
+        heights = {
+            known: top * (1 + MARK_ROW_HEIGHT * (place + 0.5)) for place, (of, known) in enumerate(rows) if of == k
+        }
         beyond = np.where(falls[k], heights.get(True, np.nan), heights.get(False, np.nan))
         _draw_line(panels[0], each, k, median, beyond, doubtful[k])
         if each.given is not None:
@@ -110,11 +117,11 @@ def _draw_spread(axes: Axes, each: Spectrum, k: int, bounds: tuple[float, float]
     lower, upper = (np.minimum(each.fractile(q), top) * _within(each) for q in bounds)
     colour = style.distinct(k)["color"]
     axes.fill_between(each.periods, lower, upper, color=colour, alpha=0.15, linewidth=0)
-    for edge in (lower, upper):  # up to where it overturns
+    for edge in (lower, upper):  # drawn up to overturning
         axes.plot(each.periods, np.where(edge < top, edge, np.nan), color=colour, linewidth=style.MEDIUM, zorder=2.2)
     if every:
         curves = np.where(np.isfinite(each.peak_ratio), each.peak_ratio, np.nan) * _within(each)
-        clear = min(1.0, CLEAR / len(curves))  # of many the fractiles must still be seen
+        clear = min(1.0, MAX_OPAQUE_LINES / len(curves))  # the fractiles must stay visible above many curves
         axes.plot(each.periods, curves.T, color=style.FAINT, linewidth=style.THIN, alpha=max(clear, 0.1))
 
 
@@ -163,7 +170,7 @@ def _scale_peaks(axes: Axes, top: float, rows: Sequence[bool]) -> None:
     """Scale the upper panel: peaks, above them a row for overturning of each curve, then for unknown outcomes."""
     ticks = [tick for tick in MaxNLocator(6).tick_values(0.0, top) if 0 <= tick <= top]
     labels = [f"{tick:g}" for tick in ticks]
-    middle, roof = (top * (1 + ROW * count) for count in (sum(rows), len(rows)))
+    middle, roof = (top * (1 + MARK_ROW_HEIGHT * count) for count in (sum(rows), len(rows)))
     if middle > top:
         axes.axhspan(top, middle, color=style.SHADE, zorder=0)
         ticks.append((top + middle) / 2)
@@ -178,7 +185,7 @@ def _scale_peaks(axes: Axes, top: float, rows: Sequence[bool]) -> None:
 
 def _log_ticks(axis: Axis, ratio: float) -> None:
     """Set ticks in plain numbers on a logarithmic axis whose ends have this ratio."""
-    style.plain_numbers(axis, (1.0, 2.0, 5.0) if ratio > SHORT else (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0))
+    style.plain_numbers(axis, (1.0, 2.0, 5.0) if ratio > MAX_TICKED_RATIO else (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0))
 
 
 def _second_axis(axes: Axes, spectra: Sequence[Spectrum]) -> None:
@@ -188,7 +195,7 @@ def _second_axis(axes: Axes, spectra: Sequence[Spectrum]) -> None:
         return
     of = own[0] if own else spectra[0]
     both: tuple[Callable[[Reals], Reals], ...] = (of.shape.scales, of.shape.periods)
-    if of.shape.own is not None:  # known at the sizes that were built
+    if of.shape.own is not None:  # only sizes that were built are known
         both = _between(of.periods, of.scales, 2.0), _between(of.scales, of.periods, 0.5)
     above = axes.secondary_xaxis("top", functions=both)  # type: ignore[arg-type]
     above.set_xlabel("scale (1: as given)" if own else "size R of the blocks [m]", fontsize=style.LABEL)
@@ -214,7 +221,7 @@ def _legend(spectra: Sequence[Spectrum], bounds: tuple[float, float] | None, *, 
     handles: list[Line2D | Patch] = []
     for k, each in enumerate(spectra):
         alpha = each.shape.slenderness
-        name = style.plain(shorten(each.shape.structure.name, NAME, placeholder=" ..."))
+        name = style.plain(shorten(each.shape.structure.name, MAX_NAME_LENGTH, placeholder=" ..."))
         label = rf"blocks, $\alpha$ = {alpha:g} rad = {degrees(alpha):.3g}°" if alpha is not None else name
         handles.append(Line2D([], [], label=label, **style.distinct(k)))
     if any(each.given is not None for each in spectra):

@@ -29,10 +29,10 @@ from rocking_cli.names import FEWEST, OPENING
 from rocking_cli.structure import Structure, with_restitution
 from rocking_cli.studies.under_pulses import Progress, PulsedModel, parse_shape, pulsed_model, uplift
 
-SAME = 1e-9  # relative difference below which a size is that of the structure as given
-AROUND = 10.0  # scale up to which, and one over which down to, a structure is shown
-BLOCKS = (1.0, 10.0)  # 2 pi/p of blocks [s]: R from 0.19 to 19 m
-TOGETHER = 50  # sizes of their own in one call: their tables are in memory at once
+SIZE_TOLERANCE = 1e-9  # relative difference below which a size is that of the structure as given
+MAX_SCALE = 10.0  # shown of a structure; the least is its inverse
+BLOCK_PERIODS = (1.0, 10.0)  # range of 2 pi/p of blocks [s]: R from 0.19 to 19 m
+SIZES_PER_CALL = 50  # the tables of all of them are in memory at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +108,7 @@ def shape_of(structure: Structure, model: ModelName, eta: float | None = None) -
     InputError, MechanismError
         If the structure does not stand, or its restitution is not known.
     """
-    # A full sine pushes both ways alike: the weakest one lifts the direction with the smaller uplift acceleration.
+    # A full sine is equal in both directions: the weakest one uplifts that with the smaller uplift acceleration.
     found = pulsed_model(structure, model, parse_shape("sine"), eta=eta)
     mechanism = structure.mechanism
     given = mechanism if eta is None else with_restitution(mechanism, eta)
@@ -141,7 +141,7 @@ def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) ->
 def usual_sizes(shapes: Sequence[SpectrumShape]) -> tuple[float, float]:
     """Return the default smallest and largest size of a spectrum, as 2 pi/p [s]."""
     own = [each.period for each in shapes if each.slenderness is None]
-    return (min(own) / AROUND**0.5, max(own) * AROUND**0.5) if own else BLOCKS
+    return (min(own) / MAX_SCALE**0.5, max(own) * MAX_SCALE**0.5) if own else BLOCK_PERIODS
 
 
 @dataclass(frozen=True, eq=False)
@@ -255,9 +255,9 @@ def fractile(peaks: Reals, q: float) -> Reals:
         By linear interpolation between the ordered peaks, of which the k-th has the fractile (k - 1)/(m - 1); inf if a
         neighbour in the order overturns, NaN if there is no peak.
     """
-    ordered = np.sort(peaks, axis=0)  # NaN come last
+    ordered = np.sort(peaks, axis=0)  # NaNs come last
     last = np.maximum(np.count_nonzero(~np.isnan(peaks), axis=0) - 1, 0)
-    place = np.round(q * last, 9)  # so that rounding gives no part to a neighbour
+    place = np.round(q * last, 9)  # so that rounding gives no weight to a neighbour
     k = np.floor(place).astype(int)
     below, above = (np.take_along_axis(ordered, row[None], axis=0)[0] for row in (k, np.ceil(place).astype(int)))
     with np.errstate(invalid="ignore"):  # inf - inf
@@ -351,8 +351,8 @@ def _each_its_own(
     """Simulate every motion, polarity and scale, with a model for every scale."""
     assert shape.own is not None
     parts = []
-    for start in range(0, scales.size, TOGETHER):
-        models = [shape.own.build(scale) for scale in scales[start : start + TOGETHER].tolist()]
+    for start in range(0, scales.size, SIZES_PER_CALL):
+        models = [shape.own.build(scale) for scale in scales[start : start + SIZES_PER_CALL].tolist()]
         runs = Runs.every(len(models), len(motions), polarities=signs)
         parts.append((len(models), _outcomes(models, motions, runs, threads, progress)))
     placed = [
@@ -381,19 +381,20 @@ def _scales(shape: SpectrumShape, periods: Reals) -> Reals:
     scales = np.sort(shape.scales(periods))
     if shape.slenderness is not None:
         return scales
-    near = SAME if shape.own is None else 10 * SAME  # a scale that is sought is right to less
+    near = SIZE_TOLERANCE if shape.own is None else 10 * SIZE_TOLERANCE  # scales found by a search are less precise
     return np.union1d([scale for scale in scales if not isclose(scale, 1.0, rel_tol=near)], 1.0)
 
 
 def _signs(shape: SpectrumShape, polarities: Sequence[int]) -> Sequence[int]:
-    # A reversed motion does the same to a symmetric structure.
+    # A reversed motion has the same effect on a symmetric structure.
     return polarities[:1] if shape.structure.symmetric else polarities
 
 
-ALIKE = 1e-7  # relative difference, of what shape alone decides where it does, that solvers and rounding may make
-TRIED = ((0.1, 0.5, 0.9), (10.0, 2.0, 1.1))  # scales at which that is looked at: of each row the first that there is
-CLOSE = 1e-10  # relative error of 2 pi/p where a size is sought
-STEPS = 50  # of the search
+SHAPE_TOLERANCE = 1e-7  # relative error, by solvers and rounding, of quantities that depend on shape alone
+# Scales at which these quantities are compared: in each row, the first that can be built.
+CHECKED_SCALES = ((0.1, 0.5, 0.9), (10.0, 2.0, 1.1))
+PERIOD_TOLERANCE = 1e-10  # relative error of 2 pi/p of a size that is searched for
+MAX_SEARCH_STEPS = 50
 
 
 class Sizes:
@@ -451,11 +452,12 @@ class Sizes:
 
     def scale(self, period: float) -> float:
         """Return the scale at which 2 pi/p has a value [s]. Raises as `equivalence`, or if there is none."""
-        one, off = 0.0, log(period / self.period(1.0))  # in logarithms, where 2 pi/p grows about half as the scale
+        # Secant search in logarithms, where 2 pi/p has a slope of about one half.
+        one, off = 0.0, log(period / self.period(1.0))
         two = 2 * off
-        for _ in range(STEPS):
+        for _ in range(MAX_SEARCH_STEPS):
             missing = log(period / self.period(exp(two)))
-            if abs(missing) < CLOSE:
+            if abs(missing) < PERIOD_TOLERANCE:
                 return exp(two)
             slope = (off - missing) / (two - one) if two != one else 0.5
             one, off, two = two, missing, two + missing / (slope if 0.1 < slope < 2 else 0.5)
@@ -473,15 +475,15 @@ class Sizes:
         if self.model == "nonlinear" and isinstance(self.mechanism.strength, Strength):
             return False
         own = _shape_of(self.equivalence(1.0), 1.0)
-        for scales in TRIED:
+        for scales in CHECKED_SCALES:
             for scale in scales:
                 try:
                     other = _shape_of(self.equivalence(scale), scale)
-                except InputError:  # out of the bounds of its fields
+                except InputError:  # a field is out of bounds at this scale
                     continue
                 except MechanismError:
                     return False
-                if not all(isclose(a, b, rel_tol=ALIKE) for a, b in zip(own, other, strict=True)):
+                if not all(isclose(a, b, rel_tol=SHAPE_TOLERANCE) for a, b in zip(own, other, strict=True)):
                     return False
                 break
         return True

@@ -19,10 +19,12 @@ from rocking_cli.views.column import Column, only_shown, rounded, table_of
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import ABSENT, Table, View
 
-ROWS = 12  # of a table, besides the structure itself: the curves themselves are in --out and --json
-HUNG = "All lengths are scaled, including the positions of loads and ties; their masses, stiffness and forces are not."
-LISTED = 3  # histories that could not be simulated
-BECAUSE = "a joint opens or slides so far that the model no longer holds"
+MAX_TABLE_ROWS = 12  # besides that of the structure as given; --out and --json have the whole curves
+SCALING_NOTE = (
+    "All lengths are scaled, including the positions of loads and ties; their masses, stiffness and forces are not."
+)
+MAX_LISTED_FAILURES = 3  # histories that could not be simulated
+INVALID_REASON = "a joint opens or slides so far that the model no longer holds"
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,10 +59,10 @@ def view(results: ShownSpectra) -> View:
             "Scale multiplies all lengths of the structure. Larger structures have a smaller frequency parameter p."
         )
     if any(each.shape.hung for each in results.spectra):
-        said.append(HUNG)
+        said.append(SCALING_NOTE)
     if any(each.unknown.any() for each in results.spectra):
         more = "; its peak is at least the number after >=." if results.one else ". Fractiles count it as overturning."
-        said.append(f"The outcome is {UNKNOWN} if {BECAUSE}{more}")
+        said.append(f"The outcome is {UNKNOWN} if {INVALID_REASON}{more}")
     said += _joints(results)
     return View(lambda: _all(results), [*parts, *said])
 
@@ -103,10 +105,11 @@ def lost(results: ShownSpectra) -> str:
     ]
     if not found:
         return ""
-    more = f" and {len(found) - LISTED} more" if len(found) > LISTED else ""
+    more = f" and {len(found) - MAX_LISTED_FAILURES} more" if len(found) > MAX_LISTED_FAILURES else ""
     every = sum(each.peak_ratio.size for each in results.spectra)
     return (
-        f"{len(found)} of {every} responses could not be simulated and are left out: {'; '.join(found[:LISTED])}{more}"
+        f"{len(found)} of {every} responses could not be simulated and are left out: "
+        f"{'; '.join(found[:MAX_LISTED_FAILURES])}{more}"
     )
 
 
@@ -193,7 +196,7 @@ def _peak(value: float, least: float = np.nan) -> str:
 def _curve(results: ShownSpectra, each: Spectrum) -> Iterator[Table | str]:
     """Yield the table of a shape, below its heading."""
     structure = each.shape.structure
-    shown = sorted({*spaced(each.scales.size, ROWS), *([] if each.given is None else [each.given])})
+    shown = sorted({*spaced(each.scales.size, MAX_TABLE_ROWS), *([] if each.given is None else [each.given])})
     side = "" if structure.symmetric else f" ({structure.direction.label})"
     yield (
         f"{structure.name}{side}, {structure.model.name}: uplift at {structure.lambda_:.4g} g, eta = "
@@ -224,7 +227,7 @@ def _columns(results: ShownSpectra, each: Spectrum) -> Iterator[Column[int]]:
         return
     for q in results.fractiles:
         falls, peaks = each.fractile_overturns(q), [_peak(value) for value in each.fractile(q)]
-        # Unknown outcomes count as overturning in a fractile: where only they make it overturn, it is not known.
+        # Unknown outcomes count as overturning in a fractile; if only they make it overturn, the fractile is unknown.
         cells = [UNKNOWN if peak == OVERTURNS and not known else peak for peak, known in zip(peaks, falls, strict=True)]
         yield only_shown("median" if q == 0.5 else f"{100 * q:g} %", cells.__getitem__)
     yield only_shown("overturned", lambda k: f"{each.overturned[k]} of {each.followed[k]}")

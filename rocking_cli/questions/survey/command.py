@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rocking_cli.ask.answer import Answer
     from rocking_cli.io.tables import Columns
 
-NAMED = 20  # rows that cannot be used, named one by one
+MAX_NAMED_ROWS = 20  # that cannot be used
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ def command(
     keep_apart(written, [file, *(str(each.path) for each in motions.records)])
     table = read_table(file, lambda sheet: StructureTable(sheet, Path()))
     answer = survey(table, motions, polarity=asked.polarity, processes=True, page=results.page, watch=watch, **question)
-    for line in bad_lines(answer.bad, name_of(file), NAMED):
+    for line in bad_lines(answer.bad, name_of(file), MAX_NAMED_ROWS):
         terminal.error(line)
     if not answer.rows:
         first = answer.bad[0].error

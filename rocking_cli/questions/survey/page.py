@@ -14,7 +14,7 @@ from rocking_cli.questions.survey.study import Survey
 from rocking_cli.questions.survey.view import counts, sentences, table, title
 from rocking_cli.text import printable
 
-MOST = 10_000  # rows of a page: browsers lay out more of them for many seconds
+MAX_PAGE_ROWS = 10_000  # browsers need many seconds to lay out more
 SYMBOLS = {"lambda": "λ", "phi_cr": "φ_cr", "kappa2": "κ₂", "eta": "η"}
 
 
@@ -30,8 +30,8 @@ def render(found: Survey, source: str, about: Sequence[str]) -> str:
     about : sequence of str
         Further lines of the heading: date and command.
     """
-    rows = table(found, MOST, longest=None)
-    left_out = max(0, len(found.rows) - MOST)
+    rows = table(found, MAX_PAGE_ROWS, longest=None)
+    left_out = max(0, len(found.rows) - MAX_PAGE_ROWS)
     page = template("survey.html", symbols=symbols).render(
         source=source,
         about=about,
@@ -41,12 +41,14 @@ def render(found: Survey, source: str, about: Sequence[str]) -> str:
         columns=[_symbolic(each) for each in rows.columns],
         words=[k for k in range(len(rows.columns)) if k not in rows.numbers],
         rows=rows.rows,
-        left_out=f"The table lists the first {MOST:,} of {len(found.rows):,} structures." if left_out else "",
-        bad=[(each.line if each.line is not None else "", each.name, each.reason) for each in found.bad[:MOST]],
+        left_out=f"The table lists the first {MAX_PAGE_ROWS:,} of {len(found.rows):,} structures." if left_out else "",
+        bad=[
+            (each.line if each.line is not None else "", each.name, each.reason) for each in found.bad[:MAX_PAGE_ROWS]
+        ],
         bad_count=len(found.bad),
         style=Markup(asset("motion.css")),
     )
-    return printable(page)  # a table may contain what no page can hold
+    return printable(page)  # a table may have characters that a page cannot hold
 
 
 def _symbolic(heading: str) -> str:

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from rocking_cli.plotting import style
 from rocking_cli.questions.survey.study import Survey
 
-NAMED = 10  # structures whose rank stands beside their mark
-FEW = 60  # structures among which ranks can be read
-MANY = 2000  # marks of a picture of lines; more are one image within it
+MAX_RANKED_LABELS = 10  # structures whose rank stands beside their mark
+MAX_LABELLED_STRUCTURES = 60  # among more, ranks cannot be read
+MAX_VECTOR_MARKS = 2000  # more are drawn as one image
 MARKS: dict[str, dict[str, Any]] = {
     "does not uplift": {"marker": "o", "color": "white", "markeredgecolor": style.SPARED},
     "rocks": {"marker": "o", "color": style.SPARED, "markeredgecolor": "white"},
@@ -43,11 +43,11 @@ def draw_survey(found: Survey, title: str) -> Figure:
             label = f"{look} ({here.sum():,})" if found.motions else None
             edge = 0.8 if MARKS[look]["color"] == "white" else 0.3
             axes.plot(
-                p[here], uplift[here], linestyle="none", markersize=5 if len(p) <= MANY else 3, label=label,
-                markeredgewidth=edge, rasterized=len(p) > MANY, **MARKS[look],
+                p[here], uplift[here], linestyle="none", markersize=5 if len(p) <= MAX_VECTOR_MARKS else 3, label=label,
+                markeredgewidth=edge, rasterized=len(p) > MAX_VECTOR_MARKS, **MARKS[look],
             )  # fmt: skip
-    first = np.flatnonzero(there)[:NAMED]
-    if len(p) <= FEW:
+    first = np.flatnonzero(there)[:MAX_RANKED_LABELS]
+    if len(p) <= MAX_LABELLED_STRUCTURES:
         for k in first.tolist():
             axes.annotate(
                 str(k + 1), (p[k], uplift[k]), xytext=(4, 3), textcoords="offset points", fontsize=style.SMALL,

@@ -23,12 +23,12 @@ from rocking_cli.io.spreadsheet import DECIMAL_COMMA, Row, Spreadsheet, read_she
 from rocking_cli.io.yaml_file import Document, Place, parse, read_text, spell
 from rocking_cli.text import cut, did_you_mean, one_line
 
-BASE, MECHANISM = "file", "mechanism"
-YAML = (".yaml", ".yml")
-NOTE = "#"
+FILE_COLUMN, MECHANISM_COLUMN = "file", "mechanism"
+YAML_SUFFIXES = (".yaml", ".yml")
+COMMENT_SIGN = "#"
 """What a heading begins with whose column is for people only."""
 THOUSANDS = re.compile(r"[-+]?\d{1,3}(\.\d{3})+", re.ASCII)
-DIGITS = 308  # of the largest whole number that is a float
+MAX_DIGITS = 308  # of the largest whole number that is a float
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 _UNIT = re.compile(r"(.*?)\s*\[([^\]]*)\]\s*", re.DOTALL)
 
@@ -138,8 +138,8 @@ class StructureTable(Sequence["TableRow"]):
 
     def base_of(self, row: Row) -> str:
         """Return the YAML file that a row modifies; empty for none. Other files are fields of mechanisms."""
-        named = self.text(row, BASE)
-        return named if named.lower().endswith(YAML) else ""
+        named = self.text(row, FILE_COLUMN)
+        return named if named.lower().endswith(YAML_SUFFIXES) else ""
 
     def base(self, named: str) -> dict[str, Any]:
         """Return the data of a YAML file, read once. Raises `InputError` if it cannot be read."""
@@ -160,7 +160,7 @@ class StructureTable(Sequence["TableRow"]):
         columns, problems, taken = [], [], dict[tuple[str, ...], str]()
         sheet = self.sheet
         for place, heading in enumerate(sheet.headings):
-            if not heading or heading.startswith(NOTE):
+            if not heading or heading.startswith(COMMENT_SIGN):
                 continue
             name, unit = (match[1], match[2].strip()) if (match := _UNIT.fullmatch(heading)) else (heading, "")
             shown = cut(one_line(heading))
@@ -186,30 +186,32 @@ class StructureTable(Sequence["TableRow"]):
         for name in sorted(self._mechanisms()):
             try:
                 classes.append(self.registry[name])
-            except (InputError, MechanismError):  # each of its rows says so
+            except (InputError, MechanismError):  # reported for each row of this file
                 continue
-        if not {MECHANISM, BASE} & {column.path[0] for column in self.columns}:
-            near = get_close_matches(MECHANISM, [column.path[0].lower() for column in self.columns], n=1)
+        if not {MECHANISM_COLUMN, FILE_COLUMN} & {column.path[0] for column in self.columns}:
+            near = get_close_matches(MECHANISM_COLUMN, [column.path[0].lower() for column in self.columns], n=1)
             given = [column.heading for column in self.columns if near and column.path[0].lower() == near[0]]
             hint = (
-                f"write {MECHANISM} instead of {given[0]}" if given else "add one that names the mechanism of each row"
+                f"write {MECHANISM_COLUMN} instead of {given[0]}"
+                if given
+                else "add one that names the mechanism of each row"
             )
             raise InputError(
                 Problem(
-                    f"the table has neither a column {MECHANISM} nor a column {BASE}",
+                    f"the table has neither a column {MECHANISM_COLUMN} nor a column {FILE_COLUMN}",
                     self.sheet.file,
                     self.sheet.line,
                     hint=hint,
                 )
             )
-        known = {MECHANISM, BASE}.union(*(_fields(cls) for cls in classes))
+        known = {MECHANISM_COLUMN, FILE_COLUMN}.union(*(_fields(cls) for cls in classes))
         problems = []
         for column in self.columns:
             if classes and column.path[0] not in known:
                 guess = did_you_mean(column.path[0], sorted(known))
                 guess = guess if guess and guess.endswith("?") else ""
                 what = "any mechanism in this table" if len(classes) > 1 else classes[0].mechanism
-                hint = f"{guess} A column whose heading starts with {NOTE} is ignored".strip()
+                hint = f"{guess} A column whose heading starts with {COMMENT_SIGN} is ignored".strip()
                 message = f"is not a field of {what}"
                 problems.append(Problem(message, self.sheet.file, self.sheet.line, field=column.heading, hint=hint))
         if problems:
@@ -217,11 +219,11 @@ class StructureTable(Sequence["TableRow"]):
 
     def _mechanisms(self) -> set[str]:
         """Return the names of the mechanisms in the rows, known or not."""
-        found = {self.text(row, MECHANISM) for row in self.sheet.rows}
-        for named in {self.base_of(row) for row in self.sheet.rows if not self.text(row, MECHANISM)} - {""}:
+        found = {self.text(row, MECHANISM_COLUMN) for row in self.sheet.rows}
+        for named in {self.base_of(row) for row in self.sheet.rows if not self.text(row, MECHANISM_COLUMN)} - {""}:
             try:
-                found.add(str(self.base(named).get(MECHANISM)))
-            except InputError:  # each of its rows says so
+                found.add(str(self.base(named).get(MECHANISM_COLUMN)))
+            except InputError:  # reported for each row of this file
                 continue
         return found - {""}
 
@@ -268,7 +270,9 @@ class TableRow:
         """
         table, row = self.table, self.row
         document = _RowDocument("structure", table.sheet.file, [], line=row.line, base=table.base_of(row))
-        document.values[()] = document.values[(MECHANISM,)] = yaml.Mark(document.file, 0, row.line - 1, 0, None, 0)
+        document.values[()] = document.values[(MECHANISM_COLUMN,)] = yaml.Mark(
+            document.file, 0, row.line - 1, 0, None, 0
+        )
         if row.too_many is not None:
             what = f"has more cells than headings; the first extra cell is {cut(one_line(row.too_many))!r}"
             raise InputError(document.problem(what, None, hint="is a separator in a cell without quotes?"))
@@ -279,9 +283,9 @@ class TableRow:
             folder = (table.folder / based).parent
             default = one_line(Path(based).stem) or default
         self._fill(document, based)
-        if MECHANISM not in document.data and not based and (named := table.text(row, BASE)):
+        if MECHANISM_COLUMN not in document.data and not based and (named := table.text(row, FILE_COLUMN)):
             what = f"{cut(one_line(named))!r} is not a structure file: its name must end in .yaml or .yml"
-            document.problems.append(document.problem(what, None, BASE, "or give the mechanism of the row"))
+            document.problems.append(document.problem(what, None, FILE_COLUMN, "or give the mechanism of the row"))
         document.check()
         document.data = closed(document.data)
         return of_document(document, default, folder, table.registry)
@@ -293,18 +297,18 @@ class TableRow:
             first = error.problems[0]
             line = f"{first.line}: " if first.line is not None else ""
             message = f"{cut(one_line(named))}: {line}{first.message}"
-            raise InputError(document.problem(message, None, BASE, first.hint)) from None
+            raise InputError(document.problem(message, None, FILE_COLUMN, first.hint)) from None
 
     def _fill(self, document: _RowDocument, based: str) -> None:
         """Write the non-empty cells to the fields of a document; add problems for those that cannot be written."""
         table, data = self.table, document.data
-        if given := table.text(self.row, MECHANISM):
-            data[MECHANISM] = given
-        name = str(data.get(MECHANISM))
-        cls = table.registry.get(name)  # None where there is no such mechanism, which is said when it is made
+        if given := table.text(self.row, MECHANISM_COLUMN):
+            data[MECHANISM_COLUMN] = given
+        name = str(data.get(MECHANISM_COLUMN))
+        cls = table.registry.get(name)  # None for an unknown mechanism, which is reported when it is built
         for column in table.columns:
             text = self.row.cells[column.place]
-            if not text or column.path == (MECHANISM,) or (based and column.path == (BASE,)):
+            if not text or column.path == (MECHANISM_COLUMN,) or (based and column.path == (FILE_COLUMN,)):
                 continue
             try:
                 place = put(data, column.path, None, is_list=partial(_is_list, cls) if cls is not None else _none)
@@ -360,7 +364,7 @@ def _one(text: str, column: FieldColumn, *, decimal_comma: bool) -> Any:
         )
     if decimal_comma and DECIMAL_COMMA.fullmatch(text):
         text = text.replace(",", ".")
-    if len(text.lstrip("+-")) > DIGITS and text.lstrip("+-").isdecimal():
+    if len(text.lstrip("+-")) > MAX_DIGITS and text.lstrip("+-").isdecimal():
         raise InputError(Problem(f"a number of {len(text.lstrip('+-'))} digits is beyond the range of numbers"))
     if _NUMBER.fullmatch(text):
         return _with_unit(float(text) if re.search(r"[.eE]", text) else int(text), column.unit)

@@ -24,7 +24,7 @@ from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.verification.check import of_each, verify
 from rocking_cli.verification.code import SiteFile
 
-PART = 8  # structures that a thread has in memory at a time: the tables of each are one megabyte, at most ten
+STRUCTURES_PER_CHUNK = 8  # in the memory of a thread at a time: the tables of each are one megabyte, at most ten
 
 
 class SurveyEntry(Protocol):
@@ -267,10 +267,10 @@ def survey(
         results[first:stop] = _part(entries, motions, polarities, site, opening, first, stop)
 
     if processes is None:
-        in_parts(work, len(entries), PART, threads, progress)
+        in_parts(work, len(entries), STRUCTURES_PER_CHUNK, threads, progress)
     else:
         whole = partial(_part, entries, motions, polarities, site, opening)
-        for first, part in in_processes(whole, len(entries), PART, processes):
+        for first, part in in_processes(whole, len(entries), STRUCTURES_PER_CHUNK, processes):
             results[first : first + len(part)] = part
             if progress is not None:
                 progress(len(part))

@@ -16,7 +16,7 @@ from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING
-from rocking_cli.questions.survey.view import TOP
+from rocking_cli.questions.survey.view import DEFAULT_ROWS
 from rocking_cli.text import one_line
 
 if TYPE_CHECKING:
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 Table = str | Path | Mapping[str, Sequence[Any]]
 """CSV file, or columns by their headings."""
-LONG, LONG_SHAKEN = 10_000, 1_000  # rows from which on processes are worth their beginning
-FEW = 3  # doubts about sizes that are told one by one
+MIN_ROWS_FOR_PROCESSES, MIN_ROWS_FOR_PROCESSES_WITH_MOTION = 10_000, 1_000  # from which starting processes pays
+MAX_LISTED_DOUBTS = 3  # about sizes
 
 
 @takes_numbers
@@ -37,7 +37,7 @@ def survey(
     polarity: str | int = "1",
     site: SiteLike | None = None,
     opening: float = OPENING,
-    top: int = TOP,
+    top: int = DEFAULT_ROWS,
     threads: int | None = None,
     processes: bool = False,
     page: str | Path | None = None,
@@ -140,17 +140,17 @@ def _processes(rows: int, shaken: bool) -> int | None:
     from rocking_cli.dynamics.parallel import MOST
 
     count = min(os.cpu_count() or 1, MOST)
-    if count < 2 or rows < (LONG_SHAKEN if shaken else LONG):
+    if count < 2 or rows < (MIN_ROWS_FOR_PROCESSES_WITH_MOTION if shaken else MIN_ROWS_FOR_PROCESSES):
         return None
     return count
 
 
 def _warn_of_sizes(found: Survey, watch: Watcher) -> None:
     doubtful = [each for each in found.rows if each.doubt is not None]
-    for each in doubtful[:FEW]:
+    for each in doubtful[:MAX_LISTED_DOUBTS]:
         watch.warn(f"{one_line(each.name)}: {each.doubt}")
-    if len(doubtful) > FEW:
-        watch.warn(f"{len(doubtful) - FEW:,} more structures have doubtful sizes: JSON lists them")
+    if len(doubtful) > MAX_LISTED_DOUBTS:
+        watch.warn(f"{len(doubtful) - MAX_LISTED_DOUBTS:,} more structures have doubtful sizes: JSON lists them")
 
 
 def _write_page(place: Path, found: Survey, table: str, watch: Watcher) -> None:

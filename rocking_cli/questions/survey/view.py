@@ -16,11 +16,11 @@ from rocking_cli.text import cut, one_line
 from rocking_cli.views.column import Column, data_of, frame_of, of, table_of
 from rocking_cli.views.view import Table, View, number
 
-TOP = 20
-NAME = 30  # characters of a name in the table
-CAUTIONED = 3  # structures whose cautions are printed
-BLOCK = 10_000  # rows of a file written at a time
-FORMULA = ("=", "+", "-", "@")
+DEFAULT_ROWS = 20
+MAX_NAME_LENGTH = 30  # characters, in the table
+MAX_CAUTIONED = 3  # structures whose cautions are printed
+ROWS_PER_BLOCK = 10_000  # of a file
+FORMULA_SIGNS = ("=", "+", "-", "@")
 """First characters of a text that a spreadsheet would read as a formula."""
 RANKED = {
     "lambda": "by ground acceleration at uplift",
@@ -93,7 +93,7 @@ PARAMETERS: tuple[Column[RankedStructure], ...] = (
 )
 
 
-def view(found: Survey, top: int = TOP) -> View:
+def view(found: Survey, top: int = DEFAULT_ROWS) -> View:
     """Show the most vulnerable structures, and how many of all overturn."""
     parts: list[Table | str] = []
     if found.rows:
@@ -131,8 +131,8 @@ def _ranked(found: Survey, start: int = 0, stop: int | None = None) -> list[Rank
 
 def blocks(found: Survey, *, for_spreadsheets: bool) -> Iterator[Columns]:
     """Yield all rows in blocks; texts that a spreadsheet would compute get an apostrophe in front."""
-    for start in range(0, max(len(found.rows), 1), BLOCK):
-        yield columns(found, start, start + BLOCK, for_spreadsheets=for_spreadsheets)
+    for start in range(0, max(len(found.rows), 1), ROWS_PER_BLOCK):
+        yield columns(found, start, start + ROWS_PER_BLOCK, for_spreadsheets=for_spreadsheets)
 
 
 def columns(found: Survey, start: int = 0, stop: int | None = None, *, for_spreadsheets: bool = False) -> Columns:
@@ -146,7 +146,7 @@ def columns(found: Survey, start: int = 0, stop: int | None = None, *, for_sprea
         if column.text:
             texts = map(one_line, made[column.heading])
             made[column.heading] = [
-                f"'{each}" if for_spreadsheets and each.startswith(FORMULA) else each for each in texts
+                f"'{each}" if for_spreadsheets and each.startswith(FORMULA_SIGNS) else each for each in texts
             ]
     return made
 
@@ -156,7 +156,7 @@ def has_unknown(found: Survey) -> bool:
     return any(each.under is not None and each.under.unknown for each in found.rows)
 
 
-def table(found: Survey, top: int, longest: int | None = NAME) -> Table:
+def table(found: Survey, top: int, longest: int | None = MAX_NAME_LENGTH) -> Table:
     """Return a table of the first rows, with names of at most `longest` characters."""
     empty = {"unknown"} if not has_unknown(found) else set[str]()
     if all(_not_counted(row) is None for row in _ranked(found)):
@@ -254,9 +254,9 @@ def sentences(found: Survey, top: int | None = None) -> list[str]:
         )
         said += _not_known(rows)
     cautioned = [each for each in rows if each.caution is not None]
-    said += [f"Caution: {each.name}: {each.caution}" for each in cautioned[:CAUTIONED]]
-    if len(cautioned) > CAUTIONED:
-        said.append(f"{len(cautioned) - CAUTIONED:,} more structures have such a caution: JSON lists them all.")
+    said += [f"Caution: {each.name}: {each.caution}" for each in cautioned[:MAX_CAUTIONED]]
+    if len(cautioned) > MAX_CAUTIONED:
+        said.append(f"{len(cautioned) - MAX_CAUTIONED:,} more structures have such a caution: JSON lists them all.")
     if any(each.unprinted for each in rows):
         said.append(
             "Caution: formulas of the code have not been checked against the printed code yet: have them checked "
@@ -286,7 +286,7 @@ def _not_known(rows: Sequence[Surveyed]) -> Iterator[str]:
 
 
 def _named(rows: Sequence[Surveyed], most: int = 3) -> str:
-    names = ", ".join(cut(one_line(each.name), NAME) for each in rows[:most])
+    names = ", ".join(cut(one_line(each.name), MAX_NAME_LENGTH) for each in rows[:most])
     return names if len(rows) <= most else f"{len(rows):,} structures ({names}, ...)"
 
 

@@ -85,7 +85,7 @@ def command(
     from rocking_cli.questions.verify.verb import verify
 
     if sheet is None:
-        as_declared(question, *heads.HEAD)
+        as_declared(question, *heads.HEAD_OPTIONS)
     motions = asked.motions
     read = [file, site, question["logo"], *(str(each.path) for each in motions.records)]
     keep_apart([("--plot", output.plot), ("--sheet", sheet)], read)

@@ -11,7 +11,7 @@ from rocking_cli.cli import complete, defaults, options
 from rocking_cli.processing.reading_options import CORRECTIONS
 
 LANGUAGES = ("en", "it")
-HEAD = ("project", "place", "author", "logo")
+HEAD_OPTIONS = ("project", "place", "author", "logo")
 """Options of the heading of a document."""
 
 head: options.Decorator = options.in_order(
@@ -48,7 +48,7 @@ def command_line(ctx: click.Context) -> str:
 
     said = ["rocking", ctx.info_name or ""]
     taken = defaults.of_run(ctx)
-    steps = [name for name in ctx.params if name in CORRECTIONS]  # in the order of the command line
+    steps = [name for name in ctx.params if name in CORRECTIONS]  # in the order of the options
     for param in sorted(ctx.command.params, key=lambda each: steps.index(each.name) if each.name in steps else -1):
         value = ctx.params.get(param.name or "")
         if default := taken.get(param.name or ""):
@@ -57,7 +57,7 @@ def command_line(ctx: click.Context) -> str:
             continue
         for each in _typed(value):
             said += [] if isinstance(param, click.Argument) else [param.opts[0]]
-            said += [] if each is True else [str(getattr(each, "value", each))]  # of a correction
+            said += [] if each is True else [str(getattr(each, "value", each))]  # value of a correction
     places = ", ".join(f"--{each.option} from {each.place}" for each in taken.values())
     return shlex.join(said) + (f"  # {places}" if places else "")
 

@@ -14,9 +14,9 @@ from rocking_cli.verification.code import SiteFile
 from rocking_cli.verification.results import Verification
 from rocking_cli.views.column import table_of, text_columns
 from rocking_cli.views.sheet.document import Item, Listing, Sentence, Sheet, SheetPart
-from rocking_cli.views.sheet.language import DIGITS, Language
+from rocking_cli.views.sheet.language import SIGNIFICANT_DIGITS, Language
 
-MOST = 200  # lines of a file that are printed
+MAX_LISTED_LINES = 200  # of a file
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,10 @@ def sheet(found: Verification, site: SiteFile, language: Language, title: TitleB
     about[say("Program")] = f"rocking-cli {made.versions['rocking-cli']}"
     with blame(f"the code {site.site.code} failed in its sheet", own.parts.__module__):
         first, *others = own.parts(say, found, site.site)
-    reading = [say("reading_digits", digits=DIGITS, force="kN" if mechanism.has_mass else "N/kg"), say("reading_marks")]
+    reading = [
+        say("reading_digits", digits=SIGNIFICANT_DIGITS, force="kN" if mechanism.has_mass else "N/kg"),
+        say("reading_marks"),
+    ]
     if not mechanism.has_mass:
         reading.append(say("The file gives no masses: weights are per kilogram of the whole structure, in N/kg."))
     how = SheetPart("reading", say("How to read it"), [*map(Sentence, reading)])
@@ -130,9 +133,9 @@ def _inputs(say: Language, found: Verification, title: TitleBlock, made: SheetSo
     texts = []
     for kind, file in files.items():
         lines = file.text.splitlines()
-        text: list[Item] = [Listing("\n".join(lines[:MOST]))]
-        if len(lines) > MOST:  # too long for a printed page
-            more = len(lines) - MOST
+        text: list[Item] = [Listing("\n".join(lines[:MAX_LISTED_LINES]))]
+        if len(lines) > MAX_LISTED_LINES:  # long files are cut
+            more = len(lines) - MAX_LISTED_LINES
             text.append(Sentence(say("(the file continues: {more} more lines are not printed)", more=more)))
         texts.append(SheetPart(f"{kind}_text", say(f"{kind.capitalize()} file"), text))
     return SheetPart("inputs", say("Files and versions"), items, texts)

@@ -18,7 +18,7 @@ from rocking_cli.views import view
 LANGUAGES = ("en", "it")
 WITH_COMMA = frozenset({"it"})
 """The languages that write 1.5 with a comma."""
-DIGITS = 6  # significant: recomputed from printed numbers, a result agrees to five
+SIGNIFICANT_DIGITS = 6  # results recomputed from printed numbers agree to five digits
 ABSENT = "–"
 
 
@@ -87,7 +87,7 @@ class Language:
             return f"{', '.join(before)} {self('and')} {last}" if before else last
         return plain(value) if isinstance(value, str) and not self.is_plain else value
 
-    def number(self, value: float | None, digits: int = DIGITS) -> str:
+    def number(self, value: float | None, digits: int = SIGNIFICANT_DIGITS) -> str:
         """Return a number as it is printed."""
         if self.is_plain:
             return view.number(value, digits)

@@ -14,7 +14,7 @@ from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.core.structure_file import load_structure
 from rocking_cli.excitation.records import read_record
 from rocking_cli.plotting import style
-from rocking_cli.plotting.structure import INKED, LEAST, POINT, draw_structure, weight
+from rocking_cli.plotting.structure import LINE_WEIGHT_SHARE, MIN_FORCE_SHARE, POINTS_PER_INCH, draw_structure, weight
 from rocking_cli.questions.animate.picture import animation_page
 from rocking_cli.questions.collapse.study import collapses
 from rocking_cli.questions.collapse.view import data, view
@@ -160,7 +160,7 @@ class TestPicture:
         assert len(animation_page(Film(shown, history, record), "wall")) < 300_000
 
     def test_lines_are_lighter_the_smaller_the_blocks(self, shown):
-        side = 0.25 * POINT * INKED  # of a block, in points at an inch a metre
+        side = 0.25 * POINTS_PER_INCH * LINE_WEIGHT_SHARE  # of a block, in points at an inch a metre
         assert weight(shown, 1.0) == pytest.approx(side) and side > style.HAIR
         assert weight(shown, 0.1) == style.HAIR and weight(shown, 10.0) == style.MEDIUM
         portal = picture(load_structure(EXAMPLES / "masonry" / "portal.yaml"))
@@ -172,7 +172,7 @@ class TestPicture:
         (strokes,) = (each for each in lines if each.get_color()[0][:3] == orange)
         thrust = found[Direction.POSITIVE].thrust
         greatest = max(abs(force) for _, _, force in thrust)
-        drawn = [(at, force) for _, at, force in thrust if abs(force) > LEAST * greatest]
+        drawn = [(at, force) for _, at, force in thrust if abs(force) > MIN_FORCE_SHARE * greatest]
         widest = max(strokes.get_linewidths())
         ends = zip(strokes.get_segments(), strokes.get_linewidths(), drawn, strict=True)
         for (start, end), width, (at, force) in ends:

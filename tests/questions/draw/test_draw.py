@@ -401,7 +401,7 @@ class TestFigure:
         assert list(shown.links[direction].values()) == expected
         assert None in expected and {0, 1, 2} < set(expected)
         colours = {colour(shown, k, direction) for k in range(len(expected))}
-        assert colours == {*style.BODIES, style.RESTING}
+        assert colours == {*style.BODIES, style.RESTING_COLOUR}
 
     def test_a_body_given_by_numbers_is_a_dashed_disc(self):
         figure = draw_structure(picture(RigidBody(R=1.5, alpha_deg=14.0, inertia_ratio=4 / 3)), "numbers")

@@ -14,7 +14,7 @@ from rocking_cli.core import Direction
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.plotting import hung, style
 from rocking_cli.plotting.moving import moving, ratio_chart
-from rocking_cli.plotting.structure import NO_CRITICAL, draw_structure
+from rocking_cli.plotting.structure import NO_CRITICAL_TEXT, draw_structure
 from rocking_cli.questions.respond.picture import draw_history
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.movements import Watched
@@ -186,7 +186,7 @@ class TestDraw:
 
     def test_without_a_critical_rotation_it_is_shown_at_an_angle_that_is_seen(self, tied, tmp_path):
         figure = draw_structure(picture(Block(**TIED)), "tied")
-        assert any(NO_CRITICAL in text.get_text() for text in figure.texts)
+        assert any(NO_CRITICAL_TEXT in text.get_text() for text in figure.texts)
         assert any("9°" in axes.get_title() for axes in figure.axes)
         out = tmp_path / "tied.png"
         assert run("draw", tied, "--plot", out, "--at", 0.5).exit_code == 0 and out.stat().st_size > 10_000
@@ -201,7 +201,7 @@ class TestDraw:
             figure = draw_structure(shown, "x")
             for axes in figure.axes:
                 (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-                scale = axes.get_position().width * style.WIDTH / (right - left)
+                scale = axes.get_position().width * style.PAGE_WIDTH / (right - left)
                 way = {"n": -1, "a": 0, "p": 1}[axes.get_title()[0]]
                 turn = way * shown.usual[Direction.POSITIVE] * shown.reference[Direction(way or 1)]
                 found = hung.symbols(shown, turn, scale)

@@ -10,7 +10,7 @@ from mechanisms.block import Block
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.measures import measure
 from rocking_cli.plotting import style
-from rocking_cli.plotting.style import BINS, visible
+from rocking_cli.plotting.style import BINS_ACROSS, visible
 from rocking_cli.questions.record.picture import draw_record
 from rocking_cli.questions.respond.picture import FELT, draw_history
 from rocking_cli.studies.contact import Contacts
@@ -65,7 +65,7 @@ def test_a_title_is_as_long_as_there_is_room_for():
     wide, narrow = (f"{letter * 6} " * 20 for letter in "Wi")
     for text in (wide, narrow, "W" * 300, "a $ and _ and ^"):
         short = style.fitted(text)
-        assert style.size_of(style.plain(short), style.TITLE).real <= style.WIDTH - 0.3
+        assert style.size_of(style.plain(short), style.TITLE).real <= style.PAGE_WIDTH - 0.3
     assert len(style.fitted(wide)) < len(style.fitted(narrow))
     assert style.fitted("a $ and _") == "a $ and _"
     assert style.fitted("\udcff\x1b a") == "\udcff\x1b a"  # it is spelled out when it is written
@@ -136,18 +136,18 @@ def test_a_record_of_zeros_can_be_drawn():
 
 
 class TestThinning:
-    @pytest.mark.parametrize("size", [1, 2, BINS, 3 * BINS - 1])
+    @pytest.mark.parametrize("size", [1, 2, BINS_ACROSS, 3 * BINS_ACROSS - 1])
     def test_a_short_curve_is_drawn_whole(self, size):
         np.testing.assert_array_equal(visible(np.sin(np.arange(size))), np.arange(size))
 
-    @pytest.mark.parametrize("size", [3 * BINS, 10 * BINS + 17, 1_000_003])
+    @pytest.mark.parametrize("size", [3 * BINS_ACROSS, 10 * BINS_ACROSS + 17, 1_000_003])
     def test_a_long_one_keeps_its_ends_extremes_and_outline(self, size):
         values = np.random.default_rng(2).normal(size=size)
         shown = visible(values)
-        assert shown.size <= 3 * BINS + 2 and (np.diff(shown) > 0).all()
+        assert shown.size <= 3 * BINS_ACROSS + 2 and (np.diff(shown) > 0).all()
         assert {0, size - 1, int(values.argmax()), int(values.argmin())} <= set(shown.tolist())
-        step = size // BINS
-        for k in (0, 1, BINS // 2, BINS - 1):
+        step = size // BINS_ACROSS
+        for k in (0, 1, BINS_ACROSS // 2, BINS_ACROSS - 1):
             part = values[k * step : (k + 1) * step]
             drawn = values[shown[(shown >= k * step) & (shown < (k + 1) * step)]]
             assert (drawn.min(), drawn.max()) == (part.min(), part.max())

@@ -15,7 +15,7 @@ from statsmodels.discrete.discrete_model import Logit, Probit
 from rocking_cli.questions.fragility import curves
 from rocking_cli.questions.fragility.curves import fit_capacities, fit_surface
 from rocking_cli.questions.fragility.goodness import goodness_of_runs
-from rocking_cli.questions.fragility.observed import HELD, Observations
+from rocking_cli.questions.fragility.observed import MEASURED_COVERAGE, Observations
 from rocking_cli.studies import fit as fitting
 from rocking_cli.studies.fit import NO_ERRORS, fit_outcomes, separable
 from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape
@@ -252,7 +252,7 @@ class TestCoverageOfFewRecords:
 
     @pytest.mark.rest
     def test_is_what_the_warning_says(self):
-        for records, (low, high) in HELD.items():
+        for records, (low, high) in MEASURED_COVERAGE.items():
             rates = [rate for said in self.TABLE.values() for rate in said[RECORDS.index(records)]]
             assert (min(rates), max(rates)) == (low, high)
         assert len(self.TABLE) == len(CASES)

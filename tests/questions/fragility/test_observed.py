@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 from scipy.stats import binom, binomtest
 
-from rocking_cli.questions.fragility.observed import FEW, GROUPS, HELD, STRIPES, Observations, few_records, one_of_each
+from rocking_cli.questions.fragility.observed import (
+    MAX_STRIPES,
+    MEASURED_COVERAGE,
+    MIN_RELIABLE_RECORDS,
+    RUN_GROUPS,
+    Observations,
+    few_records,
+    one_of_each,
+)
 
 LEVELS = np.array([0.2, 0.4, 0.6])
 
@@ -73,9 +81,9 @@ class TestGroups:
         assert (once.runs, once.exceedances) == (runs.sum(), exceeding.sum())
 
     def test_more_intensities_than_can_be_looked_at_are_looked_at_in_tenths(self):
-        assert scaled(5, 1, np.linspace(0.1, 1, STRIPES)).stripes
-        many = scaled(5, 1, np.linspace(0.1, 1, STRIPES + 1))
-        assert not many.stripes and many.group.max() == GROUPS - 1
+        assert scaled(5, 1, np.linspace(0.1, 1, MAX_STRIPES)).stripes
+        many = scaled(5, 1, np.linspace(0.1, 1, MAX_STRIPES + 1))
+        assert not many.stripes and many.group.max() == RUN_GROUPS - 1
 
 
 class TestIntervals:
@@ -141,11 +149,11 @@ class TestIntervals:
 
 
 def test_few_records_are_said():
-    assert few_records(FEW) == ""
+    assert few_records(MIN_RELIABLE_RECORDS) == ""
     said = (
         "intervals and bands are a rough guide: in trials with {} records those that should hold in 95 % of cases held "
         "in {} to {} %"
     )
-    assert few_records(6) == f"only 6 distinct records: {said.format(5, *HELD[5])}"
-    assert few_records(19) == f"only 19 distinct records: {said.format(10, *HELD[10])}"
+    assert few_records(6) == f"only 6 distinct records: {said.format(5, *MEASURED_COVERAGE[5])}"
+    assert few_records(19) == f"only 19 distinct records: {said.format(10, *MEASURED_COVERAGE[10])}"
     assert few_records(1).startswith("only 1 distinct record: ")

@@ -29,7 +29,7 @@ MEASURES = ["PGA", "PGV", "PGA/(g lambda)"]
 def however_few():
     """All quantiles of the six records: a test of its own has those that are too few."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(quantiles, "FEWEST", (1, 1, 1))
+        patch.setattr(quantiles, "MIN_RECORDS", (1, 1, 1))
         yield
 
 
@@ -96,7 +96,7 @@ def test_each_group_has_the_runs_between_its_ends_and_their_quantiles(whole):
 
 @pytest.mark.parametrize(("records", "told"), [(4, "---"), (5, "-m-"), (19, "-m-"), (20, "lmh")])
 def test_a_quantile_of_too_few_records_is_not_told(monkeypatch, records, told):
-    monkeypatch.setattr(quantiles, "FEWEST", (20, 5, 20))
+    monkeypatch.setattr(quantiles, "MIN_RECORDS", (20, 5, 20))
     peaks, record = np.linspace(0.1, 0.9, 40).reshape(40, 1, 1), np.arange(40) % records
     found = quantiles._group(peaks, record, np.ones(40), 1.0, records)
     for values in (found.rocking, found.every):

@@ -124,7 +124,7 @@ def test_a_damaged_run_is_named_and_refused(sound, place):
 def test_what_is_damaged_is_counted_whatever_is_read_at_a_time(place, monkeypatch):
     with closing(sqlite3.connect(place, isolation_level=None)) as connection:
         connection.execute("UPDATE run SET checksum = checksum + 1 WHERE id % 100 = 7")
-    monkeypatch.setattr("rocking_cli.questions.fragility.store.READ", 9)
+    monkeypatch.setattr("rocking_cli.questions.fragility.store.RUNS_PER_READ", 9)
     said = command("results", place).stderr
     assert "3 runs do not match" in said and "237 of 240 runs are whole" in said
 
@@ -134,7 +134,7 @@ def test_a_page_that_cannot_be_read_is_named_and_what_can_is_counted(sound, plac
     leaves = [k for k in range(4096, len(content), 4096) if content[k] == 13 and content[k + 4] >= 40]
     content[leaves[-1] : leaves[-1] + 8] = bytes(8)
     place.write_bytes(content)
-    monkeypatch.setattr("rocking_cli.questions.fragility.store.READ", 20)
+    monkeypatch.setattr("rocking_cli.questions.fragility.store.RUNS_PER_READ", 20)
     result = command("fragility", sound.study, "--store", place)
     assert result.exit_code == 2 and "malformed" in result.stderr and place.read_bytes() == content
     assert 0 < int(re.search(r"(\d+) of 240 runs are whole", result.stderr)[1]) < 240

@@ -132,8 +132,8 @@ class TestSameResults:
         assert dump(tmp_path / "other.db") == dump(whole[2])
 
     def test_whatever_memory_there_is_for_records(self, whole, tmp_path, monkeypatch):
-        monkeypatch.setattr(work_units, "SAMPLES", 1)
-        monkeypatch.setattr("rocking_cli.questions.fragility.sources.KEPT", 1)
+        monkeypatch.setattr(work_units, "MAX_SAMPLES", 1)
+        monkeypatch.setattr("rocking_cli.questions.fragility.sources.MAX_SAMPLES_IN_MEMORY", 1)
         carry_out(whole[0], tmp_path / "other.db", jobs=2)
         assert dump(tmp_path / "other.db") == dump(whole[2])
 
@@ -163,7 +163,7 @@ class TestSameResults:
         assert dump(place) == dump(whole[2])
 
     def test_after_a_full_disk(self, whole, tmp_path, monkeypatch):
-        monkeypatch.setattr(store, "PATIENCE", 0.0)
+        monkeypatch.setattr(store, "COMMIT_INTERVAL", 0.0)
         monkeypatch.setattr("rocking_cli.questions.fragility.campaign.unit_size", lambda runs, workers: 10)
         place = tmp_path / "other.db"
         with pytest.raises(StoreError, match="full"), Store.writing(place) as kept, workers.threads(1) as hands:
@@ -298,7 +298,7 @@ def test_a_cluster_gives_the_same_though_a_worker_is_killed(long_study, tmp_path
 
 
 def test_a_scheduler_that_is_not_there_is_said_so(whole, tmp_path, monkeypatch):
-    monkeypatch.setattr(workers, "PATIENCE", 0.3)
+    monkeypatch.setattr(workers, "SCHEDULER_TIMEOUT", 0.3)
     with pytest.raises(workers.ClusterError, match="no scheduler answers"):
         carry_out(whole[0], tmp_path / "x.db", workers.cluster, address="tcp://127.0.0.1:9")
 
@@ -410,7 +410,7 @@ class TestChanges:
             carry_out(whole[0], place)
 
     def test_restart_keeps_the_old_runs_until_new_ones_can_begin(self, whole, tmp_path, place, monkeypatch):
-        monkeypatch.setattr(workers, "PATIENCE", 0.3)
+        monkeypatch.setattr(workers, "SCHEDULER_TIMEOUT", 0.3)
         asked = ("fragility", whole[0], "--store", place, "--restart", "--scheduler", "tcp://127.0.0.1:9")
         assert "no scheduler answers" in command(*asked, code=1).stderr
         assert dump(place) == dump(whole[2])
@@ -502,8 +502,8 @@ class TestOtherFiles:
 
 
 def test_a_reader_that_takes_its_time_does_not_stop_the_study(whole, tmp_path, monkeypatch):
-    monkeypatch.setattr(store, "WAITING", 0.2)
-    monkeypatch.setattr(store, "PATIENCE", 0.0)
+    monkeypatch.setattr(store, "LOCK_TIMEOUT", 0.2)
+    monkeypatch.setattr(store, "COMMIT_INTERVAL", 0.0)
     place = tmp_path / "study.db"
     with Store.writing(place) as kept, workers.threads(1) as hands:
         prepared = prepare(load_study(whole[0]), kept)
@@ -514,7 +514,7 @@ def test_a_reader_that_takes_its_time_does_not_stop_the_study(whole, tmp_path, m
 
 
 def test_units_hold_few_models(tmp_path, monkeypatch):
-    monkeypatch.setattr(work_units, "MODELS", 3)
+    monkeypatch.setattr(work_units, "MAX_MODELS", 3)
     path = write(tmp_path, STUDY.replace("samples: 4", "samples: 20"), count=2)
     with Store.writing(tmp_path / "study.db") as kept:
         prepared = prepare(load_study(path), kept)
@@ -608,7 +608,7 @@ def test_what_is_counted_does_not_depend_on_how_it_is_read(whole, monkeypatch):
     with Store.reading(whole[2]) as kept:
         plan, seen = kept.plan(), []
         once = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ALWAYS, ladders=True, counted=seen.append)
-        monkeypatch.setattr(store, "READ", 7)
+        monkeypatch.setattr(store, "RUNS_PER_READ", 7)
         piecewise = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ALWAYS, ladders=True, counted=seen.append)
     assert sum(seen) == 2 * 120
     np.testing.assert_array_equal(piecewise.runs, once.runs)
@@ -682,7 +682,7 @@ def test_columns_of_a_table_are_the_fields_of_what_it_holds_in_their_order(whole
 
 
 def test_a_file_that_changes_before_it_is_read_again_stops_the_study(tmp_path, monkeypatch):
-    monkeypatch.setattr(sources, "KEPT", 1)
+    monkeypatch.setattr(sources, "MAX_SAMPLES_IN_MEMORY", 1)
     (tmp_path / "accel.csv").write_bytes((EXAMPLES / "accel.csv").read_bytes())
     path = write(tmp_path, STUDY.replace(f"{EXAMPLES}/*accel.csv", "accel.csv"))
     with Store.writing(tmp_path / "study.db") as kept, workers.threads(1) as hands:

@@ -166,7 +166,7 @@ def test_all_else_is_as_without_it(whole, tmp_path):
     said = "\n".join(dump(tmp_path / "without.db"))
     assert "slide_time" not in said and "sliding" not in said.replace(str(EXAMPLES), "")
     versions = [version_of(place) for place in (whole[2], tmp_path / "without.db")]
-    assert versions == [store.VERSION] * 2
+    assert versions == [store.SCHEMA_VERSION] * 2
 
 
 def test_a_unit_can_be_sent_elsewhere(whole, tmp_path):
@@ -174,7 +174,7 @@ def test_a_unit_can_be_sent_elsewhere(whole, tmp_path):
         prepared = prepare(load_study(whole[0]), kept)
         plan, samples = prepared.plan, prepared.study.samples
         made = list(work_units.units(plan, samples, prepared.motions, "nonlinear", kept.finished, 4096, checked=True))
-    assert max(len(each.id) for each in made) <= work_units.CHECKED
+    assert max(len(each.id) for each in made) <= work_units.MAX_CHECKED_RUNS
     found = np.concatenate([work_units.carry_out(pickle.loads(pickle.dumps(each))).slide_time for each in made])
     assert np.array_equal(found, rows_of(whole[2]).slide_time, equal_nan=True)
 

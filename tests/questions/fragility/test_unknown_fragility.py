@@ -119,7 +119,7 @@ def test_the_store_says_it_in_words(whole):
     with closing(sqlite3.connect(whole.place)) as connection:
         (version,) = connection.execute("PRAGMA user_version").fetchone()
         words = connection.execute("SELECT outcome, known_to, fell_to FROM runs").fetchall()
-    assert version == store.VERSION
+    assert version == store.SCHEMA_VERSION
     assert [each[0] == "unknown" for each in words] == [each.unknown for each in whole.histories]
     assert all((word == "unknown") == (known_to is not None) for word, known_to, _ in words)
     assert not any(fell_to for word, _, fell_to in words if word == "unknown")
@@ -194,7 +194,7 @@ def test_the_second_curve_is_that_of_the_runs_known_to_exceed(whole):
 
 
 def test_few_runs_of_unknown_outcome_leave_one_curve(whole, monkeypatch):
-    monkeypatch.setattr(assess, "MOST_UNKNOWN", 0.9)
+    monkeypatch.setattr(assess, "MAX_UNKNOWN_SHARE", 0.9)
     shown = command("results", whole.place)
     assert "these count as exceeding." in shown.stdout and ", lower" not in shown.stdout
     overturning = json.loads(command("results", whole.place, "--json").stdout)["curves"][-1]
@@ -228,7 +228,7 @@ def test_words_and_json_state_a_band_and_how_many_runs_are_unknown(whole):
 
 
 def test_quantiles_count_unknown_as_overturned_and_say_so(whole, monkeypatch):
-    monkeypatch.setattr(quantiles, "FEWEST", (1, 1, 1))
+    monkeypatch.setattr(quantiles, "MIN_RECORDS", (1, 1, 1))
     peaks = np.where(whole.rows.outcome == 0, whole.rows.peak_ratio, np.inf)
     with Store.reading(whole.place) as held:
         (found,) = all_quantiles(held, whole.plan, whole.definition)

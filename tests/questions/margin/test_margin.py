@@ -16,7 +16,7 @@ from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.excitation.records import read_record
 from rocking_cli.questions.margin import study as margins
 from rocking_cli.questions.margin.picture import draw_margins
-from rocking_cli.questions.margin.study import FACTORS, LEVELS, Margin, margin
+from rocking_cli.questions.margin.study import FACTORS, SHARE_LEVELS, Margin, margin
 from rocking_cli.questions.margin.view import in_words
 from rocking_cli.structure import Structure, build_models
 from rocking_cli.studies import engines
@@ -140,8 +140,8 @@ def made(*shares, unknown=None) -> Margin:
 class TestLevels:
     def test_first_and_last(self):
         found = made(0.0, 0.2, 0.6, 0.3, 0.6, 1.0)
-        assert [found.first(level) for level in LEVELS] == [2.0, 3.0, 6.0]
-        assert [found.last_below(level) for level in LEVELS] == [1.0, 4.0, 5.0]
+        assert [found.first(level) for level in SHARE_LEVELS] == [2.0, 3.0, 6.0]
+        assert [found.last_below(level) for level in SHARE_LEVELS] == [1.0, 4.0, 5.0]
         assert found.islands(0.5) == [(3.0, 3.0), (5.0, 6.0)]
 
     def test_none_and_all(self):
@@ -152,12 +152,12 @@ class TestLevels:
     def test_where_unknown_outcomes_count_as_overturning(self):
         found = made(0.0, 0.2, 0.6, 0.3, 1.0, unknown=(0.1, 0.4, 0.0, 0.3, 0.0))
         np.testing.assert_allclose(found.at_most, [0.1, 0.6, 0.6, 0.6, 1.0])
-        assert [found.first(level, unknown=True) for level in LEVELS] == [1.0, 2.0, 5.0]
-        assert [found.first(level) for level in LEVELS] == [2.0, 3.0, 5.0]
-        assert [found.last_below(level, unknown=True) for level in LEVELS] == [None, 1.0, 4.0]
-        assert [found.last_below(level) for level in LEVELS] == [1.0, 4.0, 4.0]
-        assert [found.always(level) for level in LEVELS] == [2.0, 5.0, 5.0]
-        assert [found.always(level, unknown=True) for level in LEVELS] == [1.0, 2.0, 5.0]
+        assert [found.first(level, unknown=True) for level in SHARE_LEVELS] == [1.0, 2.0, 5.0]
+        assert [found.first(level) for level in SHARE_LEVELS] == [2.0, 3.0, 5.0]
+        assert [found.last_below(level, unknown=True) for level in SHARE_LEVELS] == [None, 1.0, 4.0]
+        assert [found.last_below(level) for level in SHARE_LEVELS] == [1.0, 4.0, 4.0]
+        assert [found.always(level) for level in SHARE_LEVELS] == [2.0, 5.0, 5.0]
+        assert [found.always(level, unknown=True) for level in SHARE_LEVELS] == [1.0, 2.0, 5.0]
         assert found.share[:2] == (0.0, 0.1)
 
 

@@ -14,7 +14,7 @@ import pytest
 import yaml
 
 from rocking_cli.questions.new.command import SITE, STARTERS, STUDY
-from rocking_cli.questions.new.new_plugin import CODE, LONGEST, MECHANISM
+from rocking_cli.questions.new.new_plugin import CODE, MAX_NAME_LENGTH, MECHANISM
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 
@@ -57,7 +57,7 @@ class TestPackage:
         assert declared["entry-points"][group] == {NAME: "rocking_leaning_pier:LeaningPier"}
 
     @pytest.mark.rest
-    @pytest.mark.parametrize("name", ["q", "a" * LONGEST, "_".join("abcdefghijklmnopqrst")])
+    @pytest.mark.parametrize("name", ["q", "a" * MAX_NAME_LENGTH, "_".join("abcdefghijklmnopqrst")])
     def test_its_code_is_clean_whatever_its_name(self, kind, name, tmp_path):
         pytest.importorskip("ruff", reason="no ruff here")
         for file, content in kind.package(name).items():
@@ -78,7 +78,7 @@ class TestNames:
             ("../x", "such as x"),
             ("🙂", "such as capped_block"),
             ("a\x1b[31m\nb", r"'a\x1b[31m\nb' cannot be"),
-            ("a" * (LONGEST + 1), f"at most {LONGEST} of a-z"),
+            ("a" * (MAX_NAME_LENGTH + 1), f"at most {MAX_NAME_LENGTH} of a-z"),
             ("yes", "not read as text"),
             ("block", "the mechanism block already exists, in rocking-cli"),
             ("cli", "rocking_cli already means something else"),

@@ -18,7 +18,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import COARSE
 from rocking_cli.questions.overturning.picture import draw_comparison, draw_map
-from rocking_cli.questions.overturning.study import SCAN, Region, boundaries, compare, overturning_map
+from rocking_cli.questions.overturning.study import SCAN_AMPLITUDES, Region, boundaries, compare, overturning_map
 from rocking_cli.structure import Structure, build_models
 from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape, pulsed_model, weakest
 from tests.cli.test_cli import run, run_json
@@ -250,8 +250,8 @@ class TestCompare:
         for structure, least in zip(curves.structures, curves.least, strict=True):
             for period, ag in zip(curves.periods, least, strict=True):
                 top = curves.top if np.isnan(ag) else ag * (1 - 1e-6)
-                scan = 1 + (top * STANDARD_GRAVITY / structure.unit - 1) * np.geomspace(0.01, 1, SCAN)
-                found = outcomes(structure, SINE, np.full(SCAN, period), scan * structure.unit)
+                scan = 1 + (top * STANDARD_GRAVITY / structure.unit - 1) * np.geomspace(0.01, 1, SCAN_AMPLITUDES)
+                found = outcomes(structure, SINE, np.full(SCAN_AMPLITUDES, period), scan * structure.unit)
                 assert not found.fell.any()
                 if np.isfinite(ag):
                     above = np.array([ag * (1 + 1e-6) * STANDARD_GRAVITY])

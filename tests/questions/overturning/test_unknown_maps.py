@@ -26,7 +26,7 @@ from rocking_cli.questions.equivalent.view import judge
 from rocking_cli.questions.overturning.picture import draw_comparison, draw_map
 from rocking_cli.questions.overturning.study import FALLS, Comparison, Region, compare, overturning_map
 from rocking_cli.questions.overturning.view import NO_JOINTS, comparison_view, map_table, map_view
-from rocking_cli.questions.pulse.study_on_structure import COARSEST, _alike, sampled_history
+from rocking_cli.questions.pulse.study_on_structure import MIN_SAMPLES_PER_PERIOD, _alike, sampled_history
 from rocking_cli.questions.respond.picture import draw_history
 from rocking_cli.questions.spectrum import view as spectrum_views
 from rocking_cli.questions.spectrum.picture import draw_spectra
@@ -316,7 +316,7 @@ class TestPulses:
 
     def test_sampling_is_not_refined_beyond_what_is_known(self):
         found = sampled_history(Structure(PORTAL), "nonlinear", parse_pulse("sine:0.9g:0.6s"))
-        assert found.history.unknown and found.converged and found.per_period == 2 * COARSEST
+        assert found.history.unknown and found.converged and found.per_period == 2 * MIN_SAMPLES_PER_PERIOD
         unknown = found.history
         assert _alike(unknown, replace(unknown, peak_ratio=0.5)) and not _alike(
             unknown, replace(unknown, unknown=False)

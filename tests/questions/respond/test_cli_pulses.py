@@ -131,9 +131,9 @@ class TestInARecord:
         assert json.loads(result.stdout)["pulses"]["velocity"]["sine"]["sign"] == -1
 
     def test_a_long_search_says_how_far_it_is(self, made, monkeypatch):
-        monkeypatch.setattr("rocking_cli.questions.record.verb.PATIENCE", float("inf"))
+        monkeypatch.setattr("rocking_cli.questions.record.verb.PROGRESS_DELAY", float("inf"))
         assert "fitted" not in run("record", made, "--fit-pulse").stderr
-        monkeypatch.setattr("rocking_cli.questions.record.verb.PATIENCE", 0.0)
+        monkeypatch.setattr("rocking_cli.questions.record.verb.PROGRESS_DELAY", 0.0)
         assert "made.csv: 3 of 6 pulses fitted" in run("record", made, "--fit-pulse").stderr
 
     def test_the_picture_shows_the_best_of_each_criterion(self, made, tmp_path):
@@ -228,4 +228,4 @@ class TestWithPulse:
         assert words in run("respond", *options, code=2).stderr
 
     def test_the_shapes_of_the_help_are_those_of_the_library(self):
-        assert tuple(FITTED) == respond_command.FITTED
+        assert tuple(FITTED) == respond_command.FITTED_PULSES

@@ -9,7 +9,7 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion, Origin
 from rocking_cli.processing.oscillator import response_spectrum
 from rocking_cli.questions.select import subsets
-from rocking_cli.questions.select.picture import MEAN, draw_record_set
+from rocking_cli.questions.select.picture import MEAN_COLOUR, draw_record_set
 from rocking_cli.questions.select.study import (
     Candidates,
     SetRequirements,
@@ -132,7 +132,7 @@ def test_a_set_keeps_to_what_is_asked(policy):
 def test_searches_come_close_to_the_best_of_all(seed, monkeypatch):
     found, wanted = made(14, seed, 0.4), SetRequirements(5, BAND, seed=seed)
     best = choose(found, wanted)
-    monkeypatch.setattr(subsets, "MOST_TRIED", 10)
+    monkeypatch.setattr(subsets, "MAX_SETS", 10)
     searched = choose(found, wanted)
     assert (best.exact, searched.exact) == (True, False)
     again = choose(found, wanted)
@@ -151,7 +151,7 @@ def test_large_sets_are_not_all_tried(monkeypatch):
     assert subsets.count_sets(groups, 600) == 180901
     assert not subsets.all_tried(groups, 600)
     assert subsets.all_tried(np.arange(20), 7)
-    monkeypatch.setattr(subsets, "BLOCK", 7)  # in small blocks the same set is found
+    monkeypatch.setattr(subsets, "MEMBERS_PER_BLOCK", 7)  # in small blocks the same set is found
     found, wanted = made(9, 2, 0.3), SetRequirements(3, BAND)
     small = choose(found, wanted).chosen.tolist()
     monkeypatch.undo()
@@ -284,7 +284,7 @@ def test_the_picture_shows_the_mean_and_marks_where_it_does_not_fit():
     chosen = choose(made(8, 3, 0.9), SetRequirements(3, BAND, one_per="none"))
     (axes,) = draw_record_set(chosen, "a title").axes
     lines = {line.get_color(): line for line in axes.lines if line.get_linewidth() > 2}
-    np.testing.assert_allclose(lines[MEAN].get_ydata(), chosen.mean)
+    np.testing.assert_allclose(lines[MEAN_COLOUR].get_ydata(), chosen.mean)
     marked = next(line for line in axes.lines if line.get_marker() == "x")
     outside = (chosen.ratio < 0.9) | (chosen.ratio > 1.3)
     np.testing.assert_allclose(marked.get_xdata(), chosen.candidates.periods[outside])

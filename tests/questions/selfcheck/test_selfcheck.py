@@ -164,10 +164,10 @@ class TestEachCheck:
         own = {name for name in readers if readers.package_of(name).startswith("rocking-cli ")}
         assert {*checks.FILES, *checks.OBSPY_FILES} == own
         assert len(checks.FILES) == 11 and sum(checks.SAMPLES) == 0
-        assert set(checks.SPELLED) == set(record_units.UNITS)
+        assert set(checks.UNIT_SPELLINGS) == set(record_units.UNITS)
 
     @pytest.mark.every(2)
-    @pytest.mark.parametrize("unit", checks.SPELLED)
+    @pytest.mark.parametrize("unit", checks.UNIT_SPELLINGS)
     def test_records_fail_if_a_unit_is_wrong(self, monkeypatch, unit):
         monkeypatch.setitem(record_units.UNITS, unit, record_units.UNITS[unit] * 1.02)
         assert checked("records").passed is False

@@ -23,7 +23,7 @@ from rocking_cli.core import Direction
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.documents import sheet_docx, sheet_page
-from rocking_cli.documents.sheet_page import MARKS
+from rocking_cli.documents.sheet_page import ORIGIN_MARKS
 from rocking_cli.io.yaml_file import parse
 from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.verification.check import site_in
@@ -145,7 +145,7 @@ def items_of(found, given, language="en"):
             if isinstance(item, Table):
                 yield [item.title, item.columns, *item.rows]
             for row in item.rows if isinstance(item, Steps) else ():
-                mark = f"{row.clause}{MARKS[row.standing]}"
+                mark = f"{row.clause}{ORIGIN_MARKS[row.standing]}"
                 yield Step(row.symbol, row.formula, row.numbers, say.number(row.value), row.unit, mark)
         for each in part.parts:
             yield from of(each)
