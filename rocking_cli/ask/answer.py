@@ -82,8 +82,8 @@ class Answer(Generic[R]):
     def to_dict(self) -> dict[str, Any]:
         """Return the result as plain data, equal to the JSON of the command line."""
         data = self.view.data() if callable(self.view.data) else self.view.data
-        found: dict[str, Any] = json.loads(json_text(data))
-        return found
+        plain: dict[str, Any] = json.loads(json_text(data))
+        return plain
 
     def to_frame(self) -> pandas.DataFrame:
         """Return the result as a frame of pandas, which must be installed.

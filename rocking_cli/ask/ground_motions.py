@@ -271,15 +271,15 @@ def motion_of(given: Motion) -> GroundMotion:
 
 def files_of(place: str) -> list[Listed]:
     """Return the records of a file, a pattern or a list of records. Raises `InputError` if there are none."""
-    found = []
+    listed = []
     for path in select(place):
         if is_list(path):
             from rocking_cli.processing.record_list import read_list
 
-            found += read_list(path)
+            listed += read_list(path)
         else:
-            found.append(Listed(path))
-    return found
+            listed.append(Listed(path))
+    return listed
 
 
 def kind_of(given: object) -> str:
@@ -338,14 +338,14 @@ def warn_about(motions: Sequence[GroundMotion], watch: Watcher, p: float = 0.0, 
     doubtful = []
     for motion in motions:
         ground = motion.of_ground
-        if found := doubts(ground, measure(ground)) + coarse_for(motion, p, whom):
-            doubtful.append((motion, found))
+        if warnings := doubts(ground, measure(ground)) + coarse_for(motion, p, whom):
+            doubtful.append((motion, warnings))
     if len(doubtful) <= MAX_DETAILED_MOTIONS:
-        for motion, found in doubtful:
-            for doubt in found:
+        for motion, warnings in doubtful:
+            for doubt in warnings:
                 watch.warn(f"{motion.name}: {doubt.text}")
         return
-    kinds = Counter(doubt.kind for _, found in doubtful for doubt in found)
+    kinds = Counter(doubt.kind for _, warnings in doubtful for doubt in warnings)
     said = ", ".join(f"{kind} ({count})" for kind, count in kinds.most_common())
     names = shorten(", ".join(motion.name for motion, _ in doubtful), 200, placeholder=" ...")
     watch.warn(f"{len(doubtful)} records are doubtful: {said}; run `rocking record` to see why: {names}")

@@ -123,7 +123,7 @@ def ask_each(
     RockingError
         If none can be used: the error of the last one.
     """
-    found: dict[str, A] = {}
+    by_name: dict[str, A] = {}
     left_out: list[str] = []
     with watch.progress(len(motions), "motions") as advance:
         for k, motion in enumerate(motions):
@@ -139,9 +139,9 @@ def ask_each(
                 watch.leave_out(named)
             else:
                 if not watch.take(answer):
-                    found[name] = answer
+                    by_name[name] = answer
             advance(1)
-    return found, left_out
+    return by_name, left_out
 
 
 def places_of(

@@ -82,7 +82,7 @@ def in_force() -> list[Default]:
         With every key that cannot have a default, table that is not a command, and value that is neither a text nor a
         number nor a list of them.
     """
-    found = [
+    existing = [
         Default(option, None, value, variable, variable)
         for option in SHARED_OPTIONS
         if (value := os.environ.get(variable := _variable(option)))
@@ -113,10 +113,10 @@ def in_force() -> list[Default]:
                     problems.append(Problem(what, shown, field=place))
                 else:
                     typed = ",".join(map(str, values))
-                    found.append(Default(option, command, typed, shown, f"{shown}: {place}"))
+                    existing.append(Default(option, command, typed, shown, f"{shown}: {place}"))
     if problems:
         raise InputError(*problems)
-    return found
+    return existing
 
 
 def unknown_variables() -> list[str]:
@@ -129,15 +129,15 @@ def set_for(context: click.Context) -> None:
     """Set the defaults of a command for the options that are not typed. Raises as `in_force`."""
     name, params = context.info_name, context.command.params
     options = {max(each.opts, key=len)[2:]: each for each in params if isinstance(each, click.Option)}
-    found: dict[str, Default] = {}
+    defaults: dict[str, Default] = {}
     for each in in_force():
         if each.command == name and each.option not in options:
             hint = did_you_mean(each.option, [*{*SHARED_OPTIONS, *AMBIGUOUS_OPTIONS} & {*options}])
             raise InputError(Problem(f"`rocking {name}` has no option --{each.option}", each.key, hint=hint))
         if each.command in (None, name) and each.option in options:
-            found.setdefault(options[each.option].name or "", each)
-    context.meta[__name__] = found
-    context.default_map = {name: each.value for name, each in found.items()}
+            defaults.setdefault(options[each.option].name or "", each)
+    context.meta[__name__] = defaults
+    context.default_map = {name: each.value for name, each in defaults.items()}
 
 
 def of_run(context: click.Context) -> dict[str, Default]:

@@ -84,38 +84,38 @@ TAIL = QuantityKind("time", "s", "10s", most=3600, zero=True)
 def number(text: str) -> float:
     """Return a finite number."""
     try:
-        found = float(text)
+        value = float(text)
     except ValueError:
         raise ValueError(f"{text!r} is not a number") from None
-    if not isfinite(found):
+    if not isfinite(value):
         raise ValueError(f"{text} is not a finite number")
-    return found
+    return value
 
 
 def positive(text: str) -> float:
     """Return a finite number above zero."""
-    if (found := number(text)) <= 0:
+    if (value := number(text)) <= 0:
         raise ValueError(f"{text} is not a positive number")
-    return found
+    return value
 
 
 def share(text: str) -> float:
     """Return a fraction: a number, or a percentage with its sign."""
     plain = text.strip()
     try:
-        found = float(plain.removesuffix("%")) / (100 if plain.endswith("%") else 1)
+        value = float(plain.removesuffix("%")) / (100 if plain.endswith("%") else 1)
     except ValueError:
         raise ValueError(f"{text!r} is not a fraction: give a number such as 0.02 or 2%") from None
-    if not isfinite(found):
+    if not isfinite(value):
         raise ValueError(f"{text} is not a finite number")
-    return found
+    return value
 
 
 def fraction(text: str) -> float:
     """Return a number from 0 to below 1."""
-    if not 0 <= (found := share(text)) < 1:
-        raise ValueError(f"{found:g} is out of range: give a number from 0 up to, but not including, 1")
-    return found
+    if not 0 <= (value := share(text)) < 1:
+        raise ValueError(f"{value:g} is out of range: give a number from 0 up to, but not including, 1")
+    return value
 
 
 def angle(text: str, unit: str) -> float:
@@ -139,18 +139,18 @@ def quantity(kind: QuantityKind, text: str, example: str = "") -> float:
     """Return the number of a quantity above zero, in the unit of its kind; the error has a valid example."""
     example = example or kind.example
     try:
-        found = _number(kind, text)
+        value = _number(kind, text)
     except UnitError as error:
         hint = error.hint or ""
         remedy = f"{hint} Give a value" if hint.endswith("?") else f"{hint}," if hint else "give a value"
         raise ValueError(f"{error.message}: {remedy} such as {example}") from None
-    if not (0 < found < inf or (kind.zero and found == 0)):
-        turn = "; --polarity -1 reverses the pulse" if kind is PULSE_AMPLITUDE and found < 0 else ""
+    if not (0 < value < inf or (kind.zero and value == 0)):
+        turn = "; --polarity -1 reverses the pulse" if kind is PULSE_AMPLITUDE and value < 0 else ""
         raise ValueError(f"{text!r} is not positive: give a value such as {example}{turn}")
-    if not kind.least <= found <= kind.most:
+    if not kind.least <= value <= kind.most:
         bounds = f"{kind.least:g} to {kind.most:g} {kind.unit}".strip()
         raise ValueError(f"{text!r} is outside the supported range: {bounds}")
-    return found
+    return value
 
 
 def _number(kind: QuantityKind, text: str) -> float:

@@ -270,9 +270,9 @@ def table(
     if title:
         click.echo(click.style(wrapped(printable(title), room), bold=True), file=_results)
     encoding = getattr(_results or sys.stdout, "encoding", None) or "utf-8"
-    found = grid(columns, rows, numbers, room, "─" if encoding.lower().startswith("utf") else "-")
-    if found is not None:
-        heads, body = found
+    lines = grid(columns, rows, numbers, room, "─" if encoding.lower().startswith("utf") else "-")
+    if lines is not None:
+        heads, body = lines
         click.echo("\n".join([*(click.style(line, bold=True) for line in heads), *body]), file=_results)
     else:
         assert room is not None  # otherwise everything fits

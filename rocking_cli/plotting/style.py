@@ -152,8 +152,8 @@ def over(ends_at_limit: Sequence[bool], *, math: bool = False) -> str:
 
     In directions without a critical rotation, rotations are divided by the kinematic limit, and the label says so.
     """
-    found = "φ/limit" if all(ends_at_limit) else "φ/φcr or limit" if any(ends_at_limit) else "φ/φcr"
-    return found.replace("φcr", r"$\phi_{cr}$").replace("φ", r"$\phi$") if math else found
+    label = "φ/limit" if all(ends_at_limit) else "φ/φcr or limit" if any(ends_at_limit) else "φ/φcr"
+    return label.replace("φcr", r"$\phi_{cr}$").replace("φ", r"$\phi$") if math else label
 
 
 def plain(text: str) -> str:

@@ -29,26 +29,26 @@ def of_restitution(mechanism: Mechanism) -> list[str]:
     """
     if not mechanism.rocks_both_ways:
         return []
-    found: list[str] = []
+    cautions: list[str] = []
     etas = {direction: mechanism.eta(direction) for direction in mechanism.directions}
     one = isclose(*etas.values(), rel_tol=AGREEMENT)
     for direction, eta in list(etas.items())[: 1 if one else 2]:
         at = "at impacts" if one else f"at impacts that end motion in the {direction.label} direction"
         if eta <= 0:
             why = f"{why_none(eta)}. Time histories require a measured `restitution`"
-            found.append(f"The kinematics give eta = {eta:.4g} {at}: {why}.")
+            cautions.append(f"The kinematics give eta = {eta:.4g} {at}: {why}.")
         elif eta > 1 + AGREEMENT:
             kept = 100 * (eta / mechanism.greatest_restitution(direction)) ** 2
-            found.append(
+            cautions.append(
                 f"The eta of {eta:.4g} {at} compares the rates of two different mechanisms: such an impact keeps "
                 f"{kept:.3g} % of the kinetic energy."
             )
-    return found
+    return cautions
 
 
 def before_rocking(mechanism: Mechanism) -> list[str]:
     """Return which joint slides or opens at rest before the structure rocks, in which direction, and what to do."""
-    found: dict[tuple[str, str], list[str]] = {}
+    joints: dict[tuple[str, str], list[str]] = {}
     for direction, failure, lambda_ in early_failures(mechanism):
         push = failure.push / mechanism.gravity
         does = f"the joint between {failure.joint} {'slides' if failure.slides else 'opens'} from"
@@ -60,8 +60,8 @@ def before_rocking(mechanism: Mechanism) -> list[str]:
             what = f"at rest {does} {push:.{digits}g} g, below lambda = {lambda_:.{digits}g}. "
             first = "Another mechanism starts first" if failure.opens else "The structure slides before it rocks"
             what += OPENING_CAUTION if failure.opens else SLIDING_CAUTION
-        found.setdefault((first, what), []).append(direction.label)
+        joints.setdefault((first, what), []).append(direction.label)
     return [
         f"{first} in {'both directions' if len(labels) > 1 else f'the {labels[0]} direction'}: {what}."
-        for (first, what), labels in found.items()
+        for (first, what), labels in joints.items()
     ]

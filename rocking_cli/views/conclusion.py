@@ -206,9 +206,9 @@ def headline(end: Conclusion) -> str:
 def conclusion_data(end: Conclusion) -> dict[str, Any]:
     """Return a conclusion as plain data: absent texts are null, and what does not apply is left out."""
     lists = ("limit_states", "motions", "polarities", "directions")
-    found = {key: list(each) if key in lists else None if each == "" else each for key, each in asdict(end).items()}
-    found["left_out"] = [each._asdict() for each in end.left_out]
-    found["share"] = end.share._asdict() if end.share is not None else None
-    del found["remedy"]
-    found["next"] = list(end.next)
-    return found
+    data = {key: list(each) if key in lists else None if each == "" else each for key, each in asdict(end).items()}
+    data["left_out"] = [each._asdict() for each in end.left_out]
+    data["share"] = end.share._asdict() if end.share is not None else None
+    del data["remedy"]
+    data["next"] = list(end.next)
+    return data

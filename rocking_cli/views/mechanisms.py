@@ -132,7 +132,7 @@ def part(name: str) -> View:
 
 def fields(cls: type[BaseModel], common: type[BaseModel] = Mechanism) -> list[dict[str, Any]]:
     """Return the fields of a file with unit, symbol, bounds, default and description; common fields last."""
-    found = []
+    rows = []
     for key, info in cls.model_fields.items():
         extra = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
         bounds = [
@@ -141,7 +141,7 @@ def fields(cls: type[BaseModel], common: type[BaseModel] = Mechanism) -> list[di
             for rule in info.metadata
             if hasattr(rule, attribute)
         ]
-        found.append(
+        rows.append(
             {
                 "field": info.alias or key,
                 "unit": extra.get("unit", ""),
@@ -155,7 +155,7 @@ def fields(cls: type[BaseModel], common: type[BaseModel] = Mechanism) -> list[di
                 "common": _is_common(cls, key, common),
             }
         )
-    return sorted(found, key=lambda row: row["common"])
+    return sorted(rows, key=lambda row: row["common"])
 
 
 def _is_common(cls: type[BaseModel], key: str, common: type[BaseModel]) -> bool:

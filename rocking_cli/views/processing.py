@@ -21,7 +21,7 @@ def in_words(motion: GroundMotion) -> str:
 
 def data(motion: GroundMotion) -> dict[str, Any]:
     """Return the processing steps of a motion in order, as options spell them; for a floor also its peak [g]."""
-    found: dict[str, Any] = {"processing": list(motion.processing)}
+    entry: dict[str, Any] = {"processing": list(motion.processing)}
     if motion.ground is not None:
-        found["floor_pga"] = motion.pga_g
-    return found
+        entry["floor_pga"] = motion.pga_g
+    return entry

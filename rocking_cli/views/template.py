@@ -129,7 +129,7 @@ def _yaml(value: Any) -> str:
 def _must_be_quoted(text: str) -> bool:
     """Return whether YAML would read a text as something else without quotes, alone or in a list."""
     try:
-        found: object = yaml.safe_load(f"[{text}]  # a comment")
+        parsed: object = yaml.safe_load(f"[{text}]  # a comment")
     except yaml.YAMLError:
         return True
-    return found != [text]
+    return parsed != [text]

@@ -221,8 +221,12 @@ def blocks_in_words(
             for name, run in histories.items()
             if grade(run.uplift_error) is Grade.DISREGARD
         ]
-    said = [_agrees(called[name], found, histories[name], histories["nonlinear"]) for name, found in agreed.items()]
-    if any(found.peak_error is not None and found.grade is not Grade.DISREGARD for found in agreed.values()):
+    said = [
+        _agrees(called[name], agreement, histories[name], histories["nonlinear"]) for name, agreement in agreed.items()
+    ]
+    if any(
+        agreement.peak_error is not None and agreement.grade is not Grade.DISREGARD for agreement in agreed.values()
+    ):
         said.append(
             "This holds for this ground motion only; under another one the equivalent block may be more or less "
             "accurate."

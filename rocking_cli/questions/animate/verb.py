@@ -177,8 +177,8 @@ def animate(
         films[:] = [answer.film]
         return answer
 
-    found, _ = ask_each(chosen, row, watch)
-    return answers("animations", "motion", found, views.several(ready, films[0], rows).parts)
+    responses, _ = ask_each(chosen, row, watch)
+    return answers("animations", "motion", responses, views.several(ready, films[0], rows).parts)
 
 
 def _check(file: Path, signs: tuple[int, ...], speed: float | None, fps: float) -> None:

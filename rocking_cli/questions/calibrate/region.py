@@ -117,9 +117,11 @@ def joint_region(
             signs = (1, -1) if test.polarity == "both" else (int(test.polarity),)
             for place, model in enumerate(models):
                 drawn = _scaled(around.drawn(model), slenderness, model.weight_share)
-                found = [follow(model, motion, drawn, polarity=sign, threads=1) for sign in signs]
+                histories = [follow(model, motion, drawn, polarity=sign, threads=1) for sign in signs]
                 for shares, of in ((overturned, "overturned"), (unknown, "unknown")):
-                    runs = np.stack([getattr(each, of) for each in found]).reshape(-1, slenderness.size, around.count)
+                    runs = np.stack([getattr(each, of) for each in histories]).reshape(
+                        -1, slenderness.size, around.count
+                    )
                     shares[k, :, place] = runs.mean(axis=(0, 2))
 
     in_parts(work, len(kept), 1, threads, progress)

@@ -211,11 +211,11 @@ class _Problem:
         low, high = np.full(x.size, -np.inf), np.full(x.size, np.inf)
         etas, geometry = slice(ETA, x.size - len(self.free)), slice(x.size - len(self.free), None)
         low[RELEASE], low[etas], high[etas], low[geometry], high[geometry] = 1e-6, 0.02, 1.2, -1.0, 1.0
-        found = least_squares(
+        solution = least_squares(
             lambda each: self.model(each, times) - angles, np.clip(x, low, high), bounds=(low, high),
             x_scale="jac", diff_step=1e-6, xtol=1e-8, ftol=1e-6, gtol=1e-10, max_nfev=20,
         )  # fmt: skip
-        return found.x, found.jac, float(np.sqrt(2 * found.cost / angles.size))
+        return solution.x, solution.jac, float(np.sqrt(2 * solution.cost / angles.size))
 
 
 def fit_trace(structure: Structure, trace: Trace, *, free_geometry: bool = False) -> TraceFit:
@@ -390,15 +390,15 @@ def _problem(
 def _crossings(times: Reals, angles: Reals, hold: float) -> list[tuple[float, bool]]:
     """Return when the angle changes its sign by more than `hold` on both sides, and whether that is in a gap."""
     usual = float(np.median(np.diff(times)))
-    found: list[tuple[float, bool]] = []
+    crossings: list[tuple[float, bool]] = []
     far = np.flatnonzero(np.abs(angles) > hold)
     for k in np.flatnonzero(np.diff(np.sign(angles[far]))):
         one, other = far[k], far[k + 1]
         part = slice(one, other + 1)
         share = angles[one] / (angles[one] - angles[other])
         when = float(times[one] + share * (times[other] - times[one]))
-        found.append((when, bool(np.diff(times[part]).max() > MIN_GAP_RATIO * usual)))
-    return found
+        crossings.append((when, bool(np.diff(times[part]).max() > MIN_GAP_RATIO * usual)))
+    return crossings
 
 
 def _starts(problem: _Problem) -> list[Reals]:

@@ -82,16 +82,16 @@ def parse_trace(sheet: Spreadsheet) -> Trace:
 
 def _column(sheet: Spreadsheet, names: Sequence[str], kind: str) -> tuple[int, str]:
     """Return the place and the unit of a column, by its name or else by its unit. Raises `InputError`."""
-    found = []
+    columns = []
     for k, heading in enumerate(sheet.headings):
         name, unit = unit_in(heading, units_of(kind))
         if name.strip().lower() in names or unit in units_of(kind):
-            found.append((k, unit))
-    if len(found) != 1:
-        what = f"one column must be the {names[0]}, {len(found) or 'none'} of {len(sheet.headings)} is"
+            columns.append((k, unit))
+    if len(columns) != 1:
+        what = f"one column must be the {names[0]}, {len(columns) or 'none'} of {len(sheet.headings)} is"
         hint = f"head the columns time [s] and angle [deg]; units of the {names[0]}: {', '.join(units_of(kind))}"
         raise InputError(Problem(what, sheet.file, sheet.line, hint=hint))
-    place, unit = found[0]
+    place, unit = columns[0]
     if not unit and kind == "s":
         unit = "s"
     if unit not in units_of(kind):

@@ -122,13 +122,13 @@ def calibrate(
     from rocking_cli.questions.calibrate.view import region_columns, region_view
 
     with watch.progress(len(kept), "tests") as advance:
-        found = joint_region(
+        region = joint_region(
             kept, ready, motions_of(table, options, usual), around, *grid,
             threads=threads, progress=advance,
         )  # fmt: skip
-    shown = region_view(found, ready.name, table.file, len(table.tests))
-    figure = drawn("questions.calibrate.picture.draw_region", found, ready.name)
-    return Answer("calibrate", found, shown, partial(region_columns, found), figure)
+    shown = region_view(region, ready.name, table.file, len(table.tests))
+    figure = drawn("questions.calibrate.picture.draw_region", region, ready.name)
+    return Answer("calibrate", region, shown, partial(region_columns, region), figure)
 
 
 def _of_trace(
@@ -140,14 +140,14 @@ def _of_trace(
     from rocking_cli.questions.calibrate.view import trace_columns, trace_view
 
     trace = free if isinstance(free, Trace) else read_trace(Path(free))
-    found = fit_trace(ready, trace, free_geometry=free_geometry)
-    ready.with_eta(found.eta.value)  # raises an error if the structure cannot have this restitution
+    fit = fit_trace(ready, trace, free_geometry=free_geometry)
+    ready.with_eta(fit.eta.value)  # raises an error if the structure cannot have this restitution
     if out is not None:
         if source is None:
             raise InputError(Problem("needs the file of the structure, of which it is a copy", field="`out`"))
-        _write(ready, source, Path(out), found)
-    figure = drawn("questions.calibrate.picture.draw_trace", found, ready.name)
-    return Answer("calibrate", found, trace_view(found, ready), partial(trace_columns, found), figure)
+        _write(ready, source, Path(out), fit)
+    figure = drawn("questions.calibrate.picture.draw_trace", fit, ready.name)
+    return Answer("calibrate", fit, trace_view(fit, ready), partial(trace_columns, fit), figure)
 
 
 def _write(structure: Structure, source: Path, out: Path, found: TraceFit) -> None:

@@ -50,7 +50,7 @@ def collapse(structure: StructureLike, *, watch: Watcher = SILENT) -> MappingAns
     from rocking_cli.questions.collapse.view import table, view
 
     mechanism = structure_of(structure, watch).mechanism
-    found = collapses(mechanism)
+    mechanisms = collapses(mechanism)
 
-    columns, figure = partial(table, found), partial(structure_figure, mechanism, found)
-    return MappingAnswer("weakest mechanism", found, view(mechanism, found), columns, figure)
+    columns, figure = partial(table, mechanisms), partial(structure_figure, mechanism, mechanisms)
+    return MappingAnswer("weakest mechanism", mechanisms, view(mechanism, mechanisms), columns, figure)

@@ -104,8 +104,8 @@ def _lambda(structure: Structure, excitation: Excitation | None) -> float:
 
 
 def _phi_cr(structure: Structure, excitation: Excitation | None) -> float:
-    found = [side.phi_cr for side in structure.statics]
-    return min((each for each in found if each is not None), default=nan) if None not in found else nan
+    critical = [side.phi_cr for side in structure.statics]
+    return min((each for each in critical if each is not None), default=nan) if None not in critical else nan
 
 
 def _p(structure: Structure, excitation: Excitation | None) -> float:
@@ -180,19 +180,19 @@ def _blamed(code: str, name: str) -> AbstractContextManager[None]:
 
 def known_metrics() -> list[str]:
     """Return the names of all metrics, with those of the installed codes last."""
-    found = dict.fromkeys(METRICS)
+    names = dict.fromkeys(METRICS)
     for key in codes():
         try:
-            found |= dict.fromkeys(codes()[key].numbers)
+            names |= dict.fromkeys(codes()[key].numbers)
         except MechanismError as error:
             leave_out(error)
-    return list(found)
+    return list(names)
 
 
 def metric(name: str) -> Metric:
     """Return the metric of a name. Raises `InputError` if there is none."""
-    found = METRICS.get(name) or _of_codes(name)
-    if found is None:
+    metric = METRICS.get(name) or _of_codes(name)
+    if metric is None:
         hint = did_you_mean(name, known_metrics())
         raise InputError(Problem(f"{cut(repr(name))} is not a metric", hint=hint))
-    return found
+    return metric

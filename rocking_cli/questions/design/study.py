@@ -51,12 +51,12 @@ class Aim:
     @classmethod
     def parse(cls, text: str) -> Aim:
         """Read a requirement such as `lambda >= 0.2`. Raises `InputError` if the text is not one."""
-        found = _AIM.fullmatch(text)
-        if found is None:
+        match = _AIM.fullmatch(text)
+        if match is None:
             hint = "write METRIC OP NUMBER, such as `lambda >= 0.2`, with <, <=, > or >="
             raise InputError(Problem(f"{cut(repr(text))} is not a valid requirement", hint=hint))
-        asked, number = metric(found[1]), found[3]
-        return cls(asked, found[2], _number(number, asked.unit))
+        asked, number = metric(match[1]), match[3]
+        return cls(asked, match[2], _number(number, asked.unit))
 
     def __str__(self) -> str:
         return f"{self.metric.name} {self.op} {self.level:.6g}{f' {self.metric.unit}' if self.metric.unit else ''}"
@@ -326,13 +326,13 @@ def _taken_otherwise(
     """Return, each once, what the code does not count of the structure, at both ends of the range."""
     if not aim.metric.sited or excitation is None or excitation.site is None:
         return []
-    found: dict[LeftOut, None] = {}
+    reasons: dict[LeftOut, None] = {}
     for value in span:
         try:
-            found |= dict.fromkeys(taken_otherwise(structure.varied(field, value), excitation.site))
+            reasons |= dict.fromkeys(taken_otherwise(structure.varied(field, value), excitation.site))
         except (InputError, MechanismError):  # the reason is listed in `not_built`
             continue
-    return list(found)
+    return list(reasons)
 
 
 def _at(
@@ -411,10 +411,10 @@ def _last_that_holds(at: Callable[[float], float], aim: Aim, inside: float, outs
 
 def _not_built(values: Reals, reasons: dict[int, str]) -> list[NotBuilt]:
     """Return the ranges of consecutive values that have no metric, each with the reason at its first value."""
-    found: list[NotBuilt] = []
+    groups: list[NotBuilt] = []
     for k in sorted(reasons):
-        if k - 1 in reasons and found:
-            found[-1] = NotBuilt(found[-1].low, float(values[k]), found[-1].reason)
+        if k - 1 in reasons and groups:
+            groups[-1] = NotBuilt(groups[-1].low, float(values[k]), groups[-1].reason)
         else:
-            found.append(NotBuilt(float(values[k]), float(values[k]), reasons[k]))
-    return found
+            groups.append(NotBuilt(float(values[k]), float(values[k]), reasons[k]))
+    return groups

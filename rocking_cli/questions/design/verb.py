@@ -115,9 +115,9 @@ def design(
     shaken = [each.motion.scaled(each.factor) for each in given.gather(ready.growth, watch)] if given else []
     excitation = Excitation(shaken, signs, around, where) if given or where is not None else None
     with watch.progress(points, "values") as advance:
-        found = study(ready, span.field, ends, aim, excitation, points=points, progress=advance)
-    figure = drawn("questions.design.picture.draw_design", found)
-    return Answer("design", found, view(found, excitation), partial(columns, found), figure)
+        result = study(ready, span.field, ends, aim, excitation, points=points, progress=advance)
+    figure = drawn("questions.design.picture.draw_design", result)
+    return Answer("design", result, view(result, excitation), partial(columns, result), figure)
 
 
 def _span(given: Span | str | tuple[str, float, float]) -> Span:

@@ -61,13 +61,13 @@ def draw(structure: StructureLike, *, at: float | None = None, watch: Watcher = 
         raise InputError(Problem(f"must be a multiple of phi_cr above 0, got {at:g}", field="`at`"))
     ready = structure_of(structure, watch)
     with ready.named():
-        found = picture(ready.mechanism)
-    if at is not None and at > found.furthest:
-        of = "the limit" if None in found.phi_cr.values() else "phi_cr"
+        drawing = picture(ready.mechanism)
+    if at is not None and at > drawing.furthest:
+        of = "the limit" if None in drawing.phi_cr.values() else "phi_cr"
         what = f"{at:g} times {of} is beyond the kinematic limit of the mechanism"
-        raise InputError(Problem(what, field="`at`", hint=f"at most {found.furthest:.4g} times {of}"))
-    figure = drawn("plotting.structure.draw_structure", found, heading(ready.mechanism), at)
-    return Answer("drawing", found, view(found), partial(_columns, found), figure)
+        raise InputError(Problem(what, field="`at`", hint=f"at most {drawing.furthest:.4g} times {of}"))
+    figure = drawn("plotting.structure.draw_structure", drawing, heading(ready.mechanism), at)
+    return Answer("drawing", drawing, view(drawing), partial(_columns, drawing), figure)
 
 
 def _columns(found: Picture) -> Columns:

@@ -64,10 +64,10 @@ def equiv(
     if not isinstance(structures, list | tuple):
         return _of_one(structure_of(given[0], watch), watch)
     ready = structures_of(given, watch)
-    found, refused = dict[str, Answer[Equivalence | None]](), list[MechanismError]()
+    by_name, refused = dict[str, Answer[Equivalence | None]](), list[MechanismError]()
     for structure in ready:
         try:
-            found[structure.name] = answer = _of_one(structure, watch)
+            by_name[structure.name] = answer = _of_one(structure, watch)
         except MechanismError as error:
             refused.append(error)
             if len(refused) == len(ready):
@@ -75,16 +75,16 @@ def equiv(
             watch.leave_out(error)
         else:
             watch.take(answer)
-    parts = [part for each in found.values() for part in each.view.parts]
-    return answers("equivalent blocks", "structure", found, parts)
+    parts = [part for each in by_name.values() for part in each.view.parts]
+    return answers("equivalent blocks", "structure", by_name, parts)
 
 
 def _of_one(structure: Structure, watch: Watcher) -> Answer[Equivalence | None]:
     from rocking_cli.questions.equiv import view as views
 
-    found = structure.equivalence if structure.why_no_block is None else None
+    equivalence = structure.equivalence if structure.why_no_block is None else None
     shown = views.view(structure)
     for text in views.notes(structure.mechanism):
         watch.note(text)
     columns, figure = partial(views.table, [structure]), partial(structure_figure, structure.mechanism)
-    return Answer("equivalent block", found, shown, columns, figure)
+    return Answer("equivalent block", equivalence, shown, columns, figure)

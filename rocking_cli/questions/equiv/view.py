@@ -139,14 +139,14 @@ def _columns(mechanism: Mechanism, directions: Sequence[Direction]) -> Iterator[
     for each in PARAMETERS:
         words = each.words + (per_mass if each.of_mass else "")
         yield only_shown(each.key, itemgetter(each.key), number, each.unit_of(mass=mechanism.has_mass), words=words)
-    found = {direction: {each.key: each for each in mechanism.found(direction)} for direction in directions}
-    for key in dict.fromkeys(key for those in found.values() for key in those):
-        meanings = {direction: those[key].meaning for direction, those in found.items() if key in those}
+    parameters = {direction: {each.key: each for each in mechanism.found(direction)} for direction in directions}
+    for key in dict.fromkeys(key for those in parameters.values() for key in those):
+        meanings = {direction: those[key].meaning for direction, those in parameters.items() if key in those}
         same = len(set(meanings.values())) == 1
         words = "; ".join(
             dict.fromkeys(meaning if same else f"{d.label}: {meaning}" for d, meaning in meanings.items())
         )
-        unit = next(those[key].unit for those in found.values() if key in those)
+        unit = next(those[key].unit for those in parameters.values() if key in those)
         yield only_shown(key, methodcaller("get", key), number, unit, words=words)
 
 

@@ -99,7 +99,7 @@ def equivalent(
     first = structure_of(structures[0], watch, opening)
     ready = structures_of([first, *structures[1:]], watch, opening, least=2)
     scaling: Literal[1, 2] = 1 if str(kappa) == "1" else 2
-    found = study.equivalent(ready, pulse, polarity=int(polarity), kappa=scaling, eta=eta)
+    result = study.equivalent(ready, pulse, polarity=int(polarity), kappa=scaling, eta=eta)
     warn_misleading(ready, watch)
-    figure = drawn("questions.equivalent.picture.draw_equivalent", found, views.title(found))
-    return Answer("equivalent pulses", found, views.view(found), partial(views.table, found), figure)
+    figure = drawn("questions.equivalent.picture.draw_equivalent", result, views.title(result))
+    return Answer("equivalent pulses", result, views.view(result), partial(views.table, result), figure)

@@ -327,10 +327,10 @@ def _integral(integrand: Callable[[Reals], Reals], until: Reals, *, smooth: bool
     while nodes <= most:
         x, weight = np.polynomial.legendre.leggauss(nodes)
         with np.errstate(over="ignore", invalid="ignore"):  # overflow means that the integral does not converge
-            found: Reals = until / 2 * (integrand(until[:, None] * (1 + x) / 2) @ weight)
-        if (np.abs(found - before) <= precision * np.abs(found)).all():
-            return found
-        before, nodes = found, 2 * nodes
+            integral: Reals = until / 2 * (integrand(until[:, None] * (1 + x) / 2) @ weight)
+        if (np.abs(integral - before) <= precision * np.abs(integral)).all():
+            return integral
+        before, nodes = integral, 2 * nodes
     raise SolverError(
         "the integral of the energy equation does not converge: the mechanism is not smooth up to phi_cr, or so stocky "
         "that rounding hides how it moves"

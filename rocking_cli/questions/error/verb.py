@@ -75,10 +75,10 @@ def error(
                 raise InputError(Problem(why, field=field))
     ready = structure_of(structure, watch)
     with ready.named():
-        curves, found = compare(ready, at, a)
-    shown = view(ready.mechanism, ready.equivalence, curves, found)
-    figure = drawn("questions.error.picture.draw_linearisation", curves, found, heading(ready.mechanism))
-    return Answer("linearisation", found, shown, partial(_columns, found), figure)
+        curves, marks = compare(ready, at, a)
+    shown = view(ready.mechanism, ready.equivalence, curves, marks)
+    figure = drawn("questions.error.picture.draw_linearisation", curves, marks, heading(ready.mechanism))
+    return Answer("linearisation", marks, shown, partial(_columns, marks), figure)
 
 
 def _columns(found: Sequence[Linearisation]) -> Columns:

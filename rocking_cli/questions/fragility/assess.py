@@ -213,12 +213,12 @@ def curves(
         x = cells.intensities(measure)
         if not (x > 0).any():  # or none is known
             continue
-        runs, found = tally.ladders is None, []
+        runs, fragilities = tally.ladders is None, []
         for limit in definition.limit_states:
             unknown = _undecided_runs(cells, limit, x > 0) if runs else _undecided_ladders(tally, limit)
             fit = partial(_curve, x=x, structure=structure, measure=measure, limit=limit, definition=definition)
-            found.append(_twice(fit, cells, unknown))
-        for each in _consistent(found, cells.onset(measure)):
+            fragilities.append(_twice(fit, cells, unknown))
+        for each in _consistent(fragilities, cells.onset(measure)):
             yield _with_rate(each, hazard) if hazard is not None and measure == over else each
 
 

@@ -262,7 +262,7 @@ def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, t
     Raises `NoEquivalentBlock` if there is none and the study needs one.
     """
     try:
-        found = equivalent_block(mechanism)
+        block = equivalent_block(mechanism)
     except NoEquivalentBlock as error:
         needs = [f"the model {asked.model}"] if asked.model != "nonlinear" else []
         needs = needs or [name for name in asked.asked_measures if parse_measure(name).needs]
@@ -270,7 +270,7 @@ def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, t
             raise NoEquivalentBlock(f"{' and '.join(needs)} cannot be had of it: {error}") from error
         sides = both_statics(mechanism)
         return 0.0, min(side.lambda_ for side in sides), (sides[0].reference, sides[1].reference)
-    return *weaker(found, asked.model), (found.positive.phi_cr, found.negative.phi_cr)
+    return *weaker(block, asked.model), (block.positive.phi_cr, block.negative.phi_cr)
 
 
 def _displacements(study: Study, plan: Plan, known: dict[str, Any]) -> dict[str, Any]:

@@ -120,11 +120,11 @@ class FragilityCurve(FittedToRuns):
     def median(self) -> Estimate | None:
         """Intensity of probability one half, in the unit of x; its interval is where the band crosses one half."""
         medians = [each._median for each in (self, *self.implied.values())]
-        found = [each for each in medians if each is not None]
+        known = [each for each in medians if each is not None]
         if medians[0] is None:
             return None
         # The minimum of increasing curves crosses one half at the largest of their medians.
-        return Estimate(*(max(getattr(each, end) for each in found) for end in ("value", "low", "high")))
+        return Estimate(*(max(getattr(each, end) for each in known) for end in ("value", "low", "high")))
 
     @property
     def _median(self) -> Estimate | None:
@@ -141,8 +141,8 @@ class FragilityCurve(FittedToRuns):
     @property
     def dispersion(self) -> Estimate | None:
         """Standard deviation of the logarithm of the capacity; None unless the curve is lognormal, or above 5."""
-        found = self._inverse_slope() if self.kind == "lognormal" else None
-        return found if found is None or found.value <= MAX_DISPERSION else None
+        inverse = self._inverse_slope() if self.kind == "lognormal" else None
+        return inverse if inverse is None or inverse.value <= MAX_DISPERSION else None
 
     @property
     def scale(self) -> Estimate | None:
@@ -163,25 +163,25 @@ class FragilityCurve(FittedToRuns):
         """Return the probability of exceedance at intensities of any shape; NaN if there is no curve."""
         x = np.asarray(x, dtype=np.float64)
         if self.fit is not None:
-            found = self.fit.probability(self._design(x)).reshape(x.shape)
+            probability = self.fit.probability(self._design(x)).reshape(x.shape)
         elif self.step is not None:
             known = self.step.low == self.step.high  # from the uplift acceleration, which a motion must exceed
-            found = np.heaviside(x - self.step.value, 0.0 if known else 0.5)
+            probability = np.heaviside(x - self.step.value, 0.0 if known else 0.5)
         else:
             return np.full(x.shape, np.nan)
-        return np.asarray(np.min([found, *(each.probability(x) for each in self.implied.values())], axis=0))
+        return np.asarray(np.min([probability, *(each.probability(x) for each in self.implied.values())], axis=0))
 
     def band(self, x: Reals) -> tuple[Reals, Reals]:
         """Return pointwise confidence limits of the probability at intensities; 0 and 1 within a step's interval."""
         x = np.asarray(x, dtype=np.float64)
         if self.fit is not None:
-            found = [each.reshape(x.shape) for each in self.fit.band(self._design(x))]
+            bounds = [each.reshape(x.shape) for each in self.fit.band(self._design(x))]
         elif self.step is not None:
             below = x <= self.step.low
-            found = [((x >= self.step.high) & ~below).astype(np.float64), (~below).astype(np.float64)]
+            bounds = [((x >= self.step.high) & ~below).astype(np.float64), (~below).astype(np.float64)]
         else:
             return np.full(x.shape, np.nan), np.full(x.shape, np.nan)
-        low, high = np.min([found, *(each.band(x) for each in self.implied.values())], axis=0)
+        low, high = np.min([bounds, *(each.band(x) for each in self.implied.values())], axis=0)
         return low, high
 
     def cut(self, x: Reals) -> Cut | None:

@@ -47,10 +47,10 @@ def _level_measure(value: object) -> object:
     """Return the measure of levels: the factor on the records, or a measure proportional to a power of this factor."""
     if isinstance(value, str) and value.strip().lower() == SCALE:
         return SCALE
-    found = _measure(value)
-    if isinstance(found, str) and (why := no_levels(found)):
+    measure = _measure(value)
+    if isinstance(measure, str) and (why := no_levels(measure)):
         raise ValueError(why)
-    return found
+    return measure
 
 
 def _spelled(value: object) -> object:
@@ -297,10 +297,10 @@ class Definition(Sampling, Common):
     @property
     def fitted_measures(self) -> list[str]:
         """Measures of the curves: those requested, otherwise that of the levels; and that of the hazard."""
-        found: list[str] = list(self.measures or [])
-        if not found:
-            found = [PGA if self.levels.measure == SCALE else self.levels.measure]
-        return list(dict.fromkeys([*found, *([self.hazard.measure] if self.hazard is not None else [])]))
+        measures: list[str] = list(self.measures or [])
+        if not measures:
+            measures = [PGA if self.levels.measure == SCALE else self.levels.measure]
+        return list(dict.fromkeys([*measures, *([self.hazard.measure] if self.hazard is not None else [])]))
 
     @property
     def asked_measures(self) -> list[str]:

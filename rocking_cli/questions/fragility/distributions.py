@@ -190,7 +190,7 @@ def in_units_of_fields(document: Document, load: Callable[[str], Mechanism]) -> 
         Returns the structure of a file that the study names.
     """
     entries = document.data.get("structures")
-    found: list[Problem] = []
+    problems: list[Problem] = []
     for k, entry in enumerate(entries if isinstance(entries, list) else []):
         varied = entry.get("vary") if isinstance(entry, dict) else None
         if not isinstance(varied, dict) or not isinstance(entry.get("file"), str):
@@ -206,8 +206,8 @@ def in_units_of_fields(document: Document, load: Callable[[str], Mechanism]) -> 
             info = type(structure).model_fields.get(name)
             extra = info.json_schema_extra if info is not None else None
             unit = str(extra.get("unit", "")) if isinstance(extra, dict) else ""
-            varied[name] = _numbers(document, distribution, unit, ("structures", k, "vary", name), found)
-    return found
+            varied[name] = _numbers(document, distribution, unit, ("structures", k, "vary", name), problems)
+    return problems
 
 
 def _has_units(value: Any) -> bool:

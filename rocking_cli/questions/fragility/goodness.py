@@ -139,11 +139,11 @@ def goodness_of_brackets(fit: Fit, lower: Reals, upper: Reals, seen: Counts, lev
     rest = totals(among, seen.number, count) - expected
     if seen.repeated:
         terms = Brackets(lower, upper)
-        found = terms.at(np.linalg.solve(terms.back, fit.coefficients), slice(None))
-        information = np.einsum("n,nkl->kl", totals(seen.term, seen.number), found.information)
+        coefficients = terms.at(np.linalg.solve(terms.back, fit.coefficients), slice(None))
+        information = np.einsum("n,nkl->kl", totals(seen.term, seen.number), coefficients.information)
         adds = -np.outer(of_records, expected / total)
         np.add.at(adds, (seen.record, among), seen.number)
-        scores = _sums(seen.record, seen.number, found.score[seen.term], seen.records)
+        scores = _sums(seen.record, seen.number, coefficients.score[seen.term], seen.records)
         adds -= scores @ np.linalg.solve(information, (by_coefficients @ terms.back).T)
         covariance = adds.T @ adds
         name += BY_RECORD

@@ -43,17 +43,17 @@ class HazardCurve:
 
 def wrong_points(intensity: Reals, rate: Reals) -> list[tuple[int, str]]:
     """Return the invalid points of a hazard curve, counted from 0, each with a message."""
-    found = []
+    problems = []
     for k, (x, value) in enumerate(zip(intensity, rate, strict=True)):
         if not 0 < x < math.inf:
-            found.append((k, f"the intensity is {x:g}, it must be positive"))
+            problems.append((k, f"the intensity is {x:g}, it must be positive"))
         elif not 0 < value < math.inf:
-            found.append((k, f"the annual rate is {value:g}, it must be positive"))
+            problems.append((k, f"the annual rate is {value:g}, it must be positive"))
         elif k and x <= intensity[k - 1]:
-            found.append((k, f"the intensity {x:g} does not exceed the {intensity[k - 1]:g} before it"))
+            problems.append((k, f"the intensity {x:g} does not exceed the {intensity[k - 1]:g} before it"))
         elif k and value > rate[k - 1]:
-            found.append((k, f"the annual rate {value:g} is above the {rate[k - 1]:g} at the lower intensity"))
-    return found or ([(intensity.size, "at least two are needed")] if intensity.size < 2 else [])
+            problems.append((k, f"the annual rate {value:g} is above the {rate[k - 1]:g} at the lower intensity"))
+    return problems or ([(intensity.size, "at least two are needed")] if intensity.size < 2 else [])
 
 
 def read_hazard(path: Path) -> HazardCurve:

@@ -149,13 +149,13 @@ def covariates(plan: Plan) -> dict[str, Reals]:
     usable = np.array([record.reason is None for record in plan.records])
 
     def of(names: Iterable[str]) -> dict[str, Reals]:
-        found = {}
+        by_key = {}
         for name in names:
             values = plan.of_records(name)
             if not (np.isfinite(values[usable]).all() and (values[usable] > 0).all()):
                 return {}
-            found[name] = values if name in LOGARITHMIC else np.log(np.where(usable, values, 1.0))
-        return found
+            by_key[name] = values if name in LOGARITHMIC else np.log(np.where(usable, values, 1.0))
+        return by_key
 
     return of(ORIGIN) or of(OF_MOTION)
 
@@ -270,10 +270,10 @@ def rocking(store: Store, plan: Plan, structure: str) -> tuple[Integers, Reals]:
     samples = samples_of(plan, structure)
     each = len(plan.records) * plan.block
     ids, peaks = [np.zeros(0, dtype=np.int64)], [np.zeros(0)]
-    for found in store.endings(samples.start * each, samples.stop * each):
-        rocks = found.uplifts & (found.outcome == STANDS) & (found.peak_ratio > 0)
-        ids.append(found.id[rocks])
-        peaks.append(np.log(found.peak_ratio[rocks]))
+    for endings in store.endings(samples.start * each, samples.stop * each):
+        rocks = endings.uplifts & (endings.outcome == STANDS) & (endings.peak_ratio > 0)
+        ids.append(endings.id[rocks])
+        peaks.append(np.log(endings.peak_ratio[rocks]))
     return np.concatenate(ids), np.concatenate(peaks)
 
 

@@ -47,21 +47,21 @@ class Source:
 
     def checksum(self) -> str:
         """Return the SHA-256 of its files, or of the pulse and its sampling. Raises `InputError` without a file."""
-        found = hashlib.sha256()
+        digest = hashlib.sha256()
         other = Path(self.reading.other) if self.reading.other is not None else None
         for path in (self.path, self.vertical, other):
             if path is None:
                 continue
             try:
                 with path.open("rb") as file:
-                    found.update(hashlib.file_digest(file, "sha256").digest())
+                    digest.update(hashlib.file_digest(file, "sha256").digest())
             except OSError as error:
                 raise InputError(Problem(f"cannot be read: {error.strerror or error}", str(path))) from None
         if self.path is None:
             assert self.entry.pulse is not None
             pulse = parse_pulse(self.entry.pulse).specification
-            found.update(f"{pulse}, {COARSE} a period: {SAMPLING}".encode())
-        return found.hexdigest()
+            digest.update(f"{pulse}, {COARSE} a period: {SAMPLING}".encode())
+        return digest.hexdigest()
 
     def read(self) -> GroundMotion:
         """Read the motion, unscaled. Raises `InputError` if it cannot be read."""
@@ -117,8 +117,8 @@ def examine(source: Source) -> tuple[Record, GroundMotion | None]:
         return Record(source.name, checksum, reason=f"{source.name}: zero throughout: there is nothing to scale"), None
     # Only records are checked: a pulse is exactly what its formula gives.
     doubtful = len(doubts(motion.of_ground, measured)) if source.path is not None else 0
-    found = Record(source.name, checksum, None, motion.dt, motion.npts, measured.pga, measured.pgv, doubtful)
-    return found, motion
+    record = Record(source.name, checksum, None, motion.dt, motion.npts, measured.pga, measured.pgv, doubtful)
+    return record, motion
 
 
 class KeptMotions:

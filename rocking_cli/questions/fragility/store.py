@@ -391,14 +391,14 @@ class Store:
 
     def _digest(self) -> str:
         """Return the SHA-256 of everything in the store except the runs."""
-        found = hashlib.sha256()
+        digest = hashlib.sha256()
         queries = [f"SELECT * FROM {table} ORDER BY id" for table in PLAN_COLUMNS]
         for query in (*queries, f"SELECT * FROM study WHERE key NOT IN ('{SEAL}', '{AT_WORK}') ORDER BY key"):
-            found.update(repr(self._connection.execute(query).fetchall()).encode())
+            digest.update(repr(self._connection.execute(query).fetchall()).encode())
         # Row by row, as there may be millions.
         for row in self._connection.execute("SELECT * FROM measured ORDER BY id"):
-            found.update(repr(row).encode())
-        return found.hexdigest()
+            digest.update(repr(row).encode())
+        return digest.hexdigest()
 
     def facts(self) -> dict[str, Any]:
         """Return all plain data in the store, by name."""
@@ -417,8 +417,8 @@ class Store:
             other = f"this store has the layout {layout}, and this version of rocking reads the layout "
             other += f"{SCHEMA_VERSION} only"
             raise InputError(Problem(other, str(self.path), hint=RESTART_HINT))
-        found = self._connection.execute("SELECT value FROM study WHERE key = ?", (SEAL,)).fetchone()
-        if found is None or found[0] != self._digest():
+        seal = self._connection.execute("SELECT value FROM study WHERE key = ?", (SEAL,)).fetchone()
+        if seal is None or seal[0] != self._digest():
             raise damaged(self.path, "the description of the study does not match its checksum")
         self._salt = _salt(self.fact("hash"))
         self.columns = _columns(self.fact("description"))
@@ -453,19 +453,19 @@ class Store:
         whole, bad, unreadable = 0, [], []
         query = f"SELECT {', '.join((*self.columns, 'checksum'))} FROM run WHERE id >= ? AND id < ?"
         for first, stop in pairwise([-MAX_RUN_NUMBER, *range(RUNS_PER_READ, size, RUNS_PER_READ), MAX_RUN_NUMBER]):
-            found: list[tuple[Any, ...]] = []
+            rows: list[tuple[Any, ...]] = []
             try:
                 # Row by row, up to the first unreadable one.
-                found.extend(self._connection.execute(query, (first, stop)))
+                rows.extend(self._connection.execute(query, (first, stop)))
             except sqlite3.DatabaseError as error:
                 if code_of(error) != sqlite3.SQLITE_CORRUPT:
                     raise
                 unreadable = [str(error)]
-            table = _numbers(found, len(self.columns) + 1)
+            table = _numbers(rows, len(self.columns) + 1)
             # Damaged pages may give a run twice, or in the wrong place.
             sound = (np.diff(table[:, 0], prepend=-1.0) > 0) & (_checksums(table[:, :-1], self._salt) == table[:, -1])
             whole += int(sound.sum())
-            bad += [row[0] for row, is_sound in zip(found, sound.tolist(), strict=True) if not is_sound]
+            bad += [row[0] for row, is_sound in zip(rows, sound.tolist(), strict=True) if not is_sound]
         return whole, bad, unreadable
 
     def _insert(self, table: str, rows: Sequence[tuple[Any, ...]]) -> None:
@@ -475,8 +475,8 @@ class Store:
 
     def fact(self, key: str) -> Any:
         """Return the plain data stored under a name."""
-        (found,) = self._connection.execute("SELECT value FROM study WHERE key = ?", (key,)).fetchone()
-        return json.loads(found)
+        (value,) = self._connection.execute("SELECT value FROM study WHERE key = ?", (key,)).fetchone()
+        return json.loads(value)
 
     def plan(self) -> Plan:
         """Return the plan of the runs."""
@@ -518,8 +518,8 @@ class Store:
 
     def count(self) -> tuple[int, int]:
         """Return the number of finished runs, and of those that failed."""
-        found = self._connection.execute("SELECT count(*), count(*) FILTER (WHERE outcome = ?) FROM run", (FAILED,))
-        done, failed = found.fetchone()
+        counts = self._connection.execute("SELECT count(*), count(*) FILTER (WHERE outcome = ?) FROM run", (FAILED,))
+        done, failed = counts.fetchone()
         return done, failed
 
     def add(self, rows: RunRows) -> None:
@@ -549,8 +549,8 @@ class Store:
         blocks = [np.empty((0, len(names)))]
         # In parts, as Python numbers take ten times the memory of an array.
         for start in range(first, stop, RUNS_PER_READ):
-            found = self._connection.execute(query, (start, min(start + RUNS_PER_READ, stop))).fetchall()
-            blocks.append(np.array(found, dtype=np.float64).reshape(-1, len(names)))
+            rows = self._connection.execute(query, (start, min(start + RUNS_PER_READ, stop))).fetchall()
+            blocks.append(np.array(rows, dtype=np.float64).reshape(-1, len(names)))
         return np.concatenate(blocks).T
 
     def endings(
@@ -708,10 +708,10 @@ def open_locked(path: Path) -> sqlite3.Connection:
 def _identity(path: Path) -> tuple[int, int] | None:
     """Return what tells a file from any that replaces it; None if there is none."""
     try:
-        found = path.stat()
+        status = path.stat()
     except FileNotFoundError:
         return None
-    return found.st_dev, found.st_ino
+    return status.st_dev, status.st_ino
 
 
 def _locked(path: Path) -> sqlite3.Connection:
@@ -742,8 +742,8 @@ def this_process() -> str:
 def _at_work(connection: sqlite3.Connection) -> str:
     """Return the name of the process that uses a store, if it can be read now; otherwise an empty text."""
     with suppress(sqlite3.Error):
-        found = connection.execute("SELECT value FROM study WHERE key = ?", (AT_WORK,)).fetchone()
-        return f": {found[0]}" if found is not None else ""
+        process = connection.execute("SELECT value FROM study WHERE key = ?", (AT_WORK,)).fetchone()
+        return f": {process[0]}" if process is not None else ""
     return ""
 
 

@@ -74,8 +74,8 @@ def _draw_all(folder: Path, answer: StudyAnswer) -> None:
     if definition.method == "ida":
         for structure in structures:
             add(f"{structure} ida", _increments(answer, structure))
-    for found in answer.quantiles:
-        add(f"{found.structure} {found.measure} quantiles", draw_quantiles(found, label(found.measure)))
+    for quantiles in answer.quantiles:
+        add(f"{quantiles.structure} {quantiles.measure} quantiles", draw_quantiles(quantiles, label(quantiles.measure)))
     for surface in answer.surfaces:
         name = f"{surface.structure}, {limit_name(surface.limit)}"
         one, other = surface.measures
@@ -103,5 +103,5 @@ def _increments(answer: StudyAnswer, structure: str) -> Figure:
     across = "factor on the records" if measure == SCALE else label(measure)
     usable = [k for k, each in enumerate(plan.records) if each.reason is None]
     with Store.reading(answer.store) as store:
-        found = peaks(store, plan, structure)
-    return draw_ida(np.array(plan.levels), found, across, structure, np.unique(plan.of_sets.one[usable]).size)
+        table = peaks(store, plan, structure)
+    return draw_ida(np.array(plan.levels), table, across, structure, np.unique(plan.of_sets.one[usable]).size)

@@ -42,7 +42,7 @@ def curve_blocks(curves: Sequence[Fragility]) -> Iterator[Mapping[str, Sequence[
         x, share = _intensities(each), each.share
         words = (each.structure, f"{each.limit}", each.measure, parse_measure(each.measure).unit, each.curve.kind)
         unknown = np.full(x.size, np.nan if share is None else share)
-        one, other = (_fit(found.curve, x) for found in (each, each.lower or each))
+        one, other = (_fit(estimate.curve, x) for estimate in (each, each.lower or each))
         numbers = [*one[:3], x, *one[3:], unknown, *other]
         columns = zip(COLUMNS, numbers, strict=True)
         yield {**{name: [word] * x.size for name, word in zip(TEXT_COLUMNS, words, strict=True)}, **dict(columns)}

@@ -239,32 +239,32 @@ def count(
     checked = True
     each = records * plan.block
     start = samples.start * each
-    for found in store.endings(start, samples.stop * each, counted):
-        found = found.select(found.outcome != FAILED)
-        sample, record, eta, level, polarity = plan.places(found.id)
+    for endings in store.endings(start, samples.stop * each, counted):
+        endings = endings.select(endings.outcome != FAILED)
+        sample, record, eta, level, polarity = plan.places(endings.id)
         sample = sample - samples.start
         cell = np.ravel_multi_index((sample if apart else np.zeros_like(sample), record, level), shape)
         ladder = np.ravel_multi_index((sample, record, eta, polarity), rungs)
         _add(runs, cell)
         if ladders:
-            there.ravel()[found.id - start] = True
-        checked &= bool(found.checked.all())
-        doubtful = int(found.unknown.sum())
+            there.ravel()[endings.id - start] = True
+        checked &= bool(endings.checked.all())
+        doubtful = int(endings.unknown.sum())
         unknown += doubtful
         if doubtful and lower is None:  # the bounds are equal so far
             lower = deepcopy(upper)
         for limit in limits:
             rotations = reach[limit][sample] if limit in reach else None
-            upper.add(limit, exceeds(found, limit, rotations), cell, ladder, level)
+            upper.add(limit, exceeds(endings, limit, rotations), cell, ladder, level)
             if lower is not None:
-                known = known_to_exceed(found, limit, rotations, phi_cr[sample])
+                known = known_to_exceed(endings, limit, rotations, phi_cr[sample])
                 lower.add(limit, known, cell, ladder, level)
 
     uplifts = store.facts().get(UPLIFT_FACT, {}).get(structure)
 
     def tally(counts: _Counts, of_known: Tally | None) -> Tally:
-        found = Ladders(counts.first, there) if ladders else None
-        return Tally(plan, samples, runs, counts.exceeding, found, unknown, checked, of_known, uplifts)
+        of_ladders = Ladders(counts.first, there) if ladders else None
+        return Tally(plan, samples, runs, counts.exceeding, of_ladders, unknown, checked, of_known, uplifts)
 
     checked |= store.fact("description")["model"] != "nonlinear"  # equivalent blocks have no joints
     return tally(upper, tally(lower, None) if lower is not None else None)
@@ -358,11 +358,11 @@ def endings_of(store: Store, plan: Plan, structure: str) -> Reals:
     samples = samples_of(plan, structure)
     table = np.full((len(samples), *plan.shape[1:]), np.nan)
     start = samples.start * len(plan.records) * plan.block
-    for found in store.endings(start, start + table.size):
-        found = found.select(found.outcome != FAILED)
-        rocks = np.where(found.uplifts, np.maximum(found.peak_ratio, np.finfo(np.float64).tiny), 0.0)
-        ends = np.where(found.unknown, UNKNOWN_PEAK, np.inf)
-        table.ravel()[found.id - start] = np.where(found.outcome == STANDS, rocks, ends)
+    for endings in store.endings(start, start + table.size):
+        endings = endings.select(endings.outcome != FAILED)
+        rocks = np.where(endings.uplifts, np.maximum(endings.peak_ratio, np.finfo(np.float64).tiny), 0.0)
+        ends = np.where(endings.unknown, UNKNOWN_PEAK, np.inf)
+        table.ravel()[endings.id - start] = np.where(endings.outcome == STANDS, rocks, ends)
     return table
 
 
@@ -381,8 +381,8 @@ def _add(table: Integers, cell: Integers) -> None:
     """Add one to a table for each cell given; the cells of one call lie close together in the table."""
     if cell.size:
         low = int(cell.min())
-        found = np.bincount(cell - low)
-        table.ravel()[low : low + found.size] += found
+        runs = np.bincount(cell - low)
+        table.ravel()[low : low + runs.size] += runs
 
 
 Pair = tuple[float | None, float | None]
@@ -416,13 +416,13 @@ def rotations(
     """
     missing = [limit for limit in limits if limit not in known]
     wanted = [value for value in map(metres, missing) if value is not None]
-    found: dict[tuple[object, ...], list[Pair]] = {}
+    pairs: dict[tuple[object, ...], list[Pair]] = {}
     table: list[list[Pair]] = []
     for sample, trial in zip(samples, trials, strict=True) if missing else ():
         key = (sample.structure, *sample.geometry)
-        if trial.reason is None and key not in found:
-            found[key] = of_a_structure(sample.mechanism, wanted)
-        table.append(found.get(key, [(None, None)] * len(wanted)))
+        if trial.reason is None and key not in pairs:
+            pairs[key] = of_a_structure(sample.mechanism, wanted)
+        table.append(pairs.get(key, [(None, None)] * len(wanted)))
     return {**known, **{limit: [row[k] for row in table] for k, limit in enumerate(missing)}}
 
 
@@ -519,11 +519,11 @@ def accelerations(study: Study, plan: Plan) -> dict[str, Pair]:
     """
     if any(source.vertical is not None or source.reading.floor is not None for source in study.sources):
         return {}
-    found: dict[str, Pair] = {}
+    ranges: dict[str, Pair] = {}
     for sample, trial in zip(study.samples, plan.trials, strict=True):
-        if trial.reason is None and trial.structure not in found:
-            found[trial.structure] = _of_both(sample.mechanism, study.definition.model)
-    return found
+        if trial.reason is None and trial.structure not in ranges:
+            ranges[trial.structure] = _of_both(sample.mechanism, study.definition.model)
+    return ranges
 
 
 def _of_both(mechanism: Mechanism, model: ModelName) -> Pair:

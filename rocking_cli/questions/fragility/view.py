@@ -69,26 +69,26 @@ def left_out(plan: Plan) -> list[str]:
 
 def without_block(plan: Plan) -> list[str]:
     """Return a sentence on each structure without an equivalent block, on the meaning of phi_cr there."""
-    found = dict.fromkeys(each.structure for each in plan.trials if each.reason is None and not each.p)
+    structures = dict.fromkeys(each.structure for each in plan.trials if each.reason is None and not each.p)
     return [
         f"{structure}: no equivalent single block exists, and therefore no p. In a direction without a critical "
         "rotation, phi_cr stands for the kinematic limit, and reaching it counts as overturning."
-        for structure in found
+        for structure in structures
     ]
 
 
 def out_of_reach(store: Store, plan: Plan, definition: Definition) -> list[str]:
     """Return a sentence on each structure whose top never reaches the displacement of a limit state."""
-    found: dict[tuple[str, str], list[bool]] = {}
+    outcomes: dict[tuple[str, str], list[bool]] = {}
     for limit, table in kept(store.fact, definition.limit_states).items():
         for trial, pair in zip(plan.trials, table.tolist(), strict=True):
             if trial.reason is None:
-                found.setdefault((trial.structure, limit), []).append(all(map(isinf, pair)))
+                outcomes.setdefault((trial.structure, limit), []).append(all(map(isinf, pair)))
     return [
         f"{structure}: its top never moves by {limit}"
         + ("" if all(never) else f" in {sum(never)} of {len(never)} samples")
         + ", whatever its rotation: this limit is then exceeded only by overturning."
-        for (structure, limit), never in found.items()
+        for (structure, limit), never in outcomes.items()
         if any(never)
     ]
 

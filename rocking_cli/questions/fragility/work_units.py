@@ -56,29 +56,29 @@ class WorkUnit:
 
 def carry_out(unit: WorkUnit) -> RunRows:
     """Simulate a unit on one processor; the results are the same to the last bit on every machine."""
-    found = respond_many(unit.models, unit.motions, unit.runs, threads=1, only_peaks=True)
+    outcomes = respond_many(unit.models, unit.motions, unit.runs, threads=1, only_peaks=True)
     slides = None
     if unit.checked:
-        slides, lost = _slide_times(unit, found)
-        found = replace(found, failed=found.failed | lost)
+        slides, lost = _slide_times(unit, outcomes)
+        outcomes = replace(outcomes, failed=outcomes.failed | lost)
 
     def known(values: Reals) -> Reals:
-        return np.where(found.failed, np.nan, values)
+        return np.where(outcomes.failed, np.nan, values)
 
-    outcome = np.where(found.unknown, UNKNOWN, found.fell_to)
+    outcome = np.where(outcomes.unknown, UNKNOWN, outcomes.fell_to)
     return RunRows(
         id=unit.id,
         scale=unit.runs.scale,
         eta=unit.runs.eta,
-        outcome=np.where(found.failed, FAILED, outcome).astype(np.int64),
-        peak_ratio=known(found.peak_ratio),
-        peak_positive=known(found.peak_positive),
-        peak_negative=known(found.peak_negative),
-        uplift_time=known(found.uplift_time),
-        overturning_time=known(found.overturning_time),
-        known_to=known(found.known_to),
-        lower_bound=known(np.where(found.unknown, found.lower_bound, np.nan)),
-        opening=known(found.opening),
+        outcome=np.where(outcomes.failed, FAILED, outcome).astype(np.int64),
+        peak_ratio=known(outcomes.peak_ratio),
+        peak_positive=known(outcomes.peak_positive),
+        peak_negative=known(outcomes.peak_negative),
+        uplift_time=known(outcomes.uplift_time),
+        overturning_time=known(outcomes.overturning_time),
+        known_to=known(outcomes.known_to),
+        lower_bound=known(np.where(outcomes.unknown, outcomes.lower_bound, np.nan)),
+        opening=known(outcomes.opening),
         slide_time=slides,
     )
 

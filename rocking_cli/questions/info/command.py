@@ -32,17 +32,18 @@ def _defaults() -> dict[str, Any]:
     """Return the user's defaults, and what is wrong with them."""
     from rocking_cli.errors import InputError
 
-    found: list[defaults.Default] = []
+    settings: list[defaults.Default] = []
     problem = None
     try:
-        found = defaults.in_force()
+        settings = defaults.in_force()
     except InputError as error:
         problem = str(error)
     return {
         "files": [str(each) for each in defaults.files()],
         "user_file": str(defaults.user_file()),
         "set": [
-            {"option": each.option, "command": each.command, "value": each.value, "place": each.place} for each in found
+            {"option": each.option, "command": each.command, "value": each.value, "place": each.place}
+            for each in settings
         ],
         "environment": {name: value for name, value in sorted(os.environ.items()) if name.startswith("ROCKING_")},
         "unknown": defaults.unknown_variables(),

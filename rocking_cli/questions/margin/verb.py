@@ -100,9 +100,9 @@ def margin(
     with watch.progress((study.FACTORS.size + 1) * neighbours * len(signs) * len(chosen), "histories") as advance:
         for each in chosen:
             scaled = each.motion.scaled(each.factor)
-            found = study.margin(model, scaled, signs, around=around, progress=advance)
-            end = study.conclusion(ready, scaled, signs, found)
-            rows.append(MarginRow(each.motion.name, each.factor, scaled.of_ground.pga_g, found, end))
+            result = study.margin(model, scaled, signs, around=around, progress=advance)
+            end = study.conclusion(ready, scaled, signs, result)
+            rows.append(MarginRow(each.motion.name, each.factor, scaled.of_ground.pga_g, result, end))
     end = replace(worst(row.conclusion for row in rows), motions=[row.name for row in rows])
     margins = Concluding({row.name: row.margin for row in rows}, end)
     figure = drawn("questions.margin.picture.draw_margins", margins, heading(ready.mechanism))
@@ -207,9 +207,9 @@ def shares(
         raise InputError(f"{motions.count} motions are given where one is expected: ask for one after the other")
     (given,) = motions.gather(ready.growth, watch)
     model = ready.model("nonlinear")
-    found = [neighbours_of(model, given.motion.scaled(sign * given.factor), around) for sign in signs_of(polarity)]
-    overturned = sum(each.overturned for each in found) / len(found)
-    unknown = sum(each.unknown or 0.0 for each in found) / len(found)
+    by_sign = [neighbours_of(model, given.motion.scaled(sign * given.factor), around) for sign in signs_of(polarity)]
+    overturned = sum(each.overturned for each in by_sign) / len(by_sign)
+    unknown = sum(each.unknown or 0.0 for each in by_sign) / len(by_sign)
     result = OutcomeShares(overturned, 1 - overturned - unknown, unknown, model.joints is not None)
     said = f"Of {around.count} neighbours of {given.motion.name}, {percent(overturned)} overturn {ready.name}"
     said += f", and the outcome of {percent(unknown)} is unknown." if unknown else "."

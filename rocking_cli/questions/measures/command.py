@@ -24,16 +24,16 @@ def command(as_json: bool) -> None:
     from rocking_cli.processing.intensity import IntensityMeasures, MotionMeasure, power_of
     from rocking_cli.questions.measures.view import InstalledMeasure, view
 
-    known, found = IntensityMeasures(), []
+    known, measures = IntensityMeasures(), []
     for name in known:
         package = known.package_of(name)
         try:
             cls = known[name]
             relative = not issubclass(cls, MotionMeasure)
             of = (cls.title, cls.unit, power_of(cls), relative, cls.source or None)
-            found.append(InstalledMeasure(name, cls.form(), package, *of))
+            measures.append(InstalledMeasure(name, cls.form(), package, *of))
         except MechanismError as error:  # one broken plugin must not hide the others
             terminal.warning(str(error))
             terminal.debug_traceback(error)
-            found.append(InstalledMeasure(name, name, package))
-    terminal.show(view(found), as_json=as_json)
+            measures.append(InstalledMeasure(name, name, package))
+    terminal.show(view(measures), as_json=as_json)

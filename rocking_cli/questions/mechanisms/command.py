@@ -70,7 +70,7 @@ def command(name: str | None, file: str | None, checked: bool, as_json: bool) ->
 def _all(registry: Registry, as_json: bool) -> None:
     from rocking_cli.views.mechanisms import InstalledMechanism, installed
 
-    found = []
+    rows = []
     for name in registry:
         try:
             title: str | None = registry[name].title
@@ -78,8 +78,8 @@ def _all(registry: Registry, as_json: bool) -> None:
             terminal.warning(str(error))
             terminal.debug_traceback(error)
             title = None
-        found.append(InstalledMechanism(name, title, registry.package_of(name)))
-    terminal.show(installed(found), as_json=as_json)
+        rows.append(InstalledMechanism(name, title, registry.package_of(name)))
+    terminal.show(installed(rows), as_json=as_json)
 
 
 def check(name: str, file: str | None, registry: Registry, as_json: bool) -> None:
@@ -119,14 +119,14 @@ def _verdicts(name: str, file: str | None, registry: Registry) -> list[Verdict]:
     from rocking_cli.testing import contract, verdict
     from rocking_cli.views.template import template
 
-    found: list[Mechanism] = []
+    built: list[Mechanism] = []
 
     def make() -> None:
         if file is None:
             text = template(registry[name])
-            found.append(parse_structure(text, f"rocking new {name}", name, registry))
+            built.append(parse_structure(text, f"rocking new {name}", name, registry))
         else:
-            found.append(load_structure(file, registry))
+            built.append(load_structure(file, registry))
 
     if name not in registry:
         registry[name]  # raises an error that suggests similar names
@@ -135,8 +135,8 @@ def _verdicts(name: str, file: str | None, registry: Registry) -> list[Verdict]:
         return [loads]
     if file is None:
         made = verdict("makes_a_structure", TEMPLATE_CHECK, make)
-        return [loads, made, *(contract(found[0]) if found else [])]
+        return [loads, made, *(contract(built[0]) if built else [])]
     make()
-    if found[0].mechanism != name:
-        raise InputError(f"{file} is a structure of the mechanism {found[0].mechanism}, not of {name}")
-    return [loads, *contract(found[0])]
+    if built[0].mechanism != name:
+        raise InputError(f"{file} is a structure of the mechanism {built[0].mechanism}, not of {name}")
+    return [loads, *contract(built[0])]

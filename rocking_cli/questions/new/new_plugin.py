@@ -117,8 +117,8 @@ def write(name: str, out: str | None, kind: PluginKind, *, printed: Collection[s
     check_name(name, kind, printed)
     folder = Path(f"rocking-{_hyphened(name)}" if out is None else out)
     write_folder(folder, kind.package(name))
-    found = shutil.which("python")  # the interpreter with rocking-cli
-    here = found is not None and Path(found).parent == Path(sys.executable).parent
+    interpreter = shutil.which("python")  # the interpreter with rocking-cli
+    here = interpreter is not None and Path(interpreter).parent == Path(sys.executable).parent
     python = "python" if here or not sys.executable else quoted(sys.executable)
     commands = [f"cd {quoted(str(folder))}"] if folder.resolve() != Path.cwd() else []
     commands += [f'{python} -m pip install --editable ".[test]"']

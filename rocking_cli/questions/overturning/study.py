@@ -108,8 +108,8 @@ class OverturningMap:
 
     def least(self, *regions: Region) -> Reals:
         """Return the least a of a point in some regions, for each column; NaN if there is none."""
-        found = np.isin(self.regions, regions)
-        return np.where(found.any(axis=0), self.a[found.argmax(axis=0)], np.nan)
+        mask = np.isin(self.regions, regions)
+        return np.where(mask.any(axis=0), self.a[mask.argmax(axis=0)], np.nan)
 
     @property
     def safe_again(self) -> Reals:
@@ -160,7 +160,7 @@ def overturning_map(
         raise InputError("omega and a must be positive")
     _check_range(structure, structure.period(omega), float(a.max()))
     periods, amplitudes = (each.ravel() for each in np.meshgrid(structure.period(omega), a * structure.unit))
-    found = outcomes(structure, shape, periods, amplitudes, polarities=polarities, progress=progress)
+    simulated = outcomes(structure, shape, periods, amplitudes, polarities=polarities, progress=progress)
     plane = a.size, omega.size
     return OverturningMap(
         structure,
@@ -168,7 +168,7 @@ def overturning_map(
         tuple(polarities),
         omega,
         a,
-        found.by_field(lambda values: values.reshape(plane)),
+        simulated.by_field(lambda values: values.reshape(plane)),
     )
 
 

@@ -233,10 +233,10 @@ def overturning_map(
         rows = np.linspace(*(ag or study.usual_amplitudes([subject])), points) * STANDARD_GRAVITY / subject.unit
     count = study.count_histories([subject], columns.size * rows.size, signs)
     with watch.progress(count, "histories") as progress:
-        found = study.overturning_map(subject, form, columns, rows, polarities=signs, progress=progress)
-    shown = views.map_view(found, mechanism, dimensionless=bare)
-    figure = drawn("questions.overturning.picture.draw_map", found, views.map_title(found), dimensionless=bare)
-    return Answer("overturning map", found, shown, partial(views.map_table, found, mechanism), figure)
+        result = study.overturning_map(subject, form, columns, rows, polarities=signs, progress=progress)
+    shown = views.map_view(result, mechanism, dimensionless=bare)
+    figure = drawn("questions.overturning.picture.draw_map", result, views.map_title(result), dimensionless=bare)
+    return Answer("overturning map", result, shown, partial(views.map_table, result, mechanism), figure)
 
 
 @takes_numbers
@@ -309,7 +309,7 @@ def overturning_curves(
     highest = study.usual_amplitudes(subjects)[1] if top is None else top
     count = study.count_scans(subjects, periods.size, signs)
     with watch.progress(count, "histories") as progress:
-        found = study.compare(subjects, form, periods, highest, polarities=signs, progress=progress)
-    shown = views.comparison_view(found, [each.mechanism for each in ready])
-    figure = drawn("questions.overturning.picture.draw_comparison", found, views.comparison_title(found))
-    return Answer("overturning curves", found, shown, partial(views.comparison_table, found), figure)
+        result = study.compare(subjects, form, periods, highest, polarities=signs, progress=progress)
+    shown = views.comparison_view(result, [each.mechanism for each in ready])
+    figure = drawn("questions.overturning.picture.draw_comparison", result, views.comparison_title(result))
+    return Answer("overturning curves", result, shown, partial(views.comparison_table, result), figure)

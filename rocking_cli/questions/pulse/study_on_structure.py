@@ -29,14 +29,16 @@ def answers(structure: Structure, pulse: Pulse, polarity: int) -> dict[str, Answ
     """
     structure.ask("linear models")
     exact = pulse.segments() and structure.mechanism.rocks_both_ways
-    gravity, found = structure.mechanism.gravity, dict[str, Answer]()
+    gravity, responses = structure.mechanism.gravity, dict[str, Answer]()
     nonlinear = sampled_history(structure, "nonlinear", pulse, polarity)
     for name, kappa in KAPPAS.items():
         if exact:
-            found[name] = exact_response(structure.equivalence, pulse, kappa=kappa, gravity=gravity, polarity=polarity)
+            responses[name] = exact_response(
+                structure.equivalence, pulse, kappa=kappa, gravity=gravity, polarity=polarity
+            )
         else:
-            found[name] = sampled_history(structure, name, pulse, polarity)
-    return {**found, "nonlinear": nonlinear}
+            responses[name] = sampled_history(structure, name, pulse, polarity)
+    return {**responses, "nonlinear": nonlinear}
 
 
 def outcome(answer: Answer) -> ExactResponse | History:

@@ -105,9 +105,11 @@ def pulse(
     from rocking_cli.questions.pulse.view_on_structure import view
 
     signs, sized, ready = signs_of(polarity), sized_pulse(shape, ag, period), structure_of(structure, watch, opening)
-    found = with_conclusion(sized, {sign: _answers(ready, sized, sign, watch) for sign in signs})
-    shown = view(ready, sized, found, closed_forms(ready, sized))
-    return MappingAnswer("pulse", found, shown, partial(_columns, found), partial(structure_figure, ready.mechanism))
+    by_polarity = with_conclusion(sized, {sign: _answers(ready, sized, sign, watch) for sign in signs})
+    shown = view(ready, sized, by_polarity, closed_forms(ready, sized))
+    return MappingAnswer(
+        "pulse", by_polarity, shown, partial(_columns, by_polarity), partial(structure_figure, ready.mechanism)
+    )
 
 
 def _on_block(a: float | None, omega: float | None, eta: float, shape: str) -> MappingAnswer[Any, Any]:
@@ -126,7 +128,7 @@ def _on_block(a: float | None, omega: float | None, eta: float, shape: str) -> M
             "structure, `ag` and `period`"
         )
     closed, exact = closed_form(a, omega, eta) if shape == "sine" else None, exact_pulse(a, omega, eta, shape)
-    found = {"exact": exact} if closed is None else {"exact": exact, "closed_form": closed}
+    responses = {"exact": exact} if closed is None else {"exact": exact, "closed_form": closed}
     columns: Any = {
         "a": [a],
         "omega": [omega],
@@ -135,18 +137,18 @@ def _on_block(a: float | None, omega: float | None, eta: float, shape: str) -> M
         "outcome": [exact.words],
     }
     figure = no_plot("a pulse on the dimensionless block has no plot", "map many with `overturning`")
-    return MappingAnswer("pulse", found, view(shape, a, omega, eta, closed, exact), lambda: columns, figure)
+    return MappingAnswer("pulse", responses, view(shape, a, omega, eta, closed, exact), lambda: columns, figure)
 
 
 def _answers(structure: Structure, given: Any, polarity: int, watch: Watcher) -> dict[str, Answer]:
     """Return the responses of the models; warn of those that do not converge with the sampling."""
     from rocking_cli.questions.pulse.study_on_structure import SampledHistory, answers
 
-    found = answers(structure, given, polarity)
-    for name, run in found.items():
+    responses = answers(structure, given, polarity)
+    for name, run in responses.items():
         if isinstance(run, SampledHistory) and not run.converged:
             watch.warn(f"{name}: not converged with {run.per_period} samples per period: another motion is close")
-    return found
+    return responses
 
 
 def _columns(found: Mapping[int, Mapping[str, Answer]]) -> Columns:

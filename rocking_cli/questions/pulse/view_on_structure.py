@@ -137,12 +137,12 @@ def _columns(answers: Mapping[str, Answer], *, unknown: bool = False) -> list[Co
         return lambda answer: getattr(answer, name) if isinstance(answer, ExactResponse) else None
 
     def end(answer: Answer) -> str | None:
-        found = outcome(answer)
-        if unknown and not found.unknown:
+        result = outcome(answer)
+        if unknown and not result.unknown:
             return None
-        said = names.outcome(uplifts=found.lifted, overturned=found.fell, unknown=found.unknown)
+        said = names.outcome(uplifts=result.lifted, overturned=result.fell, unknown=result.unknown)
         # Impacts are stated only if the structure overturns; one that is still rocking counts as rocking.
-        return f"{said}\n{after_impacts(found)}" if found.fell else said
+        return f"{said}\n{after_impacts(result)}" if result.fell else said
 
     def bound(answer: Answer) -> float | None:
         return outcome(answer).lower_bound if outcome(answer).unknown else None

@@ -108,8 +108,8 @@ def command(
     if output.plot is not None:
         write_picture(output.plot, answer.figure())
     if not output.as_json:
-        found = answer.values() if isinstance(answer, Answers) else [answer]
-        examined = [seen for each in found for seen in each.examined]
+        answers = answer.values() if isinstance(answer, Answers) else [answer]
+        examined = [seen for each in answers for seen in each.examined]
         terminal.show(View({}, list(parts(examined, terminal.width()))), as_json=False)
     watch.end()
 

@@ -107,8 +107,8 @@ def draw_before_and_after(before: GroundMotion, after: GroundMotion, shift: floa
     panels[0].legend(loc="upper right", ncols=2, **style.LEGEND)
     panels[2].set_xlabel(f"time [s]; {', '.join(after.processing)}", fontsize=style.LABEL)
     for motion, look in ((before, BEFORE_STYLE), (after, AFTER_STYLE)):
-        found = response_spectrum(motion, SPECTRUM_PERIODS[2 * motion.dt < SPECTRUM_PERIODS])
-        panels[3].plot(found.periods, found.sa, **look)
+        spectrum = response_spectrum(motion, SPECTRUM_PERIODS[2 * motion.dt < SPECTRUM_PERIODS])
+        panels[3].plot(spectrum.periods, spectrum.sa, **look)
     style.logarithmic(panels[3].xaxis)
     panels[3].set_yscale("log")
     style.tidy(panels[3], "period [s]", f"Sa at {100 * DAMPING:g} % [g]")

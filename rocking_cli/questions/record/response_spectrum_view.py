@@ -33,11 +33,11 @@ def data(spectrum: ResponseSpectrum) -> dict[str, Any]:
 
 def table(spectra: Mapping[str, ResponseSpectrum]) -> Columns:
     """Return spectra as columns, one motion below the other."""
-    found = list(spectra.values())
+    all_spectra = list(spectra.values())
     return {
         "record": [name for name, each in spectra.items() for _ in each.periods],
-        "damping": [each.damping for each in found for _ in each.periods],
-        **{column.heading: np.concatenate([column.of(each) for each in found]).tolist() for column in ORDINATES},
+        "damping": [each.damping for each in all_spectra for _ in each.periods],
+        **{column.heading: np.concatenate([column.of(each) for each in all_spectra]).tolist() for column in ORDINATES},
     }
 
 

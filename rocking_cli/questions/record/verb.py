@@ -144,12 +144,12 @@ def record(
             ]
         return _answer(seen, scaled, read)
 
-    found = dict[str, RecordAnswer]()
+    by_name = dict[str, RecordAnswer]()
     for k, source in enumerate(motions.sources):
         try:
             answer = one(motions.read(source))
         except InputError as error:
-            if not found and k == motions.count - 1:
+            if not by_name and k == motions.count - 1:
                 raise
             watch.leave_out(error)
             continue
@@ -157,13 +157,13 @@ def record(
             if (k, sign) in places:
                 _write_clean(places[k, sign], own, watch)
         watch.take(answer)
-        found[_unique(answer.examined[0], found)] = answer
+        by_name[_unique(answer.examined[0], by_name)] = answer
     if not are_several(motion, motions):
         return answer
-    examined = [seen for each in found.values() for seen in each.examined]
+    examined = [seen for each in by_name.values() for seen in each.examined]
     kept = {"spectrum": partial(_spectra_table, examined)} if spectrum else {}
     figure = _spectra_figure(examined) if spectrum else None
-    return answers("records", "motion", found, list(parts(examined, 100)), figure, kept)
+    return answers("records", "motion", by_name, list(parts(examined, 100)), figure, kept)
 
 
 def _examine(
@@ -183,8 +183,8 @@ def _examine(
     p = ready.p if ready is not None else None
     if any(each.startswith("from ") for each in read.motion.processing):
         watch.note(f"{read.motion.name}{done(read.motion)}")
-    found = doubts(read.motion.of_ground, measure(read.motion.of_ground))
-    found += coarse_for(read.motion, p) if p is not None else []
+    warnings = doubts(read.motion.of_ground, measure(read.motion.of_ground))
+    warnings += coarse_for(read.motion, p) if p is not None else []
     scaled = [read.motion.scaled(sign * read.factor) for sign in signs]
     examined = [
         Examined(
@@ -193,14 +193,14 @@ def _examine(
             read.motion,
             sign * read.factor,
             measure(one),
-            found,
+            warnings,
             p * read.motion.dt if p is not None else None,
             _fit(one, watch) if fit_pulse else [],
             _measured(one, measures, ready),
         )
         for sign, one in zip(signs, scaled, strict=True)
     ]
-    for doubt in found:
+    for doubt in warnings:
         watch.warn(f"{read.motion.name}: {doubt.text}")
     return examined, scaled
 
@@ -395,7 +395,7 @@ def response_spectrum(
     from rocking_cli.questions.record import response_spectrum_view as views
 
     scaled = motion_of(motion).scaled(scale)
-    found = respond_linearly(scaled, periods, damping)
-    named = {scaled.name: found}
+    spectrum = respond_linearly(scaled, periods, damping)
+    named = {scaled.name: spectrum}
     figure = drawn("questions.record.response_spectrum_picture.draw_response_spectra", named)
-    return Answer("response spectrum", found, views.view(scaled.name, found), partial(views.table, named), figure)
+    return Answer("response spectrum", spectrum, views.view(scaled.name, spectrum), partial(views.table, named), figure)

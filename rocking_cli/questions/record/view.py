@@ -90,17 +90,17 @@ MEASURED: tuple[Column[Examined], ...] = (
 
 def data(record: Examined) -> dict[str, Any]:
     """Return a record as plain data."""
-    found = data_of(AS_READ, record) | processing.data(record.motion) | data_of(MEASURED, record)
-    found["warnings"] = [doubt._asdict() for doubt in record.doubts]
+    entry = data_of(AS_READ, record) | processing.data(record.motion) | data_of(MEASURED, record)
+    entry["warnings"] = [doubt._asdict() for doubt in record.doubts]
     if record.pulses:
         from rocking_cli.questions.record.pulse_fits import fits_data
 
-        found["pulses"] = fits_data(record.pulses)
+        entry["pulses"] = fits_data(record.pulses)
     if record.asked:
-        found["measures"] = {str(measure): value for measure, value in record.asked.items()}
+        entry["measures"] = {str(measure): value for measure, value in record.asked.items()}
     if record.spectrum is not None:
-        found["spectrum"] = spectra.data(record.spectrum)
-    return found
+        entry["spectrum"] = spectra.data(record.spectrum)
+    return entry
 
 
 def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | str]:

@@ -48,8 +48,8 @@ def hung_on(content: Assessment) -> HungTables | None:
     if not mechanism.attached:
         return None
     watched = Watched(mechanism)
-    found = {each.given.motion.name: _worse(watched, each) for each in content.results}
-    shown = {name + _until(moved): moved for name, moved in found.items()}
+    worst = {each.given.motion.name: _worse(watched, each) for each in content.results}
+    shown = {name + _until(moved): moved for name, moved in worst.items()}
     hung = mechanism.hung
     return HungTables(
         masses=[_mass(each) for each in hung.masses],
@@ -65,7 +65,7 @@ def hung_on(content: Assessment) -> HungTables | None:
             for name, moved in shown.items()
             for tie in moved.ties
         ],
-        said=list(_said(found)),
+        said=list(_said(worst)),
     )
 
 

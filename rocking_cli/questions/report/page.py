@@ -328,7 +328,7 @@ def _map(each: PulseMap, k: int) -> dict[str, Any]:
 
 
 def _measures(result: MotionResult) -> dict[str, Any]:
-    given, found = result.given, result.measured
+    given, measured = result.given, result.measured
     motion = given.motion
     return {
         "name": motion.name,
@@ -341,11 +341,15 @@ def _measures(result: MotionResult) -> dict[str, Any]:
             ["scale factor", _number(given.factor, 6), "1"],
             *([["processed", step, ""] for step in motion.processing]),
             *([["PGA of the ground", _number(result.pga_of_ground), "g"]] if motion.ground is not None else []),
-            [f"peak acceleration ({'of the floor' if motion.ground is not None else 'PGA'})", _number(found.pga), "g"],
-            ["peak velocity (PGV)", _number(found.pgv), "m/s"],
-            ["peak displacement (PGD)", _number(found.pgd), "m"],
-            ["Arias intensity", _number(found.arias), "m/s"],
-            ["significant duration, 5 to 95 % of the Arias intensity", _number(found.significant_duration), "s"],
-            ["mean period", _number(found.mean_period), "s"],
+            [
+                f"peak acceleration ({'of the floor' if motion.ground is not None else 'PGA'})",
+                _number(measured.pga),
+                "g",
+            ],
+            ["peak velocity (PGV)", _number(measured.pgv), "m/s"],
+            ["peak displacement (PGD)", _number(measured.pgd), "m"],
+            ["Arias intensity", _number(measured.arias), "m/s"],
+            ["significant duration, 5 to 95 % of the Arias intensity", _number(measured.significant_duration), "s"],
+            ["mean period", _number(measured.mean_period), "s"],
         ],
     }

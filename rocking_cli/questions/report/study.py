@@ -268,15 +268,15 @@ def _result(structure: Structure, given: Scaled, polarities: Sequence[int], arou
     doubtful = [] if given.pulse is not None else doubts(ground, measure(ground))
     doubtful = [*doubtful, *(coarse_for(given.motion, structure.p) if given.pulse is None else [])]
     asked = Question(tuple(polarities), release=None, tail=TAIL, rtol=RTOL, around=around)
-    found = response_of(structure, structure.default_models, given, asked)
+    response = response_of(structure, structure.default_models, given, asked)
     scaled = given.motion.scaled(given.factor)
     fits = _fits(given, scaled)
     if fits:
         alone = fits[0].alone(scaled)
         runs = {sign: respond(structure, alone.scaled(sign), models=["nonlinear"]) for sign in polarities}
-        found = replace(found, to_pulse=Response(given=None, first=alone, runs=runs, neighbours={}, contacts={}))
+        response = replace(response, to_pulse=Response(given=None, first=alone, runs=runs, neighbours={}, contacts={}))
     return MotionResult(
-        **vars(found),
+        **vars(response),
         file=file_of_motion(given),
         measured=measure(scaled),
         doubts=tuple(doubtful),

@@ -152,14 +152,14 @@ def report(
         histories = Histories([each.motion.scaled(each.factor) for each in chosen], signs, state, on_floor)
         verified = _verified(ready, site, verify, chosen, histories, title, source)
     with watch.progress(steps(chosen), "parts of the report") as advance:
-        found = gather(ready, source.structure, chosen, signs, around=around, title=title, progress=advance)
+        content = gather(ready, source.structure, chosen, signs, around=around, title=title, progress=advance)
     if file is not None:
-        page = render(found, verified).encode()
+        page = render(content, verified).encode()
         write_whole(Path(file), lambda stream: stream.write(page))
         watch.note(f"wrote {file} ({len(page) / 1e6:.2g} MB)")
-    shown = view(found, verified.found if verified is not None else None)
-    figure = drawn("plotting.structure.draw_structure", found.picture, heading(found.mechanism))
-    return Answer("report", found, shown, partial(_columns, found), figure)
+    shown = view(content, verified.found if verified is not None else None)
+    figure = drawn("plotting.structure.draw_structure", content.picture, heading(content.mechanism))
+    return Answer("report", content, shown, partial(_columns, content), figure)
 
 
 def _verified(
@@ -171,10 +171,10 @@ def _verified(
     from rocking_cli.questions.verify.sheets import sheet_for
     from rocking_cli.verification.check import verify, with_histories
 
-    found = verify(structure, site)
+    verification = verify(structure, site)
     if motions:
-        found = with_histories(found, structure, site, histories)
-    return VerifiedReport(found, sheet_for(found, site, given, motions, "en", title, origin))
+        verification = with_histories(verification, structure, site, histories)
+    return VerifiedReport(verification, sheet_for(verification, site, given, motions, "en", title, origin))
 
 
 def _columns(found: Assessment) -> Columns:

@@ -55,19 +55,19 @@ def blocks(
     shaken = motion.kept.acceleration if motion is not None else np.zeros(0)
     for start in range(0, longest.time.size, rows):
         part = slice(start, min(start + rows, longest.time.size))
-        found = {"t [s]": longest.time[part], "a_g [g]": _padded(shaken, part, 0.0) / STANDARD_GRAVITY}
+        columns = {"t [s]": longest.time[part], "a_g [g]": _padded(shaken, part, 0.0) / STANDARD_GRAVITY}
         # The vertical component is zero after its last sample.
         if motion is not None and (up := motion.vertical) is not None:
-            found["v_g [g]"] = np.interp(longest.time[part], up.time, up.acceleration, right=0.0) / STANDARD_GRAVITY
+            columns["v_g [g]"] = np.interp(longest.time[part], up.time, up.acceleration, right=0.0) / STANDARD_GRAVITY
         for name, run in histories.items():
             series = {"phi [rad]": run.phi, "phi_dot [rad/s]": run.rate, _ratio(run): run.ratio}
-            found |= {f"{name} {what}": _padded(values, part, _after(run)) for what, values in series.items()}
+            columns |= {f"{name} {what}": _padded(values, part, _after(run)) for what, values in series.items()}
         if watched is not None:
             for name, run in histories.items():
                 phi = _padded(run.phi, part, _after(run))
-                found |= {f"{name} {what}": values for what, values in watched.columns(phi)}
-        found |= {f"{name} {sheared}": _padded(values, part, np.nan) for name, values in base_shear.items()}
-        yield found
+                columns |= {f"{name} {what}": values for what, values in watched.columns(phi)}
+        columns |= {f"{name} {sheared}": _padded(values, part, np.nan) for name, values in base_shear.items()}
+        yield columns
 
 
 def _after(run: History) -> float:
@@ -77,5 +77,5 @@ def _after(run: History) -> float:
 
 def _padded(values: Reals, part: slice, after: float) -> Reals:
     """Return a slice of the values, filled with `after` beyond their end."""
-    found = values[part]
-    return np.concatenate([found, np.full(part.stop - part.start - found.size, after)])
+    padded = values[part]
+    return np.concatenate([padded, np.full(part.stop - part.start - padded.size, after)])

@@ -137,12 +137,12 @@ def respond_around(
     chosen = models_of(models) if models is not None else ready.default_models
     tilt = release if release is None or isinstance(release, Release) else Release.of(release)
     ratio = tilt.ratio(ready) if tilt is not None else None
-    found = all_around(ready, chosen, (motion_of(one), motion_of(other)), scale, release=ratio, rtol=rtol)
+    result = all_around(ready, chosen, (motion_of(one), motion_of(other)), scale, release=ratio, rtol=rtol)
 
     free = [side.phi_cr is None for side in ready.statics]
-    figure = drawn("questions.respond.azimuths_picture.draw_azimuths", found, heading(ready.mechanism), free)
-    shown = view(ready, found, doubts_of(ready.mechanism))
-    return Answer("all directions", found, shown, partial(columns, found), figure)
+    figure = drawn("questions.respond.azimuths_picture.draw_azimuths", result, heading(ready.mechanism), free)
+    shown = view(ready, result, doubts_of(ready.mechanism))
+    return Answer("all directions", result, shown, partial(columns, result), figure)
 
 
 def all_directions(
@@ -258,11 +258,11 @@ def respond_each(
     chosen = models_of(models)
     if models is None and any(len(each.default_models) < len(MODELS) for each in ready):
         chosen = ("nonlinear",)
-    found: dict[ModelName, Outcomes] = {}
+    outcomes: dict[ModelName, Outcomes] = {}
     for name in chosen:
         runs = Runs.every(len(ready), len(shaking), scales=factors.tolist())
         many = respond_many([each.model(name) for each in ready], shaking, runs, threads=threads)
-        found[name] = many.by_field(lambda values: values.reshape(shape))
+        outcomes[name] = many.by_field(lambda values: values.reshape(shape))
 
     def columns() -> Columns:
         places = [axis.ravel() for axis in np.indices(shape)]
@@ -271,28 +271,28 @@ def respond_each(
             "motion": [shaking[k].name for k in places[1]],
             "scale": factors[places[2]],
         }
-        for name, outcome in found.items():
+        for name, outcome in outcomes.items():
             for column in ("overturned", "peak_ratio", "uplift_time", "overturning_time", "impact_count"):
                 table[f"{name} {column}"] = getattr(outcome, column).ravel()
             if outcome.unknown.any():
                 table |= {f"{name} {column}": getattr(outcome, column).ravel() for column in ("unknown", "known_to")}
         return table
 
-    first = found[chosen[0]]
+    first = outcomes[chosen[0]]
     said = f"By the {chosen[0]} model {int(first.fell.sum())} of {first.fell.size} motions overturn"
     said += f", and the outcome of {int(first.unknown.sum())} is unknown." if first.unknown.any() else "."
     data: dict[str, Any] = {}
-    for name, each in found.items():
+    for name, each in outcomes.items():
         data[name] = {"overturned": _with_gaps(each.fell, each.unknown | each.failed)}
         data[name] |= {column: getattr(each, column) for column in OUTCOME}
         if name == "nonlinear" and np.isnan(each.opening).any():
             data[name]["unknown"] = _with_gaps(each.unknown, np.isnan(each.opening) & ~each.unknown)
     figure = no_plot("many responses have no plot of their own: plot a spectrum, a map or a margin")
-    return MappingAnswer("responses", found, View(data, [said]), columns, figure)
+    return MappingAnswer("responses", outcomes, View(data, [said]), columns, figure)
 
 
 def _with_gaps(values: NDArray[np.bool_], missing: NDArray[np.bool_]) -> Any:
     """Return values as nested lists, with None where they are missing."""
-    found = values.astype(object)
-    found[missing] = None
-    return found.tolist()
+    objects = values.astype(object)
+    objects[missing] = None
+    return objects.tolist()

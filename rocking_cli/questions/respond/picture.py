@@ -192,15 +192,15 @@ def _draw_responses(
 
 def _draw_contacts(axes: Axes, contacts: Sequence[ContactDemand]) -> None:
     """Draw the friction required at the joints, and the friction available."""
-    for k, found in enumerate(contacts):
-        shown = style.visible(found.demand)
+    for k, contact in enumerate(contacts):
+        shown = style.visible(contact.demand)
         polarity = f"polarity {1 - 2 * k}" if len(contacts) > 1 else "required"
         look = style.family(k) | {"linewidth": style.MEDIUM}
-        axes.plot(found.times[shown], found.demand[shown], label=polarity, **look)
+        axes.plot(contact.times[shown], contact.demand[shown], label=polarity, **look)
     there = contacts[0].friction
     if there is not None:
         axes.axhline(there, color=style.CURSOR, linewidth=style.MEDIUM, linestyle=":", label=f"available: {there:.3g}")
-    most = max(float(found.demand.max(initial=0.0)) for found in contacts)
+    most = max(float(contact.demand.max(initial=0.0)) for contact in contacts)
     axes.set_ylim(0.0, 1.15 * min(max(most, there or 0.0, 1e-3), MAX_SHOWN_FRICTION))
     axes.legend(loc="upper right", ncols=3, **style.LEGEND)
     style.tidy(axes, y="friction required")

@@ -216,9 +216,9 @@ def respond(
         details.extend(["", *answer.view.parts] if impacts else [])
         return answer
 
-    found, left_out = ask_each(scaled, row, watch)
+    responses, left_out = ask_each(scaled, row, watch)
     unread = [each.path.name for each in motions.records if all(each is not one.record for one in scaled)]
-    return answers("responses", "motion", found, [*table.parts([*unread, *left_out]), *details])
+    return answers("responses", "motion", responses, [*table.parts([*unread, *left_out]), *details])
 
 
 def _note_pulse(response: Response, watch: Watcher) -> None:

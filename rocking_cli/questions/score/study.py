@@ -507,16 +507,16 @@ def state(test: ObservedTest, structure: Structure, motion: GroundMotion, around
     if model.symmetric:  # a reversed motion has the same effect
         signs = signs[:1]
     drawn = around.drawn(model)
-    found = [follow(model, shaking, drawn, polarity=sign, threads=1) for sign in signs]
-    peaks = np.concatenate([_peaks(each) for each in found])
+    histories = [follow(model, shaking, drawn, polarity=sign, threads=1) for sign in signs]
+    peaks = np.concatenate([_peaks(each) for each in histories])
     rank = nan
     if test.peak is not None:
         rank = float(((peaks < test.peak).sum() + 0.5 * (peaks == test.peak).sum()) / peaks.size)
     pgv = _pgv(shaking) if test.pgv is None else test.pgv
     return Stated(
         test,
-        sum(int(each.fell.sum()) for each in found),
-        sum(int(each.unknown.sum()) for each in found),
+        sum(int(each.fell.sum()) for each in histories),
+        sum(int(each.unknown.sum()) for each in histories),
         len(signs) * around.count,
         float(shaking.pga_g > min(structure.uplift)),
         _by_velocity(pgv, structure),

@@ -96,11 +96,11 @@ def score(
     structures = _structures(table, watch, opening)
     motion_of = motions_of(table, options, usual)
     with watch.progress(len(table.tests), "tests") as advance:
-        found = score_tests(
+        result = score_tests(
             table.tests, partial(_known, structures), motion_of, around, threads=threads, progress=advance
         )
-    figure = drawn("questions.score.picture.draw_reliability", found)
-    return Answer("score", found, view(found, table.file), partial(columns, found), figure)
+    figure = drawn("questions.score.picture.draw_reliability", result)
+    return Answer("score", result, view(result, table.file), partial(columns, result), figure)
 
 
 def tests_of(given: str | Path | Mapping[str, Sequence[Any]] | TableOfTests) -> TableOfTests:
@@ -136,17 +136,17 @@ def _structures(table: TableOfTests, watch: Watcher, opening: float) -> dict[str
 
 
 def _known(structures: Mapping[str, Structure | RockingError], named: str) -> Structure:
-    found = structures[named]
-    if isinstance(found, RockingError):
-        raise found
-    return found
+    structure = structures[named]
+    if isinstance(structure, RockingError):
+        raise structure
+    return structure
 
 
 def _motion(folder: Path, motions: Motions, named: str) -> GroundMotion:
     """Read the record of a test as these motions are read, without a word on doubts, or sample its pulse."""
     if (pulse := pulse_in(named)) is not None:
         return motions.reading.on_floor(pulse.sampled())
-    found = files_of(str(folder / named))
-    if len(found) > 1:
-        raise InputError(f"{len(found)} motions are given where one is expected: ask for one after the other")
-    return motions.read(found[0]).motion
+    files = files_of(str(folder / named))
+    if len(files) > 1:
+        raise InputError(f"{len(files)} motions are given where one is expected: ask for one after the other")
+    return motions.read(files[0]).motion

@@ -40,10 +40,10 @@ def write_set(folder_: Path, results: ShownSet, readings: Sequence[Reading | Non
     from rocking_cli.excitation.record_csv import write_record_csv
     from rocking_cli.io.files import folder, write_whole
 
-    found = results.found
+    selection = results.found
     place = folder(str(folder_))
-    motions = found.motions
-    paths = _paths(place, [found.candidates.motions[k] for k in found.chosen.tolist()])
+    motions = selection.motions
+    paths = _paths(place, [selection.candidates.motions[k] for k in selection.chosen.tolist()])
     stale = [
         each for name in sorted(_earlier(place / LIST_FILE)) if (each := place / name).is_file() and each not in paths
     ]
@@ -112,12 +112,14 @@ def _list(place: Path, results: ShownSet, readings: Sequence[Reading | None], pa
 
     from rocking_cli.questions.select.view import verdict
 
-    found = results.found
+    selection = results.found
     entries = [
-        _entry(place, results.files[k], found.candidates.motions[k], factor, reading)
+        _entry(place, results.files[k], selection.candidates.motions[k], factor, reading)
         if reading is not None
         else {"file": path.name}
-        for k, factor, reading, path in zip(found.chosen.tolist(), found.factors.tolist(), readings, paths, strict=True)
+        for k, factor, reading, path in zip(
+            selection.chosen.tolist(), selection.factors.tolist(), readings, paths, strict=True
+        )
     ]
     said = [
         LIST_HEADER,

@@ -220,16 +220,16 @@ def periods_of(band: tuple[float, float], target: TargetSpectrum, damping: float
     count = max(
         MIN_BAND_PERIODS, ceil(log(band[1] / band[0]) / min(max(damping, PERIOD_SPACING[0]), PERIOD_SPACING[1])) + 1
     )
-    found = np.geomspace(*band, count)
-    found[[0, -1]] = band
+    periods = np.geomspace(*band, count)
+    periods[[0, -1]] = band
     own = target.periods[(target.periods > band[0]) & (target.periods < band[1])]
     if own.size > MAX_TARGET_PERIODS:
         count += MAX_TARGET_PERIODS
         return np.concatenate([band[:1], np.geomspace(*band, count)[1:-1], band[1:]])
     # Of equal periods that of the target is kept, as its slope changes there, but the ends of the band stay.
-    away = np.abs(found[1:-1, None] / own - 1).min(axis=1, initial=1.0) > PERIOD_TOLERANCE
+    away = np.abs(periods[1:-1, None] / own - 1).min(axis=1, initial=1.0) > PERIOD_TOLERANCE
     own = own[(own > band[0] * (1 + PERIOD_TOLERANCE)) & (own < band[1] * (1 - PERIOD_TOLERANCE))]
-    return np.sort(np.concatenate([found[:1], found[1:-1][away], own, found[-1:]]))
+    return np.sort(np.concatenate([periods[:1], periods[1:-1][away], own, periods[-1:]]))
 
 
 def choose(

@@ -91,11 +91,11 @@ class Best(NamedTuple):
 
 def count_sets(groups: Integers, count: int) -> int:
     """Return the number of sets of `count` curves with at most one of each group."""
-    found = [1] + [0] * count
+    counts = [1] + [0] * count
     for size in np.bincount(groups).tolist():
         for k in range(count, 0, -1):
-            found[k] += size * found[k - 1]
-    return found[count]
+            counts[k] += size * counts[k - 1]
+    return counts[count]
 
 
 def all_tried(groups: Integers, count: int) -> bool:
@@ -118,18 +118,18 @@ def best(problem: SubsetProblem, seed: int, progress: Callable[[int], object] = 
     """
     if all_tried(problem.groups, problem.count):
         return _best_of_all(problem, progress)
-    found: Best | None = None
+    best_set: Best | None = None
     rng = np.random.default_rng(seed)
     for start in range(SEARCH_STARTS):
         members = [] if start == 0 else [int(rng.integers(len(problem.curves)))]
         while len(members) < problem.count:
             members.append(_added(problem, members)[0])
         one = _exchanged(problem, members)
-        if one.better(found):
-            found = one
+        if one.better(best_set):
+            best_set = one
         progress(1)
-    assert found is not None
-    return found
+    assert best_set is not None
+    return best_set
 
 
 def judge(problem: SubsetProblem, sums: Reals, count: int, least: Reals, most: Reals) -> Judged:
@@ -224,5 +224,5 @@ def _added(problem: SubsetProblem, members: list[int]) -> tuple[int, float, floa
     sums = problem.curves[members].sum(axis=0) + problem.curves[free]
     own, those = problem.log_factors[members], problem.log_factors[free]
     least, most = np.minimum(those, own.min(initial=inf)), np.maximum(those, own.max(initial=-inf))
-    found = _picked(free[:, None], judge(problem, sums, len(members) + 1, least, most))
-    return int(found.members[0]), found.excess, found.rms, found.common
+    chosen = _picked(free[:, None], judge(problem, sums, len(members) + 1, least, most))
+    return int(chosen.members[0]), chosen.excess, chosen.rms, chosen.common

@@ -84,18 +84,20 @@ def wrong_points(periods: Reals, sa: Reals) -> list[tuple[int, str]]:
     """Return the invalid points of a spectrum, counted from 0, each with a message."""
     if periods.shape != sa.shape or periods.ndim != 1:
         return [(min(periods.size, sa.size), "a period without an ordinate, or an ordinate without a period")]
-    found = []
+    problems = []
     for k, (period, value) in enumerate(zip(periods.tolist(), sa.tolist(), strict=True)):
         before = periods[k - 1] if k else -math.inf
         if not 0 <= period < math.inf:
-            found.append((k, f"the period is {period:g} s, it must not be negative"))
+            problems.append((k, f"the period is {period:g} s, it must not be negative"))
         elif period == before:
-            found.append((k, f"the period {period:g} s occurs twice: give one ordinate per period"))
+            problems.append((k, f"the period {period:g} s occurs twice: give one ordinate per period"))
         elif period < before:
-            found.append((k, f"the period {period:g} s is less than the {before:g} s before it: periods must increase"))
+            problems.append(
+                (k, f"the period {period:g} s is less than the {before:g} s before it: periods must increase")
+            )
         if not 0 <= value < math.inf:
-            found.append((k, f"the ordinate is {value:g}, it must not be negative"))
-    return found or ([(periods.size, "at least two are needed")] if periods.size < 2 else [])
+            problems.append((k, f"the ordinate is {value:g}, it must not be negative"))
+    return problems or ([(periods.size, "at least two are needed")] if periods.size < 2 else [])
 
 
 def read_target(path: Path) -> TargetSpectrum:
@@ -136,13 +138,13 @@ def _unit(file: str, number: int, line: str) -> str | None:
         hint = "turn frequencies or other units into periods in s first, the shortest in the first line"
         raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
     said = cells[1] if len(cells) > 1 else ""
-    found = {canonical(word) for word in _BRACKETS.findall(said)} - {None} or set(header_units(said))
-    if not found and _BARE_G.search(said):
-        found = {"g"}
-    if len(found) == 1:
-        return found.pop()
+    units = {canonical(word) for word in _BRACKETS.findall(said)} - {None} or set(header_units(said))
+    if not units and _BARE_G.search(said):
+        units = {"g"}
+    if len(units) == 1:
+        return units.pop()
     named = [word for word in _BRACKETS.findall(said) if word.lower() not in ("", "-", "s", "sec")]
-    if found or named:
+    if units or named:
         message = f"the heading gives '{(named or ['more than one unit'])[-1]}', no unit of acceleration known here"
         hint = f"ordinates are in one of: {CHOICES}; without a unit in g"
         raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))

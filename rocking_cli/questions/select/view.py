@@ -97,8 +97,8 @@ def view(results: ShownSet) -> View:
 
 def data(results: ShownSet) -> dict[str, Any]:
     """Return a set as plain data."""
-    found, wanted = results.found, results.found.wanted
-    ratio = found.ratio
+    selection, wanted = results.found, results.found.wanted
+    ratio = selection.ratio
     return {
         "target": results.target.name,
         "band": list(wanted.band),
@@ -106,22 +106,22 @@ def data(results: ShownSet) -> dict[str, Any]:
         "damping": wanted.damping,
         "seed": wanted.seed,
         "one_per": wanted.one_per,
-        "silent": found.silent,
-        "exact": found.exact,
-        "fits": found.fits,
+        "silent": selection.silent,
+        "exact": selection.exact,
+        "fits": selection.fits,
         "least": float(ratio.min()),
         "most": float(ratio.max()),
         "records": [data_of(RECORDS, each) for each in _chosen(results)],
         "spectrum": {
-            "period": found.candidates.periods.tolist(),
-            "target": found.candidates.target.tolist(),
-            "mean": found.mean.tolist(),
+            "period": selection.candidates.periods.tolist(),
+            "target": selection.candidates.target.tolist(),
+            "mean": selection.mean.tolist(),
         },
         "left_out": [
             *({"file": file, "name": None, "why": "it cannot be used"} for file in results.unusable),
             *(
-                {"file": results.files[k], "name": found.candidates.motions[k].name, "why": _why(found, needed)}
-                for k, needed in found.left_out.items()
+                {"file": results.files[k], "name": selection.candidates.motions[k].name, "why": _why(selection, needed)}
+                for k, needed in selection.left_out.items()
             ),
         ],
         "verdict": verdict(results),
@@ -130,13 +130,13 @@ def data(results: ShownSet) -> dict[str, Any]:
 
 def table(results: ShownSet) -> dict[str, Sequence[object]]:
     """Return the columns of the spectra: the target, the mean, and each scaled record."""
-    found = results.found
+    selection = results.found
     names = [each.motion.name for each in _chosen(results)]
     return {
-        "period [s]": found.candidates.periods.tolist(),
-        "target Sa [g]": found.candidates.target.tolist(),
-        "mean Sa [g]": found.mean.tolist(),
-        **{f"Sa of {name} [g]": each.tolist() for name, each in zip(names, found.spectra, strict=True)},
+        "period [s]": selection.candidates.periods.tolist(),
+        "target Sa [g]": selection.candidates.target.tolist(),
+        "mean Sa [g]": selection.mean.tolist(),
+        **{f"Sa of {name} [g]": each.tolist() for name, each in zip(names, selection.spectra, strict=True)},
     }
 
 
@@ -148,25 +148,25 @@ def title(results: ShownSet) -> str:
 
 def verdict(results: ShownSet) -> str:
     """Return sentences on whether the mean lies within the limits, its extremes, and the periods outside."""
-    found, wanted = results.found, results.found.wanted
-    periods, ratio = found.candidates.periods, found.ratio
+    selection, wanted = results.found, results.found.wanted
+    periods, ratio = selection.candidates.periods, selection.ratio
     low, high = wanted.within
     least, most = int(ratio.argmin()), int(ratio.argmax())
-    count = len(found.chosen)
+    count = len(selection.chosen)
     whose = "The spectrum" if count == 1 else f"The mean of the {count} spectra"
     where = f"at {periods.size} periods from {wanted.band[0]:g} to {wanted.band[1]:g} s"
     range_ = (
         f"between {ratio_in_words(float(ratio[least]), wanted.within)} times the target, at {periods[least]:.3g} s, "
         f"and {ratio_in_words(float(ratio[most]), wanted.within)} times, at {periods[most]:.3g} s"
     )
-    if found.fits:
+    if selection.fits:
         return f"{whose} fits: {where} it lies {range_}, within the limits of {low:g} and {high:g}."
     missed = [
         f"{side} {limit:g} times the target {_spans(periods, mask)}"
-        for side, limit, mask in (("below", low, found.too_low), ("above", high, found.too_high))
+        for side, limit, mask in (("below", low, selection.too_low), ("above", high, selection.too_high))
         if mask.any()
     ]
-    best = "No set fits" if found.exact else "No set within the limits was found"
+    best = "No set fits" if selection.exact else "No set within the limits was found"
     nearest = "record" if count == 1 else "set"
     return (
         f"{best}. {whose} of the nearest {nearest} lies {range_}: that is {', and '.join(missed)}. More records to "
@@ -176,11 +176,15 @@ def verdict(results: ShownSet) -> str:
 
 def search(results: ShownSet) -> str:
     """Return a sentence on how the set was found, and so how good it is."""
-    found = results.found
-    if found.exact:
-        one = "the only possible set" if found.sets == 1 else f"the best of all {found.sets:,} sets"
+    selection = results.found
+    if selection.exact:
+        one = "the only possible set" if selection.sets == 1 else f"the best of all {selection.sets:,} sets"
         return f"This is {one}."
-    count = f"{found.sets:,}" if found.sets < 1e6 else f"{found.sets:.3g}".replace("e+0", "e").replace("e+", "e")
+    count = (
+        f"{selection.sets:,}"
+        if selection.sets < 1e6
+        else f"{selection.sets:.3g}".replace("e+0", "e").replace("e+", "e")
+    )
     return (
         f"This is the best set found by {SEARCH_STARTS} searches among {count} sets, which are too many to try all; "
         "another "
@@ -200,9 +204,9 @@ def ratio_in_words(value: float, within: tuple[float, float]) -> str:
 
 
 def _chosen(results: ShownSet) -> list[_Chosen]:
-    found = results.found
-    pairs = zip(found.chosen.tolist(), found.factors.tolist(), strict=True)
-    return [_Chosen(results.files[k], found.candidates.motions[k], factor) for k, factor in pairs]
+    selection = results.found
+    pairs = zip(selection.chosen.tolist(), selection.factors.tolist(), strict=True)
+    return [_Chosen(results.files[k], selection.candidates.motions[k], factor) for k, factor in pairs]
 
 
 def _ends(results: ShownSet) -> list[_Extreme]:
@@ -228,8 +232,10 @@ def _spans(periods: NDArray[np.float64], where: NDArray[np.bool_]) -> str:
 
 def _left_out(results: ShownSet) -> str:
     """Return a sentence on the records that could not be chosen; empty if there are none."""
-    found = results.found
-    said = [f"{found.candidates.motions[k].name}: {_why(found, each)}" for k, each in found.left_out.items()]
+    selection = results.found
+    said = [
+        f"{selection.candidates.motions[k].name}: {_why(selection, each)}" for k, each in selection.left_out.items()
+    ]
     if not said:
         return ""
     more = f"; and {len(said) - MAX_LISTED_RECORDS} more" if len(said) > MAX_LISTED_RECORDS else ""
@@ -246,11 +252,11 @@ def _why(found: RecordSet, needed: float | None) -> str:
 
 def _silent(results: ShownSet) -> str:
     """Return a sentence on the records whose file names no earthquake or station."""
-    found = results.found
-    if not found.silent:
+    selection = results.found
+    if not selection.silent:
         return ""
-    what = {"event": "earthquake", "station": "station"}[found.wanted.one_per]
-    count, those = len(found.candidates.motions), found.silent
+    what = {"event": "earthquake", "station": "station"}[selection.wanted.one_per]
+    count, those = len(selection.candidates.motions), selection.silent
     gives, each = ("gives", "it") if those == 1 else ("give", "each")
     whose = "The record" if count == 1 else f"{those} of {count} records"
     return f"{whose} {gives} no {what}; {each} counts as a separate {what}."

@@ -235,10 +235,10 @@ def histories(quick: bool) -> float:
 
 def _history(of: Rocker, motion: GroundMotion, name: ModelName) -> float:
     history = follow(of.structure.model(name), motion)
-    found = [history.uplift_time, *history.impacts[:MAX_COMPARED_IMPACTS, 0]]
+    times = [history.uplift_time, *history.impacts[:MAX_COMPARED_IMPACTS, 0]]
     if history.fell:
-        found.append(history.overturning_time)
-    return largest_difference(found, event_times(of, motion, name))
+        times.append(history.overturning_time)
+    return largest_difference(times, event_times(of, motion, name))
 
 
 def event_times(of: Rocker, motion: GroundMotion, name: ModelName) -> list[float]:
@@ -248,7 +248,7 @@ def event_times(of: Rocker, motion: GroundMotion, name: ModelName) -> list[float
     alpha, p, time, ground = of.alpha, of.p, motion.time, motion.acceleration / GRAVITY
     kappa = 1.0 if name == "linear1" else alpha / tan(alpha)
     k, t = _uplift(time, np.abs(ground), alpha if name == "linear1" else tan(alpha))
-    s, y, found, crossed = (-1 if ground[k + 1] > 0 else 1), [0.0, 0.0], [t], nan
+    s, y, impacts, crossed = (-1 if ground[k + 1] > 0 else 1), [0.0, 0.0], [t], nan
 
     def slopes(t: float, y: Any) -> tuple[float, float]:
         push = s * (ground[k] + (ground[k + 1] - ground[k]) * (t - time[k]) / motion.dt) if k + 1 < time.size else 0.0
@@ -256,7 +256,7 @@ def event_times(of: Rocker, motion: GroundMotion, name: ModelName) -> list[float
             return y[1], p**2 * (y[0] - alpha - kappa * push)
         return y[1], -(p**2) * (sin(alpha - y[0]) + push * cos(alpha - y[0]))
 
-    while len(found) <= MAX_COMPARED_IMPACTS:
+    while len(impacts) <= MAX_COMPARED_IMPACTS:
         stop = time[k + 1] if k + 1 < time.size else t + FREE_DURATION
         run = solve_ivp(
             slopes, (t, stop), y, "DOP853", events=_events(alpha), rtol=1e-12, atol=1e-14, max_step=0.02
@@ -265,13 +265,13 @@ def event_times(of: Rocker, motion: GroundMotion, name: ModelName) -> list[float
         crossed = passed[-1] if passed.size else crossed
         t, y = float(run.t[-1]), run.y[:, -1]
         if far.size:
-            return [*found, float(crossed)]
+            return [*impacts, float(crossed)]
         if impact.size:
-            found.append(t)
+            impacts.append(t)
             s, y = -s, [0.0, -of.eta * y[1]]
         else:
             k += 1
-    return found
+    return impacts
 
 
 def _uplift(time: Any, ground: Any, threshold: float) -> tuple[int, float]:
@@ -307,11 +307,11 @@ programme of the line of thrust), the others by Eq. 39 and a four-bar linkage th
 
 def blocks(quick: bool) -> float:
     """Return the largest relative deviation of a parameter of an equivalent block; quick or not, all are computed."""
-    found = []
+    deviations = []
     for structure, expected in _blocks():
         for side in (structure.equivalence.positive, structure.equivalence.negative):
-            found += [getattr(side, name) / value for name, value in expected.items()]
-    return largest_difference(found, np.ones(len(found)))
+            deviations += [getattr(side, name) / value for name, value in expected.items()]
+    return largest_difference(deviations, np.ones(len(deviations)))
 
 
 def _blocks() -> Iterator[tuple[Structure, dict[str, float]]]:
@@ -352,18 +352,18 @@ def neighbours(quick: bool) -> float:
     """
     of = block(0.7, 2.8)
     model = of.structure.model("nonlinear")
-    found, expected = [], []
+    computed, expected = [], []
     for x, deviation, around in (
         (1.02, 0.04, near.Neighbourhood(slenderness=0.0)),
         (1.06, 0.1, near.Neighbourhood(amplitude=0.0)),
     ):
         held = GroundMotion("held", 0.5, np.full(20, x * tan(of.alpha) * GRAVITY))
-        found.append(near.neighbours(model, held, around).overturned)
+        computed.append(near.neighbours(model, held, around).overturned)
         expected.append(normal(log(x) / deviation))
     for eta in (0.85, 0.9, 0.95):
-        found.append(float((near.Neighbourhood().drawn(model).eta[:, 0] < eta).mean()))
+        computed.append(float((near.Neighbourhood().drawn(model).eta[:, 0] < eta).mean()))
         expected.append(normal((eta - of.eta) / 0.05) / normal((1 - of.eta) / 0.05))
-    return largest_difference(found, expected)
+    return largest_difference(computed, expected)
 
 
 def openings(quick: bool) -> float:
@@ -374,13 +374,13 @@ def openings(quick: bool) -> float:
     A released block first slides when the shear force at its corner exceeds mu N, both by Newton's law.
     """
     cube = made("block", width=2.0, height=2.0, friction=0.2)
-    found = follow(cube.model("nonlinear"), GroundMotion("held", 0.01, np.full(60, -0.21 * GRAVITY)))
+    history = follow(cube.model("nonlinear"), GroundMotion("held", 0.01, np.full(60, -0.21 * GRAVITY)))
     slip = 0.005 * 2 * sqrt(2) * sin(pi / 8)
     of, mu, top = block(0.7, 2.8), 0.15, 0.95
     rough = made("block", width=0.7, height=2.8, friction=mu)
     released = follow(rough.model("nonlinear"), None, release=top)
     expected = [sqrt(2 * slip / (0.01 * GRAVITY)), of.fall(top * of.alpha, _sliding(of, hypot(0.35, 1.4), mu, top))]
-    return largest_difference([found.known_to, released.warned], expected)
+    return largest_difference([history.known_to, released.warned], expected)
 
 
 def joints(quick: bool) -> float:
@@ -398,7 +398,7 @@ def joints(quick: bool) -> float:
     turn, push = -(of.p**2) * sine, -(of.p**2) * cosine / GRAVITY  # rotation acceleration, by gravity and by u_g''
     for side, sign in enumerate((1, -1)):
         place, _, across, _ = model.joints.contacts[0, side]
-        found = model.joints.rows[:, side].reshape(cells, -1, 5, 4) @ 0.5 ** np.arange(4)
+        computed = model.joints.rows[:, side].reshape(cells, -1, 5, 4) @ 0.5 ** np.arange(4)
         normal, shear = GRAVITY + radius * sine * turn, sign * radius * cosine * turn
         expected = (
             (
@@ -410,7 +410,7 @@ def joints(quick: bool) -> float:
             ),
             (shear, 1 + radius * cosine * push, sign * radius * sine / inertia, shear / GRAVITY, 4 / (1 + 3 * sine**2)),
         )
-        worst = max(worst, largest_difference(found[:, [place, across]], np.array(expected).transpose(2, 0, 1)))
+        worst = max(worst, largest_difference(computed[:, [place, across]], np.array(expected).transpose(2, 0, 1)))
     return worst
 
 
@@ -438,9 +438,9 @@ def filters(quick: bool) -> float:
     worst = 0.0
     for kind, corner, f in (("highpass", 1.0, 0.8), ("highpass", 1.0, 2.0), ("lowpass", 4.0, 5.0), ("lowpass", 4.0, 2)):
         sine = np.sin(2 * pi * f * dt * np.arange(count))
-        found = process(GroundMotion("sine", dt, sine), [parse_step(kind, str(corner))]).acceleration
+        filtered = process(GroundMotion("sine", dt, sine), [parse_step(kind, str(corner))]).acceleration
         r = (tan(pi * f * dt) / tan(pi * corner * dt)) ** (8 if kind == "lowpass" else -8)
-        worst = max(worst, largest_difference(found[middle], sine[middle] / (1 + r)))
+        worst = max(worst, largest_difference(filtered[middle], sine[middle] / (1 + r)))
     return worst
 
 
@@ -468,8 +468,8 @@ def units(quick: bool) -> float:
     """Return the largest relative deviation of the size of a unit; quick or not, all are read."""
     if {kind: set(known) for kind, known in KINDS.items()} != {kind: set(known) for kind, known in SIZES.items()}:
         return inf
-    found = [read(f"1 {unit}", next(iter(sizes))) / size for sizes in SIZES.values() for unit, size in sizes.items()]
-    return largest_difference(found, np.ones(len(found)))
+    ratios = [read(f"1 {unit}", next(iter(sizes))) / size for sizes in SIZES.values() for unit, size in sizes.items()]
+    return largest_difference(ratios, np.ones(len(ratios)))
 
 
 # --- two results of the same code ------------------------------------------------------------------------------------
@@ -538,8 +538,8 @@ def _computed(quick: bool) -> Iterator[NDArray[Any]]:
     free, two = block(0.7, 2.8).structure, made("wall", thickness=0.3, height=3.0)
     tied = made("block", width=0.7, height=2.8, mass=1000.0, ties=[TIE])
     amplitudes, periods = np.geomspace(2.0, 20.0, 50), np.geomspace(3.0, 0.3, 50)
-    found = exact_many(free.equivalence, Sine(1.0, 1.0), amplitudes, periods, kappa=2, gravity=GRAVITY)
-    yield from (getattr(found, name) for name in OUTCOME)
+    responses = exact_many(free.equivalence, Sine(1.0, 1.0), amplitudes, periods, kappa=2, gravity=GRAVITY)
+    yield from (getattr(responses, name) for name in OUTCOME)
     for motion in MOTIONS[:1] if quick else MOTIONS:
         both = replace(motion, vertical=GroundMotion("vertical", 0.07, motion.acceleration[::-1] / 2))
         for model in (*free.models(("nonlinear", "linear2")), two.model("nonlinear"), tied.model("nonlinear")):
@@ -627,7 +627,7 @@ def records_by_obspy(quick: bool) -> float:
 
 def _records(files: Mapping[str, RecordFile]) -> float:
     """Raises `RockingError`, with all files that are not read, or not as their format."""
-    found, wrong = 0.0, []
+    largest, wrong = 0.0, []
     for name, file in files.items():
         try:
             motion = read_record(file.path, **file.options)
@@ -636,7 +636,7 @@ def _records(files: Mapping[str, RecordFile]) -> float:
             continue
         if motion.format != file.title or not isclose(motion.dt, DT, rel_tol=1e-6):
             wrong.append(f"{name}: read as {motion.format} with an interval of {motion.dt:g} s")
-        found = max(found, largest_difference(motion.acceleration / file.unit, SAMPLES) / max(SAMPLES))
+        largest = max(largest, largest_difference(motion.acceleration / file.unit, SAMPLES) / max(SAMPLES))
     if wrong:
         raise RockingError("; ".join(wrong))
-    return found
+    return largest

@@ -48,12 +48,12 @@ class Check:
     def run(self, *, quick: bool) -> Checked:
         """Run the check; its errors become part of the result."""
         began = monotonic()
-        found, error = None, None
+        deviation, error = None, None
         try:
-            found = float(self.deviation(quick))
+            deviation = float(self.deviation(quick))
         except Exception as raised:  # any fault of the installation
             error = raised
-        return Checked(self, found, error, monotonic() - began)
+        return Checked(self, deviation, error, monotonic() - began)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,8 +138,8 @@ def _of(name: str, quick: bool) -> float:
     checks = import_module(f"{__package__}.checks")
     if name not in NO_KERNEL and checks.another_way():
         raise NotRun("the machine code is broken, see `kernels`: Python would compute this instead")
-    found: float = getattr(checks, name)(quick)
-    return found
+    deviation: float = getattr(checks, name)(quick)
+    return deviation
 
 
 def _check(name: str, meaning: str, unit: str, limit: float) -> Check:
@@ -203,8 +203,8 @@ def run_checks(
     began : float
         Reading of `time.monotonic` at the beginning [s].
     """
-    found = []
+    results = []
     for check in checks:
-        found.append(check.run(quick=quick))
-        progress(1, int(found[-1].passed is False))
-    return SelfCheck(tuple(found), quick, monotonic() - began)
+        results.append(check.run(quick=quick))
+        progress(1, int(results[-1].passed is False))
+    return SelfCheck(tuple(results), quick, monotonic() - began)

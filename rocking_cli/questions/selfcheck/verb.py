@@ -42,6 +42,6 @@ def selfcheck(*, quick: bool = False, watch: Watcher = SILENT) -> Answer[SelfChe
 
     began = monotonic()
     with watch.progress(len(CHECKS), "checks") as advance:
-        found = run_checks(CHECKS, quick=quick, progress=advance, began=began)
+        results = run_checks(CHECKS, quick=quick, progress=advance, began=began)
     figure = no_plot("the checks of an installation have no plot", "`to_frame` has them as a table")
-    return Answer("selfcheck", found, view(found), partial(columns, found), figure)
+    return Answer("selfcheck", results, view(results), partial(columns, results), figure)

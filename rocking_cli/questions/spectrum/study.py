@@ -109,13 +109,17 @@ def shape_of(structure: Structure, model: ModelName, eta: float | None = None) -
         If the structure does not stand, or its restitution is not known.
     """
     # A full sine is equal in both directions: the weakest one uplifts that with the smaller uplift acceleration.
-    found = pulsed_model(structure, model, parse_shape("sine"), eta=eta)
+    pulsed = pulsed_model(structure, model, parse_shape("sine"), eta=eta)
     mechanism = structure.mechanism
     given = mechanism if eta is None else with_restitution(mechanism, eta)
-    sizes = Sizes(given, model, found.direction, structure.opening)
+    sizes = Sizes(given, model, pulsed.direction, structure.opening)
     own = None if sizes.are_alike() else sizes
     return SpectrumShape(
-        found, own=own, hung=bool(mechanism.attached), bodies=len(mechanism.bodies()), caution=mechanism.own_caution()
+        pulsed,
+        own=own,
+        hung=bool(mechanism.attached),
+        bodies=len(mechanism.bodies()),
+        caution=mechanism.own_caution(),
     )
 
 
@@ -231,8 +235,8 @@ class Spectrum:
 
         It is NaN at sizes with too few motions, except for the median.
         """
-        found = fractile(self.peak_ratio, q)
-        return found if q == 0.5 else np.where(self.followed < FEWEST, np.nan, found)
+        peaks = fractile(self.peak_ratio, q)
+        return peaks if q == 0.5 else np.where(self.followed < FEWEST, np.nan, peaks)
 
     def fractile_overturns(self, q: float) -> Bools:
         """Return whether the q-fractile overturns even if no unknown outcome does, shape (n,)."""
@@ -305,12 +309,12 @@ def spectra(
     """
     if not motions:
         raise InputError("no ground motion was given")
-    found = []
+    results = []
     for shape in shapes:
         scales, signs = _scales(shape, periods), _signs(shape, polarities)
         follow = _of_one_shape if shape.own is None else _each_its_own
-        found.append(Spectrum(shape, scales, *_worst(follow(shape, scales, motions, signs, threads, progress))))
-    return found
+        results.append(Spectrum(shape, scales, *_worst(follow(shape, scales, motions, signs, threads, progress))))
+    return results
 
 
 def _worst(found: Outcomes) -> tuple[Reals, Reals]:
@@ -336,8 +340,8 @@ def _of_one_shape(
     This is possible if sizes differ only in their time scale, because the kernel scales the model to each size.
     """
     runs = Runs.every(1, len(motions), polarities=signs, sizes=scales.tolist())
-    found = _outcomes([shape.structure.model], motions, runs, threads, progress)
-    return found.by_field(lambda values: values.reshape(-1, len(signs), scales.size))
+    outcomes = _outcomes([shape.structure.model], motions, runs, threads, progress)
+    return outcomes.by_field(lambda values: values.reshape(-1, len(signs), scales.size))
 
 
 def _each_its_own(

@@ -116,9 +116,9 @@ def spectrum(
     chosen = asked.gather(2 * pi / smallest, watch, "the smallest size")
     scaled = [each.motion.scaled(each.factor) for each in chosen]
     with watch.progress(study.count_histories(shapes, periods, len(chosen), signs), "histories") as progress:
-        found = study.spectra(shapes, periods, scaled, polarities=signs, threads=jobs, progress=progress)
-    results = views.ShownSpectra(found, chosen, tuple(sorted({*fractiles, 0.5})), str(polarity))
+        result = study.spectra(shapes, periods, scaled, polarities=signs, threads=jobs, progress=progress)
+    results = views.ShownSpectra(result, chosen, tuple(sorted({*fractiles, 0.5})), str(polarity))
     if unfollowed := views.lost(results):
         watch.incomplete(unfollowed)
-    figure = drawn("questions.spectrum.picture.draw_spectra", found, results.fractiles, views.title(results))
-    return Answer("spectrum", found, views.view(results), partial(views.table, results), figure)
+    figure = drawn("questions.spectrum.picture.draw_spectra", result, results.fractiles, views.title(results))
+    return Answer("spectrum", result, views.view(results), partial(views.table, results), figure)

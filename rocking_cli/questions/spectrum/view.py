@@ -98,18 +98,18 @@ def title(results: ShownSpectra) -> str:
 
 def lost(results: ShownSpectra) -> str:
     """List the responses that could not be simulated; empty if all could."""
-    found = [
+    failures = [
         f"{each.shape.structure.name} at 2 pi/p = {each.periods[k]:.4g} s under {results.motions[m].motion.name}"
         for each in results.spectra
         for m, k in np.argwhere(np.isnan(each.peak_ratio)).tolist()
     ]
-    if not found:
+    if not failures:
         return ""
-    more = f" and {len(found) - MAX_LISTED_FAILURES} more" if len(found) > MAX_LISTED_FAILURES else ""
+    more = f" and {len(failures) - MAX_LISTED_FAILURES} more" if len(failures) > MAX_LISTED_FAILURES else ""
     every = sum(each.peak_ratio.size for each in results.spectra)
     return (
-        f"{len(found)} of {every} responses could not be simulated and are left out: "
-        f"{'; '.join(found[:MAX_LISTED_FAILURES])}{more}"
+        f"{len(failures)} of {every} responses could not be simulated and are left out: "
+        f"{'; '.join(failures[:MAX_LISTED_FAILURES])}{more}"
     )
 
 

@@ -151,10 +151,10 @@ class StructureTable(Sequence["TableRow"]):
                 self._bases[named] = document.data
             except InputError as error:
                 self._bases[named] = error
-        found = self._bases[named]
-        if isinstance(found, InputError):
-            raise found
-        return found
+        base = self._bases[named]
+        if isinstance(base, InputError):
+            raise base
+        return base
 
     def _columns(self) -> list[FieldColumn]:
         columns, problems, taken = [], [], dict[tuple[str, ...], str]()
@@ -219,13 +219,13 @@ class StructureTable(Sequence["TableRow"]):
 
     def _mechanisms(self) -> set[str]:
         """Return the names of the mechanisms in the rows, known or not."""
-        found = {self.text(row, MECHANISM_COLUMN) for row in self.sheet.rows}
+        mechanisms = {self.text(row, MECHANISM_COLUMN) for row in self.sheet.rows}
         for named in {self.base_of(row) for row in self.sheet.rows if not self.text(row, MECHANISM_COLUMN)} - {""}:
             try:
-                found.add(str(self.base(named).get(MECHANISM_COLUMN)))
+                mechanisms.add(str(self.base(named).get(MECHANISM_COLUMN)))
             except InputError:  # reported for each row of this file
                 continue
-        return found - {""}
+        return mechanisms - {""}
 
 
 @dataclass(frozen=True)

@@ -291,30 +291,30 @@ def _part(
     """Return the results of the structures from index `first` to before `stop`, in any process."""
     ready: dict[int, Structure] = {}
     models: dict[int, Model] = {}
-    found: list[Surveyed | Bad | None] = [None] * (stop - first)
+    rows: list[Surveyed | Bad | None] = [None] * (stop - first)
     for k, place in enumerate(range(first, stop)):
         entry = entries[place]
         try:
             ready[k] = Structure(entry.make(), opening=opening)
-            found[k] = _alone(place, entry, ready[k], site)
+            rows[k] = _alone(place, entry, ready[k], site)
             if _may_lift(ready[k], motions):
                 models[k] = ready[k].model("nonlinear")
         except RockingError as error:
             ready.pop(k, None)
-            found[k] = Bad(place + 1, entry.line, entry.name, _placed(error, entry))
+            rows[k] = Bad(place + 1, entry.line, entry.name, _placed(error, entry))
     if motions:
         under = _under(list(models.values()), motions, polarities)
         answers = dict(zip(models, under, strict=True))
         for k, structure in ready.items():
-            one = found[k]
+            one = rows[k]
             assert isinstance(one, Surveyed)
             over = "phi_cr" if all(side.phi_cr is not None for side in structure.statics) else "limit"
             answer = answers.get(k, Under(0.0, 0.0, motions[0].name, over))
             if isinstance(answer, SolverError):
-                found[k] = Bad(one.row, entries[first + k].line, one.name, answer)
+                rows[k] = Bad(one.row, entries[first + k].line, one.name, answer)
             else:
-                found[k] = replace(one, under=answer)
-    return found
+                rows[k] = replace(one, under=answer)
+    return rows
 
 
 def _placed(error: RockingError, entry: SurveyEntry) -> RockingError:
@@ -333,7 +333,7 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile 
     direction, side = mechanism.sides[k], sides[k]
     why = structure.why_no_block
     block = structure.equivalence[direction] if why is None else None
-    found = verify(structure, site) if site is not None else None
+    verification = verify(structure, site) if site is not None else None
     return Surveyed(
         place + 1,
         entry.line,
@@ -350,9 +350,9 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile 
         why.removeprefix(f"{structure.name}: ") if why is not None else None,
         "; ".join(doubts(mechanism)) or None,
         mechanism.own_caution() or None,
-        ratio=found.ratio if found is not None else None,
-        verified=found.conclusion if found is not None else None,
-        unprinted=found is not None and found.unprinted,
+        ratio=verification.ratio if verification is not None else None,
+        verified=verification.conclusion if verification is not None else None,
+        unprinted=verification is not None and verification.unprinted,
     )
 
 

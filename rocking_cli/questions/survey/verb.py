@@ -104,18 +104,18 @@ def survey(
     shaken = [each.motion.scaled(each.factor) for each in given.gather(0.0, watch)] if given else []
     count = _processes(len(entries), bool(shaken) or where is not None) if processes else None
     with watch.progress(len(entries), "structures") as advance:
-        found = study(
+        result = study(
             entries, shaken, signs, site=where, opening=opening, threads=threads, processes=count, progress=advance
         )
-    _warn_of_sizes(found, watch)
-    if page is not None and found.rows:
+    _warn_of_sizes(result, watch)
+    if page is not None and result.rows:
         file = getattr(entries, "sheet", None)
-        _write_page(Path(page), found, Path(file.file).name if file is not None else "structures", watch)
+        _write_page(Path(page), result, Path(file.file).name if file is not None else "structures", watch)
     figure, files = (
-        drawn("questions.survey.picture.draw_survey", found, title(found)),
-        partial(blocks, found, for_spreadsheets=True),
+        drawn("questions.survey.picture.draw_survey", result, title(result)),
+        partial(blocks, result, for_spreadsheets=True),
     )
-    return Answer("survey", found, view(found, top), partial(columns, found), figure, files)
+    return Answer("survey", result, view(result, top), partial(columns, result), figure, files)
 
 
 def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:

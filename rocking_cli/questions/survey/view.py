@@ -49,8 +49,8 @@ def _limit_state(row: RankedStructure) -> str | None:
 
 
 def _not_counted(row: RankedStructure) -> str | None:
-    found = row.found.verified
-    return ", ".join(each.name for each in found.left_out) or None if found is not None else None
+    verified = row.found.verified
+    return ", ".join(each.name for each in verified.left_out) or None if verified is not None else None
 
 
 def _peak(peak: float) -> str:

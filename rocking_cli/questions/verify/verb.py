@@ -122,20 +122,22 @@ def verify(
 
         sheets.check(Path(sheet), known, language)
     ready = structure_of(structure, watch, opening)
-    found = study(ready, known, None if control is None else control_at(ready.mechanism, *control))
+    verification = study(ready, known, None if control is None else control_at(ready.mechanism, *control))
     chosen: list[Scaled] = []
     if given:
         chosen = given.gather(ready.growth, watch)
         with watch.progress(len(chosen), "records") as advance:
             scaled = [each.motion.scaled(each.factor) for each in chosen]
-            found = with_histories(found, ready, known, Histories(scaled, signs, state, on_floor, advance))
+            verification = with_histories(
+                verification, ready, known, Histories(scaled, signs, state, on_floor, advance)
+            )
     if sheet is not None:
         source = sheets.SheetOrigin.of(origin or "rocking_cli.verify(...)", ready)
         title = sheets.Head(project, place, author, logo).block(source, language)
-        content = sheets.sheet_for(found, known, site, chosen, language, title, source)
-        sheets.write(Path(sheet), content, found, watch)
-    shown = view(found, known.site.name, every_step=every_step)
-    return Answer("verification", found, shown, partial(table, found), partial(_figure, found))
+        content = sheets.sheet_for(verification, known, site, chosen, language, title, source)
+        sheets.write(Path(sheet), content, verification, watch)
+    shown = view(verification, known.site.name, every_step=every_step)
+    return Answer("verification", verification, shown, partial(table, verification), partial(_figure, verification))
 
 
 def _figure(found: Verification) -> Figure:

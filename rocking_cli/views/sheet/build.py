@@ -66,13 +66,13 @@ class SheetOfCode:
 
 def sheet_of(site: SiteFile) -> SheetOfCode:
     """Return the sheet of the code of a site. Raises `InputError` if it has none."""
-    found = code_of(site).sheet()
-    if found is None:
+    builder = code_of(site).sheet()
+    if builder is None:
         hint = "`rocking verify` prints the result without one"
         raise InputError(Problem(f"{site.site.code} has no calculation sheet", site.document.file, hint=hint))
-    if not isinstance(found, SheetOfCode):
+    if not isinstance(builder, SheetOfCode):
         raise PluginError(f"the code {site.site.code} failed in sheet: it must return a SheetOfCode or None")
-    return found
+    return builder
 
 
 def sheet(found: Verification, site: SiteFile, language: Language, title: TitleBlock, made: SheetSources) -> Sheet:

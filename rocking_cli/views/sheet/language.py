@@ -72,12 +72,12 @@ class Language:
             Values of the slots: numbers, names, remarks, or lists of these. Marks of formulas in names are escaped.
         """
         key, values = (text.key, dict(text.values)) if isinstance(text, Remark) else (text, values)
-        found = self.texts.get(key, key)
-        found = in_plain(found) if self.is_plain else found
+        translated = self.texts.get(key, key)
+        translated = in_plain(translated) if self.is_plain else translated
         if not values:
-            return found
+            return translated
         written = _WithComma() if self.key in WITH_COMMA else Formatter()
-        return written.format(found, **{name: self._value(value) for name, value in values.items()})
+        return written.format(translated, **{name: self._value(value) for name, value in values.items()})
 
     def _value(self, value: Any) -> Any:
         if isinstance(value, Remark):
@@ -101,12 +101,12 @@ class Language:
         self, formula: Formula, value: float, names: Mapping[str, Any] | None = None, /, **numbers: Any
     ) -> Working:
         """Return a line of a calculation by a formula of the code, in this language; see `Formula.working`."""
-        found = formula.working(value, names, write=self.number, marks=self.formula, **numbers)
+        working = formula.working(value, names, write=self.number, marks=self.formula, **numbers)
         return replace(
-            found,
+            working,
             meaning=self(formula.meaning, **(names or {})),
-            unit=self.texts.get(found.unit, found.unit),
-            clause=self.texts.get(found.clause, found.clause),
+            unit=self.texts.get(working.unit, working.unit),
+            clause=self.texts.get(working.clause, working.clause),
         )
 
     def formula(self, formula: str) -> str:
