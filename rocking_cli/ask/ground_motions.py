@@ -149,10 +149,10 @@ class Motions:
                     raise
                 watch.leave_out(error)
                 continue
-            name, taken = one.motion.name, {other.motion.name for other in chosen}
-            if name in taken and isinstance(source, Listed):
+            name, used = one.motion.name, {other.motion.name for other in chosen}
+            if name in used and isinstance(source, Listed):
                 name = f"{name} ({source.path.parent})"
-            if name in taken:
+            if name in used:
                 name = f"{name} ({place + 1})"
             chosen.append(one._replace(motion=replace(one.motion, name=name)))
         if not chosen:
@@ -229,11 +229,11 @@ class Motions:
     def check(self, *, with_vertical: bool = False) -> None:
         """Raise `InputError` if an argument has no effect; unit and interval also apply to a vertical component."""
         of_both = ("units", "dt") if with_vertical else ()
-        given = [name for name in self.reading.options if name not in (*of_both, "floor")]
-        given += [step.name for step in self.reading.steps]
-        if given and not self.has_records:
-            verb = "describes" if len(given) == 1 else "describe"
-            raise InputError(f"{' and '.join(f'`{name}`' for name in given)} {verb} a record, and no record is given")
+        extra = [name for name in self.reading.options if name not in (*of_both, "floor")]
+        extra += [step.name for step in self.reading.steps]
+        if extra and not self.has_records:
+            verb = "describes" if len(extra) == 1 else "describe"
+            raise InputError(f"{' and '.join(f'`{name}`' for name in extra)} {verb} a record, and no record is given")
 
 
 def unprocessed(motion: Scaled) -> GroundMotion | None:

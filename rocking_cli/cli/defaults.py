@@ -177,8 +177,8 @@ def blame(error: click.BadParameter) -> InputError | None:
 
 def whose(message: str, context: click.Context | None) -> str:
     """Return sentences on the options named in an error message that were not typed; empty if all were."""
-    taken = of_run(context).values() if context is not None else ()
-    named = [each for each in taken if re.search(rf"--{each.option}(?![\w-])", message)]
+    applied = of_run(context).values() if context is not None else ()
+    named = [each for each in applied if re.search(rf"--{each.option}(?![\w-])", message)]
     return "".join(f" --{each.option} {each.value} was not typed; it is a default from {each.key}." for each in named)
 
 

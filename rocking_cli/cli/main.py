@@ -57,10 +57,10 @@ class _Context(_Helped):
 
 def _check_environment() -> None:
     """Refuse a date of build that no library can read. Raises `InputError`."""
-    given = os.environ.get("SOURCE_DATE_EPOCH", "0")
-    if not (given.isascii() and given.isdecimal() and len(given) <= MAX_EPOCH_DIGITS):
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "0")
+    if not (epoch.isascii() and epoch.isdecimal() and len(epoch) <= MAX_EPOCH_DIGITS):
         hint = "unset this environment variable, or give seconds since 1970"
-        what = f"must be a whole number of at most {MAX_EPOCH_DIGITS} digits, got {cut(repr(given))}"
+        what = f"must be a whole number of at most {MAX_EPOCH_DIGITS} digits, got {cut(repr(epoch))}"
         raise InputError(Problem(what, field="SOURCE_DATE_EPOCH", hint=hint))
 
 

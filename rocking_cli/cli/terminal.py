@@ -160,9 +160,9 @@ def width() -> int | None:
 
 def _columns(stream: TextIO) -> int | None:
     """Return the columns of a terminal; COLUMNS in the environment has priority, as in other programs."""
-    said = os.environ.get("COLUMNS", "")
-    if said.isdecimal() and int(said) > 0:
-        return int(said)
+    columns = os.environ.get("COLUMNS", "")
+    if columns.isdecimal() and int(columns) > 0:
+        return int(columns)
     try:
         return os.get_terminal_size(stream.fileno()).columns or DEFAULT_WIDTH
     except (OSError, ValueError):  # not a terminal, or one of unknown size

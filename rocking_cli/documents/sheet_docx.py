@@ -55,10 +55,10 @@ def render(sheet: Sheet, mechanism: Mechanism) -> bytes:
     check_package()
     from docx import Document
 
-    made = _Writer(Document(), sheet, mechanism)
-    made.write()
+    writer = _Writer(Document(), sheet, mechanism)
+    writer.write()
     stream = BytesIO()
-    made.document.save(stream)
+    writer.document.save(stream)
     return stream.getvalue()
 
 

@@ -153,16 +153,16 @@ def _draw_arc(axes: Axes, angle: Angle, panel: Panel, labels: Labels) -> tuple[f
 def _side(each: Length, low: complex, high: complex) -> str | None:
     if each.direction is not None:
         return None
-    near = EDGE_TOLERANCE * abs(high - low)
+    tolerance = EDGE_TOLERANCE * abs(high - low)
     z = (each.start, each.end)
     if abs(each.start.real - each.end.real) < 1e-9 * abs(high - low):
-        if min(abs(p.real - low.real) for p in z) <= near:
+        if min(abs(p.real - low.real) for p in z) <= tolerance:
             return "left"
-        return "right" if min(abs(p.real - high.real) for p in z) <= near else None
+        return "right" if min(abs(p.real - high.real) for p in z) <= tolerance else None
     if abs(each.start.imag - each.end.imag) < 1e-9 * abs(high - low):
-        if min(abs(p.imag - low.imag) for p in z) <= near:
+        if min(abs(p.imag - low.imag) for p in z) <= tolerance:
             return "below"
-        return "above" if min(abs(p.imag - high.imag) for p in z) <= near else None
+        return "above" if min(abs(p.imag - high.imag) for p in z) <= tolerance else None
     return None
 
 

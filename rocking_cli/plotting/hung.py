@@ -75,22 +75,22 @@ def symbols(picture: Picture, rotation: float, scale: float) -> Symbols:
 
 def draw_hung(axes: Axes, picture: Picture, rotation: float, panel: Panel, labels: Labels) -> None:
     """Draw the loads and ties of a structure, and reserve their space against labels."""
-    shown = symbols(picture, rotation, panel.scale)
-    for line, loose, behind in shown.lines:
+    drawn = symbols(picture, rotation, panel.scale)
+    for line, loose, behind in drawn.lines:
         dashes, order = style.SLACK if loose else "-", BACKGROUND_ZORDER if behind else 4.5
         axes.plot(line.real, line.imag, linestyle=dashes, zorder=order, **style.TIE)
         labels.keep_off(line)
-    for at, behind in shown.anchors:
+    for at, behind in drawn.anchors:
         square = at + ANCHOR_HALF_WIDTH / panel.scale * SQUARE
         order = BACKGROUND_ZORDER if behind else 5
         axes.add_patch(
             Polygon(xy(square), facecolor=style.EARTH, edgecolor=style.INK, linewidth=style.THIN, zorder=order)
         )
         labels.keep_off([at], MARK_COST)
-    for outline in shown.weights:
+    for outline in drawn.weights:
         axes.add_patch(Polygon(xy(outline), facecolor=style.INK, edgecolor="white", linewidth=style.THIN, zorder=5))
         labels.keep_off([*outline, outline[0]], MARK_COST)
-    for tail, tip in shown.forces:
+    for tail, tip in drawn.forces:
         axes.annotate(
             "", (tip.real, tip.imag), (tail.real, tail.imag), annotation_clip=False, zorder=6,
             arrowprops={
@@ -148,9 +148,9 @@ def margins(picture: Picture) -> tuple[float, float, float, float]:
     left = right = below = above = 0.0
     for force in (load.acting(first=first) for load in picture.loads for first in (True, False)):
         if force:
-            way = -force / abs(force) * (ARROW_LENGTH + 0.03)
-            left, right = max(left, -way.real), max(right, way.real)
-            below, above = max(below, -way.imag), max(above, way.imag)
+            direction = -force / abs(force) * (ARROW_LENGTH + 0.03)
+            left, right = max(left, -direction.real), max(right, direction.real)
+            below, above = max(below, -direction.imag), max(above, direction.imag)
     return left, right, below, above
 
 

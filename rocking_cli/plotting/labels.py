@@ -76,10 +76,10 @@ class Labels:
         places = list(places)
         middles = np.array([place.middle for place in places])
         reach = abs(size) / 2 + 2 * CLEARANCE
-        near = np.ones(points.size, bool)
+        nearby = np.ones(points.size, bool)
         for along, of in ((points.real, middles.real), (points.imag, middles.imag)):
-            near &= (of.min() - reach < along) & (along < of.max() + reach)
-        points, costs = points[near], costs[near]
+            nearby &= (of.min() - reach < along) & (along < of.max() + reach)
+        points, costs = points[nearby], costs[nearby]
 
         def against(place: LabelPlace) -> float:
             turn = np.exp(1j * np.radians(place.turned))
@@ -138,10 +138,12 @@ class Labels:
         """Yield places for a label around a point [m], beyond a radius [inches], best in one direction."""
         apex *= self._scale
         for turn in np.linspace(-np.pi, np.pi, 25)[1:]:
-            way = towards / abs(towards) * np.exp(1j * turn)
+            direction = towards / abs(towards) * np.exp(1j * turn)
             for gap in (0.03, 0.08, 0.15, 0.25, 0.4):
                 # Distance from the point to the nearest edge of the label.
-                reach = min(size.real / 2 / max(abs(way.real), 1e-9), size.imag / 2 / max(abs(way.imag), 1e-9))
+                reach = min(
+                    size.real / 2 / max(abs(direction.real), 1e-9), size.imag / 2 / max(abs(direction.imag), 1e-9)
+                )
                 yield LabelPlace(
-                    apex + (radius + gap + reach) * way, 0.0, turning * abs(float(turn)) + DISTANCE_COST * gap
+                    apex + (radius + gap + reach) * direction, 0.0, turning * abs(float(turn)) + DISTANCE_COST * gap
                 )

@@ -65,8 +65,8 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
     ratios = picture.usual if ratio is None else dict.fromkeys(picture.directions, ratio)
     turned = {side: side * times * picture.reference[side] for side, times in ratios.items()}
     low, high = _box_at_rest(picture)
-    shown = [each for each in picture.sketch.lengths if _is_at_rest(picture, each)]
-    rows, inside = dimensions.in_rows(shown, low, high)
+    lengths = [each for each in picture.sketch.lengths if _is_at_rest(picture, each)]
+    rows, inside = dimensions.in_rows(lengths, low, high)
     rest = _rest_panel(picture, low, high, dimensions.room(rows, low, high))
     sides = {direction: _displaced_panel(picture, turn) for direction, turn in turned.items()}
     words = {direction: _words(picture, direction) for direction in turned}
@@ -113,8 +113,8 @@ def draw_structure(picture: Picture, title: str, ratio: float | None = None) -> 
         _draw_parts(axes, picture, turned[direction], weight(picture, panel.scale))
         labels = _labels(axes, picture, panel, turned[direction])
         hung.draw_hung(axes, picture, turned[direction], panel, labels)
-        own = [pin for pin in picture.pins if pin.direction is direction]
-        pins = _draw_pins(axes, picture, turned[direction], own, panel, labels)
+        own_pins = [pin for pin in picture.pins if pin.direction is direction]
+        pins = _draw_pins(axes, picture, turned[direction], own_pins, panel, labels)
         _draw_letters(picture, turned[direction], pins, labels)
         draw_scale(axes, panel)
         half = max((style.size_of(line, style.LABEL).real / 2 for line in words[direction].split("\n")), default=0.0)

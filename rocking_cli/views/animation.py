@@ -41,8 +41,8 @@ def view(
         **file,
     }
     neighbours = neighbours_in_words(near) if near is not None else ""
-    said = [verdict_of(film), why_it_ends(film), neighbours, restitution_used(structure)]
-    return View(data, [*filter(None, said), *not_checked(structure.mechanism, [history])])
+    sentences = [verdict_of(film), why_it_ends(film), neighbours, restitution_used(structure)]
+    return View(data, [*filter(None, sentences), *not_checked(structure.mechanism, [history])])
 
 
 class FilmRow(NamedTuple):

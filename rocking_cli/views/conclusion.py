@@ -55,10 +55,10 @@ def of_verification(found: Verification, say: Language = ENGLISH, title: str | N
     first = end.concluded.value if covers or end.concluded is not Concluded.NOT_CHECKED else "not_covered"
     if end.concluded is Concluded.SATISFIED and len(end.limit_states) > 1:
         first = "satisfied_at"
-    said = [say(f"end_{first}", states=", ".join(end.limit_states))]
+    sentences = [say(f"end_{first}", states=", ".join(end.limit_states))]
     if end.concluded is not Concluded.NOT_CHECKED:
-        said.append(_governs(end, say, title or _method(found, end)))
-    return said + not_counted(end.left_out, say)
+        sentences.append(_governs(end, say, title or _method(found, end)))
+    return sentences + not_counted(end.left_out, say)
 
 
 def not_counted(left_out: Sequence[LeftOut], say: Language = ENGLISH) -> list[str]:
@@ -149,9 +149,9 @@ def governing_polarity(ends: Mapping[int, Conclusion], governs: int | None, over
     """Return a sentence on which of two polarities governs; arguments are those of `governing`."""
     if governs is None:
         return f"Neither polarity governs: with the motion as given and reversed, {does(ends[1], over)}."
-    way, other = (POLARITIES[governs], POLARITIES[-governs])
-    said = f"with the motion {way}, {does(ends[governs], over)}; {other}, {does(ends[-governs], over)}"
-    return f"Polarity {governs} governs: {said}."
+    name, other = (POLARITIES[governs], POLARITIES[-governs])
+    sentence = f"with the motion {name}, {does(ends[governs], over)}; {other}, {does(ends[-governs], over)}"
+    return f"Polarity {governs} governs: {sentence}."
 
 
 def of_margin(end: Conclusion, over: str) -> str:

@@ -71,48 +71,48 @@ def contact_words(found: ContactDemand, mechanism: Mechanism) -> str:
     if isnan(found.friction_needed):
         return ""
     beyond = "" if found.followed else NOT_VALID_BEYOND
-    said = [_friction(found, beyond)]
+    sentences = [_friction(found, beyond)]
     if found.impact_friction > max(found.friction_needed, found.friction or 0.0):
-        said.append(
+        sentences.append(
             f"Impacts require a coefficient of friction of {number(found.impact_friction, 3)}, and much more with a "
             f"lower restitution{_at_impacts(found, mechanism)}."
         )
     if not isnan(found.lost):
-        said.append(f"Contact is lost at {_where(found.lost_joint)} at {number(found.lost, 4)} s{beyond}.")
+        sentences.append(f"Contact is lost at {_where(found.lost_joint)} at {number(found.lost, 4)} s{beyond}.")
     if found.opens is not None and not isnan(found.opens):
-        said.append(
+        sentences.append(
             f"At {number(found.opens, 4)} s another joint would open, that between {found.opens_joint}{beyond}."
         )
     if found.crushing is not None:
         at = f"{_where(found.crushing.joint)} at {number(found.crushing.time, 4)} s"
         if found.crushing.used > 1:
-            said.append(
+            sentences.append(
                 f"The contacts would crush: they carry up to {number(found.crushing.used, 3)} times their strength, "
                 f"at {at}. The result is not valid once the strength is exceeded."
             )
         else:
-            said.append(
+            sentences.append(
                 f"The contacts use at most {number(100 * found.crushing.used, 3)} % of their strength, at {at}."
             )
-    said += [_support(each, mechanism) for each in found.supports]
+    sentences += [_support(each, mechanism) for each in found.supports]
     sums = _sums(found, mechanism)
     if sums == "whole" and all(mechanism.contacts(direction) for direction in mechanism.directions):
-        said.append(
+        sentences.append(
             "Statics alone does not determine the force at each joint: the forces are sums over the whole structure, "
             "on level ground, and a single joint may require more friction."
         )
     elif sums == "whole":
-        said.append(
+        sentences.append(
             "The positions of its joints are not known: the forces are sums over the whole structure, on level ground."
         )
     elif sums == "shared":
-        said.append(
+        sentences.append(
             "Statics alone does not determine the force at each joint, as there are more joints than needed: the "
             "friction required is a least-squares estimate, and the normal force is the sum over the whole structure."
         )
     elif sums is not None:
-        said.append(f"Forces are sums over all {sums}.")
-    return " ".join(said)
+        sentences.append(f"Forces are sums over all {sums}.")
+    return " ".join(sentences)
 
 
 def _at_impacts(found: ContactDemand, mechanism: Mechanism) -> str:

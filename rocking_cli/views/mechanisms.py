@@ -160,8 +160,8 @@ def fields(cls: type[BaseModel], common: type[BaseModel] = Mechanism) -> list[di
 
 def _is_common(cls: type[BaseModel], key: str, common: type[BaseModel]) -> bool:
     """Return whether the base class has a field that this class does not define again."""
-    own = cls.__mro__[: cls.__mro__.index(common)] if issubclass(cls, common) else [cls]
-    return not any(key in vars(each).get("__annotations__", {}) for each in own)
+    classes = cls.__mro__[: cls.__mro__.index(common)] if issubclass(cls, common) else [cls]
+    return not any(key in vars(each).get("__annotations__", {}) for each in classes)
 
 
 def checked(name: str, package: str, file: str | None, verdicts: Sequence[Verdict]) -> View:

@@ -18,12 +18,13 @@ MIN_NEIGHBOURS_OF_QUANTILES = 20  # with fewer, one or two neighbours decide the
 
 def deviations(around: Neighbourhood) -> str:
     """Return the standard deviations of neighbours in words."""
-    given = [f"{percent(around.amplitude)} of amplitude"]
-    given += [f"{percent(around.slenderness)} of slenderness"] if around.slenderness is not None else []
-    given += [f"{around.restitution:g} of restitution"] if around.restitution is not None else []
+    known = [f"{percent(around.amplitude)} of amplitude"]
+    known += [f"{percent(around.slenderness)} of slenderness"] if around.slenderness is not None else []
+    known += [f"{around.restitution:g} of restitution"] if around.restitution is not None else []
     fields = {"slenderness": around.slenderness, "restitution": around.restitution}
-    own = " and ".join(name for name, value in fields.items() if value is None)
-    return f"standard deviations {', '.join(given)}{f', and those of the structure for its {own}' if own else ''}"
+    undefined = " and ".join(name for name, value in fields.items() if value is None)
+    rest = f", and those of the structure for its {undefined}" if undefined else ""
+    return f"standard deviations {', '.join(known)}{rest}"
 
 
 def neighbours_in_words(near: Neighbours) -> str:
@@ -31,20 +32,20 @@ def neighbours_in_words(near: Neighbours) -> str:
     of = f"{near.around.count} neighbouring motions ({deviations(near.around)})"
     if not near.lifted:
         return f"None of {of} uplifts the structure."
-    said = [f"Of {of}, {_shares(near)}"]
+    sentences = [f"Of {of}, {_shares(near)}"]
     low, median, high = near.peak_ratio
     if high == 0:
-        return f"{said[0]}; at most one in six uplifts it."
+        return f"{sentences[0]}; at most one in six uplifts it."
     enough = near.around.count >= MIN_NEIGHBOURS_OF_QUANTILES
     if median == 0 or (low == 0 and enough):
-        said.append(f"{'half' if median == 0 else '16 %'} do not uplift it")
+        sentences.append(f"{'half' if median == 0 else '16 %'} do not uplift it")
     if 0 < median < inf:
-        said.append(f"the median peak is {median:.2g} {near.over}")
+        sentences.append(f"the median peak is {median:.2g} {near.over}")
     # The highest known peak of these neighbours.
     part, most = ("84 %", high) if high < inf else ("16 %", low if isinf(median) else 0.0)
     if enough and 0 < most < inf:
-        said.append(f"{part} stay below {most:.2g} {near.over}")
-    return f"{'; '.join(said)}."
+        sentences.append(f"{part} stay below {most:.2g} {near.over}")
+    return f"{'; '.join(sentences)}."
 
 
 def _shares(near: Neighbours) -> str:
@@ -53,13 +54,13 @@ def _shares(near: Neighbours) -> str:
 
     if near.overturned in (0, 1):
         none = "none is known to overturn the structure" if near.unknown else "none overturns the structure"
-        said = "all overturn the structure" if near.overturned else none
+        sentence = "all overturn the structure" if near.overturned else none
     else:
         does = "overturns" if round(near.overturned * near.around.count) == 1 else "overturn"
-        said = f"{number(near.overturned)} {does} the structure"
+        sentence = f"{number(near.overturned)} {does} the structure"
     if not near.unknown:
-        return said
-    return f"{said}, and the outcome under {'all' if near.unknown == 1 else number(near.unknown)} is unknown"
+        return sentence
+    return f"{sentence}, and the outcome under {'all' if near.unknown == 1 else number(near.unknown)} is unknown"
 
 
 def neighbours_data(near: Neighbours) -> dict[str, Any]:

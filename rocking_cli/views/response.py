@@ -318,8 +318,8 @@ def view(
     caution += [f"Caution: {text}" for text in apart(watched, found.runs)]
     caution += not_checked(mechanism, first.values())
     joints = ["Joints are named as in `rocking draw`."] if any(each.joint for each in found.contacts.values()) else []
-    said = [*parts, *joints, *models_used(first), restitution_used(structure), *notes, *caution]
-    return View({**data, "notes": [*doubts, *notes, *caution]}, said)
+    sentences = [*parts, *joints, *models_used(first), restitution_used(structure), *notes, *caution]
+    return View({**data, "notes": [*doubts, *notes, *caution]}, sentences)
 
 
 def apart(watched: Watched, runs: Runs) -> Iterator[str]:
@@ -348,7 +348,7 @@ def vertical_notes(motion: GroundMotion | None, gravity: float) -> list[str]:
     v = motion.vertical.acceleration / gravity
     low, high = 1 + min(float(v.min()), 0.0), 1 + max(float(v.max()), 0.0)
     swing = f"{sqrt(low):.2f} to {sqrt(high):.2f} times" if low > 0 else f"nothing to {sqrt(high):.2f} times"
-    said = [
+    sentences = [
         f"Vertical ground motion: gravity as the structure feels it, g + v_g'', goes from {low:.3g} g to {high:.3g} g. "
         "All histories take it into account, at uplift and in the restoring force. The parameters of the equivalent "
         f"block are those of constant g: its frequency parameter p would go from {swing} the value given, which closed "
@@ -356,11 +356,11 @@ def vertical_notes(motion: GroundMotion | None, gravity: float) -> list[str]:
     ]
     lost = contact_lost(motion, gravity)
     if lost is not None:
-        said.append(
+        sentences.append(
             f"Contact is lost: at {lost:.4g} s v_g'' comes down to -g and nothing holds the structure to the ground. "
             "It may fly, which no model here follows: do not trust the response from then on."
         )
-    return said
+    return sentences
 
 
 def _tables(
@@ -435,9 +435,9 @@ def _movements(moved: Mapping[str, Movements]) -> Iterator[Column[History]]:
 def _impact_table(title: str, history: History, etas: tuple[float, float]) -> list[Table | str]:
     table = table_of(title, IMPACTS, _impacts(history.felt[:MAX_LISTED_IMPACTS], etas))
     felt, chatter = len(history.felt), history.impact_count - len(history.felt)
-    said = [f"{felt - MAX_LISTED_IMPACTS} more impacts follow"] if felt > MAX_LISTED_IMPACTS else []
-    said += [f"{chatter} weaker than {100 * FELT:g} % of the strongest are left out"] if chatter else []
-    return [table, f"{' and '.join(said)}: the JSON output lists them."] if said else [table]
+    sentences = [f"{felt - MAX_LISTED_IMPACTS} more impacts follow"] if felt > MAX_LISTED_IMPACTS else []
+    sentences += [f"{chatter} weaker than {100 * FELT:g} % of the strongest are left out"] if chatter else []
+    return [table, f"{' and '.join(sentences)}: the JSON output lists them."] if sentences else [table]
 
 
 def share_of_pulse(histories: Histories, to_pulse: Histories, called: str) -> str:

@@ -15,8 +15,8 @@ MIN_DOUBTFUL_ETA = 0.97  # from kinematics; tests measured less
 
 def restitution_source(mechanism: Mechanism) -> str:
     """Return the source of a structure's restitution: given, kinematics, impacts in sequence, or missing."""
-    given = mechanism.restitution if mechanism.rocks_both_ways else mechanism.rebound
-    if given is not None:
+    fields = mechanism.restitution if mechanism.rocks_both_ways else mechanism.rebound
+    if fields is not None:
         return "given"
     if mechanism.rocks_both_ways:
         return "kinematics"
@@ -51,7 +51,7 @@ def restitution_used(structure: Structure) -> str:
     values, how = f"{positive:.4g}", "as given" if source == "given" else "from rigid-body kinematics, not measured"
     if not isclose(positive, negative, rel_tol=ETA_TOLERANCE):
         values += f" at impacts that end clockwise rotation and {negative:.4g} at the others"
-    said = f"Coefficient of restitution eta = {values}, {how}."
+    sentence = f"Coefficient of restitution eta = {values}, {how}."
     if source == "kinematics" and MIN_DOUBTFUL_ETA < max(structure.etas) < 1 + ETA_TOLERANCE:
-        said += " Tests of such bodies found less, about 0.95."
-    return said
+        sentence += " Tests of such bodies found less, about 0.95."
+    return sentence

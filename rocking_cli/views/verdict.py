@@ -73,14 +73,14 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
         return " ".join(slides)
     if isnan(check.warned) and check.alone:
         return " ".join(slides)
-    taken = [f"Not checked, but assumed to hold: {', '.join(check.asserted)}."] if check.asserted else []
+    assumed = [f"Not checked, but assumed to hold: {', '.join(check.asserted)}."] if check.asserted else []
     if check.largest >= MIN_OPENING * check.reach and not isnan(check.warned):
-        return " ".join([*_opens(history, check, valid=not slides), *slides, *taken])
+        return " ".join([*_opens(history, check, valid=not slides), *slides, *assumed])
     which = f" ({'; '.join(check.checked)})" if check.checked else ""
     but = f", except the joint between {check.warned_joint} for an instant at {check.warned:.4g} s"
     when = "throughout the motion" if check.at_rest else "while the structure rocks"
     bear = f"All checked joints bear {when}{which}{'' if isnan(check.warned) else but}."
-    return " ".join([bear, *slides, *taken])
+    return " ".join([bear, *slides, *assumed])
 
 
 def _opens(history: History, check: JointCheck, *, valid: bool) -> Iterator[str]:
@@ -125,16 +125,16 @@ def unknown_after(history: History) -> str:
 
 def _until(history: History) -> str:
     """Return until when a history is valid and why not beyond, in words, with the lower bound of the peak."""
-    said = f"{unknown_after(history)} The structure may overturn."
+    sentence = f"{unknown_after(history)} The structure may overturn."
     over = "its kinematic limit" if any(history.ends_at_limit) else "its critical rotation"
     if not history.peak_ratio:
-        return f"{said} Until then it does not uplift."
+        return f"{sentence} Until then it does not uplift."
     if isfinite(history.warned) and history.lower_bound < history.peak_ratio:
         return (
-            f"{said} Until then the model, which keeps the joints closed, has a peak of {history.peak_ratio:.4g} of "
-            f"{over}. A lower bound of the peak is {history.lower_bound:.4g}, that before any joint opens or slides."
+            f"{sentence} Until then the model, which keeps the joints closed, has a peak of {history.peak_ratio:.4g} "
+            f"of {over}. A lower bound of the peak is {history.lower_bound:.4g}, that before any joint opens or slides."
         )
-    return f"{said} A lower bound of the peak is {history.lower_bound:.4g} of {over}, that until then."
+    return f"{sentence} A lower bound of the peak is {history.lower_bound:.4g} of {over}, that until then."
 
 
 def _small(value: float, unit: str) -> str:
@@ -165,23 +165,23 @@ def verdict(
     best: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
     run = histories[best]
     by = "" if best == "nonlinear" or len(histories) == 1 else f"By {best} the"
-    said = [] if run.unknown else [f"{by or 'The'} structure {ends(run)}."]
+    sentences = [] if run.unknown else [f"{by or 'The'} structure {ends(run)}."]
     if run.unknown or (best == "nonlinear" and run.check is not None):
-        said += filter(None, [joints_in_words(run, assumed_friction)])
+        sentences += filter(None, [joints_in_words(run, assumed_friction)])
     if run.unknown and len(histories) > 1:
-        said.append(NO_JOINTS)
+        sentences.append(NO_JOINTS)
     else:
-        said += blocks_in_words(histories, agreed, {name: name for name in histories})
+        sentences += blocks_in_words(histories, agreed, {name: name for name in histories})
     if not run.unknown and disagree(histories):
-        said.append("Do not trust any of them alone: run weaker and stronger motions as well.")
+        sentences.append("Do not trust any of them alone: run weaker and stronger motions as well.")
     elif not run.fell and not run.unknown and run.peak_ratio > CLOSE and not any(run.ends_at_limit):
-        said.append("This is close to overturning: run weaker and stronger motions before relying on it.")
+        sentences.append("This is close to overturning: run weaker and stronger motions before relying on it.")
     still = [name for name, each in histories.items() if each.still_rocking]
     if still:
-        said.append(
+        sentences.append(
             f"{', '.join(still)}: {names.STILL_ROCKING} long after the end of the record, and certain not to overturn."
         )
-    return " ".join(said)
+    return " ".join(sentences)
 
 
 def ends(run: History) -> str:
@@ -215,23 +215,23 @@ def blocks_in_words(
         Names of the models in the sentences.
     """
     if not agreed:  # without a nonlinear history, state the other outcomes, and the blocks that are unfit
-        said = [f"By {called[name]} it {ends(run)}." for name, run in list(histories.items())[1:]]
-        return said + [
+        sentences = [f"By {called[name]} it {ends(run)}." for name, run in list(histories.items())[1:]]
+        return sentences + [
             f"Disregard {called[name]}: its uplift acceleration is {uplift_in_words(run.uplift_error)}."
             for name, run in histories.items()
             if grade(run.uplift_error) is Grade.DISREGARD
         ]
-    said = [
+    sentences = [
         _agrees(called[name], agreement, histories[name], histories["nonlinear"]) for name, agreement in agreed.items()
     ]
     if any(
         agreement.peak_error is not None and agreement.grade is not Grade.DISREGARD for agreement in agreed.values()
     ):
-        said.append(
+        sentences.append(
             "This holds for this ground motion only; under another one the equivalent block may be more or less "
             "accurate."
         )
-    return said
+    return sentences
 
 
 def _agrees(name: str, found: Agreement, run: History, best: History) -> str:

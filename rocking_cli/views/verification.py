@@ -261,23 +261,23 @@ def standing(workings: Sequence[Working], notation: str = "") -> str:
         {each.symbol: each.meaning for each in plain if each.standing == standing}
         for standing in ("ours", "code", "transcription", "print")
     )
-    said = []
+    sentences = []
     if printed or transcribed or unchecked:
-        said.append(f"The clauses name the place of each formula in the code{notation}.")
+        sentences.append(f"The clauses name the place of each formula in the code{notation}.")
     if transcribed or unchecked:
         which = f"Only {', '.join(printed)} of the formulas" if printed else "None of the formulas"
         them = "the others" if printed else "them"
-        said.append(
+        sentences.append(
             f"{which} has been checked against the printed code{'' if printed else ' yet'}: have {them} checked before "
             "you rely on a verdict."
         )
     elif printed:
-        said.append("Every formula has been checked against the printed code.")
+        sentences.append("Every formula has been checked against the printed code.")
     if transcribed:
         others = f", except for {', '.join(unchecked)}" if unchecked else ""
         which = "The others" if printed else "They"
-        said.append(f"{which} agree with a transcription of its text{others}.")
+        sentences.append(f"{which} agree with a transcription of its text{others}.")
     if ours:
         named = ", ".join(f"{symbol} ({meaning})" for symbol, meaning in ours.items())
-        said.append(f"Our own choices ('ours'), where the code is silent or we depart from its wording: {named}.")
-    return " ".join(said)
+        sentences.append(f"Our own choices ('ours'), where the code is silent or we depart from its wording: {named}.")
+    return " ".join(sentences)

@@ -155,8 +155,8 @@ def animate(
             pace = speed or max(1.0, (film.end - film.start) / MAX_DEFAULT_DURATION)
             frames = _write_gif(place, film, f"{heading(ready.mechanism)}, under {scaled.name}", pace, fps, watch)
         watch.note(f"wrote {place}")
-        near = outcomes(own, scaled, around) if neighbours else None
-        shown = views.view(ready, film, near, {"speed": pace, "frames": frames, "file": str(place)})
+        neighbourhood = outcomes(own, scaled, around) if neighbours else None
+        shown = views.view(ready, film, neighbourhood, {"speed": pace, "frames": frames, "file": str(place)})
         figure = drawn(
             "questions.respond.picture.draw_history",
             {history.model: history},
@@ -164,7 +164,7 @@ def animate(
             heading(ready.mechanism),
             uplift=ready.uplift,
         )
-        return Answer("animation", Animation(film, near), shown, partial(_columns, film), figure)
+        return Answer("animation", Animation(film, neighbourhood), shown, partial(_columns, film), figure)
 
     if not several:
         return one(chosen[0], path)

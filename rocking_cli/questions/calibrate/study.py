@@ -528,15 +528,15 @@ def _each(problem: _Problem, x: Reals, trace: Trace, structure: Structure, free_
 
 def _is_other(problem: _Problem, x: Reals, off: float, trace: Trace, structure: Structure) -> str:
     """Say that a trace is not of this structure, and which frequency parameter fits better, if one does."""
-    said = (
+    sentence = (
         f"{trace.name}: the best fit is off by {100 * off:.2g} % of the release (root mean square): this is not free "
         "rocking of this structure. Check its size, and the units of angles and times"
     )
     other, y, _ = _freed(problem, x, [P])
     if other.distance(y) > off / 2:
-        return said
+        return sentence
     p = structure.p * np.exp(other.geometry[P])
-    return f"{said}; p = {p:.3g} rad/s fits better than {structure.p:.3g} rad/s, its own"
+    return f"{sentence}; p = {p:.3g} rad/s fits better than {structure.p:.3g} rad/s, its own"
 
 
 def _own(problem: _Problem, x: Reals, trace: Trace) -> tuple[Reals, int, Reals, float, float]:

@@ -108,8 +108,8 @@ def calibrate(
             raise InputError(f"{', '.join(idle)} {verb} no effect on a trace (`free`): give `tests`")
         return _of_trace(ready, source, free, free_geometry, out)
     assert tests is not None
-    for name, given in (("free_geometry", free_geometry), ("out", out is not None)):
-        if given:
+    for name, is_given in (("free_geometry", free_geometry), ("out", out is not None)):
+        if is_given:
             raise InputError(
                 f"`{name}` requires a trace (`free`): outcomes alone leave slenderness and restitution open"
             )
@@ -159,8 +159,8 @@ def _write(structure: Structure, source: Path, out: Path, found: TraceFit) -> No
 
     keep_apart([("`out`", out)], [str(source), found.trace.name])
     mechanism = structure.mechanism
-    given = mechanism.uncertainty.slenderness if mechanism.uncertainty is not None else None
-    uncertainty = {"slenderness": given, "restitution": round(found.scatter, 4)}
+    deviation = mechanism.uncertainty.slenderness if mechanism.uncertainty is not None else None
+    uncertainty = {"slenderness": deviation, "restitution": round(found.scatter, 4)}
     words = ", ".join(f"{key}: {value:g}" for key, value in uncertainty.items() if value is not None)
     where = f"fitted to {Path(found.trace.name).name}, {len(found.etas)} impacts"
     fields = {

@@ -101,10 +101,10 @@ def _residuals(found: TraceFit) -> str:
             "that is not steady, sliding or bouncing leave. The deviations include it as if it were noise; check the "
             "size of the structure."
         )
-    said = f"The residual is {degrees(found.residual):.2g} deg, {one:.2g} times the noise"
+    sentence = f"The residual is {degrees(found.residual):.2g} deg, {one:.2g} times the noise"
     if one <= MAX_RESIDUAL_TO_NOISE:
-        return f"{said}: free rocking with one restitution explains the trace."
-    return f"{said}, and {own:.2g} times with a restitution for each impact: it differs from impact to impact."
+        return f"{sentence}: free rocking with one restitution explains the trace."
+    return f"{sentence}, and {own:.2g} times with a restitution for each impact: it differs from impact to impact."
 
 
 def _trace_data(found: TraceFit, structure: Structure) -> dict[str, Any]:

@@ -65,16 +65,18 @@ def _part(found: CollapseMechanism, group: Sequence[str]) -> str:
 
 def _sentences(mechanism: Mechanism, found: CollapseMechanism) -> list[str]:
     moves = "; ".join(_part(found, group) for group in found.groups)
-    said = [f"Moving parts, each as one body: {moves}." + (f" At rest: {in_short(found.rest)}." if found.rest else "")]
+    sentences = [
+        f"Moving parts, each as one body: {moves}." + (f" At rest: {in_short(found.rest)}." if found.rest else "")
+    ]
     if found.idle:
-        said.append(
+        sentences.append(
             "Other mechanisms start at the same acceleration. They are the same motion, in which "
             f"{in_short(found.idle)} may move along at no cost: the one with the fewest moving blocks is shown."
         )
     if found.lead:
-        said.append(f"phi is the rotation of {found.lead}.")
+        sentences.append(f"phi is the rotation of {found.lead}.")
     if found.lifted:
-        said.append(f"Joints that open over their whole length, or slip off: {in_short(found.lifted)}.")
+        sentences.append(f"Joints that open over their whole length, or slip off: {in_short(found.lifted)}.")
     if found.slides:
         flow = (
             "The flow rule is associated, which overestimates lambda where sliding joints also open."
@@ -82,35 +84,35 @@ def _sentences(mechanism: Mechanism, found: CollapseMechanism) -> list[str]:
             else "Sliding joints do not dilate here (non-associated flow), and the confining forces of the sides, "
             "which are not known, are those with the least lambda."
         )
-        said.append(
+        sentences.append(
             f"The mechanism slides between {in_short(found.slides)}. lambda is the acceleration at which sliding "
             f"starts; no rocking model is available for it. {flow}"
         )
     if found.no_model:
-        said.append(f"It has no rocking model: {found.no_model}.")
+        sentences.append(f"It has no rocking model: {found.no_model}.")
     if found.friction_needed is not None:
-        said.append(_required(found.friction_needed, mechanism.friction))
+        sentences.append(_required(found.friction_needed, mechanism.friction))
     elif found.glued:
-        said.append(
+        sentences.append(
             f"No coefficient of friction is sufficient: {in_short(found.glued)} would have to carry shear without "
             "compression. Give `friction`: 0 for a joint that carries no shear."
         )
     if found.with_usual is not None:
-        said.append(
+        sentences.append(
             f"With a coefficient of friction of {MASONRY:g} in joints that are given none, lambda is "
             f"{number(found.with_usual)} g."
         )
     if found.valid_to is not None and found.held_by is not None:
-        said.append(
+        sentences.append(
             f"In displaced equilibrium (at acceleration G/B), this mechanism is valid up to {number(found.valid_to)} "
             f"rad, where {number(found.held_by, 4)} g holds it and the joint between {found.opens} also opens. "
             "Beyond it joints may open or slide."
         )
     elif found.lead:
-        said.append(
+        sentences.append(
             "In displaced equilibrium (at acceleration G/B), this mechanism is valid up to its critical rotation."
         )
-    return said
+    return sentences
 
 
 def _required(needed: float, given: float | None) -> str:

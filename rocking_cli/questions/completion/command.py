@@ -26,8 +26,8 @@ def command(shell: str, as_json: bool) -> None:
 
     maker = get_completion_class(shell)
     assert maker is not None
-    made = maker(click.get_current_context().find_root().command, {}, "rocking", COMPLETION_VARIABLE)
-    script = made.source_template % made.source_vars()  # `source()` would run bash to find its version
+    completion = maker(click.get_current_context().find_root().command, {}, "rocking", COMPLETION_VARIABLE)
+    script = completion.source_template % completion.source_vars()  # `source()` would run bash to find its version
     if as_json:
         terminal.print_json({"shell": shell, "script": script})
     else:

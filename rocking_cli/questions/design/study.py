@@ -55,8 +55,8 @@ class Aim:
         if match is None:
             hint = "write METRIC OP NUMBER, such as `lambda >= 0.2`, with <, <=, > or >="
             raise InputError(Problem(f"{cut(repr(text))} is not a valid requirement", hint=hint))
-        asked, number = metric(match[1]), match[3]
-        return cls(asked, match[2], _number(number, asked.unit))
+        chosen, number = metric(match[1]), match[3]
+        return cls(chosen, match[2], _number(number, chosen.unit))
 
     def __str__(self) -> str:
         return f"{self.metric.name} {self.op} {self.level:.6g}{f' {self.metric.unit}' if self.metric.unit else ''}"
@@ -280,8 +280,8 @@ def design(
     values = np.linspace(*span, points)
     numbers, reasons, behind = np.full(points, nan), dict[int, str](), list[Neighbours | None]()
     for k, value in enumerate(values.tolist()):
-        numbers[k], near, reason = _at(structure, field, value, aim, excitation)
-        behind.append(near)
+        numbers[k], neighbours, reason = _at(structure, field, value, aim, excitation)
+        behind.append(neighbours)
         if reason is not None:
             reasons[k] = reason
         if progress is not None:

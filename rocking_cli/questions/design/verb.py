@@ -96,7 +96,7 @@ def design(
     aim = until if isinstance(until, Aim) else Aim.parse(until)
     span = _span(vary)
     around = Neighbourhood(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
-    signs, given = signs_of(polarity), Motions.of(motions, options)
+    signs, requested = signs_of(polarity), Motions.of(motions, options)
     if not aim.metric.shaken:
         refuse_idle(
             f"on {aim.metric.name}, which does not depend on a ground motion",
@@ -107,13 +107,13 @@ def design(
             slenderness_deviation=slenderness_deviation,
             restitution_deviation=restitution_deviation,
         )
-    _check(aim.metric, motions=bool(given), neighbours=neighbours, site=site is not None)
+    _check(aim.metric, motions=bool(requested), neighbours=neighbours, site=site is not None)
     ready = structure_of(structure, watch, opening)
     ends = span.in_unit(ready.unit_of(span.field))
     _warn_of_sizes(ready, span.field, ends, watch)
     where = site_of(site) if site is not None else None
-    shaken = [each.motion.scaled(each.factor) for each in given.gather(ready.growth, watch)] if given else []
-    excitation = Excitation(shaken, signs, around, where) if given or where is not None else None
+    shaken = [each.motion.scaled(each.factor) for each in requested.gather(ready.growth, watch)] if requested else []
+    excitation = Excitation(shaken, signs, around, where) if requested or where is not None else None
     with watch.progress(points, "values") as advance:
         result = study(ready, span.field, ends, aim, excitation, points=points, progress=advance)
     figure = drawn("questions.design.picture.draw_design", result)

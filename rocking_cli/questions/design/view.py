@@ -75,7 +75,7 @@ def _head(name: str, unit: str) -> str:
 
 def _unknown(found: Design) -> Iterator[Column[int]]:
     """Yield the column of the share of unknown outcome, which terminals have only if there is one."""
-    shares = [None if near is None else near.unknown for near in found.behind]
+    shares = [None if each is None else each.unknown for each in found.behind]
     yield Column("unknown", shares.__getitem__, head="unknown\noutcome" if any(shares) else None, form=percent)
 
 
@@ -105,41 +105,47 @@ def answer(found: Design) -> str:
         )
     ranges = [f"from {_with_unit(found, a)} to {_with_unit(found, b)}" for a, b in found.holds]
     listed = " and ".join([", ".join(ranges[:-1]), ranges[-1]] if len(ranges) > 1 else ranges)
-    said = f"Judging by the {len(found.values)} values tried, {aim} holds for {found.field} {listed}"
+    sentence = f"Judging by the {len(found.values)} values tried, {aim} holds for {found.field} {listed}"
     if found.value is None:
-        return f"{said}, but at neither end of the range tried, {low} to {high}."
-    way = "upwards" if found.is_least else "downwards"
-    return f"{said}." if len(ranges) == 1 else f"{said}: from {_with_unit(found, found.value)} {way} without a gap."
+        return f"{sentence}, but at neither end of the range tried, {low} to {high}."
+    trend = "upwards" if found.is_least else "downwards"
+    return (
+        f"{sentence}."
+        if len(ranges) == 1
+        else f"{sentence}: from {_with_unit(found, found.value)} {trend} without a gap."
+    )
 
 
 def doubts(found: Design, excitation: Excitation | None) -> list[str]:
     """Return remarks on the answer."""
-    said = [f"{each} Next: {NEXT_STEPS[NextStep.YIELD_FORCE]}." for each in not_counted(found.taken_otherwise)]
+    sentences = [f"{each} Next: {NEXT_STEPS[NextStep.YIELD_FORCE]}." for each in not_counted(found.taken_otherwise)]
     count = len(found.values)
     if not found.has_effect and not found.aim.metric.shaken:
-        said.append(f"{found.aim.metric.name} is the same at every value tried: {found.field} has no effect on it.")
+        sentences.append(
+            f"{found.aim.metric.name} is the same at every value tried: {found.field} has no effect on it."
+        )
     if not found.monotone and np.isfinite(found.metric).any():
         closer = "the edges given are values tried" if found.aim.metric.shaken else "the edges given lie between them"
-        said.append(
+        sentences.append(
             f"{found.aim.metric.name} is not monotonic over the range: {count} equally spaced values were tried, "
             f"{closer}, and intervals whose two ends agree were not searched."
         )
     for each in found.not_built:
         span = _with_unit(found, each.low)
         span = f"At {span}" if each.low == each.high else f"From {span} to {_with_unit(found, each.high)}"
-        said.append(f"{span} {found.aim.metric.name} could not be computed: {one_line(each.reason)}.")
+        sentences.append(f"{span} {found.aim.metric.name} could not be computed: {one_line(each.reason)}.")
     if found.caution:
-        said.append(f"Caution, of the structure as given: {found.caution}")
+        sentences.append(f"Caution, of the structure as given: {found.caution}")
     if found.aim.metric.shaken and excitation is not None:
-        said.append(
+        sentences.append(
             f"One time history is one sample: at each value, {excitation.around.count} neighbouring motions are "
             f"simulated, {deviations(excitation.around)}. The metric is based on a share of them, which changes in "
             f"steps of {percent(1 / excitation.around.count)}."
         )
-        said += _not_known(found)
+        sentences += _not_known(found)
         if len(excitation.motions) > 1:
-            said.append(f"At each value, the worst of {len(excitation.motions)} motions governs.")
-    return said
+            sentences.append(f"At each value, the worst of {len(excitation.motions)} motions governs.")
+    return sentences
 
 
 def _not_known(found: Design) -> Iterator[str]:
@@ -180,11 +186,11 @@ def _with_unit(found: Design, value: float) -> str:
 
 def _metric(found: Design, k: int) -> str:
     """Format the metric at a value tried: a share in %, and what most neighbours do if there is no median peak."""
-    value, near = float(found.metric[k]), found.behind[k]
+    value, neighbours = float(found.metric[k]), found.behind[k]
     if np.isnan(value):
         return ABSENT
     if found.aim.metric.name == "overturned":
         return percent(value)
     if np.isinf(value):
-        return names.OVERTURNS if near is None or near.half_overturn else names.UNKNOWN
+        return names.OVERTURNS if neighbours is None or neighbours.half_overturn else names.UNKNOWN
     return f"{value:.5g}"

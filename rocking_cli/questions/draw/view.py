@@ -10,10 +10,12 @@ from rocking_cli.views.view import View, heading
 def view(picture: Picture) -> View:
     """Show the dimensions of a structure, and its drawing as plain data."""
     measured: list[Length | Angle] = [*picture.sketch.lengths, *picture.sketch.angles]
-    said = [f"{each.text}{f' ({each.direction.label})' if each.direction is not None else ''}" for each in measured]
-    said += [f"load {each.name}, {each.text}" for each in picture.loads if each.name]
-    said += [f"tie {each.name}" for each in picture.ties if each.name]
-    said += [f"rocks in the {side} direction only" for side in [picture.mechanism.one_sided] if side]
+    sentences = [
+        f"{each.text}{f' ({each.direction.label})' if each.direction is not None else ''}" for each in measured
+    ]
+    sentences += [f"load {each.name}, {each.text}" for each in picture.loads if each.name]
+    sentences += [f"tie {each.name}" for each in picture.ties if each.name]
+    sentences += [f"rocks in the {side} direction only" for side in [picture.mechanism.one_sided] if side]
     return View(
-        picture.as_dict, [heading(picture.mechanism), *(f"  {each}" for each in [*said, *picture.sketch.notes])]
+        picture.as_dict, [heading(picture.mechanism), *(f"  {each}" for each in [*sentences, *picture.sketch.notes])]
     )

@@ -60,10 +60,10 @@ def equiv(
     >>> round(answer.positive.lambda_, 6)
     0.25
     """
-    given = each_of(structures)
+    entries = each_of(structures)
     if not isinstance(structures, list | tuple):
-        return _of_one(structure_of(given[0], watch), watch)
-    ready = structures_of(given, watch)
+        return _of_one(structure_of(entries[0], watch), watch)
+    ready = structures_of(entries, watch)
     by_name, refused = dict[str, Answer[Equivalence | None]](), list[MechanismError]()
     for structure in ready:
         try:

@@ -117,20 +117,20 @@ def view(structure: Structure) -> View:
     rows = [side.parameters | _found(mechanism, side.direction) for side in shown]
     table = table_across(heading(mechanism), columns, heads, rows, {**UNIT, "meaning": of("words")})
     where = [""] if len(shown) == 1 else [f"{side.direction.label}: " for side in shown]
-    said = [f"Caution: {text}" for text in early]
-    said += [f"{prefix}{sentence(side)}" for prefix, side in zip(where, shown, strict=True)]
+    sentences = [f"Caution: {text}" for text in early]
+    sentences += [f"{prefix}{sentence(side)}" for prefix, side in zip(where, shown, strict=True)]
     if structure.why_no_block is None:
-        said.append(
+        sentences.append(
             "The rotation phi of the structure is kappa times the rotation theta of its equivalent block; both "
             "kappas preserve the critical rotation. How closely the block follows the structure depends on the "
             "amplitude: compare free periods and overturning times with `rocking error`, and time histories with "
             "`rocking respond`."
         )
-    said += [f"Caution: {structure.misleading}."] if structure.misleading else []
-    said += [*hung_in_words(mechanism), *([] if mechanism.rocks_both_ways else [restitution_used(structure)])]
-    said += [f"P{mechanism.crushing.words[1:]}."] if mechanism.crushing else []
-    said += [f"Caution: {text}" for text in (*of_restitution(mechanism), *mechanism.cautions())]
-    return View(data, [table, *said])
+    sentences += [f"Caution: {structure.misleading}."] if structure.misleading else []
+    sentences += [*hung_in_words(mechanism), *([] if mechanism.rocks_both_ways else [restitution_used(structure)])]
+    sentences += [f"P{mechanism.crushing.words[1:]}."] if mechanism.crushing else []
+    sentences += [f"Caution: {text}" for text in (*of_restitution(mechanism), *mechanism.cautions())]
+    return View(data, [table, *sentences])
 
 
 def _columns(mechanism: Mechanism, directions: Sequence[Direction]) -> Iterator[Column[Mapping[str, float]]]:
@@ -210,11 +210,11 @@ def kappa_in_words(block: EquivalentBlock) -> str:
     """Return a sentence on which kappa to prefer for a block, by its uplift acceleration alone."""
     ratio = block.lambda_lin / block.lambda_
     if preferred_kappa(block) == "either":
-        said = "effectively slender, either kappa is adequate"
+        text = "effectively slender, either kappa is adequate"
     else:
-        said = "disregard kappa1" if grade(ratio - 1) is Grade.DISREGARD else "by the uplift prefer kappa2"
+        text = "disregard kappa1" if grade(ratio - 1) is Grade.DISREGARD else "by the uplift prefer kappa2"
     return (
-        f"lambda_lin/lambda = {ratio:.4g}: {said}; with kappa1 the uplift acceleration is "
+        f"lambda_lin/lambda = {ratio:.4g}: {text}; with kappa1 the uplift acceleration is "
         f"{uplift_in_words(ratio - 1)}, with kappa2 it is kept."
     )
 

@@ -225,11 +225,11 @@ def _member(
 ) -> PulsedStructure:
     mechanism = structure.mechanism
     block = _equivalence(mechanism)[direction]
-    own = replace(pulse, amplitude=a * mechanism.gravity * uplift(block, scaling), period=2 * pi / (omega * block.p))
+    scaled = replace(pulse, amplitude=a * mechanism.gravity * uplift(block, scaling), period=2 * pi / (omega * block.p))
     shaken = structure if eta is None else structure.with_eta(eta)
-    history = engines.follow(shaken, own.sampled().scaled(polarity), tail=_tail(own, block.p))
+    history = engines.follow(shaken, scaled.sampled().scaled(polarity), tail=_tail(scaled, block.p))
     return PulsedStructure(
-        _name(mechanism), mechanism.mechanism, block, own, block.eta if eta is None else eta, block.eta, history,
+        _name(mechanism), mechanism.mechanism, block, scaled, block.eta if eta is None else eta, block.eta, history,
         mechanism.own_caution(),
     )  # fmt: skip
 

@@ -93,16 +93,16 @@ def judge(found: EquivalentResponses) -> list[str]:
     """
     unknown = [each for each in found.members if each.history.unknown]
     if unknown:
-        said = [
+        sentences = [
             f"The outcome of {each.name} is {names.UNKNOWN} after {each.history.known_to:.4g} s, as "
             f"{why_unknown(each.history)}."
             for each in unknown
         ]
         known = tuple(each for each in found.members if not each.history.unknown)
         if len(known) < 2:
-            return [*said, "Whether the structures are equivalently vulnerable to these pulses is not known."]
-        return [*said, f"What follows is about the other {len(known)}.", *judge(replace(found, members=known))]
-    said = []
+            return [*sentences, "Whether the structures are equivalently vulnerable to these pulses is not known."]
+        return [*sentences, f"What follows is about the other {len(known)}.", *judge(replace(found, members=known))]
+    sentences = []
     fallen = [each for each in found.members if each.history.fell]
     peaks = {each.name: each.history.peak_ratio for each in found.members if not each.history.fell}
     linear = (
@@ -115,16 +115,16 @@ def judge(found: EquivalentResponses) -> list[str]:
     if not fallen and not any(peaks.values()) and found.alone.peak_ratio == 0:
         return [f"The linear block {names.NO_UPLIFT} (a = {found.a:.4g}, uplift needs a > 1), nor does any structure."]
     if not peaks:
-        said.append(f"All overturn; the linear block {linear}.")
+        sentences.append(f"All overturn; the linear block {linear}.")
     elif fallen:
         who = ", ".join(each.name for each in fallen)
-        said.append(
+        sentences.append(
             f"Here the equivalence breaks: {who} overturn{'s' if len(fallen) == 1 else ''}, the rest do not; "
             f"the linear block {linear}."
         )
     else:
         part = "" if isnan(found.relative_spread) else f", {100 * found.relative_spread:.2g} % of that"
-        said.append(
+        sentences.append(
             f"The linear block {linear}; the peaks of the structures lie within {found.spread:.3g} of one another"
             f"{part}."
         )
@@ -132,21 +132,21 @@ def judge(found: EquivalentResponses) -> list[str]:
             what = f"{names.OVERTURNS} and none of the structures does" if found.alone.fell else (
                 f"{names.NO_UPLIFT} and a structure does"
             )  # fmt: skip
-            said.append(f"The linear block {what}: here the equivalence breaks.")
+            sentences.append(f"The linear block {what}: here the equivalence breaks.")
         elif found.relative_spread > MAX_APPROXIMATE_SPREAD:
             far = max(peaks, key=lambda name: abs(peaks[name] - found.alone.peak_ratio))
-            said.append(f"Here the equivalence breaks: {far} is the farthest from the linear block.")
+            sentences.append(f"Here the equivalence breaks: {far} is the farthest from the linear block.")
         else:
             how = "" if found.relative_spread <= MAX_SPREAD else "approximately "
-            said.append(f"They are {how}equivalently vulnerable to these pulses.")
+            sentences.append(f"They are {how}equivalently vulnerable to these pulses.")
     if peaks and max(peaks.values()) > CLOSE:
-        said.append(
+        sentences.append(
             f"Above {CLOSE:g} of the critical rotation, small differences decide the outcome: do not rely on the "
             "equivalence there."
         )
     if not found.one_eta:
-        said.append(
+        sentences.append(
             "The coefficients of restitution differ, but equivalence requires the same value for all: set it with "
             "`eta`."
         )
-    return said
+    return sentences

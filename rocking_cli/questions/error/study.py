@@ -166,9 +166,9 @@ def compare(
     def of(ratios: ArrayLike, times: ArrayLike) -> list[Linearisation]:
         return [linearisation(mechanism, each, ratios, times, equivalence=equivalence) for each in directions]
 
-    asked = of(amplitudes, accelerations)
+    marks = of(amplitudes, accelerations)
     strongest = max(MAX_CURVE_STRENGTH, *accelerations)
-    return of(np.linspace(0.01, 0.99, CURVE_POINTS), np.geomspace(1.02, strongest, CURVE_POINTS)), asked
+    return of(np.linspace(0.01, 0.99, CURVE_POINTS), np.geomspace(1.02, strongest, CURVE_POINTS)), marks
 
 
 @dataclass(frozen=True)
@@ -224,8 +224,8 @@ def velocity_ratios(block: EquivalentBlock, gravity: float) -> tuple[float, floa
     overturns: v = g lambda/p.
     """
     # NaN for a structure that overturns by itself, or nearly does.
-    own = gravity / (block.p * block.v_imp) if block.v_imp else np.nan
-    return own * block.lambda_lin, own * block.lambda_
+    unit = gravity / (block.p * block.v_imp) if block.v_imp else np.nan
+    return unit * block.lambda_lin, unit * block.lambda_
 
 
 def free_period(mechanism: Mechanism, direction: Direction, amplitude: Reals) -> Reals:
@@ -322,9 +322,9 @@ def _inertia(mechanism: Mechanism, direction: Direction, phi: Reals) -> Reals:
 def _integral(integrand: Callable[[Reals], Reals], until: Reals, *, smooth: bool) -> Reals:
     """Integrate f(u) from 0 to each `until`, by Gauss's rule with an increasing number of nodes."""
     before = np.full_like(until, np.nan)
-    precision, most, _ = (NODES_TOLERANCE, MAX_NODES, ENERGY_NODES) if smooth else ROUGH_INTEGRATION
+    precision, most_nodes, _ = (NODES_TOLERANCE, MAX_NODES, ENERGY_NODES) if smooth else ROUGH_INTEGRATION
     nodes = MIN_NODES
-    while nodes <= most:
+    while nodes <= most_nodes:
         x, weight = np.polynomial.legendre.leggauss(nodes)
         with np.errstate(over="ignore", invalid="ignore"):  # overflow means that the integral does not converge
             integral: Reals = until / 2 * (integrand(until[:, None] * (1 + x) / 2) @ weight)

@@ -115,16 +115,16 @@ def trust(curves: Sequence[Linearisation], asked: Sequence[Linearisation]) -> st
     accelerations = ", ".join(f"{a:g}" for a in asked[0].acceleration.tolist())
     worse = ", in the worse of the two directions" if len(asked) > 1 else ""
     where = f"At phi/phi_cr = {amplitudes} and {accelerations} times the uplift acceleration{worse}"
-    said = [f"{where}: {one}; {two}."]
+    sentences = [f"{where}: {one}; {two}."]
     if prefer is None:
-        said.append("Rely on neither at these amplitudes: use the nonlinear time history of `rocking respond`.")
+        sentences.append("Rely on neither at these amplitudes: use the nonlinear time history of `rocking respond`.")
     elif prefer == 0:
-        said.append("Either kappa is adequate at these amplitudes.")
+        sentences.append("Either kappa is adequate at these amplitudes.")
     else:
-        said.append(f"Prefer kappa{prefer} at these amplitudes.")
+        sentences.append(f"Prefer kappa{prefer} at these amplitudes.")
     if prefer is not None and min(errors(asked, kappa).grade for kappa in (1, 2)) is Grade.ESTIMATE:
-        said.append("Base decisions on the nonlinear time history of `rocking respond`.")
-    return " ".join([*said, *_ranges(curves, order[0])])
+        sentences.append("Base decisions on the nonlinear time history of `rocking respond`.")
+    return " ".join([*sentences, *_ranges(curves, order[0])])
 
 
 def _on(kappa: int, found: Errors) -> str:
@@ -144,18 +144,18 @@ def _on(kappa: int, found: Errors) -> str:
 
 def _ranges(curves: Sequence[Linearisation], kappa: int) -> list[str]:
     """Return sentences on the ranges in which errors are no longer small."""
-    said = []
+    sentences = []
     far = [each.amplitude[np.abs(each.period_ratio - 1) > SMALL] for each in curves]
     if any(values.size for values in far):
         wide = np.concatenate(far)
         where = f"for phi/phi_cr from {wide.min():.2g} to {wide.max():.2g}"
         if any(values.size == each.amplitude.size for values, each in zip(far, curves, strict=True)):
             where = "at every amplitude"
-        said.append(f"The free period is off by more than {percent(SMALL)} {where}.")
+        sentences.append(f"The free period is off by more than {percent(SMALL)} {where}.")
     slow = [each.acceleration[np.abs(getattr(each, f"overturning_ratio{kappa}") - 1) > SMALL] for each in curves]
     if any(values.size for values in slow):
         where = f"for accelerations below {np.concatenate(slow).max():.3g} times uplift"
         if any(values.size == each.acceleration.size for values, each in zip(slow, curves, strict=True)):
             where = "at every acceleration"
-        said.append(f"The overturning time with kappa{kappa} is off by more than {percent(SMALL)} {where}.")
-    return said
+        sentences.append(f"The overturning time with kappa{kappa} is off by more than {percent(SMALL)} {where}.")
+    return sentences

@@ -84,13 +84,13 @@ def prepare(
     """
     known = store.plan() if not store.empty else None
     plan, motions = survey(study, examined, known)
-    given, records = study.definition, plan.records
+    definition, records = study.definition, plan.records
     bad = {each.name for each in known.records if each.reason is not None} if known is not None else set()
     mended = [k for k, record in enumerate(records) if record.reason is None and record.name in bad]
     facts = {"description": study.description(), "versions": versions(study), "hash": digest(study.description())}
-    asked = {
+    parameters = {
         "name": study.name,
-        "definition": given.model_dump(mode="json", exclude_unset=True, by_alias=True),
+        "definition": definition.model_dump(mode="json", exclude_unset=True, by_alias=True),
         # Plain data, so that the store does not depend on the file.
         "hazard": study.hazard and [study.hazard.intensity.tolist(), study.hazard.annual_rate.tolist()],
         "weights": [source.entry.weight for source in study.sources],
@@ -101,16 +101,16 @@ def prepare(
         _refuse_changes(store, facts, known, plan)
     every = [str(each) for each in all_measures()] if rank_measures else []
     told = examined if examined is not None and _measures(study, rank_measures=rank_measures) else lambda count: None
-    plan = measured(study, plan, motions, [*given.asked_measures, *every], told, origins=rank_measures)
-    asked |= {UPLIFT_FACT: accelerations(study, plan)}
+    plan = measured(study, plan, motions, [*definition.asked_measures, *every], told, origins=rank_measures)
+    parameters |= {UPLIFT_FACT: accelerations(study, plan)}
     if known is None:
-        asked |= _displacements(study, plan, {})
-        store.begin(plan, {**facts, **asked, "libraries": libraries()})
+        parameters |= _displacements(study, plan, {})
+        store.begin(plan, {**facts, **parameters, "libraries": libraries()})
     else:
-        asked |= _displacements(study, plan, store.facts().get(FACT, {}))
+        parameters |= _displacements(study, plan, store.facts().get(FACT, {}))
         for k in mended:
             store.replace_record(k, records[k])
-        store.note(asked)
+        store.note(parameters)
         store.keep(plan.measured)
         store.commit()
     finished, failed = store.count()
@@ -157,10 +157,10 @@ def survey(study: Study, examined: Examined | None = None, known: Plan | None = 
     for sample in study.samples:
         trials.append(_trial(study, sample))
         tell(1)
-    given = study.definition
-    etas = given.eta if given.eta is not None else [nan]
-    levels = given.levels.levels()
-    plan = Plan(trials, records, etas, given.levels.measure, levels, given.polarities, sets=study.sets)
+    definition = study.definition
+    etas = definition.eta if definition.eta is not None else [nan]
+    levels = definition.levels.levels()
+    plan = Plan(trials, records, etas, definition.levels.measure, levels, definition.polarities, sets=study.sets)
     if known is not None and _of_one_kind(known, plan):
         plan = replace(plan, measured=known.measured)
     return measured(study, plan, motions, ()), motions
@@ -204,11 +204,18 @@ def run(prepared: Prepared, store: Store, workers: Workers, progress: Progress |
     progress : callable, optional
         See `Progress`.
     """
-    study, plan, given = prepared.study, prepared.plan, prepared.study.definition
+    study, plan, definition = prepared.study, prepared.plan, prepared.study.definition
     size = unit_size(plan.total - prepared.finished, workers.count)
-    checked = SLIDING in given.limit_states
+    checked = SLIDING in definition.limit_states
     to_do = units(
-        plan, study.samples, prepared.motions, given.model, store.finished, size, checked=checked, opening=given.opening
+        plan,
+        study.samples,
+        prepared.motions,
+        definition.model,
+        store.finished,
+        size,
+        checked=checked,
+        opening=definition.opening,
     )
     for rows in workers.map(carry_out, to_do):
         store.add(rows)

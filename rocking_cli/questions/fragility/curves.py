@@ -194,8 +194,8 @@ class FragilityCurve(FittedToRuns):
         """
         if not self.implied:
             return None
-        own, others = self.own, list(self.implied)
-        lines = np.array([[each.probability(x), *each.band(x)] for each in (own, *self.implied.values())])
+        uncut, others = self.own, list(self.implied)
+        lines = np.array([[each.probability(x), *each.band(x)] for each in (uncut, *self.implied.values())])
         above = lines[0] - lines[1:]
         if above.max() <= MIN_CUT:
             return None
@@ -387,14 +387,14 @@ def _tested(curve: FragilityCurve) -> str:
     assert curve.goodness is not None and curve.fit is not None
     p = curve.goodness.p_value
     if p is None:
-        said = f"whether the data fit a {curve.kind} curve is not tested: {curve.goodness.why}"
+        sentence = f"whether the data fit a {curve.kind} curve is not tested: {curve.goodness.why}"
     elif _rejected(curve):
-        said = f"do not rely on this curve: the goodness-of-fit test rejects a {curve.kind} curve (p = {p:.2g})"
+        sentence = f"do not rely on this curve: the goodness-of-fit test rejects a {curve.kind} curve (p = {p:.2g})"
     else:
-        said = f"the goodness-of-fit test does not reject a {curve.kind} curve (p = {p:.2g})"
+        sentence = f"the goodness-of-fit test does not reject a {curve.kind} curve (p = {p:.2g})"
     if curve.fit.intervals[1].low <= 0:
-        said += f"; at {100 * curve.confidence:g} % {_why_open(curve)}"
-    return said
+        sentence += f"; at {100 * curve.confidence:g} % {_why_open(curve)}"
+    return sentence
 
 
 def _why_open(curve: FragilityCurve) -> str:
@@ -553,7 +553,7 @@ def _gain(both: Fit, alone: Fit, column: int, clustered: bool) -> float:
 
 
 def _words(both: Fit, p_values: tuple[float, float], aic: dict[str, float]) -> str:
-    said = [
+    clauses = [
         f"the {name} measure {'adds to' if p < MAX_P_VALUE_TO_ADD else 'adds nothing detectable to'} the {other} "
         f"(p = {p:.2g})"
         for name, other, p in (("second", "first", p_values[1]), ("first", "second", p_values[0]))
@@ -561,10 +561,10 @@ def _words(both: Fit, p_values: tuple[float, float], aic: dict[str, float]) -> s
     if max(p_values) >= MAX_P_VALUE_TO_ADD:
         alike = min(p_values) >= MAX_P_VALUE_TO_ADD  # if neither adds to the other, the likelier one
         better = "first" if (aic["first"] <= aic["second"] if alike else p_values[0] < MAX_P_VALUE_TO_ADD) else "second"
-        said.append(f"a curve over the {better} measure alone is sufficient")
+        clauses.append(f"a curve over the {better} measure alone is sufficient")
     falls = [name for name, c in zip(("first", "second"), both.coefficients[1:], strict=True) if c < 0]
-    said += [
+    clauses += [
         f"at a fixed value of the other measure, fewer runs exceed the limit as the {name} one increases"
         for name in falls
     ]
-    return "; ".join(said)
+    return "; ".join(clauses)

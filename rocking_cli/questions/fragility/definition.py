@@ -39,8 +39,8 @@ def _measure(value: object) -> object:
         return spelled(value)
     except InputError as error:
         (problem,) = error.problems
-        said = {"reason": problem.message, "hint": problem.hint}
-        raise PydanticCustomError("unit", "{reason}", said) from None
+        values = {"reason": problem.message, "hint": problem.hint}
+        raise PydanticCustomError("unit", "{reason}", values) from None
 
 
 def _level_measure(value: object) -> object:
@@ -81,8 +81,8 @@ def _right(given: dict[str, Any], name: str, sound: Sound) -> list[Any]:
     """Return the valid entries of a list, with measures and limit states in their standard spelling."""
     values = given.get(name)
     entries = enumerate(values if isinstance(values, list) else [])
-    own = _limit if name == "limit_states" else _spelled
-    return [own(each) for k, each in entries if sound(name, k)]
+    validate = _limit if name == "limit_states" else _spelled
+    return [validate(each) for k, each in entries if sound(name, k)]
 
 
 def _pair(values: list[str]) -> list[str]:

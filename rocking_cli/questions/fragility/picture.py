@@ -119,12 +119,12 @@ def draw_curves(drawn: Sequence[LabelledCurve], label: str, title: str) -> Figur
     handles: list[Any] = [_key(*edge) for k, each in enumerate(drawn) for edge in _named(each, style.distinct(k))]
     if doubtful := [each for each in drawn if each.lower is not None]:
         shares = ", ".join(f"{each.name} {names.percent(each.share)}" for each in doubtful)
-        said = f"band between the two curves: runs of {names.UNKNOWN} outcome ({shares})"
-        handles.append(Patch(**style.UNKNOWN, label=_lines(said)))
+        sentence = f"band between the two curves: runs of {names.UNKNOWN} outcome ({shares})"
+        handles.append(Patch(**style.UNKNOWN, label=_lines(sentence)))
     bands = "shades" if len(drawn) <= MAX_FILLED_BANDS else "thin lines"
     marks = f"marks: observed shares; bars and {bands}: {100 * drawn[0].curve.confidence:.3g} % confidence, by record"
-    most = max(int(each.observations.group.max()) + 1 for each in drawn)
-    if (every := _every(most, alone=len(drawn) == 1)) > 1:
+    groups = max(int(each.observations.group.max()) + 1 for each in drawn)
+    if (every := _every(groups, alone=len(drawn) == 1)) > 1:
         marks += f"; one of every {every} intensities is marked"
     handles += [Line2D([], [], linestyle="none", label=_lines(each)) for each in (marks, *_remarks(drawn))]
     style.legend_below(figure, handles, 1, handlelength=4, alignment="left")
@@ -368,13 +368,13 @@ def draw_surface(found: Bivariate, labels: tuple[str, str], title: str) -> Figur
     if band and found.lower is not None:
         handles.append(_contours(axes, found.lower.surface, across, up, style.RECORD_COLOUR, EDGE_LABELS[1]))
     handles.append(_contours(axes, surface, across, up, style.INK, EDGE_LABELS[0] if band else ""))
-    said = [surface.warning] if surface.warning else []
-    said += [f"one of every {every} runs is drawn"] if every > 1 else []
-    handles += [Line2D([], [], linestyle="none", label=_lines(each)) for each in said]
+    notes = [surface.warning] if surface.warning else []
+    notes += [f"one of every {every} runs is drawn"] if every > 1 else []
+    handles += [Line2D([], [], linestyle="none", label=_lines(each)) for each in notes]
     axes.set_xlim(across[0], across[-1])
     axes.set_ylim(up[0], up[-1])
     style.tidy(axes, labels[0], labels[1])
-    columns = 1 if surface.kind == "none" or said or band else 2
+    columns = 1 if surface.kind == "none" or notes or band else 2
     style.legend_below(figure, handles, columns)
     return figure
 

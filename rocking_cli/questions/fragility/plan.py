@@ -316,12 +316,12 @@ class Plan:
         self, measure: str, sample: Integers, record: Integers, level: Integers, factor: float | Reals
     ) -> Reals:
         """Return the intensity of runs, from their indices and the factors on the records; NaN if not known."""
-        asked = parse_measure(measure)
-        if asked.base is None or asked.power is None:
-            table = self.measured.of_run.get(str(asked), np.full((len(self.trials), len(self.records), 1), nan))
+        parsed = parse_measure(measure)
+        if parsed.base is None or parsed.power is None:
+            table = self.measured.of_run.get(str(parsed), np.full((len(self.trials), len(self.records), 1), nan))
             return np.asarray(table[sample, record, np.minimum(level, table.shape[2] - 1)])
-        value = self.of_records(str(asked.base))[record] * np.power(factor, asked.power)
-        return np.asarray(asked.relative(value, self.reference(sample)), dtype=np.float64)
+        value = self.of_records(str(parsed.base))[record] * np.power(factor, parsed.power)
+        return np.asarray(parsed.relative(value, self.reference(sample)), dtype=np.float64)
 
     def factors(self, sample: Integers, record: Integers, level: Integers) -> Reals:
         """Return the factors that scale records to levels, for indices of one shape."""

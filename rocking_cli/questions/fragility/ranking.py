@@ -130,8 +130,8 @@ def line(x: Reals, y: Reals) -> FittedLine | None:
 
 def candidates(plan: Plan, definition: Definition) -> list[str]:
     """Return the measures that can be ranked: those of the study and all installed ones whose values are known."""
-    asked = [*definition.asked_measures, *(str(each) for each in all_measures())]
-    return [each for each in dict.fromkeys(asked) if _known(plan, each)]
+    names = [*definition.asked_measures, *(str(each) for each in all_measures())]
+    return [each for each in dict.fromkeys(names) if _known(plan, each)]
 
 
 def _known(plan: Plan, name: str) -> bool:
@@ -184,11 +184,11 @@ def rank(
     """
     names = candidates(plan, definition)
     against = covariates(plan) if against is None else against
-    asked = definition.model_copy(update={"measures": names, "bivariate": [], "hazard": None})
+    widened = definition.model_copy(update={"measures": names, "bivariate": [], "hazard": None})
     rankings = []
-    for structure, tally in counted(store, plan, asked, progress).items():
+    for structure, tally in counted(store, plan, widened, progress).items():
         if tally.runs.any():
-            fitted = {(curve.measure, curve.limit): curve for curve in curves(tally, structure, asked, None)}
+            fitted = {(curve.measure, curve.limit): curve for curve in curves(tally, structure, widened, None)}
             ranking = _rank(store, plan, structure, names, fitted, against)
             rankings.append(replace(ranking, unknown=tally.unknown_if_checked))
     return rankings

@@ -23,22 +23,22 @@ def draw_ranking(ranking: Ranking) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    shown = ranking.measures
-    figure = style.new_figure(1.4 + 0.26 * len(shown))
+    measures = ranking.measures
+    figure = style.new_figure(1.4 + 0.26 * len(measures))
     panels = figure.subplots(1, 1 + bool(ranking.against), sharey=True, squeeze=False)[0]
     filled = " (filled: residuals show no trend)" if ranking.against else ""
     style.heading(panels[0], f"{ranking.structure}: which measure predicts best{filled}")
-    places = np.arange(len(shown))
-    for place, each in zip(places, shown, strict=True):
+    places = np.arange(len(measures))
+    for place, each in zip(places, measures, strict=True):
         face = style.INK if each.sufficient else "white"
         panels[0].plot(each.efficiency, place, "o", color=style.INK, markerfacecolor=face, markersize=6)
     panels[0].set_xlim(left=0.0)
     panels[0].set_xlabel(r"efficiency: dispersion of $\ln(\phi/\phi_{cr})$", fontsize=style.LABEL)
-    panels[0].set_yticks(places, [each.measure for each in shown], parse_math=False)
+    panels[0].set_yticks(places, [each.measure for each in measures], parse_math=False)
     panels[0].invert_yaxis()
     if ranking.against:
         for k, name in enumerate(ranking.against):
-            values = np.array([each.trends[name] for each in shown])
+            values = np.array([each.trends[name] for each in measures])
             look = style.distinct(k) | {"linestyle": ""}
             panels[1].plot(np.maximum(values, MIN_DRAWN_P_VALUE), places, **look, label=name)
         panels[1].axvline(MIN_P_VALUE, color=style.INK, linewidth=style.MEDIUM, linestyle="--")

@@ -433,8 +433,8 @@ class Store:
             count = "1 run does not match its checksum" if len(bad) == 1 else f"{len(bad)} runs do not match theirs"
             what.append(f"{count}: {named}")
         if to_write and not what:  # writing to damaged pages would increase the damage
-            said = self._connection.execute("PRAGMA quick_check(1)").fetchone()[0]
-            what += [] if said == "ok" else [" ".join(said.split())]
+            verdict = self._connection.execute("PRAGMA quick_check(1)").fetchone()[0]
+            what += [] if verdict == "ok" else [" ".join(verdict.split())]
         if what:
             raise damaged(self.path, f"{', '.join(what)}; {whole:,} of {plan.total:,} runs are whole")
 

@@ -121,7 +121,7 @@ class Study:
 
     def description(self) -> dict[str, Any]:
         """Return everything that decides the runs, except the content of the records, as plain data."""
-        given = self.definition
+        definition = self.definition
         return {
             "structures": {
                 structure.name: {
@@ -129,32 +129,32 @@ class Study:
                     **structure.model_dump(exclude_none=True, exclude={"name"}),
                     "vary": entry.model_dump(exclude_none=True)["vary"],
                 }
-                for structure, entry in zip(self.structures, given.structures, strict=True)
+                for structure, entry in zip(self.structures, definition.structures, strict=True)
             },
             "order of structures": [structure.name for structure in self.structures],
             "records": [_described(source) for source in self.sources],
-            **({"processing": given.processing} if given.processing else {}),
-            **({"floor": str(Floor.parse(given.floor))} if given.floor is not None else {}),
+            **({"processing": definition.processing} if definition.processing else {}),
+            **({"floor": str(Floor.parse(definition.floor))} if definition.floor is not None else {}),
             "levels": {
-                "measure": given.levels.measure,
-                "values": given.levels.levels(),
-                **({} if given.levels.scaled else {"scaled": False}),
+                "measure": definition.levels.measure,
+                "values": definition.levels.levels(),
+                **({} if definition.levels.scaled else {"scaled": False}),
             },
-            "polarities": list(given.polarities),
-            "eta": given.eta,
-            "model": given.model,
-            "opening": given.opening,
-            "samples": given.samples,
-            "sampling": given.sampling,
-            "seed": given.seed,
-            **({SLIDING: "checked in every run"} if SLIDING in given.limit_states else {}),
+            "polarities": list(definition.polarities),
+            "eta": definition.eta,
+            "model": definition.model,
+            "opening": definition.opening,
+            "samples": definition.samples,
+            "sampling": definition.sampling,
+            "seed": definition.seed,
+            **({SLIDING: "checked in every run"} if SLIDING in definition.limit_states else {}),
         }
 
 
 def _described(source: Source) -> dict[str, Any]:
     """Return what decides the runs under a record: its entry without the weight, and for a set also its file."""
-    said = {key: value for key, value in as_written(source.entry).items() if key != "weight"}
-    return {"name": source.name, **said, **({"file": source.file} if source.entry.level is not None else {})}
+    entry = {key: value for key, value in as_written(source.entry).items() if key != "weight"}
+    return {"name": source.name, **entry, **({"file": source.file} if source.entry.level is not None else {})}
 
 
 def digest(description: dict[str, Any]) -> str:
@@ -336,9 +336,9 @@ def _of_file_or_list(
     sources = []
     for item in listed:
         assert item.entry is not None
-        own = RecordEntry.model_validate(_together(entry, item.entry))
+        record = RecordEntry.model_validate(_together(entry, item.entry))
         shown = _shown(item.path, folder)
-        sources.append(Source(_at_level(shown, own), own, item.reading(reading), shown, item.path))
+        sources.append(Source(_at_level(shown, record), record, item.reading(reading), shown, item.path))
     return sources
 
 
@@ -348,12 +348,12 @@ def _together(entry: RecordEntry, listed: Entry) -> dict[str, Any]:
     Values of the list entry take precedence. Processing steps of both apply: first those of the list, then those of the
     study. Factors of both apply too; the factor of the list comes before any step of the study.
     """
-    said = {**as_written(entry), **as_written(listed), "file": str(entry.file)}
+    fields = {**as_written(entry), **as_written(listed), "file": str(entry.file)}
     steps = [*(listed.processing or []), *(entry.processing or [])]
     if listed.factor is not None and (entry.processing or entry.factor is not None):
         steps.insert(len(listed.processing or []), {"factor": listed.factor})
-        said["factor"] = entry.factor
-    return {**said, "processing": steps or None}
+        fields["factor"] = entry.factor
+    return {**fields, "processing": steps or None}
 
 
 def _at_level(name: str, entry: RecordEntry) -> str:
@@ -401,17 +401,17 @@ def _refuse_repeated(document: Document, field: str, names: Sequence[str]) -> No
 
 
 def _hazard(document: Document, folder: Path) -> HazardCurve | None:
-    given = usable_part(HazardEntry, document.data.get("hazard"))
-    if given is None:
+    hazard = usable_part(HazardEntry, document.data.get("hazard"))
+    if hazard is None:
         return None
-    if given.points is not None:
-        return HazardCurve(*np.array(given.points).T)
-    assert given.file is not None
-    file = folder / given.file
+    if hazard.points is not None:
+        return HazardCurve(*np.array(hazard.points).T)
+    assert hazard.file is not None
+    file = folder / hazard.file
     try:
         return read_hazard(file)
     except InputError as error:
-        document.problems += _of_file(document, ("hazard", "file"), given.file, file, error)
+        document.problems += _of_file(document, ("hazard", "file"), hazard.file, file, error)
         return None
 
 

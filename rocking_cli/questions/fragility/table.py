@@ -88,11 +88,11 @@ def run_blocks(store: Store, plan: Plan, measures: Sequence[str] = ()) -> Iterat
     mapping of str to sequence
         The columns by heading, with units; the first block is yielded even if it is empty.
     """
-    end, asked = int(np.prod(plan.shape)), tuple(dict.fromkeys([*ALWAYS, *measures]))
+    end, columns_asked = int(np.prod(plan.shape)), tuple(dict.fromkeys([*ALWAYS, *measures]))
     for first in range(0, end, RUNS_PER_BLOCK):
         rows = store.runs(first, min(first + RUNS_PER_BLOCK, end))
         if len(rows) or first == 0:
-            yield _of_runs(plan, rows, asked)
+            yield _of_runs(plan, rows, columns_asked)
 
 
 def _of_runs(plan: Plan, rows: RunRows, measures: Sequence[str]) -> dict[str, Sequence[object]]:

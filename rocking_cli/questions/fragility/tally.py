@@ -549,8 +549,8 @@ def onset(plan: Plan, samples: range, pair: Pair | None, measure: str) -> Onset 
     measure : str
         The measure: PGA, or PGA over the uplift acceleration.
     """
-    asked = parse_measure(measure)
-    if pair is None or str(asked.base) != PGA or asked.power != 1:
+    parsed = parse_measure(measure)
+    if pair is None or str(parsed.base) != PGA or parsed.power != 1:
         return None
     usable = [k for k in samples if plan.trials[k].reason is None]
     accelerations = np.array([plan.trials[k].lambda_ * plan.trials[k].gravity for k in usable])
@@ -558,6 +558,6 @@ def onset(plan: Plan, samples: range, pair: Pair | None, measure: str) -> Onset 
     if np.ptp(accelerations) > INTENSITY_TOLERANCE * accelerations.max():
         return None
     pga = accelerations[:1] / STANDARD_GRAVITY
-    at = float(asked.relative(pga, plan.reference(np.array(usable[:1])))[0])
+    at = float(parsed.relative(pga, plan.reference(np.array(usable[:1])))[0])
     one, other = pair
     return Onset(at, one is not None and other is not None and isclose(one, other, rel_tol=INTENSITY_TOLERANCE))

@@ -90,16 +90,16 @@ def fragility(
             rank_measures=rank_measures, quantiles=quantiles, nrml=nrml is not None,
         )  # fmt: skip
     file = Path("study") if isinstance(study, Mapping) else Path(study)
-    asked = load_study(study, Path(store or file).stem)
+    loaded = load_study(study, Path(store or file).stem)
     place = Path(store) if store is not None else file.with_suffix(".db")
     # Varied properties may differ much from the file, so the first sample is checked.
-    for mechanism in {sample.structure: sample.mechanism for sample in asked.samples if sample.number == 0}.values():
+    for mechanism in {sample.structure: sample.mechanism for sample in loaded.samples if sample.number == 0}.values():
         warn_of(mechanism, watch)
-    for sentence in held(asked):
+    for sentence in held(loaded):
         watch.warn(sentence)
     if check:
-        return _planned(asked, watch)
-    _bring_up_to_date(asked, place, workers_of(jobs, scheduler), watch, restart=restart, rank_measures=rank_measures)
+        return _planned(loaded, watch)
+    _bring_up_to_date(loaded, place, workers_of(jobs, scheduler), watch, restart=restart, rank_measures=rank_measures)
     return results(place, quantiles=quantiles, rank_measures=rank_measures, nrml=nrml, watch=watch)
 
 

@@ -252,15 +252,15 @@ def _undecided(found: Sequence[Fragility | Bivariate], *, capacities: bool) -> I
         share = f"({percent(each.share or 0.0)})"
         many = each.unknown != 1
         if capacities:
-            said = f"{each.unknown:,} of {each.total:,} capacities {share} {'are' if many else 'is'} {UNKNOWN}"
+            sentence = f"{each.unknown:,} of {each.total:,} capacities {share} {'are' if many else 'is'} {UNKNOWN}"
         else:
             does = "exceed" if many else "exceeds"
-            said = f"whether {each.unknown:,} of {each.total:,} runs {share} {does} the limit is {UNKNOWN}"
+            sentence = f"whether {each.unknown:,} of {each.total:,} runs {share} {does} the limit is {UNKNOWN}"
         counted = f"{'these count' if many else 'this one counts'} as exceeding"
         how = (
             "the result is the band between the two curves, down to 0 without a lower one" if each.is_band else counted
         )
-        yield f"{limit_name(each.limit)}: {said}; {how}."
+        yield f"{limit_name(each.limit)}: {sentence}; {how}."
     if any(each.is_band for each in found):
         yield (
             f"An upper curve counts runs of {UNKNOWN} outcome as exceeding the limit, a lower one as not exceeding it. "

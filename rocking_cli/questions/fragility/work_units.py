@@ -90,17 +90,19 @@ def _slide_times(unit: WorkUnit, found: Outcomes) -> tuple[Reals, Bools]:
     checks: dict[tuple[int, float | None], Contacts] = {}
     for k in np.flatnonzero(np.isfinite(found.uplift_time) & ~found.failed):  # a structure at rest has nothing to check
         model, eta = int(runs.model[k]), float(runs.eta[k])
-        own = None if isnan(eta) else eta
-        if (model, own) not in checks:
+        restitution = None if isnan(eta) else eta
+        if (model, restitution) not in checks:
             checked = unit.checked[model]
-            checks[model, own] = Contacts(checked if own is None else with_restitution(checked, own))
+            checks[model, restitution] = Contacts(
+                checked if restitution is None else with_restitution(checked, restitution)
+            )
         motion = unit.motions[runs.record[k]].scaled(float(runs.scale[k] * runs.polarity[k]))
         try:
             history = follow(unit.models[model], motion, eta=eta)
         except SolverError:
             lost[k] = True
         else:
-            times[k] = checks[model, own].check(history, motion).slides
+            times[k] = checks[model, restitution].check(history, motion).slides
     return times, lost
 
 
@@ -184,7 +186,7 @@ def _unit(plan: Plan, runs: Integers, models: _Models, motions: KeptMotions, *, 
     sample, record, eta, level, polarity = plan.places(runs)
     trials, model = np.unique(sample, return_inverse=True)
     records, motion = np.unique(record, return_inverse=True)
-    given = np.array(plan.etas)[eta]
+    etas = np.array(plan.etas)[eta]
     drawn = np.array([models.samples[k].eta for k in trials])[model]
     return WorkUnit(
         runs,
@@ -193,7 +195,7 @@ def _unit(plan: Plan, runs: Integers, models: _Models, motions: KeptMotions, *, 
             motion,
             scale=plan.factors(sample, record, level),
             polarity=np.array(plan.polarities)[polarity],
-            eta=np.where(np.isnan(given), drawn, given),
+            eta=np.where(np.isnan(etas), drawn, etas),
         ),
         tuple(models[int(k)] for k in trials),
         tuple(motions[int(k)] for k in records),
@@ -219,6 +221,6 @@ class _Models:
             if len(self._kept) == self.KEPT:
                 del self._kept[next(iter(self._kept))]
             # The restitution is a placeholder that every run replaces, as the kinematics may not give any.
-            given = sample.mechanism if self._eta is None else with_restitution(sample.mechanism, self._eta)
-            self._kept[key] = Structure(given, opening=self._opening).model(self._name)
+            mechanism = sample.mechanism if self._eta is None else with_restitution(sample.mechanism, self._eta)
+            self._kept[key] = Structure(mechanism, opening=self._opening).model(self._name)
         return self._kept[key]

@@ -156,8 +156,8 @@ def _threads(client: distributed.Client, address: str) -> int:
         ) from None
     for worker, version in client.run(_version, on_error="return").items():
         if version != __version__:
-            said = f"has rocking-cli {version}" if isinstance(version, str) else f"cannot run it ({version})"
-            raise ClusterError(f"the worker {worker} {said}; this is {__version__}: install the same on all")
+            sentence = f"has rocking-cli {version}" if isinstance(version, str) else f"cannot run it ({version})"
+            raise ClusterError(f"the worker {worker} {sentence}; this is {__version__}: install the same on all")
     return sum(client.nthreads().values())
 
 

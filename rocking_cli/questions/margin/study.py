@@ -139,17 +139,17 @@ def margin(
     for k, sign in enumerate(polarities):
         # Neighbours that always overturn cannot do so more often; a symmetric structure has the same shares under the
         # motion reversed.
-        left = overturned < (0.0 if k and model.symmetric else 1.0)
+        undecided = overturned < (0.0 if k and model.symmetric else 1.0)
         if progress is not None:
-            progress(int((~left).sum()) * around.count)
-        some = factors[left]
+            progress(int((~undecided).sum()) * around.count)
+        some = factors[undecided]
         repeated = Draws(*(np.concatenate([values] * some.size) if some.size else values[:0] for values in draws))
         outcomes = follow(
             model, motion, repeated, scale=some.repeat(around.count), polarity=sign, threads=threads, progress=progress
         )
         fell, doubtful = (of.reshape(some.size, around.count).mean(axis=1) for of in (outcomes.fell, outcomes.unknown))
-        overturned[left] = np.maximum(overturned[left], fell)
-        at_most[left] = np.maximum(at_most[left], fell + doubtful)
+        overturned[undecided] = np.maximum(overturned[undecided], fell)
+        at_most[undecided] = np.maximum(at_most[undecided], fell + doubtful)
     at_most = np.maximum(at_most, overturned)
     uplifts = [least_uplift(model, motion.scaled(sign)) for sign in polarities]
     least = min((uplift for uplift in uplifts if uplift is not None), default=None)

@@ -106,8 +106,8 @@ def margin(
     end = replace(worst(row.conclusion for row in rows), motions=[row.name for row in rows])
     margins = Concluding({row.name: row.margin for row in rows}, end)
     figure = drawn("questions.margin.picture.draw_margins", margins, heading(ready.mechanism))
-    shown = view(ready, rows, str(polarity), around, end)
-    return MappingAnswer("margin", margins, shown, partial(_columns, margins), figure)
+    margin_view = view(ready, rows, str(polarity), around, end)
+    return MappingAnswer("margin", margins, margin_view, partial(_columns, margins), figure)
 
 
 def _columns(margins: dict[str, Margin]) -> Columns:
@@ -211,8 +211,8 @@ def shares(
     overturned = sum(each.overturned for each in by_sign) / len(by_sign)
     unknown = sum(each.unknown or 0.0 for each in by_sign) / len(by_sign)
     result = OutcomeShares(overturned, 1 - overturned - unknown, unknown, model.joints is not None)
-    said = f"Of {around.count} neighbours of {given.motion.name}, {percent(overturned)} overturn {ready.name}"
-    said += f", and the outcome of {percent(unknown)} is unknown." if unknown else "."
+    sentence = f"Of {around.count} neighbours of {given.motion.name}, {percent(overturned)} overturn {ready.name}"
+    sentence += f", and the outcome of {percent(unknown)} is unknown." if unknown else "."
     columns = {name: [value] for name, value in result._asdict().items()}
     figure = no_plot("shares have no plot of their own: plot the margin")
-    return Answer("shares", result, View(result._asdict(), [said]), lambda: columns, figure)
+    return Answer("shares", result, View(result._asdict(), [sentence]), lambda: columns, figure)

@@ -192,18 +192,20 @@ def _reached(found: Margin, shares: NDArray[np.float64], does: str, pga: float) 
     parts = [f"{percent(level)} of the neighbouring motions first {does} at a factor of {at(first, 'PGA ')}"]
     parts += [f"{percent(level)} at {at(first)}" for level, first in others]
     parts += [f"{percent(level)} at none up to {high:.2g}" for level in SHARE_LEVELS[len(reached) :]]
-    said = f"At least {', '.join(parts[:-1])} and {parts[-1]}"
+    sentence = f"At least {', '.join(parts[:-1])} and {parts[-1]}"
     if found.factors.size > 2:
-        said += f"; the factors tried are {percent(float(np.median(found.factors[1:] / found.factors[:-1])) - 1)} apart"
+        sentence += (
+            f"; the factors tried are {percent(float(np.median(found.factors[1:] / found.factors[:-1])) - 1)} apart"
+        )
     for level, first in reached:
         above = found.factors > first
         least = float(shares[above].min(initial=1.0))
         if least < level:
             factor = float(found.factors[above][shares[above].argmin()])
             again = f"only {percent(least)} do" if least else "none does"
-            said += f". A stronger motion is not always worse: at a factor of {at(factor)} {again}"
+            sentence += f". A stronger motion is not always worse: at a factor of {at(factor)} {again}"
             break
-    return f"{said}."
+    return f"{sentence}."
 
 
 def _at(pga: float, factor: float, what: str = "") -> str:

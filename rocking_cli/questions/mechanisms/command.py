@@ -134,8 +134,8 @@ def _verdicts(name: str, file: str | None, registry: Registry) -> list[Verdict]:
     if not loads.passed:
         return [loads]
     if file is None:
-        made = verdict("makes_a_structure", TEMPLATE_CHECK, make)
-        return [loads, made, *(contract(built[0]) if built else [])]
+        builds = verdict("makes_a_structure", TEMPLATE_CHECK, make)
+        return [loads, builds, *(contract(built[0]) if built else [])]
     make()
     if built[0].mechanism != name:
         raise InputError(f"{file} is a structure of the mechanism {built[0].mechanism}, not of {name}")

@@ -336,26 +336,25 @@ class _OverturningSearch:
         The search goes up to `beyond`; `high` is an a - 1 that is known to be accepted, equal to `beyond`, or NaN.
         """
         beyond, high, low = beyond.copy(), high.copy(), np.zeros(self.periods.size)
-        left = np.flatnonzero(beyond > 0)
+        open_periods = np.flatnonzero(beyond > 0)
         for turn in count():
-            if not left.size:
+            if not open_periods.size:
                 break
-            start = (
-                np.minimum(MIN_SCAN_EXCESS, beyond[left] / RESCAN_RATIO) if turn == 0 else beyond[left] / RESCAN_RATIO
-            )[:, None]
-            scan = start * (beyond[left, None] / start) ** np.linspace(0, 1, SCAN_AMPLITUDES)
+            nearest = beyond[open_periods] / RESCAN_RATIO
+            start = (np.minimum(MIN_SCAN_EXCESS, nearest) if turn == 0 else nearest)[:, None]
+            scan = start * (beyond[open_periods, None] / start) ** np.linspace(0, 1, SCAN_AMPLITUDES)
             shaken = self._shaken(
-                np.repeat(self.periods[left], SCAN_AMPLITUDES), scan.ravel(), report=turn < USUAL_PASSES
+                np.repeat(self.periods[open_periods], SCAN_AMPLITUDES), scan.ravel(), report=turn < USUAL_PASSES
             )
             falls = counts(shaken).reshape(scan.shape).copy()
-            falls[:, -1] |= np.isfinite(high[left])  # the least amplitude so far
+            falls[:, -1] |= np.isfinite(high[open_periods])  # the least amplitude so far
             some = falls.any(axis=1)
-            left, scan, first = left[some], scan[some], falls[some].argmax(axis=1)
-            row = np.arange(left.size)
-            low[left] = np.where(first > 0, scan[row, np.maximum(first - 1, 0)], 0.0)
-            high[left] = beyond[left] = scan[row, first]
-            left = left[
-                (first < SCAN_AMPLITUDES - 1) & (high[left] > TIE_TOLERANCE)
+            open_periods, scan, first = open_periods[some], scan[some], falls[some].argmax(axis=1)
+            row = np.arange(open_periods.size)
+            low[open_periods] = np.where(first > 0, scan[row, np.maximum(first - 1, 0)], 0.0)
+            high[open_periods] = beyond[open_periods] = scan[row, first]
+            open_periods = open_periods[
+                (first < SCAN_AMPLITUDES - 1) & (high[open_periods] > TIE_TOLERANCE)
             ]  # no amplitude below uplift overturns
         some = np.isfinite(high)
         for _ in range(HALVINGS if some.any() else 0):

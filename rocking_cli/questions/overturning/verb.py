@@ -102,8 +102,8 @@ def overturning(
     """
     ready = structures_of(each_of(structures), watch, opening)
     axes = {"period": period, "ag": ag, "omega": omega, "a": a}
-    given = [name for name, ends in axes.items() if ends is not None]
-    _check(ready, given, compare=compare, dimensionless=dimensionless, model=model)
+    ranges = [name for name, ends in axes.items() if ends is not None]
+    _check(ready, ranges, compare=compare, dimensionless=dimensionless, model=model)
     model = model or ("nonlinear" if compare else "linear2")
     if model != "nonlinear":
         warn_misleading(ready, watch)

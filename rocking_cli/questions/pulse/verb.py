@@ -84,8 +84,8 @@ def pulse(
     False
     """
     for_block = [name for name, value in (("a", a), ("omega", omega), ("eta", eta)) if value is not None]
-    given = {"ag": ag, "period": period, "polarity": None if str(polarity) == "1" else polarity}
-    for_structure = [f"`{name}` for a structure" for name, value in given.items() if value is not None]
+    options = {"ag": ag, "period": period, "polarity": None if str(polarity) == "1" else polarity}
+    for_structure = [f"`{name}` for a structure" for name, value in options.items() if value is not None]
     if structure is not None:
         for_structure.append("a structure is given")
     if for_block and for_structure:

@@ -196,18 +196,18 @@ def _verdict(answers: Mapping[str, Answer], mechanism: Mechanism) -> str:
         joints = joints_in_words(nonlinear, Contacts(mechanism).check(nonlinear, sampled.motion).assumed_friction)
     if nonlinear.unknown:
         return f"{joints} {NO_JOINTS}"
-    said = f"The structure {ends(nonlinear)}{f', {after_impacts(nonlinear)}' if nonlinear.fell else ''}."
+    sentence = f"The structure {ends(nonlinear)}{f', {after_impacts(nonlinear)}' if nonlinear.fell else ''}."
     if not nonlinear.lifted:
-        return said
-    said += f" {joints}".rstrip()
+        return sentence
+    sentence += f" {joints}".rstrip()
     for name in KAPPAS:
         linear, over = outcome(answers[name]), _over_nonlinear(answers[name], answers)
         if over >= 0:
             off = over - 1
-            said += f" By {name} its peak is {percent(abs(off))} {'higher' if off > 0 else 'lower'}."
+            sentence += f" By {name} its peak is {percent(abs(off))} {'higher' if off > 0 else 'lower'}."
         elif linear.fell != nonlinear.fell:
-            said += f" By {name} it {names.outcome(uplifts=linear.lifted, overturned=linear.fell)}."
-    return said
+            sentence += f" By {name} it {names.outcome(uplifts=linear.lifted, overturned=linear.fell)}."
+    return sentence
 
 
 def _closed_parts(closed: Mapping[str, ClosedForm], exact: Mapping[str, ExactResponse]) -> Iterator[Table | str]:
@@ -232,8 +232,10 @@ def _why_no_closed_form(mechanism: Mechanism, pulse: Pulse) -> str:
     if not mechanism.rocks_both_ways:
         return "No closed form and no exact solution: both require a structure that rocks through to the other side."
     if pulse.name != "sine":
-        said = "No closed form: Eqs. 41-42 apply to a full sine."
+        sentence = "No closed form: Eqs. 41-42 apply to a full sine."
         if not pulse.segments():
-            said += " This pulse has no exact solution either: the linear models are simulated under the sampled pulse."
-        return said
+            sentence += (
+                " This pulse has no exact solution either: the linear models are simulated under the sampled pulse."
+            )
+        return sentence
     return "No closed form: Eqs. 41-42 apply to a structure with the same properties in both directions."

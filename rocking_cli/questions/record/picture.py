@@ -118,8 +118,8 @@ def draw_before_and_after(before: GroundMotion, after: GroundMotion, shift: floa
 
 def _set_height(axes: Axes, old: NDArray[np.float64], new: NDArray[np.float64]) -> None:
     """Set the height so that the corrected curve is shown whole, and the curve as read as far as both stay legible."""
-    most, all_ = float(np.abs(new).max()), float(np.abs(old).max())
-    top = max(min(all_, MAX_BEFORE_RATIO * most), most) * 1.05 or 1.0
+    peak, all_ = float(np.abs(new).max()), float(np.abs(old).max())
+    top = max(min(all_, MAX_BEFORE_RATIO * peak), peak) * 1.05 or 1.0
     axes.set_ylim(-top, top)
     if all_ > top:
         style.note(axes, f"as read up to {all_:.3g}", height=0.14)

@@ -208,13 +208,13 @@ def _examine(
 def _answer(examined: Sequence[Examined], scaled: Sequence[GroundMotion], read: Scaled) -> RecordAnswer:
     from rocking_cli.questions.record.view import data, parts
 
-    first, own = examined[0], examined[0].measures
-    said = f"{first.label}: PGA {own.pga:.3g} g, PGV {own.pgv:.3g} m/s."
+    first, measures = examined[0], examined[0].measures
+    sentence = f"{first.label}: PGA {measures.pga:.3g} g, PGV {measures.pgv:.3g} m/s."
     with_spectra = first.spectrum is not None
     return RecordAnswer(
         "record",
-        own,
-        View(lambda: data(first), [*parts(examined, 100), said]),
+        measures,
+        View(lambda: data(first), [*parts(examined, 100), sentence]),
         partial(_columns, scaled[0]),
         _spectra_figure(examined) if with_spectra else partial(_figure, scaled[0], first, read),
         tables={"spectrum": partial(_spectra_table, examined)} if with_spectra else {},
@@ -244,8 +244,8 @@ def _clean_places(out: Path, motions: Motions, signs: Sequence[int]) -> dict[tup
     for k, record in enumerate(motions.sources if not alone else ()):
         if not isinstance(record, Listed):
             continue
-        own = record.reading(motions.reading).channel
-        suffix = "-" + re.sub(r"\W+", "-", own.strip()) if own is not None else ""
+        channel = record.reading(motions.reading).channel
+        suffix = "-" + re.sub(r"\W+", "-", channel.strip()) if channel is not None else ""
         for sign in signs:
             turned = "-reversed" if len(signs) > 1 and sign < 0 else ""
             path = out / f"{Path(name_of(record.path)).stem}{suffix}{turned}.csv"
@@ -317,10 +317,10 @@ def _measured(motion: GroundMotion, names: str | None, structure: Structure | No
     from rocking_cli.processing.intensity import ALL, parse_measures
     from rocking_cli.questions.record.study import intensities, reference_of
 
-    asked = parse_measures(names)
+    parsed = parse_measures(names)
     if structure is None and names.strip().lower() == ALL:
-        asked = [each for each in asked if not each.is_relative]
-    return intensities(motion, asked, reference_of(structure) if structure is not None else None)
+        parsed = [each for each in parsed if not each.is_relative]
+    return intensities(motion, parsed, reference_of(structure) if structure is not None else None)
 
 
 def _spectrum(motion: GroundMotion, period: tuple[float, float] | None, damping: float | None) -> ResponseSpectrum:

@@ -156,13 +156,13 @@ def _columns(records: Sequence[Examined]) -> list[Column[Examined]]:
     # Rows in which all records have these values are left out.
     silent = {"channel": ABSENT, "processed": ABSENT, "scaled by": "1", "p dt": ABSENT}
     silent |= dict.fromkeys(("earthquake", "station", "magnitude", "distance"), ABSENT)
-    said = [
+    columns = [
         column
         for column in (*AS_READ, *MEASURED)
         if column.head is not None
         and (column.head not in silent or any(column.cell(each) != silent[column.head] for each in records))
     ]
-    return said + [only_shown(str(each), partial(_asked, each), unit=each.unit) for each in records[0].asked]
+    return columns + [only_shown(str(each), partial(_asked, each), unit=each.unit) for each in records[0].asked]
 
 
 def _asked(measure: Measure, record: Examined) -> float:

@@ -241,10 +241,10 @@ def _without_block(shown: Sequence[EquivalentSide]) -> list[dict[str, Any]]:
 def _advice(content: Assessment) -> list[str]:
     shown = _shown(content)
     labels = [""] if len(shown) == 1 else [f"{side.direction.label}: " for side in shown]
-    said = [kappa_in_words(side.block) if side.block is not None else sentence(side) for side in shown]
+    sentences = [kappa_in_words(side.block) if side.block is not None else sentence(side) for side in shown]
     if not content.has_block:
-        said = [f"{each[0].upper()}{each[1:]}" for each in said]
-    return [_greek(f"{label}{each}") for label, each in zip(labels, said, strict=True)]
+        sentences = [f"{each[0].upper()}{each[1:]}" for each in sentences]
+    return [_greek(f"{label}{each}") for label, each in zip(labels, sentences, strict=True)]
 
 
 def _geometry(content: Assessment) -> Rows:

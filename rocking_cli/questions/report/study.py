@@ -98,8 +98,8 @@ class MotionResult(Response):
             return False
         if disagree(self.histories) or self.neighbours[self.polarity].sensitive or best.peak_ratio > CLOSE:
             return True
-        near = (self.margin.factors > 1 / MAX_CLOSE_FACTOR) & (self.margin.factors < MAX_CLOSE_FACTOR)
-        falls, may_fall = self.margin.overturned[near], self.margin.at_most[near]
+        close = (self.margin.factors > 1 / MAX_CLOSE_FACTOR) & (self.margin.factors < MAX_CLOSE_FACTOR)
+        falls, may_fall = self.margin.overturned[close], self.margin.at_most[close]
         return bool((falls < SHARE_LEVELS[-1]).any() if best.fell else (may_fall >= SHARE_LEVELS[0]).any())
 
     @property
@@ -226,7 +226,7 @@ def gather(
     """
     done = progress or (lambda count: None)
     mechanism = structure.mechanism
-    curves, asked, why = _error_of_block(structure)
+    curves, marks, why = _error_of_block(structure)
     done(1)
     results = []
     for each in given:
@@ -239,7 +239,7 @@ def gather(
         file=file,
         picture=picture(mechanism),
         curves=tuple(curves),
-        asked=tuple(asked),
+        asked=tuple(marks),
         no_error=why,
         results=tuple(results),
         maps=tuple(maps),
@@ -267,8 +267,8 @@ def _result(structure: Structure, given: Scaled, polarities: Sequence[int], arou
     ground = given.motion.of_ground
     doubtful = [] if given.pulse is not None else doubts(ground, measure(ground))
     doubtful = [*doubtful, *(coarse_for(given.motion, structure.p) if given.pulse is None else [])]
-    asked = Question(tuple(polarities), release=None, tail=TAIL, rtol=RTOL, around=around)
-    response = response_of(structure, structure.default_models, given, asked)
+    question = Question(tuple(polarities), release=None, tail=TAIL, rtol=RTOL, around=around)
+    response = response_of(structure, structure.default_models, given, question)
     scaled = given.motion.scaled(given.factor)
     fits = _fits(given, scaled)
     if fits:

@@ -123,10 +123,10 @@ def report(
 
     if file is not None:
         check_writable(Path(file))
-    signs, given = signs_of(polarity), Motions.of(motions, options)
-    if (state is not None or on_floor) and (verify is None or not given):
+    signs, requested = signs_of(polarity), Motions.of(motions, options)
+    if (state is not None or on_floor) and (verify is None or not requested):
         raise InputError("`state` and `on_floor` describe records of a verification: give `verify` and `motions`")
-    if not given:
+    if not requested:
         refuse_idle(
             "without ground motions",
             polarity=len(signs) == 1,
@@ -142,11 +142,11 @@ def report(
     site = site_of(verify) if verify is not None else None
     if site is not None:  # before long computations
         sheet_of(site)
-        refuse(site, motions=bool(given))
+        refuse(site, motions=bool(requested))
     ready = structure_of(structure, watch, opening)
     source = SheetOrigin.of(origin or "rocking_cli.report(...)", ready)
     title = Head(project, place, author, logo).block(source)
-    chosen = given.gather(ready.growth, watch) if given else []
+    chosen = requested.gather(ready.growth, watch) if requested else []
     verified = None
     if verify is not None and site is not None:
         histories = Histories([each.motion.scaled(each.factor) for each in chosen], signs, state, on_floor)

@@ -124,31 +124,31 @@ def verdicts(content: Assessment) -> list[MotionAnswers]:
 
 def in_a_sentence(content: Assessment, verified: Verification | None = None) -> str:
     """Return the answer of the whole report: of its verification, if any, and of its ground motions."""
-    said = [str(each) for each in of_verification(verified)] if verified is not None else []
+    sentences = [str(each) for each in of_verification(verified)] if verified is not None else []
     if not content.results:
-        said.append(
+        sentences.append(
             f"{content.name} starts to rock at a horizontal ground acceleration of {_ground(content, _least(content))}."
         )
         if verified is None:
-            said.append(
+            sentences.append(
                 "No ground motion was given, so this report does not say whether an earthquake would overturn it."
             )
-        return " ".join(said)
-    said.append(f"{content.name}: {counted([each.conclusion for each in content.results], over(content))}")
+        return " ".join(sentences)
+    sentences.append(f"{content.name}: {counted([each.conclusion for each in content.results], over(content))}")
     if unknown := [each for each in content.results if each.unknown]:
         then = "There, joints open or slide that the model keeps closed"
         if len(content.results) == 1:
             then = f"Then {why_unknown(unknown[0].histories['nonlinear'])}"
-        said.append(f"{then}: the structure may overturn.")
+        sentences.append(f"{then}: the structure may overturn.")
     falls = [each for each in content.results if each.histories["nonlinear"].fell]
     if all(each.close for each in falls) if falls else any(each.close for each in content.results):
-        said.append('The result is close to the other outcome: see "How close is that?" below.')
+        sentences.append('The result is close to the other outcome: see "How close is that?" below.')
     contacts = [contact for each in content.results for contact in each.contacts.values()]
     if any(not contact.holds and not contact.followed for contact in contacts):
-        said.append("But its joints do not hold: see below from which time the result is no longer valid.")
+        sentences.append("But its joints do not hold: see below from which time the result is no longer valid.")
     if any(contact.assumed_friction is not None for contact in contacts):
-        said.append("The result assumes that nothing slides: see below how much friction this requires.")
-    return " ".join(said)
+        sentences.append("The result assumes that nothing slides: see below how much friction this requires.")
+    return " ".join(sentences)
 
 
 def over(content: Assessment) -> str:
@@ -177,53 +177,55 @@ def overview(content: Assessment, over: str) -> Table:
 
 def doubts(content: Assessment) -> list[str]:
     """Return what to check about the structure and the method, under any motion."""
-    said = []
+    sentences = []
     if not content.mechanism.verified:
-        said.append(
+        sentences.append(
             f"The mechanism {content.mechanism.mechanism} has not been verified: check its results independently."
         )
-    said += cautions_of(content.mechanism)
-    said += [
+    sentences += cautions_of(content.mechanism)
+    sentences += [
         f"Check the sizes and their units: {doubt}{'' if doubt.endswith('?') else '.'}"
         for doubt in doubts_about_size(content.mechanism)
     ]
     etas = content.structure.etas
-    given = restitution_source(content.mechanism) == "given"
+    is_given = restitution_source(content.mechanism) == "given"
     if not content.mechanism.rocks_both_ways:
-        said.append(
+        sentences.append(
             "The supports that it leans on are assumed not to move. "
-            + ("" if given else "The rebound from them was computed for a sequence of impacts, not measured.")
+            + ("" if is_given else "The rebound from them was computed for a sequence of impacts, not measured.")
         )
     elif min(etas) <= 0:
-        said.append(
+        sentences.append(
             "Time histories and the overturning map are left out: they need a measured restitution in the file."
         )
-    elif not given:
-        said.append(
+    elif not is_given:
+        sentences.append(
             f"The coefficient of restitution (η = {min(etas):.3g}) was computed for rigid bodies that neither slide "
             "nor bounce. It was not measured, and the response depends on it."
         )
     if any(tie.is_elastic for tie in content.mechanism.ties or []):
-        said.append(
+        sentences.append(
             "Ties are assumed elastic: they do not yield, break or pull out of their anchorages. Check the largest "
             "tie forces in this report against the capacity of the ties and their anchorages."
         )
     if content.structure.misleading:
-        said.append(f"{content.structure.misleading[0].upper()}{content.structure.misleading[1:]}: they are left out.")
+        sentences.append(
+            f"{content.structure.misleading[0].upper()}{content.structure.misleading[1:]}: they are left out."
+        )
     edges = "without crushing at their edges" if content.mechanism.crushing is None else "on pivots moved inwards"
-    said.append(
+    sentences.append(
         f"The bodies are assumed rigid, on rigid ground, in one plane, without sliding and {edges}; the section on "
         "joints shows the friction and forces that this requires. Vertical ground motion is not included. Worn edges "
         "and soft ground lower the resistance."
     )
     if content.mechanism.interlock is not None:
-        said.append(
+        sentences.append(
             "The friction of crossing walls is assumed constant. Blocks that have slid by their overlap of "
             f"{1000 * content.mechanism.interlock.overlap:.0f} mm come apart; no result is valid beyond that."
         )
     if any(each.histories["nonlinear"].check is None for each in content.results):
-        said.append(f"The joints of this mechanism are not checked: {content.mechanism.unchecked}.")
-    return said
+        sentences.append(f"The joints of this mechanism are not checked: {content.mechanism.unchecked}.")
+    return sentences
 
 
 def _verdict(content: Assessment, result: MotionResult) -> MotionAnswers:
@@ -260,14 +262,14 @@ def _uplift(content: Assessment, result: MotionResult) -> str:
 
 
 def _overturning(result: MotionResult) -> str:
-    said = []
+    sentences = []
     for sign in sorted(result.runs, key=lambda sign: sign != result.polarity):
         run = result.runs[sign]["nonlinear"]
         at = f" at {run.overturning_time:.2f} s" if run.fell else f" after {run.known_to:.4g} s" if run.unknown else ""
-        said.append(f"With the motion {POLARITIES[sign]}, it {ends(run)}{at}.")
-    if len(said) == 1:
-        said.append("Only this polarity of the motion was analysed; the reverse may be worse.")
-    return " ".join(said)
+        sentences.append(f"With the motion {POLARITIES[sign]}, it {ends(run)}{at}.")
+    if len(sentences) == 1:
+        sentences.append("Only this polarity of the motion was analysed; the reverse may be worse.")
+    return " ".join(sentences)
 
 
 def _closeness(content: Assessment, result: MotionResult) -> str:
@@ -288,8 +290,8 @@ def _closeness(content: Assessment, result: MotionResult) -> str:
             said.append("It may rotate further afterwards.")
         if best.peak_ratio > 1:
             said.append("It exceeds this rotation and is brought back only by the subsequent ground motion.")
-    near = neighbours_in_words(result.neighbours[result.polarity])
-    return " ".join([*said, near, in_words(result.margin, result.pga_of_ground)])
+    neighbours = neighbours_in_words(result.neighbours[result.polarity])
+    return " ".join([*said, neighbours, in_words(result.margin, result.pga_of_ground)])
 
 
 def _trusted(content: Assessment, result: MotionResult) -> str:
@@ -298,16 +300,16 @@ def _trusted(content: Assessment, result: MotionResult) -> str:
         return f"The nonlinear model; no other is available. {why_alone(content)}"
     if runs["nonlinear"].unknown:
         return f"The nonlinear model until {runs['nonlinear'].known_to:.4g} s, and none beyond. {NO_JOINTS}"
-    said = ["The nonlinear model, which simulates the structure without linearisation."]
+    sentences = ["The nonlinear model, which simulates the structure without linearisation."]
     if disagree(runs):
-        said = ["No single one: the models disagree on whether it overturns."]
+        sentences = ["No single one: the models disagree on whether it overturns."]
     elif all(each.grade is Grade.AGREES for each in agreed.values()):
-        said = ["Any of them: the three models agree closely."]
+        sentences = ["Any of them: the three models agree closely."]
     of_blocks = blocks_in_words(runs, agreed, {name: f"the {model}" for name, model in MODELS.items()})
-    said += [text[0].upper() + text[1:] for text in of_blocks]
+    sentences += [text[0].upper() + text[1:] for text in of_blocks]
     if disagree(runs):
-        said.append("Run weaker and stronger motions as well before relying on any of them.")
-    return " ".join(said)
+        sentences.append("Run weaker and stronger motions as well before relying on any of them.")
+    return " ".join(sentences)
 
 
 def why_alone(content: Assessment) -> str:
@@ -325,25 +327,27 @@ def trust_of_block(content: Assessment) -> str:
 
 
 def _doubts(result: MotionResult) -> tuple[str, ...]:
-    said = [f"{each.text[0].upper()}{each.text[1:]}.".replace("?.", "?") for each in result.doubts]
+    sentences = [f"{each.text[0].upper()}{each.text[1:]}.".replace("?.", "?") for each in result.doubts]
     contact, factor = result.contacts[result.polarity], abs(result.given.factor)
     if result.unknown:
-        said.append(
+        sentences.append(
             f"The outcome is {headline(result.conclusion)} (see Joints): the structure may overturn. "
             f"{next_in_words(result.conclusion)}".replace("`", "")
         )
     elif not contact.stands:
-        said.append("Its joints do not hold under this motion (see Joints): the result is not valid beyond that time.")
+        sentences.append(
+            "Its joints do not hold under this motion (see Joints): the result is not valid beyond that time."
+        )
     if result.close:
-        said.append("The result is close to the other outcome. Do not base a decision on this computation alone.")
+        sentences.append("The result is close to the other outcome. Do not base a decision on this computation alone.")
     if any(run.still_rocking for run in result.histories.values()):
-        said.append("A model is still rocking long after the motion has ended; it is certain not to overturn.")
+        sentences.append("A model is still rocking long after the motion has ended; it is certain not to overturn.")
     if factor == 0:
-        said.append("The motion was scaled by 0, so this result is meaningless.")
+        sentences.append("The motion was scaled by 0, so this result is meaningless.")
     elif factor != 1:
         more = " Motions scaled by large factors are unlike any recorded." if result.scaled_much else ""
-        said.append(f"The motion was scaled by {result.given.factor:.4g}.{more}")
-    return tuple(said)
+        sentences.append(f"The motion was scaled by {result.given.factor:.4g}.{more}")
+    return tuple(sentences)
 
 
 def alone(result: MotionResult) -> str:

@@ -65,9 +65,9 @@ def draw_azimuths(found: AzimuthResponses, title: str, free: Sequence[bool]) -> 
     axes.tick_params(labelsize=style.TICK, colors=style.INK)
     axes.set_rlabel_position(67)
     axes.grid(True, color=style.GRID, linewidth=style.THIN)
-    said = f"peak {style.over(free, math=True)}; 0° is {style.plain(one)}, 90° {style.plain(other)}"
+    label = f"peak {style.over(free, math=True)}; 0° is {style.plain(one)}, 90° {style.plain(other)}"
     crosses = f"; crosses: {names.OVERTURNS}" if falls else ""
     circles = f"; circles: {names.UNKNOWN}" if doubtful else ""
-    axes.set_xlabel(said + crosses + circles, fontsize=style.LABEL)
+    axes.set_xlabel(label + crosses + circles, fontsize=style.LABEL)
     axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), **style.LEGEND)
     return figure

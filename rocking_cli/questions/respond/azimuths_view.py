@@ -53,14 +53,14 @@ def view(structure: Structure, found: AzimuthResponses, doubts: Iterable[str] = 
     unknown = any(each.unknown.any() for each in found.outcomes.values())
     models = [column for column in MODELS if unknown or column.head != UNKNOWN_HEADING]
     rows = [_Model(name, found.azimuths, each) for name, each in found.outcomes.items()]
-    said = (
+    sentence = (
         f"0 degrees is {one}, 90 degrees {other}; {found.azimuths.size} directions of the structure's plane, one every "
         f"{found.azimuths[1] - found.azimuths[0]:g} degrees. PGA {found.pga.min():.3g} to {found.pga.max():.3g} g, the "
         f"largest at {found.azimuths[found.pga.argmax()]:g} degrees."
     )
     parts: list[Table | str] = [
         heading(structure.mechanism),
-        said,
+        sentence,
         table_of("", models, rows),
     ]
     parts += [f"{name}: {in_words(found, each)}" for name, each in found.outcomes.items()]

@@ -62,8 +62,8 @@ def correct(motion: Motion, *steps: Step | str | Mapping[str, Any]) -> GroundMot
     >>> rk.correct("sine:0.3g:0.8s", "lowpass 5").processing
     ('lowpass 5',)
     """
-    asked = [step for each in steps for step in ([each] if isinstance(each, Step) else parse_steps([each]))]
-    return process(motion_of(motion), asked)
+    steps_asked = [step for each in steps for step in ([each] if isinstance(each, Step) else parse_steps([each]))]
+    return process(motion_of(motion), steps_asked)
 
 
 def on_floor(motion: Motion, floor: Floor | str | Mapping[str, Any]) -> GroundMotion:
@@ -279,8 +279,8 @@ def respond_each(
         return table
 
     first = outcomes[chosen[0]]
-    said = f"By the {chosen[0]} model {int(first.fell.sum())} of {first.fell.size} motions overturn"
-    said += f", and the outcome of {int(first.unknown.sum())} is unknown." if first.unknown.any() else "."
+    sentence = f"By the {chosen[0]} model {int(first.fell.sum())} of {first.fell.size} motions overturn"
+    sentence += f", and the outcome of {int(first.unknown.sum())} is unknown." if first.unknown.any() else "."
     data: dict[str, Any] = {}
     for name, each in outcomes.items():
         data[name] = {"overturned": _with_gaps(each.fell, each.unknown | each.failed)}
@@ -288,7 +288,7 @@ def respond_each(
         if name == "nonlinear" and np.isnan(each.opening).any():
             data[name]["unknown"] = _with_gaps(each.unknown, np.isnan(each.opening) & ~each.unknown)
     figure = no_plot("many responses have no plot of their own: plot a spectrum, a map or a margin")
-    return MappingAnswer("responses", outcomes, View(data, [said]), columns, figure)
+    return MappingAnswer("responses", outcomes, View(data, [sentence]), columns, figure)
 
 
 def _with_gaps(values: NDArray[np.bool_], missing: NDArray[np.bool_]) -> Any:

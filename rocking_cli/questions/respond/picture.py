@@ -200,8 +200,8 @@ def _draw_contacts(axes: Axes, contacts: Sequence[ContactDemand]) -> None:
     there = contacts[0].friction
     if there is not None:
         axes.axhline(there, color=style.CURSOR, linewidth=style.MEDIUM, linestyle=":", label=f"available: {there:.3g}")
-    most = max(float(contact.demand.max(initial=0.0)) for contact in contacts)
-    axes.set_ylim(0.0, 1.15 * min(max(most, there or 0.0, 1e-3), MAX_SHOWN_FRICTION))
+    highest = max(float(contact.demand.max(initial=0.0)) for contact in contacts)
+    axes.set_ylim(0.0, 1.15 * min(max(highest, there or 0.0, 1e-3), MAX_SHOWN_FRICTION))
     axes.legend(loc="upper right", ncols=3, **style.LEGEND)
     style.tidy(axes, y="friction required")
 

@@ -77,20 +77,20 @@ class Several:
         pga = abs(found.given.factor) * found.given.motion.of_ground.pga_g
         for sign, histories in found.runs.items():
             reversed_ = ", reversed" if sign < 0 and len(found.runs) > 1 else ""
-            near = found.neighbours.get(sign)
+            neighbours = found.neighbours.get(sign)
             name = f"{found.given.motion.name}{reversed_}"
-            self._row(name, pga, histories, near)
+            self._row(name, pga, histories, neighbours)
             run = histories[self._best]
-            self._doubtful |= near is not None and bool(near.unknown)
+            self._doubtful |= neighbours is not None and bool(neighbours.unknown)
             if run.unknown:
                 self._until[name] = unknown_after(run).replace("The", "the", 1)
             self._checked &= run.model != "nonlinear" or run.check is not None
-            self._around = near.around if near is not None else None
+            self._around = neighbours.around if neighbours is not None else None
             if sign in found.contacts:
                 self._contacts[name] = found.contacts[sign]
         if found.fit is not None and found.to_pulse is not None:
-            own = found.fit.pulse
-            self._row(f"  its {own.name} pulse alone", own.amplitude / STANDARD_GRAVITY, found.to_pulse, None)
+            fitted = found.fit.pulse
+            self._row(f"  its {fitted.name} pulse alone", fitted.amplitude / STANDARD_GRAVITY, found.to_pulse, None)
         self._ends.append(found.conclusion)
         for text in apart(self._watched, found.runs):
             self._torn.setdefault(text, []).append(found.given.motion.name)
@@ -147,15 +147,15 @@ class Several:
 
     def _friction(self, asks: Mapping[str, ContactDemand], order: Sequence[str]) -> str:
         """Return the friction that motions require, the largest first, and under which it is more than there is."""
-        given = asks[order[0]].friction
-        there, of = (MASONRY, "usual for masonry") if given is None else (given, "available")
+        friction = asks[order[0]].friction
+        there, of = (MASONRY, "usual for masonry") if friction is None else (friction, "available")
         needs = {name: asks[name].friction_needed for name in order}
         shown = [f"{number(need, digits_apart(need, there, 3))} under {name}" for name, need in needs.items()]
         each = in_short(shown, most=MAX_NAMED_MOTIONS)
         more = [name for name, need in needs.items() if need > there]
         if not more:
             return f"{each}; the {there:g} {of} is enough under all"
-        assumed = ": the results assume that nothing slides" if given is None else ""
+        assumed = ": the results assume that nothing slides" if friction is None else ""
         return f"{each}; it is more than the {there:g} {of} under {in_short(more, most=MAX_NAMED_MOTIONS)}{assumed}"
 
 

@@ -161,12 +161,12 @@ def respond(
         raise InputError("`vertical` applies to a single motion: give one")
     if not motions and tilt is None:
         raise InputError("no excitation is given: give a motion or a `release`")
-    near = around_of(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
+    drawn_around = around_of(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     if motions.reading.azimuth == ALL:
         idle = {"polarity": signs != (1,), "with_pulse": with_pulse, "impacts": impacts, "contact": contact,
                 "tail": tail != TAIL, "neighbours": neighbours}  # fmt: skip
-        if said := [f"`{name}`" for name, given in idle.items() if given]:
-            raise InputError(f"{', '.join(said)} cannot be combined with `azimuth` all: give one angle")
+        if sentences := [f"`{name}`" for name, given in idle.items() if given]:
+            raise InputError(f"{', '.join(sentences)} cannot be combined with `azimuth` all: give one angle")
         third = (vertical, vertical_dt, vertical_channel)
         around = all_directions(ready, motions, third, models=models, release=tilt, rtol=rtol, watch=watch)
         write_files(around, out, plot, watch)
@@ -179,7 +179,7 @@ def respond(
     if not motions:
         refuse_idle("without a ground motion", neighbours=neighbours)
     ratio = tilt.ratio(ready) if tilt is not None else None
-    question = Question(signs, ratio, tail, rtol, with_pulse, near, tilt is not None and tilt.is_angle)
+    question = Question(signs, ratio, tail, rtol, with_pulse, drawn_around, tilt is not None and tilt.is_angle)
     names = models_of(models) if models is not None else usual_models(ready, watch)
     if "nonlinear" not in names:
         refuse_idle("on linear blocks, which have no joints", opening=opening != OPENING)

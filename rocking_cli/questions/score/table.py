@@ -152,8 +152,8 @@ def _check_headings(sheet: Spreadsheet, problems: list[Problem]) -> dict[str, tu
         shown = cut(one_line(heading))
         if name.startswith(FORECAST_PREFIX):
             if name == FORECAST_PREFIX or name.removeprefix(FORECAST_PREFIX) in OWN_PREDICTORS:
-                taken = f"pred_ must be followed by a name other than {', '.join(OWN_PREDICTORS)}"
-                problems.append(at(taken, field=shown))
+                problem = f"pred_ must be followed by a name other than {', '.join(OWN_PREDICTORS)}"
+                problems.append(at(problem, field=shown))
         elif name not in HEADINGS:
             guess = did_you_mean(name, list(HEADINGS))
             hint = f"{guess}; other predictions are headed pred_NAME, and columns for people {COMMENT_SIGN}"
@@ -195,27 +195,27 @@ class _Cells:
 
     def one_of(self, name: str, known: Sequence[str], usual: str) -> str:
         """Return a cell that must be one of some words; `usual` if it is empty."""
-        given = self.text(name)
-        if given and given not in known:
-            self.wrong(name, f"must be {', '.join(known[:-1])} or {known[-1]}, got {cut(one_line(given))!r}")
-        return given or usual
+        cell = self.text(name)
+        if cell and cell not in known:
+            self.wrong(name, f"must be {', '.join(known[:-1])} or {known[-1]}, got {cut(one_line(cell))!r}")
+        return cell or usual
 
     def flag(self, name: str) -> bool | None:
         """Return a cell of 0 or 1; None if it is empty."""
-        given = self.text(name)
-        if given and given.lower() not in FLAGS:
-            self.wrong(name, f"must be 0 or 1, got {cut(one_line(given))!r}")
-        return FLAGS.get(given.lower())
+        cell = self.text(name)
+        if cell and cell.lower() not in FLAGS:
+            self.wrong(name, f"must be 0 or 1, got {cut(one_line(cell))!r}")
+        return FLAGS.get(cell.lower())
 
     def number(self, name: str, unit: str = "", *, zero: bool = False, most: float = inf) -> float | None:
         """Return a positive number, or 0 if `zero` is allowed, in its unit; None if the cell is empty."""
-        given = self.text(name)
-        if not given:
+        cell = self.text(name)
+        if not cell:
             return None
         try:
-            value = self._value(given, self.places[name][1], unit)
+            value = self._value(cell, self.places[name][1], unit)
         except (UnitError, ValueError) as error:
-            what = str(error) if isinstance(error, UnitError) else f"{cut(one_line(given))!r} is not a number"
+            what = str(error) if isinstance(error, UnitError) else f"{cut(one_line(cell))!r} is not a number"
             self.wrong(name, what, f"give a unit, such as {name} [{unit}] in the heading" if unit else None)
             return None
         if not ((value > 0 or (zero and value == 0)) and value <= most and value < inf):

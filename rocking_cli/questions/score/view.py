@@ -191,14 +191,14 @@ def _peaks(found: Scored) -> str:
     """Return sentences on the ranks of observed peaks."""
     certain = sorted(each.rank for each in found.ranks if not each.censored)
     censored = len(found.ranks) - len(certain)
-    said = f"Peak rotations were observed in {_count(len(found.ranks), 'test')}"
-    said += f", {censored} of them as a lower bound only" if censored else ""
+    sentence = f"Peak rotations were observed in {_count(len(found.ranks), 'test')}"
+    sentence += f", {censored} of them as a lower bound only" if censored else ""
     if not certain:
-        return f"{said}."
+        return f"{sentence}."
     inside = sum(0.05 <= each <= 0.95 for each in certain) / len(certain)
     return (
-        f"{said}. Of the others, {percent(inside)} lie between 5 and 95 % of their neighbours, where 90 % should; the "
-        f"distribution of their ranks departs from a uniform one by {found.distance:.2g}."
+        f"{sentence}. Of the others, {percent(inside)} lie between 5 and 95 % of their neighbours, where 90 % should; "
+        f"the distribution of their ranks departs from a uniform one by {found.distance:.2g}."
     )
 
 

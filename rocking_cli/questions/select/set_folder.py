@@ -121,13 +121,13 @@ def _list(place: Path, results: ShownSet, readings: Sequence[Reading | None], pa
             selection.chosen.tolist(), selection.factors.tolist(), readings, paths, strict=True
         )
     ]
-    said = [
+    lines = [
         LIST_HEADER,
         f"# Target: {results.target.name}",
         f"# {verdict(results)}",
         "# The same records, scaled already:",
     ]
-    head = "".join(f"{one_line(line)}\n" for line in said) + "".join(f"#   {path.name}\n" for path in paths)
+    head = "".join(f"{one_line(line)}\n" for line in lines) + "".join(f"#   {path.name}\n" for path in paths)
     body = yaml.safe_dump({"records": entries}, sort_keys=False, allow_unicode=True, width=1000)
     return f"{head}{body}"
 
@@ -138,5 +138,5 @@ def _entry(place: Path, file: str | None, motion: GroundMotion, factor: float, r
 
     assert file is not None
     named = {"event": motion.origin.event, "station": motion.origin.station}
-    said = {key: value for key, value in named.items() if value is not None}
-    return {"file": relative(Path(file), place), **of_reading(reading, place), "factor": factor, **said}
+    fields = {key: value for key, value in named.items() if value is not None}
+    return {"file": relative(Path(file), place), **of_reading(reading, place), "factor": factor, **fields}

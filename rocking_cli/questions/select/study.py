@@ -222,14 +222,16 @@ def periods_of(band: tuple[float, float], target: TargetSpectrum, damping: float
     )
     periods = np.geomspace(*band, count)
     periods[[0, -1]] = band
-    own = target.periods[(target.periods > band[0]) & (target.periods < band[1])]
-    if own.size > MAX_TARGET_PERIODS:
+    target_periods = target.periods[(target.periods > band[0]) & (target.periods < band[1])]
+    if target_periods.size > MAX_TARGET_PERIODS:
         count += MAX_TARGET_PERIODS
         return np.concatenate([band[:1], np.geomspace(*band, count)[1:-1], band[1:]])
     # Of equal periods that of the target is kept, as its slope changes there, but the ends of the band stay.
-    away = np.abs(periods[1:-1, None] / own - 1).min(axis=1, initial=1.0) > PERIOD_TOLERANCE
-    own = own[(own > band[0] * (1 + PERIOD_TOLERANCE)) & (own < band[1] * (1 - PERIOD_TOLERANCE))]
-    return np.sort(np.concatenate([periods[:1], periods[1:-1][away], own, periods[-1:]]))
+    away = np.abs(periods[1:-1, None] / target_periods - 1).min(axis=1, initial=1.0) > PERIOD_TOLERANCE
+    target_periods = target_periods[
+        (target_periods > band[0] * (1 + PERIOD_TOLERANCE)) & (target_periods < band[1] * (1 - PERIOD_TOLERANCE))
+    ]
+    return np.sort(np.concatenate([periods[:1], periods[1:-1][away], target_periods, periods[-1:]]))
 
 
 def choose(
@@ -259,15 +261,15 @@ def choose(
     InputError
         If there are not as many records that can be chosen, of different events or stations.
     """
-    own, left_out = own_factors(found, wanted)
+    factors, left_out = own_factors(found, wanted)
     usable = np.array([k for k in range(len(found.motions)) if k not in left_out], dtype=np.intp)
     names = [key_of(motion, wanted.one_per) for motion in found.motions]
     groups = _groups([names[k] for k in usable.tolist()])
     _check_enough(len(found.motions), usable.size, int(groups.max(initial=-1)) + 1, wanted)
     problem = subsets.SubsetProblem(
-        own[usable, None] * found.spectra[usable] / found.target,
+        factors[usable, None] * found.spectra[usable] / found.target,
         log_weights(found.periods),
-        np.log(own[usable]),
+        np.log(factors[usable]),
         groups,
         wanted.count,
         wanted.within,
@@ -277,7 +279,7 @@ def choose(
     chosen = usable[best.members]
     silent = sum(name is None for name in names) if wanted.one_per != "none" else 0
     sets, exact = subsets.count_sets(groups, wanted.count), subsets.all_tried(groups, wanted.count)
-    return RecordSet(wanted, found, chosen, own[chosen] * best.common, left_out, silent, sets, exact)
+    return RecordSet(wanted, found, chosen, factors[chosen] * best.common, left_out, silent, sets, exact)
 
 
 def own_factors(found: Candidates, wanted: SetRequirements) -> tuple[Reals, dict[int, float | None]]:
@@ -311,8 +313,8 @@ def log_weights(periods: Reals) -> Reals:
 
 def key_of(motion: GroundMotion, one_per: str) -> str | None:
     """Return the event or station of which a set may have only one record; None if the file does not state it."""
-    said = {"event": motion.origin.event, "station": motion.origin.station}.get(one_per)
-    return " ".join(said.casefold().split()) if said is not None else None
+    origin = {"event": motion.origin.event, "station": motion.origin.station}.get(one_per)
+    return " ".join(origin.casefold().split()) if origin is not None else None
 
 
 def coarse(found: Candidates) -> list[GroundMotion]:
@@ -334,10 +336,10 @@ def _check_enough(given: int, usable: int, groups: int, wanted: SetRequirements)
         return
     one = f", and one per {wanted.one_per} leaves {groups}" if groups < usable else ""
     out = f", of which {usable} can be scaled to the target within {wanted.factors[0]:g} to {wanted.factors[1]:g}"
-    said = (
+    sentence = (
         f"a set of {wanted.count} was requested, but {given} {'record is' if given == 1 else 'records are'} available"
     )
-    message = f"{said}{out if usable < given else ''}{one}"
+    message = f"{sentence}{out if usable < given else ''}{one}"
     hints = ["give more records, or a smaller `count`"]
     hints += ["wider limits with `factors`"] if usable < given and usable < wanted.count else []
     hints += ["`one_per` none"] if groups < usable and wanted.count <= usable else []

@@ -222,7 +222,7 @@ def _added(problem: SubsetProblem, members: list[int]) -> tuple[int, float, floa
     """Return the curve that is best added to a set, and excess, rms and common factor of the result."""
     free = np.flatnonzero(~np.isin(problem.groups, problem.groups[members]))
     sums = problem.curves[members].sum(axis=0) + problem.curves[free]
-    own, those = problem.log_factors[members], problem.log_factors[free]
-    least, most = np.minimum(those, own.min(initial=inf)), np.maximum(those, own.max(initial=-inf))
+    log_factors, those = problem.log_factors[members], problem.log_factors[free]
+    least, most = np.minimum(those, log_factors.min(initial=inf)), np.maximum(those, log_factors.max(initial=-inf))
     chosen = _picked(free[:, None], judge(problem, sums, len(members) + 1, least, most))
     return int(chosen.members[0]), chosen.excess, chosen.rms, chosen.common

@@ -137,13 +137,13 @@ def _unit(file: str, number: int, line: str) -> str | None:
         message = "the first column must hold periods in s"
         hint = "turn frequencies or other units into periods in s first, the shortest in the first line"
         raise InputError(Problem(message, file, number, excerpt=line.strip()[:100], hint=hint))
-    said = cells[1] if len(cells) > 1 else ""
-    units = {canonical(word) for word in _BRACKETS.findall(said)} - {None} or set(header_units(said))
-    if not units and _BARE_G.search(said):
+    heading = cells[1] if len(cells) > 1 else ""
+    units = {canonical(word) for word in _BRACKETS.findall(heading)} - {None} or set(header_units(heading))
+    if not units and _BARE_G.search(heading):
         units = {"g"}
     if len(units) == 1:
         return units.pop()
-    named = [word for word in _BRACKETS.findall(said) if word.lower() not in ("", "-", "s", "sec")]
+    named = [word for word in _BRACKETS.findall(heading) if word.lower() not in ("", "-", "s", "sec")]
     if units or named:
         message = f"the heading gives '{(named or ['more than one unit'])[-1]}', no unit of acceleration known here"
         hint = f"ordinates are in one of: {CHOICES}; without a unit in g"

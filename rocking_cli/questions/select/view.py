@@ -221,25 +221,25 @@ def _ends(results: ShownSet) -> list[_Extreme]:
 def _spans(periods: NDArray[np.float64], where: NDArray[np.bool_]) -> str:
     """Return the ranges of flagged periods in words: "from 0.2 to 0.31 s and at 1.4 s"."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], where.astype(int), [0]]))).reshape(-1, 2)
-    said = []
+    spans = []
     for start, end in edges.tolist():
         first, last = f"{periods[start]:.3g}", f"{periods[end - 1]:.3g}"
-        said.append(f"at {first} s" if first == last else f"from {first} to {last} s")
-    if len(said) > MAX_LISTED_SPANS:
-        said = [*said[:MAX_LISTED_SPANS], f"in {len(said) - MAX_LISTED_SPANS} more ranges"]
-    return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"
+        spans.append(f"at {first} s" if first == last else f"from {first} to {last} s")
+    if len(spans) > MAX_LISTED_SPANS:
+        spans = [*spans[:MAX_LISTED_SPANS], f"in {len(spans) - MAX_LISTED_SPANS} more ranges"]
+    return spans[0] if len(spans) == 1 else f"{', '.join(spans[:-1])} and {spans[-1]}"
 
 
 def _left_out(results: ShownSet) -> str:
     """Return a sentence on the records that could not be chosen; empty if there are none."""
     selection = results.found
-    said = [
+    reasons = [
         f"{selection.candidates.motions[k].name}: {_why(selection, each)}" for k, each in selection.left_out.items()
     ]
-    if not said:
+    if not reasons:
         return ""
-    more = f"; and {len(said) - MAX_LISTED_RECORDS} more" if len(said) > MAX_LISTED_RECORDS else ""
-    return f"Left out: {'; '.join(said[:MAX_LISTED_RECORDS])}{more}."
+    more = f"; and {len(reasons) - MAX_LISTED_RECORDS} more" if len(reasons) > MAX_LISTED_RECORDS else ""
+    return f"Left out: {'; '.join(reasons[:MAX_LISTED_RECORDS])}{more}."
 
 
 def _why(found: RecordSet, needed: float | None) -> str:

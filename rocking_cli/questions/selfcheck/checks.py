@@ -107,8 +107,8 @@ class Rocker:
             time += 2 * self.fall(phi)
             times.append(time)
             # Share of the energy that is left.
-            left = cos(self.alpha) + self.eta**2 * (cos(self.alpha - phi) - cos(self.alpha))
-            phi = self.alpha - atan(sqrt(1 - left**2) / left)
+            energy = cos(self.alpha) + self.eta**2 * (cos(self.alpha - phi) - cos(self.alpha))
+            phi = self.alpha - atan(sqrt(1 - energy**2) / energy)
         return times
 
     def fall(self, top: float, to: float = 0.0) -> float:
@@ -527,8 +527,8 @@ def kernels(quick: bool) -> float:
     if fault is not None:
         raise NotRun(f"{fault}; Python computes histories") from fault
     computed = []
-    for way in (ways.READY, ways.PYTHON):
-        with ways.forced(way):
+    for engine in (ways.READY, ways.PYTHON):
+        with ways.forced(engine):
             computed.append(list(_computed(quick)))
     return sum(different_values(*pair) for pair in zip(*computed, strict=True))
 

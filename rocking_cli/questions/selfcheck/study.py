@@ -90,10 +90,10 @@ class Checked:
         if self.passed:
             return None
         if self.error is not None:
-            said = seen(str(self.error))
+            message = seen(str(self.error))
             if isinstance(self.error, NotRun | RockingError):
-                return said
-            return f"{type(self.error).__name__}: {said}" if said else type(self.error).__name__
+                return message
+            return f"{type(self.error).__name__}: {message}" if message else type(self.error).__name__
         if self.found is None or not isfinite(self.found):
             return "values are missing, or are not numbers"
         return "the deviation exceeds the limit"

@@ -101,5 +101,5 @@ def command(files: tuple[str, ...], asked: GroundMotions, output: Output, **ques
     from rocking_cli.questions.spectrum.verb import spectrum
 
     output.keep_apart(*files, *asked.motions.records)
-    given = files or (() if question["slenderness"] else (LOCAL_FILE,))
-    output.show(spectrum(given, asked.motions, polarity=asked.polarity, watch=output.watch, **question))
+    structures = files or (() if question["slenderness"] else (LOCAL_FILE,))
+    output.show(spectrum(structures, asked.motions, polarity=asked.polarity, watch=output.watch, **question))

@@ -111,12 +111,12 @@ def shape_of(structure: Structure, model: ModelName, eta: float | None = None) -
     # A full sine is equal in both directions: the weakest one uplifts that with the smaller uplift acceleration.
     pulsed = pulsed_model(structure, model, parse_shape("sine"), eta=eta)
     mechanism = structure.mechanism
-    given = mechanism if eta is None else with_restitution(mechanism, eta)
-    sizes = Sizes(given, model, pulsed.direction, structure.opening)
-    own = None if sizes.are_alike() else sizes
+    built = mechanism if eta is None else with_restitution(mechanism, eta)
+    sizes = Sizes(built, model, pulsed.direction, structure.opening)
+    rebuilt = None if sizes.are_alike() else sizes
     return SpectrumShape(
         pulsed,
-        own=own,
+        own=rebuilt,
         hung=bool(mechanism.attached),
         bodies=len(mechanism.bodies()),
         caution=mechanism.own_caution(),
@@ -135,17 +135,19 @@ def blocks_of(slenderness: float, model: ModelName, eta: float | None = None) ->
     name = f"alpha = {slenderness:g}"
     sides = {"width": 2 * sin(slenderness), "height": 2 * cos(slenderness)}  # R = 1 m
     block = Registry()["block"].model_validate({"name": name, **sides})
-    own = block.eta(Direction.POSITIVE)
-    if eta is None and own <= 0:
-        message = f"blocks of {name}: the kinematics give {own:.3g} for an impact: too stocky to rock the other way"
+    kinematic_eta = block.eta(Direction.POSITIVE)
+    if eta is None and kinematic_eta <= 0:
+        message = (
+            f"blocks of {name}: the kinematics give {kinematic_eta:.3g} for an impact: too stocky to rock the other way"
+        )
         raise InputError(Problem(message, hint="give a measured eta in (0, 1], or a smaller slenderness"))
     return SpectrumShape(shape_of(Structure(block), model, eta).structure, slenderness)
 
 
 def usual_sizes(shapes: Sequence[SpectrumShape]) -> tuple[float, float]:
     """Return the default smallest and largest size of a spectrum, as 2 pi/p [s]."""
-    own = [each.period for each in shapes if each.slenderness is None]
-    return (min(own) / MAX_SCALE**0.5, max(own) * MAX_SCALE**0.5) if own else BLOCK_PERIODS
+    periods = [each.period for each in shapes if each.slenderness is None]
+    return (min(periods) / MAX_SCALE**0.5, max(periods) * MAX_SCALE**0.5) if periods else BLOCK_PERIODS
 
 
 @dataclass(frozen=True, eq=False)
@@ -385,8 +387,9 @@ def _scales(shape: SpectrumShape, periods: Reals) -> Reals:
     scales = np.sort(shape.scales(periods))
     if shape.slenderness is not None:
         return scales
-    near = SIZE_TOLERANCE if shape.own is None else 10 * SIZE_TOLERANCE  # scales found by a search are less precise
-    return np.union1d([scale for scale in scales if not isclose(scale, 1.0, rel_tol=near)], 1.0)
+    # Scales found by a search are less precise.
+    tolerance = SIZE_TOLERANCE if shape.own is None else 10 * SIZE_TOLERANCE
+    return np.union1d([scale for scale in scales if not isclose(scale, 1.0, rel_tol=tolerance)], 1.0)
 
 
 def _signs(shape: SpectrumShape, polarities: Sequence[int]) -> Sequence[int]:
@@ -478,7 +481,7 @@ class Sizes:
         """
         if self.model == "nonlinear" and isinstance(self.mechanism.strength, Strength):
             return False
-        own = _shape_of(self.equivalence(1.0), 1.0)
+        shape = _shape_of(self.equivalence(1.0), 1.0)
         for scales in CHECKED_SCALES:
             for scale in scales:
                 try:
@@ -487,7 +490,7 @@ class Sizes:
                     continue
                 except MechanismError:
                     return False
-                if not all(isclose(a, b, rel_tol=SHAPE_TOLERANCE) for a, b in zip(own, other, strict=True)):
+                if not all(isclose(a, b, rel_tol=SHAPE_TOLERANCE) for a, b in zip(shape, other, strict=True)):
                     return False
                 break
         return True

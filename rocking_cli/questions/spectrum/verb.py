@@ -100,8 +100,8 @@ def spectrum(
     for fractile in fractiles:
         if not 0 < fractile < 1:
             raise InputError(Problem(f"{fractile:g} is not a fractile between 0 and 1", field="`fractiles`"))
-    signs, asked = signs_of(polarity), Motions.of(motions, options)
-    if not asked:
+    signs, requested = signs_of(polarity), Motions.of(motions, options)
+    if not requested:
         raise InputError("no ground motion is given: give `motions`")
     if model != "nonlinear":
         refuse_idle("on linear blocks, which have no joints", opening=opening != OPENING)
@@ -113,7 +113,7 @@ def spectrum(
     low, high, number = (*(sizes or study.usual_sizes(shapes)), count)[:3]
     periods = np.geomspace(low, high, number)
     smallest = min([float(periods[0]), *(each.period for each in shapes if each.slenderness is None)])
-    chosen = asked.gather(2 * pi / smallest, watch, "the smallest size")
+    chosen = requested.gather(2 * pi / smallest, watch, "the smallest size")
     scaled = [each.motion.scaled(each.factor) for each in chosen]
     with watch.progress(study.count_histories(shapes, periods, len(chosen), signs), "histories") as progress:
         result = study.spectra(shapes, periods, scaled, polarities=signs, threads=jobs, progress=progress)

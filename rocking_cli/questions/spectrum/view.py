@@ -53,18 +53,18 @@ class ShownSpectra:
 def view(results: ShownSpectra) -> View:
     """Show the peaks as a function of the size of each shape, and a verdict on each."""
     parts = [part for each in results.spectra for part in _curve(results, each)]
-    said = [_verdict(results, each) for each in results.spectra]
+    sentences = [_verdict(results, each) for each in results.spectra]
     if any(each.shape.slenderness is None for each in results.spectra):
-        said.append(
+        sentences.append(
             "Scale multiplies all lengths of the structure. Larger structures have a smaller frequency parameter p."
         )
     if any(each.shape.hung for each in results.spectra):
-        said.append(SCALING_NOTE)
+        sentences.append(SCALING_NOTE)
     if any(each.unknown.any() for each in results.spectra):
         more = "; its peak is at least the number after >=." if results.one else ". Fractiles count it as overturning."
-        said.append(f"The outcome is {UNKNOWN} if {INVALID_REASON}{more}")
-    said += _joints(results)
-    return View(lambda: _all(results), [*parts, *said])
+        sentences.append(f"The outcome is {UNKNOWN} if {INVALID_REASON}{more}")
+    sentences += _joints(results)
+    return View(lambda: _all(results), [*parts, *sentences])
 
 
 def _all(results: ShownSpectra) -> dict[str, Any]:
@@ -83,10 +83,12 @@ def _all(results: ShownSpectra) -> dict[str, Any]:
 
 def _joints(results: ShownSpectra) -> list[str]:
     """Return sentences on joints of the structures that are not checked; empty if all are."""
-    said = [NO_JOINTS] if any(each.shape.leaves_out_joints for each in results.spectra) else []
+    sentences = [NO_JOINTS] if any(each.shape.leaves_out_joints for each in results.spectra) else []
     several = len(results.spectra) > 1
-    said += [unchecked(each.shape.structure.name if several else "") for each in results.spectra if not each.checked]
-    return said + [
+    sentences += [
+        unchecked(each.shape.structure.name if several else "") for each in results.spectra if not each.checked
+    ]
+    return sentences + [
         f"Caution: {each.shape.structure.name}: {each.shape.caution}" for each in results.spectra if each.shape.caution
     ]
 
@@ -269,13 +271,15 @@ def _itself(results: ShownSpectra, each: Spectrum) -> str:
         return "no motion could be simulated"
     names = shorten(", ".join(results.motions[k].motion.name for k in falls.tolist()), 90, placeholder=" ...")
     median = float(each.fractile(0.5)[each.given])
-    said = f"{falls.size} of {count} motions overturn it ({names})" if falls.size else f"none of {count} overturns it"
+    sentence = (
+        f"{falls.size} of {count} motions overturn it ({names})" if falls.size else f"none of {count} overturns it"
+    )
     if unknown.any():
         some = f"{falls.size} of {count} motions are known to overturn it ({names})" if falls.size else (
             f"none of {count} motions is known to overturn it"
         )  # fmt: skip
-        said = f"{some}, the outcome of {np.count_nonzero(unknown)} is {UNKNOWN}"
-    return said if np.isinf(median) else f"{said}, and its median peak is {median:.3g} of phi_cr"
+        sentence = f"{some}, the outcome of {np.count_nonzero(unknown)} is {UNKNOWN}"
+    return sentence if np.isinf(median) else f"{sentence}, and its median peak is {median:.3g} of phi_cr"
 
 
 def _side(results: ShownSpectra, each: Spectrum, what: str, part: slice) -> str:
@@ -316,10 +320,10 @@ def _blocks(results: ShownSpectra, each: Spectrum) -> str:
 def _most(falls: Integers, of: Integers, names: Sequence[str]) -> str:
     """Return the largest number of motions that overturn one size, and the size above which none does, in words."""
     worst, last = int(np.argmax(falls / np.maximum(of, 1))), int(np.flatnonzero(falls)[-1])
-    said = f"at most {falls[worst]} of {of[worst]} motions overturn any one size, at {names[worst]}"
+    sentence = f"at most {falls[worst]} of {of[worst]} motions overturn any one size, at {names[worst]}"
     if last == len(names) - 1:
-        return said
-    return f"{said}, and none {'overturns a larger size' if worst == last else f'does above {names[last]}'}"
+        return sentence
+    return f"{sentence}, and none {'overturns a larger size' if worst == last else f'does above {names[last]}'}"
 
 
 def _doubt(results: ShownSpectra, falls: Integers, doubtful: Integers, of: Integers, names: Sequence[str]) -> str:
@@ -329,10 +333,10 @@ def _doubt(results: ShownSpectra, falls: Integers, doubtful: Integers, of: Integ
     if results.one:
         some = f"{falls.sum()} of {of.sum()} are known to overturn" if falls.any() else "none is known to overturn"
         return f"{some}, and the outcome of {doubtful.sum()} is {UNKNOWN}, {where}"
-    most = falls + doubtful
-    worst = int(np.argmax(most / np.maximum(of, 1)))
+    at_most = falls + doubtful
+    worst = int(np.argmax(at_most / np.maximum(of, 1)))
     return (
         f"{_most(falls, of, names) if falls.any() else 'none is known to overturn'}; the outcome of some motions is "
-        f"{UNKNOWN} {where}, and counting these as overturning, at most {most[worst]} of {of[worst]} motions overturn "
-        f"any one size, at {names[worst]}"
+        f"{UNKNOWN} {where}, and counting these as overturning, at most {at_most[worst]} of {of[worst]} motions "
+        f"overturn any one size, at {names[worst]}"
     )

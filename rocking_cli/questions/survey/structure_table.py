@@ -157,7 +157,7 @@ class StructureTable(Sequence["TableRow"]):
         return base
 
     def _columns(self) -> list[FieldColumn]:
-        columns, problems, taken = [], [], dict[tuple[str, ...], str]()
+        columns, problems, used = [], [], dict[tuple[str, ...], str]()
         sheet = self.sheet
         for place, heading in enumerate(sheet.headings):
             if not heading or heading.startswith(COMMENT_SIGN):
@@ -169,10 +169,10 @@ class StructureTable(Sequence["TableRow"]):
             except InputError as error:
                 problems += [Problem(one.message, sheet.file, sheet.line, hint=one.hint) for one in error.problems]
                 continue
-            if path in taken:
-                message = f"is the same field as {cut(one_line(taken[path]))}"
+            if path in used:
+                message = f"is the same field as {cut(one_line(used[path]))}"
                 problems.append(Problem(message, sheet.file, sheet.line, field=shown, hint="take one of them away"))
-            taken[path] = heading
+            used[path] = heading
             columns.append(FieldColumn(place, shown, path, unit))
         if problems:
             raise InputError(*problems)
@@ -189,11 +189,11 @@ class StructureTable(Sequence["TableRow"]):
             except (InputError, MechanismError):  # reported for each row of this file
                 continue
         if not {MECHANISM_COLUMN, FILE_COLUMN} & {column.path[0] for column in self.columns}:
-            near = get_close_matches(MECHANISM_COLUMN, [column.path[0].lower() for column in self.columns], n=1)
-            given = [column.heading for column in self.columns if near and column.path[0].lower() == near[0]]
+            matches = get_close_matches(MECHANISM_COLUMN, [column.path[0].lower() for column in self.columns], n=1)
+            similar = [column.heading for column in self.columns if matches and column.path[0].lower() == matches[0]]
             hint = (
-                f"write {MECHANISM_COLUMN} instead of {given[0]}"
-                if given
+                f"write {MECHANISM_COLUMN} instead of {similar[0]}"
+                if similar
                 else "add one that names the mechanism of each row"
             )
             raise InputError(
@@ -302,8 +302,8 @@ class TableRow:
     def _fill(self, document: _RowDocument, based: str) -> None:
         """Write the non-empty cells to the fields of a document; add problems for those that cannot be written."""
         table, data = self.table, document.data
-        if given := table.text(self.row, MECHANISM_COLUMN):
-            data[MECHANISM_COLUMN] = given
+        if mechanism := table.text(self.row, MECHANISM_COLUMN):
+            data[MECHANISM_COLUMN] = mechanism
         name = str(data.get(MECHANISM_COLUMN))
         cls = table.registry.get(name)  # None for an unknown mechanism, which is reported when it is built
         for column in table.columns:

@@ -391,11 +391,11 @@ def _of_one(
     doubtful = np.setdiff1d(record[own & outcomes.unknown], fell)
     stays = own & ~np.isin(record, fell) & ~np.isin(record, doubtful)
     peaks = np.where(stays, outcomes.peak_ratio, -1.0)
-    most = int(peaks.argmax())
-    worst = motions[int([*fell, *doubtful, record[most]][0])].name
+    strongest = int(peaks.argmax())
+    worst = motions[int([*fell, *doubtful, record[strongest]][0])].name
     over = "limit" if any(model.ends_at_limit) else "phi_cr"
     unknown = doubtful.size / len(motions) if doubtful.size or model.joints is not None else None
-    return Under(fell.size / len(motions), float(peaks[most]) if stays.any() else nan, worst, over, unknown)
+    return Under(fell.size / len(motions), float(peaks[strongest]) if stays.any() else nan, worst, over, unknown)
 
 
 @dataclass(frozen=True)

@@ -98,10 +98,10 @@ def survey(
     from rocking_cli.questions.survey.view import blocks, columns, title, view
 
     signs, where = signs_of(polarity), site_of(site) if site is not None else None
-    entries, given = _entries(structures, watch), Motions.of(motions, options)
-    if not given:
+    entries, requested = _entries(structures, watch), Motions.of(motions, options)
+    if not requested:
         refuse_idle("without ground motions", polarity=signs != (1,), opening=opening != OPENING)
-    shaken = [each.motion.scaled(each.factor) for each in given.gather(0.0, watch)] if given else []
+    shaken = [each.motion.scaled(each.factor) for each in requested.gather(0.0, watch)] if requested else []
     count = _processes(len(entries), bool(shaken) or where is not None) if processes else None
     with watch.progress(len(entries), "structures") as advance:
         result = study(

@@ -141,14 +141,14 @@ def columns(found: Survey, start: int = 0, stop: int | None = None, *, for_sprea
     if not rows:
         return {"rank": [], "name": [], "lambda": []}
     applying = _columns(found)
-    made = frame_of(applying, rows)
+    frame = frame_of(applying, rows)
     for column in applying:
         if column.text:
-            texts = map(one_line, made[column.heading])
-            made[column.heading] = [
+            texts = map(one_line, frame[column.heading])
+            frame[column.heading] = [
                 f"'{each}" if for_spreadsheets and each.startswith(FORMULA_SIGNS) else each for each in texts
             ]
-    return made
+    return frame
 
 
 def has_unknown(found: Survey) -> bool:
@@ -177,18 +177,18 @@ def title(found: Survey) -> str:
 def counts(found: Survey) -> list[str]:
     """Return the first sentences: how many structures fail or overturn, what governs, and which is the worst."""
     rows = found.rows
-    said = []
+    lines = []
     if found.by == "ratio":
-        said.append(" ".join(_of_site(rows)))
+        lines.append(" ".join(_of_site(rows)))
     if found.motions:
-        said.append(_of_motions(found))
-    if not said and len(rows) > 1:
+        lines.append(_of_motions(found))
+    if not lines and len(rows) > 1:
         first, last = rows[0], rows[-1]
-        said.append(
+        lines.append(
             f"Of {_structures(len(rows))}, {_named([first])} uplifts at the lowest ground acceleration, "
             f"{number(first.uplift, 3)} g, and {_named([last])} at the highest, {number(last.uplift, 3)} g."
         )
-    return said
+    return lines
 
 
 def _of_site(rows: Sequence[Surveyed]) -> Iterator[str]:
@@ -243,32 +243,32 @@ def _structures(count: int) -> str:
 def sentences(found: Survey, top: int | None = None) -> list[str]:
     """Return sentences on how to read the rows."""
     rows, many = found.rows, len(found.rows)
-    said = [f"Ranked {RANKED[found.by]}."]
+    lines = [f"Ranked {RANKED[found.by]}."]
     if top is not None and many > top:
-        said[0] = f"Showing {top} of {many:,}, ranked {RANKED[found.by]}."
+        lines[0] = f"Showing {top} of {many:,}, ranked {RANKED[found.by]}."
     if found.motions:
-        said.append(
+        lines.append(
             "Time histories are by the nonlinear model. The peak is the largest rotation over the critical rotation "
             "among the motions that do not overturn the structure. One time history is one sample: use "
             "`rocking respond` and `rocking margin` to see how close the result is."
         )
-        said += _not_known(rows)
+        lines += _not_known(rows)
     cautioned = [each for each in rows if each.caution is not None]
-    said += [f"Caution: {each.name}: {each.caution}" for each in cautioned[:MAX_CAUTIONED]]
+    lines += [f"Caution: {each.name}: {each.caution}" for each in cautioned[:MAX_CAUTIONED]]
     if len(cautioned) > MAX_CAUTIONED:
-        said.append(f"{len(cautioned) - MAX_CAUTIONED:,} more structures have such a caution: JSON lists them all.")
+        lines.append(f"{len(cautioned) - MAX_CAUTIONED:,} more structures have such a caution: JSON lists them all.")
     if any(each.unprinted for each in rows):
-        said.append(
+        lines.append(
             "Caution: formulas of the code have not been checked against the printed code yet: have them checked "
             "before you rely on a verdict. `rocking verify` names them."
         )
     without = [each for each in rows if each.no_block is not None]
     if without:
-        said.append(
+        lines.append(
             f"{_named(without)}: no equivalent single block, so only lambda is given and not p; `rocking equiv` gives "
             "the reason."
         )
-    return said
+    return lines
 
 
 def _not_known(rows: Sequence[Surveyed]) -> Iterator[str]:

@@ -46,20 +46,20 @@ def command_line(ctx: click.Context) -> str:
     """Return the command as it was given, for a POSIX shell, with the user's defaults written out."""
     from click.core import ParameterSource
 
-    said = ["rocking", ctx.info_name or ""]
-    taken = defaults.of_run(ctx)
+    words = ["rocking", ctx.info_name or ""]
+    applied = defaults.of_run(ctx)
     steps = [name for name in ctx.params if name in CORRECTIONS]  # in the order of the options
     for param in sorted(ctx.command.params, key=lambda each: steps.index(each.name) if each.name in steps else -1):
         value = ctx.params.get(param.name or "")
-        if default := taken.get(param.name or ""):
-            said += [f"--{default.option}", default.value]
+        if default := applied.get(param.name or ""):
+            words += [f"--{default.option}", default.value]
         if ctx.get_parameter_source(param.name or "") is not ParameterSource.COMMANDLINE:
             continue
         for each in _typed(value):
-            said += [] if isinstance(param, click.Argument) else [param.opts[0]]
-            said += [] if each is True else [str(getattr(each, "value", each))]  # value of a correction
-    places = ", ".join(f"--{each.option} from {each.place}" for each in taken.values())
-    return shlex.join(said) + (f"  # {places}" if places else "")
+            words += [] if isinstance(param, click.Argument) else [param.opts[0]]
+            words += [] if each is True else [str(getattr(each, "value", each))]  # value of a correction
+    places = ", ".join(f"--{each.option} from {each.place}" for each in applied.values())
+    return shlex.join(words) + (f"  # {places}" if places else "")
 
 
 def _typed(value: object) -> tuple[object, ...]:

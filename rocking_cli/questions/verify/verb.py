@@ -106,17 +106,17 @@ def verify(
     from rocking_cli.verification.results import Histories, control_at
     from rocking_cli.views.verification import table, view
 
-    signs, given, known = signs_of(polarity), Motions.of(motions, options), site_of(site)
-    if not given and (state is not None or on_floor):
+    signs, requested, known = signs_of(polarity), Motions.of(motions, options), site_of(site)
+    if not requested and (state is not None or on_floor):
         raise InputError("`state` and `on_floor` describe records: give `motions`")
-    if not given and signs != (1,):
+    if not requested and signs != (1,):
         raise InputError("`polarity` reverses a ground motion: give `motions`")
-    if not given:
+    if not requested:
         refuse_idle("without ground motions", opening=opening != OPENING)
     if sheet is None:
         head = {"project": project, "place": place, "author": author, "logo": logo}
         refuse_idle("without a calculation sheet: give `sheet`", language=language != "en", **head)
-    refuse(known, control=control is not None, motions=bool(given))
+    refuse(known, control=control is not None, motions=bool(requested))
     if sheet is not None:
         from rocking_cli.questions.verify import sheets
 
@@ -124,8 +124,8 @@ def verify(
     ready = structure_of(structure, watch, opening)
     verification = study(ready, known, None if control is None else control_at(ready.mechanism, *control))
     chosen: list[Scaled] = []
-    if given:
-        chosen = given.gather(ready.growth, watch)
+    if requested:
+        chosen = requested.gather(ready.growth, watch)
         with watch.progress(len(chosen), "records") as advance:
             scaled = [each.motion.scaled(each.factor) for each in chosen]
             verification = with_histories(

@@ -96,15 +96,15 @@ def sheet(found: Verification, site: SiteFile, language: Language, title: TitleB
     InputError
         If the code of the site has no sheet.
     """
-    own = sheet_of(site)
-    say, mechanism = own.language(language.key), found.mechanism
+    chapters = sheet_of(site)
+    say, mechanism = chapters.language(language.key), found.mechanism
     about = {say(name.capitalize()): text for name, text in title.known.items()}
     if site.site.name:
         about[say("Site")] = site.site.name
     about[say("Date")] = title.date
     about[say("Program")] = f"rocking-cli {made.versions['rocking-cli']}"
-    with blame(f"the code {site.site.code} failed in its sheet", own.parts.__module__):
-        first, *others = own.parts(say, found, site.site)
+    with blame(f"the code {site.site.code} failed in its sheet", chapters.parts.__module__):
+        first, *others = chapters.parts(say, found, site.site)
     reading = [
         say("reading_digits", digits=SIGNIFICANT_DIGITS, force="kN" if mechanism.has_mass else "N/kg"),
         say("reading_marks"),
