@@ -142,7 +142,7 @@ class MappingAnswer(Answer[Mapping[K, V]], Mapping[K, V]):
 
 
 _DRAWING = RLock()
-"""Held while a plot is drawn or written: matplotlib is not made for several threads."""
+"""Lock around drawing and writing of plots, as matplotlib is not safe for threads."""
 
 
 def _frame(columns: Callable[[], Columns]) -> pandas.DataFrame:

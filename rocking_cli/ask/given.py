@@ -1,4 +1,4 @@
-"""What a verb is given: a structure or its file, a motion, its file or a pulse as text."""
+"""Arguments of verbs: a structure or its file, a motion, its file or a pulse as text."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ Motion = GroundMotion | Pulse | Scaled | str | Path
 """Ground motion or pulse, file of a record, or pulse as text such as `sine:0.6g:0.8s`."""
 MAX_PGA, MAX_PGV = 1e3, 1e4  # g and m/s: beyond any ground motion, and too long to simulate
 Source = GroundMotion | Scaled | Pulse | Listed | InputError
-"""What a motion is made of: a file of a pattern or a list by itself, or why a place has no file."""
+"""Source of a motion: an object, a single file of a pattern or list, or the reason why there is no file."""
 
 
 @dataclass(frozen=True, eq=False)

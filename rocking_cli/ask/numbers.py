@@ -17,7 +17,7 @@ R = TypeVar("R")
 UNITS = {
     "vertical_dt": "s", "tail": "s", "period": "s", "band": "s", "sizes": "s", "ag": "g", "top": "g",
 }  # fmt: skip
-"""Units of arguments that have one."""
+"""Units of arguments that are quantities."""
 
 
 def takes_numbers(verb: Callable[P, R]) -> Callable[P, R]:

@@ -1,4 +1,4 @@
-"""What pages share: their templates, and matplotlib figures as SVG inside a page."""
+"""Templates of pages, and matplotlib figures as SVG inside a page."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ TEXT_WIDTH = 17.0  # cm of an A4 page, between margins of 2 cm
 TABLE_FONT_SIZE = 8.5  # pt
 LOGO_HEIGHT = 1.6  # cm
 PICTURE_PREFIXES = ("data:image/png;", "data:image/jpeg;")
-"""How the addresses begin of pictures that a document takes."""
+"""Beginnings of the data addresses of pictures that a document can contain."""
 
 
 def check_package() -> None:

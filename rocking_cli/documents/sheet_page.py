@@ -19,7 +19,7 @@ from rocking_cli.verification.results import MARK
 from rocking_cli.views.sheet.document import Drawing, Sheet
 
 ORIGIN_MARKS = {"print": "", "transcription": "*", "code": "†", "ours": "‡", "plain": ""}
-"""What stands beside a formula, by how far it was checked."""
+"""Marks beside formulas, by how far these were checked."""
 
 
 def render(sheet: Sheet, mechanism: Mechanism) -> str:

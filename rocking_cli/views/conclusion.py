@@ -96,7 +96,7 @@ CLAUSES = {
     Concluded.ROCKS: names.ROCKS,
     Concluded.NO_UPLIFT: names.NO_UPLIFT,
 }
-"""What a structure does, the worst first."""
+"""Clauses on outcomes, the worst first."""
 MAX_NAMED_MOTIONS = 6  # in a sentence
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 F = TypeVar("F", bound=Verification)
 V = TypeVar("V", bound=Verified)
 SHOWN = ("of_direction", "data", "data_of_all", "table", "draw")
-"""The methods that a code overrides: whatever fails there is an error of the plugin."""
+"""Methods that a code may override; their failures are errors of the plugin."""
 
 
 class MethodRow(NamedTuple):
@@ -69,7 +69,7 @@ def rows_of(found: Verification) -> list[MethodRow]:
 
 
 class Showing(Generic[F, V]):
-    """How the results of a code are shown; a code that shows more, or differently, overrides methods.
+    """Presentation of the results of a code; a code that shows other results overrides methods.
 
     Attributes
     ----------

@@ -26,7 +26,7 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 @dataclass(frozen=True, eq=False)
 class MechanismSide:
-    """One direction of a mechanism.
+    """Energy and inertia of one direction of a mechanism.
 
     Parameters
     ----------

@@ -56,7 +56,7 @@ class JointRegion:
 
     @property
     def inside(self) -> Bools:
-        """Which points of the grid are in the joint region of 90 %, shape (n, m)."""
+        """Mask of the points of the grid in the joint region of 90 %, shape (n, m)."""
         return np.asarray(self.likelihood >= self.likelihood.max() - EDGE_DROP)
 
     @property

@@ -139,7 +139,7 @@ METRICS: Mapping[str, Metric] = {
                sited=True),
     )
 }  # fmt: skip
-"""Every metric but those of codes; one more is one more line here."""
+"""Metrics by name, except those of codes of practice."""
 
 
 def _of_codes(name: str) -> Metric | None:

@@ -27,7 +27,7 @@ from rocking_cli.questions.fragility.workers import Workers
 from rocking_cli.studies.fragility.quantities import FACT, PGA, PGV, asked_for
 
 Progress = Callable[[int, int], None]
-"""Called with how many runs have finished since the last call, and how many of these failed."""
+"""Called with the numbers of runs that have finished and failed since the last call."""
 PARAMETER_TOLERANCE = 1e-9  # relative difference between machines of parameters from the same mechanics
 MAX_NAMED_CHANGES = 10  # of samples
 Examined = Callable[[int], None]

@@ -39,7 +39,7 @@ MIN_CUT = 0.001  # of a probability: smaller cuts of a curve are not reported
 
 @dataclass(frozen=True)
 class Cut:
-    """By which limit state a curve is cut, the largest difference of the curve or its band, and at which intensity."""
+    """Limit state that cuts a curve, the largest change of the curve or its band, and its intensity."""
 
     by: str | float
     most: float

@@ -220,7 +220,7 @@ class HazardEntry(Part):
 
 
 class Sampling(Part):
-    """How samples of the structures are drawn."""
+    """Method by which samples of the structures are drawn."""
 
     samples: int = Field(1, ge=1, le=MAX_LEVELS, description="how many structures are drawn from the distributions")
     sampling: Literal["random", "latin hypercube"] = Field("latin hypercube", description="how they are drawn")
@@ -235,7 +235,7 @@ class Common(Part):
 
     @property
     def reading(self) -> Reading:
-        """How every record is read and processed, unless its entry states otherwise."""
+        """Reading and processing of all records, unless the entry of a record states otherwise."""
         return Reading(reading_of({"floor": self.floor}).options, parse_steps(self.processing))
 
 

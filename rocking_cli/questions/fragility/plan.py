@@ -338,9 +338,9 @@ class Plan:
 
 V_IMP = "v_imp"
 ORIGIN = ("magnitude", "distance")
-"""What records may state of their earthquake, kept beside measures so that these can be checked against it."""
+"""Fields of the earthquake of a record, stored beside its measures to check their residuals against."""
 Told = Callable[[int], None]
-"""Called with how many records have been gone through since the last call."""
+"""Called with the number of records processed since the last call."""
 
 
 def complete(

@@ -23,7 +23,7 @@ from rocking_cli.questions.fragility.tally import UNKNOWN_PEAK, Tally, endings_o
 
 QUANTILES = (0.16, 0.5, 0.84)
 MIN_RECORDS = (names.FEWEST, names.FEWEST_OF_MEDIAN, names.FEWEST)
-"""Records from which on each quantile is told."""
+"""Smallest number of records with which each quantile is given."""
 COUNT_TOLERANCE = 1e-9  # of a number of runs, for rounding
 
 

@@ -23,7 +23,7 @@ from rocking_cli.studies.fragility.quantities import PGA, PGV
 
 MIN_P_VALUE = 0.05  # of residuals without a trend
 OF_MOTION = ("Tm", "D5-95")
-"""What residuals are tested against if not all records state magnitude and distance."""
+"""Measures against which residuals are tested if not all records state magnitude and distance."""
 LOGARITHMIC = ("magnitude",)  # quantities that are logarithms already
 MIN_RUNS = 3  # and records
 RATIO_TOLERANCE = 1e-9  # of a logarithm: measures whose ratio is constant within it count as one
@@ -31,7 +31,7 @@ RATIO_TOLERANCE = 1e-9  # of a logarithm: measures whose ratio is constant withi
 
 @dataclass(frozen=True)
 class Ranked:
-    """How well one measure predicts the peak rotation of one structure.
+    """Quality of one measure as a predictor of the peak rotation of one structure.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class StudyOutput:
-    """What to write of a study: plots, a file for OpenQuake, the tables of runs and of curves; or one JSON object."""
+    """Outputs of a study: plots, a file for OpenQuake, the tables of runs and of curves; or one JSON object."""
 
     plot: str | None
     nrml: Path | None

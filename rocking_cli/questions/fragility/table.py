@@ -21,7 +21,7 @@ MIN_LOG_RATIO = 30.0  # of the largest intensity over the least, from which inte
 TEXT_COLUMNS = ("structure", "limit_state", "measure", "unit", "kind")
 NUMBER_COLUMNS = ("median", "dispersion", "scale", "x", "probability", "low", "high")
 LOWER_COLUMNS = tuple(f"lower_{name}" for name in ("median", "dispersion", "scale", "probability", "low", "high"))
-"""Columns of the fit in which runs of unknown outcome do not exceed, beside those of that in which they do."""
+"""Columns of the fit that counts runs of unknown outcome as not exceeding the limit state."""
 COLUMNS = (*NUMBER_COLUMNS, "unknown", *LOWER_COLUMNS)
 
 

@@ -30,10 +30,10 @@ from rocking_cli.studies.under_pulses import uplift
 
 Places = NDArray[np.int32]
 UNKNOWN_PEAK = float(np.finfo(np.float64).max)
-"""The peak of a run of unknown outcome: more than any that was seen, less than that of one that overturns."""
+"""Peak of a run of unknown outcome, for sorting: above every known peak, below that of overturning runs."""
 ROTATION_TOLERANCE = 1e-9  # relative, for rounding
 Counted = Callable[[int], None]
-"""Called with how many numbers of runs have been looked at since the last call."""
+"""Called with the number of run numbers examined since the last call."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -386,7 +386,7 @@ def _add(table: Integers, cell: Integers) -> None:
 
 
 Pair = tuple[float | None, float | None]
-"""Values in the positive and the negative direction; None where a structure never gets there."""
+"""Values in the positive and the negative direction; None if the structure never reaches them."""
 
 TOP_POINTS = 512  # rotations between rest and the end of a mechanism at which the displacement of its top is computed
 REFINEMENT = 32  # parts of a step in each refinement

@@ -101,7 +101,7 @@ class SampledHistory:
 
 
 Answer = ExactResponse | SampledHistory
-"""Of a linear model, exactly; or by the history under the sampled pulse."""
+"""Exact response of a linear model, or its history under the sampled pulse."""
 
 
 def sampled_history(structure: Structure, model: ModelName, pulse: Pulse, polarity: int = 1) -> SampledHistory:

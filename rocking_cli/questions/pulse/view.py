@@ -56,7 +56,7 @@ EXACT: tuple[Column[ExactResponse], ...] = (
     _exact("first_impact", lambda exact: exact.first_impact - exact.uplift_time, "  first impact", "tau from uplift"),
     Column("impact_during_pulse", lambda exact: exact.first_impact < exact.pulse_end),
 )
-"""Of the exact solution; times count from uplift, but for uplift itself."""
+"""Columns of the exact solution; times count from uplift, except that of uplift itself."""
 
 
 def view(shape: str, a: float, omega: float, eta: float, closed: ClosedForm | None, exact: ExactResponse) -> View:

@@ -60,7 +60,7 @@ Rows = list[list[str]]
 
 
 OWN_FIELDS = frozenset({"drawing", "structure_text"})
-"""The parts of a sheet that a report has anyway."""
+"""Parts of a calculation sheet that a report leaves out, as it contains them already."""
 
 
 @dataclass(frozen=True, eq=False)

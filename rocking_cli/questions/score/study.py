@@ -112,7 +112,7 @@ class ClusterDraws:
 
     @cached_property
     def weights(self) -> Reals:
-        """How often each draw has each cluster, shape (draws, clusters)."""
+        """Number of times that each draw contains each cluster, shape (draws, clusters)."""
         drawn = np.random.default_rng(SEED).integers(self.count, size=(DRAWS, self.count))
         return np.stack([np.bincount(row, minlength=self.count) for row in drawn]).astype(np.float64)
 
@@ -326,7 +326,7 @@ class PeakRank(NamedTuple):
 
 @dataclass(frozen=True)
 class Stated:
-    """What is stated of one test.
+    """Predictions for one test.
 
     Parameters
     ----------
@@ -425,7 +425,7 @@ class Scored:
 
     @property
     def drawn(self) -> Mapping[Neighbourhood, Sequence[str]]:
-        """How the neighbours were drawn, each with the structures for which they were."""
+        """Deviations of the neighbours, each with the structures to which they apply."""
         drawn: dict[Neighbourhood, list[str]] = {}
         for each in self.tests:
             if each.around is not None and each.test.structure not in drawn.setdefault(each.around, []):

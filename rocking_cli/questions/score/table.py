@@ -15,11 +15,11 @@ from rocking_cli.text import cut, did_you_mean, one_line
 from rocking_cli.units import UnitError, read, units_of
 
 FORECAST_PREFIX = "pred_"
-"""How a heading begins whose column has the shares that another rule foretells."""
+"""Prefix of the headings of columns with shares predicted by other rules."""
 OWN_PREDICTORS = ("tool", "tool_with_unknown", "base_rate", "west", "velocity", "fitted_pgv")
 """Names of the rules that `rocking score` computes itself."""
 COMMENT_SIGN = "#"
-"""How a heading begins whose column is for people only."""
+"""First character of the headings of columns that are not read."""
 HEADINGS = (
     "structure", "record", "overturned", "peak", "censored", "scale", "polarity", "cluster", "half", "motion",
     "time_scale", "pgv",
@@ -27,7 +27,7 @@ HEADINGS = (
 MOTIONS = ("recorded", "commanded")
 POLARITIES = ("1", "-1", "both")
 FLAGS = {"0": False, "0.0": False, "false": False, "1": True, "1.0": True, "true": True}
-"""What is read as no and yes: as people write it, and as frames of pandas do."""
+"""Texts that mean no and yes, as users and as frames of pandas write them."""
 UNITS = {"peak": "rad", "pgv": "m/s"}
 """Units of the columns of quantities."""
 

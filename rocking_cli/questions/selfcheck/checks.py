@@ -599,7 +599,7 @@ OBSPY_FILES = {
     "miniseed": RecordFile("miniSEED", 0.01, FOLDER / "miniseed", {"units": "cm/s2"}),
     "sac": RecordFile("SAC", 0.01, FOLDER / "sac", {"units": "cm/s2"}),
 }
-"""The same for the formats that are read by obspy."""
+"""Files of the formats that are read by obspy, by the name of their reader."""
 UNIT_SPELLINGS = {
     "g": GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "mg": GRAVITY / 1000, "%g": GRAVITY / 100,
 }  # fmt: skip

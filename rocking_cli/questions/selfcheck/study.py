@@ -13,7 +13,7 @@ from rocking_cli.errors import RockingError
 from rocking_cli.text import seen
 
 NO_KERNEL = ("blocks", "joints", "filters", "records", "records_by_obspy", "units", "kernels")
-"""Checks that simulate nothing, or all that they simulate in ways of their own."""
+"""Checks that do not use the compiled kernels, or choose the engine themselves."""
 
 
 class NotRun(Exception):

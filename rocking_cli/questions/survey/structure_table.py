@@ -26,7 +26,7 @@ from rocking_cli.text import cut, did_you_mean, one_line
 FILE_COLUMN, MECHANISM_COLUMN = "file", "mechanism"
 YAML_SUFFIXES = (".yaml", ".yml")
 COMMENT_SIGN = "#"
-"""What a heading begins with whose column is for people only."""
+"""First character of the headings of columns that are not read."""
 THOUSANDS = re.compile(r"[-+]?\d{1,3}(\.\d{3})+", re.ASCII)
 MAX_DIGITS = 308  # of the largest whole number that is a float
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)

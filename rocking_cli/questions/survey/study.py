@@ -70,7 +70,7 @@ class Under:
 
     @property
     def concluded(self) -> Concluded:
-        """What is concluded over all motions: the worst of them."""
+        """Conclusion over all motions, from the worst of them."""
         if self.overturned:
             return Concluded.OVERTURNS
         if self.unknown:
@@ -194,7 +194,7 @@ def _by_ratio(found: Surveyed) -> tuple[float, ...]:
 
 
 ORDERS: Mapping[str, Order] = {"lambda": _by_lambda, "response": _by_response, "ratio": _by_ratio}
-"""By what structures are ranked: of two the one with the smaller key is the more vulnerable."""
+"""Sort keys of rankings: the structure with the smaller key is the more vulnerable."""
 
 
 @dataclass(frozen=True)

@@ -132,4 +132,4 @@ def plain(text: str) -> str:
 
 
 ENGLISH = Language("en", is_plain=True)
-"""As the terminal has it."""
+"""Plain English, as on the terminal."""
