@@ -90,7 +90,7 @@ def speeds() -> list[list[str]]:
     ]
 
     def run(way: str, scales: int) -> float:
-        os.environ[ways.CHOSEN] = way
+        os.environ[ways.KERNELS_VARIABLE] = way
         ways.forget()
         runs = Runs.every(len(models), 1, scales=tuple(np.linspace(0.5, 3.0, scales)), polarities=(1, -1))
         return _time(lambda: respond_many(models, [motion], runs, threads=1)) / len(runs)
@@ -101,7 +101,7 @@ def speeds() -> list[list[str]]:
     times = [(run("python", 2), run("ready", 2)) for _ in range(PAIRS)]
     ratio = median(theirs / ours for theirs, ours in times)
     rows.append(["in Python", f"{1e3 * median(theirs for theirs, _ in times):.3g}", f"{ratio:.3g}"])
-    os.environ.pop(ways.CHOSEN)
+    os.environ.pop(ways.KERNELS_VARIABLE)
     return rows
 
 

@@ -20,11 +20,11 @@ from rocking_cli.errors import MechanismError
 Reals = NDArray[np.float64]
 Hinges = tuple[float, float, float, float]
 SCAN_JOINTS = 721  # joints of the first search if hinges may be anywhere
-STRONGEST = 100.0  # lambda beyond which an arch counts as too thick to hinge
-FAR = 1e4  # bound on the reactions at the start of the search, over the weight
-TOLERANCE = 1e-12  # moment by which the line of thrust may leave the ring, over the moment of its weight
-ROUNDS = 200
-FACES = np.array([-1.0, 1.0, -1.0, 1.0])  # of A, B, C, D: intrados -1, extrados +1
+MAX_LAMBDA = 100.0  # lambda beyond which an arch counts as too thick to hinge
+MAX_START_REACTION = 1e4  # bound on the reactions at the start of the search, over the weight
+LINE_TOLERANCE = 1e-12  # moment by which the line of thrust may leave the ring, over the moment of its weight
+MAX_ITERATIONS = 200
+FACE_OF_HINGE = np.array([-1.0, 1.0, -1.0, 1.0])  # intrados -1, extrados +1, for the hinges A, B, C and D
 
 
 class ArchCannotStand(Exception):
@@ -115,10 +115,14 @@ def collapse_hinges(ring: Ring, voussoirs: int | None) -> Hinges:
     """
     joints = np.linspace(0.0, ring.beta, (voussoirs or SCAN_JOINTS - 1) + 1)
     multiplier, hinges, faces = _collapse(ring, joints)
-    if not (np.array_equal(faces, FACES) and (np.diff(hinges) > 0).all()):
+    if not (np.array_equal(faces, FACE_OF_HINGE) and (np.diff(hinges) > 0).all()):
         raise MechanismError(
             "the arch is too thick for a four-hinge mechanism: "
-            + (f"at {multiplier:.3g} g it lifts off a springing instead" if multiplier < STRONGEST else "none can open")
+            + (
+                f"at {multiplier:.3g} g it lifts off a springing instead"
+                if multiplier < MAX_LAMBDA
+                else "none can open"
+            )
         )
     if voussoirs is None:
         hinges = _settle(ring, hinges, joints)
@@ -141,10 +145,10 @@ def _collapse(ring: Ring, joints: Reals) -> tuple[float, Reals, Reals]:
     # To begin with, bounds that no arch meets: lambda <= STRONGEST, and three on the reactions that carry nothing.
     weight = ring.beta * ring.thickness
     A = np.vstack([*a, -np.eye(4)])
-    C = np.concatenate([*c, [-FAR * weight] * 3, [-STRONGEST]])
+    C = np.concatenate([*c, [-MAX_START_REACTION * weight] * 3, [-MAX_LAMBDA]])
     n = joints.size
     basis = np.arange(2 * n, 2 * n + 4)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ITERATIONS):
         hinge_rows = A[basis]
         state = np.linalg.solve(hinge_rows, C[basis])
         if state[3] <= 0:
@@ -152,7 +156,7 @@ def _collapse(ring: Ring, joints: Reals) -> tuple[float, Reals, Reals]:
         slack = A @ state - C
         slack[basis] = 0.0
         worst = int(slack.argmin())
-        if slack[worst] >= -TOLERANCE * max(weight, float(np.abs(state).max())):
+        if slack[worst] >= -LINE_TOLERANCE * max(weight, float(np.abs(state).max())):
             break
         turns = np.linalg.solve(hinge_rows.T, np.array([0.0, 0.0, 0.0, -1.0]))
         share = np.linalg.solve(hinge_rows.T, A[worst])
@@ -171,9 +175,11 @@ def _collapse(ring: Ring, joints: Reals) -> tuple[float, Reals, Reals]:
 
 def _settle(ring: Ring, hinges: Reals, joints: Reals) -> Reals:
     """Return the hinges moved from the joints of a scan to where the line of thrust touches the ring."""
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ITERATIONS):
         state = thrust(ring, hinges)
-        moved = np.array([float(ring.worst(np.array(h), int(f), state)) for h, f in zip(hinges, FACES, strict=True)])
+        moved = np.array(
+            [float(ring.worst(np.array(h), int(f), state)) for h, f in zip(hinges, FACE_OF_HINGE, strict=True)]
+        )
         settled = np.abs(moved - hinges).max() <= 1e-14 * ring.beta
         hinges = moved
         if settled:
@@ -205,5 +211,5 @@ def thrust(ring: Ring, hinges: Reals | Hinges) -> Reals:
 
     (Fx, Fy) and M0 are force and moment of the reaction at the left springing.
     """
-    balances = [ring.balance(np.array(angle), int(face)) for angle, face in zip(hinges, FACES, strict=True)]
+    balances = [ring.balance(np.array(angle), int(face)) for angle, face in zip(hinges, FACE_OF_HINGE, strict=True)]
     return np.linalg.solve(np.stack([rows for rows, _ in balances]), np.array([weight for _, weight in balances]))

@@ -15,11 +15,11 @@ from rocking_cli.core import Direction, Reals, Vertex, geometry_error, quantity
 from rocking_cli.core.fields import Described, Name
 from rocking_cli.core.kinematics import Points, area_of, distance, inside
 
-SCAN = 24  # places of a crack that are tried first; half as many of each of two cracks
-EDGE = 1e-6  # least distance of a crack from the ends of its line, over its length
+SCAN_POINTS = 24  # places of a crack that are tried first; half as many of each of two cracks
+MIN_EDGE_DISTANCE = 1e-6  # least distance of a crack from the ends of its line, over its length
 SAME_PLACE = 1e-5  # distance of cracks of both directions that are one, over the length of the line
-NONE = 1e100  # stands for an infinite lambda, as searches subtract values
-FINE = 1e-9  # accuracy of the place of a crack, over the length of its line
+INFINITE_LAMBDA = 1e100  # finite, as searches subtract values
+CRACK_ACCURACY = 1e-9  # accuracy of the place of a crack, over the length of its line
 
 
 class Crack(Described):
@@ -252,21 +252,22 @@ def weakest(lambda_at: Callable[[Mapping[str, float]], float], names: Sequence[s
     from scipy.optimize import Bounds, minimize, minimize_scalar
 
     def at(*shares: float) -> float:
-        return min(lambda_at(dict(zip(names, map(float, shares), strict=True))), NONE)
+        return min(lambda_at(dict(zip(names, map(float, shares), strict=True))), INFINITE_LAMBDA)
 
-    shares = (np.arange(SCAN) + 0.5) / SCAN
+    shares = (np.arange(SCAN_POINTS) + 0.5) / SCAN_POINTS
     if len(names) == 1:
         values = np.array([at(share) for share in shares])
         k = int(values.argmin())
-        low = EDGE if k == 0 else float(shares[k - 1])
-        high = 1 - EDGE if k == SCAN - 1 else float(shares[k + 1])
-        minimum = minimize_scalar(at, bounds=(low, high), method="bounded", options={"xatol": FINE})
+        low = MIN_EDGE_DISTANCE if k == 0 else float(shares[k - 1])
+        high = 1 - MIN_EDGE_DISTANCE if k == SCAN_POINTS - 1 else float(shares[k + 1])
+        minimum = minimize_scalar(at, bounds=(low, high), method="bounded", options={"xatol": CRACK_ACCURACY})
         return {names[0]: float(minimum.x)}
     coarse = shares[::2]
     grid = [(float(one), float(other)) for one in coarse for other in coarse]
     start = min(grid, key=lambda pair: at(*pair))
     result = minimize(
         lambda pair: at(*pair), start,
-        method="Nelder-Mead", bounds=Bounds([EDGE] * 2, [1 - EDGE] * 2), options={"xatol": FINE, "fatol": 0.0},
+        method="Nelder-Mead", bounds=Bounds([MIN_EDGE_DISTANCE] * 2, [1 - MIN_EDGE_DISTANCE] * 2),
+        options={"xatol": CRACK_ACCURACY, "fatol": 0.0},
     )  # fmt: skip
     return dict(zip(names, (float(place) for place in result.x), strict=True))

@@ -11,8 +11,8 @@ import numpy as np
 from rocking_cli.core import Outline
 from rocking_cli.core.kinematics import Points, area_of
 
-NEAR = 1e-6  # distance from a side that counts as on the side, over the size of both bodies
-PARALLEL = 1e-3  # sine of the largest angle between two sides in contact
+SIDE_DISTANCE = 1e-6  # distance from a side that counts as on the side, over the size of both bodies
+MAX_SINE = 1e-3  # sine of the largest angle between two sides in contact
 
 Side = tuple[complex, complex]
 
@@ -65,7 +65,10 @@ def shared(one: Sequence[Outline], other: Sequence[Outline]) -> list[tuple[compl
     found = []
     for (p, q), other_side, low, high in _facing(_sides(one), list(_sides(other))):
         along = (q - p) / abs(q - p)
-        if high - low > NEAR * size and max(abs(((z - p) / along).imag) for z in other_side) <= NEAR * size:
+        if (
+            high - low > SIDE_DISTANCE * size
+            and max(abs(((z - p) / along).imag) for z in other_side) <= SIDE_DISTANCE * size
+        ):
             found.append((-1j * along, (p + low * along, p + high * along)))
     return found
 
@@ -74,7 +77,7 @@ def lowest(body: Sequence[Outline]) -> tuple[complex, complex] | None:
     """Return the ends of what a body stands on: its level sides at its lowest point; None if it has none there."""
     size, sides = _size(body), list(_sides(body))
     bottom = min((z.imag for side in sides for z in side), default=0.0)
-    level = [z for side in sides if all(z.imag - bottom <= NEAR * size for z in side) for z in side]
+    level = [z for side in sides if all(z.imag - bottom <= SIDE_DISTANCE * size for z in side) for z in side]
     return (min(level, key=lambda z: z.real), max(level, key=lambda z: z.real)) if level else None
 
 
@@ -83,7 +86,7 @@ def _facing(one: Iterable[Side], other: Sequence[Side]) -> Iterator[tuple[Side, 
     for (p, q), (r, s) in product(one, other):
         along, back = (q - p) / abs(q - p), (s - r) / abs(s - r)
         turn = along.conjugate() * back
-        if abs(turn.imag) <= PARALLEL and turn.real <= 0:
+        if abs(turn.imag) <= MAX_SINE and turn.real <= 0:
             yield (p, q), (r, s), max(0.0, ((s - p) / along).real), min(abs(q - p), ((r - p) / along).real)
 
 
@@ -106,7 +109,7 @@ def _sides_at(shapes: Sequence[Outline], at: complex, size: float) -> Iterator[S
     """Yield the sides on which a point lies."""
     for p, q in _sides(shapes):
         along = min(max(((at - p) / (q - p)).real, 0.0), 1.0)
-        if abs(at - p - along * (q - p)) <= NEAR * size:
+        if abs(at - p - along * (q - p)) <= SIDE_DISTANCE * size:
             yield p, q
 
 
@@ -119,4 +122,4 @@ def _sides(shapes: Sequence[Outline]) -> Iterator[Side]:
 
 
 def _is_inside(p: complex, q: complex, at: complex, size: float) -> bool:
-    return min(abs(at - p), abs(at - q)) > NEAR * size
+    return min(abs(at - p), abs(at - q)) > SIDE_DISTANCE * size

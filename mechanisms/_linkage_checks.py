@@ -13,8 +13,8 @@ from mechanisms._shapes import Member
 from rocking_cli.core import Direction, Outline, Pin, RigidMotion
 from rocking_cli.core.kinematics import distance, inside
 
-BESIDE = 1e-2  # largest distance of a joint from its body, over width plus height of the body
-CLOSES = 1e-9  # closing rates of faces that count as zero, over the fastest velocity
+MAX_JOINT_DISTANCE = 1e-2  # largest distance of a joint from its body, over width plus height of the body
+ZERO_CLOSING_RATE = 1e-9  # closing rates of faces that count as zero, over the fastest velocity
 
 
 def face_at(members: Mapping[str, Member], bodies: Sequence[str], at: complex) -> faces.BearingFace | None:
@@ -30,7 +30,7 @@ def beside(members: Mapping[str, Member], held: PlacedSide) -> tuple[str, str] |
         for name in joint.bodies if isinstance(joint, Pin) else joint.bodies[:1]:
             shapes = [np.array(shape) for shape in members[name].outlines]
             away = min((float(distance(at, z)[0]) for z in shapes), default=0.0)
-            if away > BESIDE * max((size_of(z) for z in shapes), default=1.0) and not any(
+            if away > MAX_JOINT_DISTANCE * max((size_of(z) for z in shapes), default=1.0) and not any(
                 inside(at, z)[0] for z in shapes
             ):
                 where = f"[{joint.at.real:g}, {joint.at.imag:g}]"
@@ -52,7 +52,7 @@ def closing(
             continue
         way = [motions[name].carry(face.far)[1][0] for name in joint.bodies]
         rate = (way[1] - way[0] if len(way) > 1 else way[0]) * np.conj(face.normal)
-        if rate.real < -CLOSES * fastest:
+        if rate.real < -ZERO_CLOSING_RATE * fastest:
             names = " and ".join([*joint.bodies, *(["the ground"] if len(way) == 1 else [])])
             return joint.name, (
                 f"{joint.name} closes: there {names} would go into one another at "

@@ -13,7 +13,7 @@ from rocking_cli.core import Guide, Pin, Vertex, geometry_error, point, quantity
 from rocking_cli.core.fields import Described, Name
 
 GROUND = "ground"
-KINDS = ("pivot", "hinge", "slide", "fixed")
+JOINT_KINDS = ("pivot", "hinge", "slide", "fixed")
 Pair = Annotated[list[Name], Field(min_length=2, max_length=2)]
 
 
@@ -32,7 +32,7 @@ class Connection(Described):
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
-        kinds = [key for key in KINDS if getattr(self, key) is not None]
+        kinds = [key for key in JOINT_KINDS if getattr(self, key) is not None]
         if len(kinds) != 1:
             raise geometry_error(kinds[1] if kinds else "hinge", "give one of pivot, hinge, slide and fixed")
         kind = kinds[0]
@@ -60,7 +60,7 @@ class Connection(Described):
 
     def renamed(self, name: Callable[[str], str], **changed: object) -> Connection:
         """Return the joint with other names of its bodies, and other fields changed too."""
-        for key in KINDS:
+        for key in JOINT_KINDS:
             value = getattr(self, key)
             if value is not None:
                 changed[key] = name(value) if isinstance(value, str) else [name(body) for body in value]

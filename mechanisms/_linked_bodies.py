@@ -22,7 +22,7 @@ from rocking_cli.core import (
     rotation,
 )
 
-SAME = 1e-6  # relative difference of equal columns
+EQUAL_COLUMNS = 1e-6  # relative difference
 
 
 class LinkedBodies(Mechanism):
@@ -112,4 +112,4 @@ def _alike(known: RigidBody, body: Body, centroid: complex, right: complex) -> b
     """Return whether a column is the same as one that is known."""
     one = [known.mass, known.inertia, *(known.centroid or ()), *(known.right_foot or ())]
     other = [body.mass, body.inertia, centroid.real, centroid.imag, right.real, right.imag]
-    return bool(np.allclose(np.array(one, np.float64), other, rtol=SAME, atol=SAME * abs(centroid)))
+    return bool(np.allclose(np.array(one, np.float64), other, rtol=EQUAL_COLUMNS, atol=EQUAL_COLUMNS * abs(centroid)))

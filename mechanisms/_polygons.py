@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from rocking_cli.core import Reals
 from rocking_cli.core.kinematics import Points, area_of, distance, inside, squared
 
-SAME = 1e-9  # distance of points that are one, over the size of the polygon
-MANY = 256  # boxes of one batch
+POINT_DISTANCE = 1e-9  # distance below which points coincide, over the size of the polygon
+BOXES_PER_BATCH = 256
 Indices = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
@@ -34,9 +34,9 @@ def thickness_of(z: Points) -> float:
 def fault_of(z: Points) -> str | None:
     """Return why corners do not form a simple polygon, a sentence without a full stop; None if they do."""
     size = size_of(z)
-    if any_alike(z, SAME * size):
+    if any_alike(z, POINT_DISTANCE * size):
         return "two corners are the same point; the last need not repeat the first"
-    if abs(area_of(z)) <= SAME * size**2 or any_meet(z):
+    if abs(area_of(z)) <= POINT_DISTANCE * size**2 or any_meet(z):
         return "its sides cross or enclose nothing: list the corners in order around the outline"
     return None
 
@@ -154,8 +154,8 @@ def nearby(low: Points, high: Points) -> Iterator[tuple[Indices, Indices]]:
         ways.append((order, np.searchsorted(a[order], b[order], side="right")))
     order, until = min(ways, key=lambda way: int(way[1].sum()))
     low, high = low[order], high[order]
-    for first in range(0, len(order), MANY):
-        last = min(first + MANY, len(order))
+    for first in range(0, len(order), BOXES_PER_BATCH):
+        last = min(first + BOXES_PER_BATCH, len(order))
         count = np.maximum(until[first:last] - np.arange(first + 1, last + 1), 0)
         one = np.repeat(np.arange(first, last), count)
         other = one + 1 + np.arange(len(one)) - np.repeat(np.cumsum(count) - count, count)

@@ -133,9 +133,9 @@ class Shape(Described):
         return all(None not in each for each in parts)
 
 
-TOUCH = 1e-3  # largest distance of parts that touch, over the size of the body
-EXACT = 1e-6  # overlap of parts by rounding, over the size of the body
-ARC = 24  # sides with which a rounded corner is drawn
+MAX_TOUCHING_GAP = 1e-3  # largest distance of parts that touch, over the size of the body
+ROUNDING_OVERLAP = 1e-6  # overlap of parts by rounding, over the size of the body
+CORNER_SIDES = 24  # sides with which a rounded corner is drawn
 
 
 class BodyPart(Described):
@@ -197,13 +197,13 @@ def plates(parts: Sequence[BodyPart], per_area: Sequence[float]) -> list[Plate]:
     for kind in (solids, openings):
         for at, k in enumerate(kind):
             for j in kind[:at]:
-                if overlap(z[k], z[j], EXACT * size):
+                if overlap(z[k], z[j], ROUNDING_OVERLAP * size):
                     why = f"it overlaps part {j + 1}: what both have in common would count twice"
                     raise geometry_error(("parts", k, "polygon"), why)
-    _check_joined([z[k] for k in solids], solids, TOUCH * size)
+    _check_joined([z[k] for k in solids], solids, MAX_TOUCHING_GAP * size)
     holes: dict[int, list[Points]] = {k: [] for k in solids}
     for k in openings:
-        home = next((j for j in solids if lies_within(z[k], z[j], EXACT * size)), None)
+        home = next((j for j in solids if lies_within(z[k], z[j], ROUNDING_OVERLAP * size)), None)
         if home is None:
             why = "this opening lies in no part: it must be within one; cut it where parts meet"
             raise geometry_error(("parts", k, "polygon"), why)
@@ -256,7 +256,9 @@ class Fillet:
     def arc(self) -> Points:
         """Points of the circle, starting at the base [m]."""
         turn = np.angle((self.end - self.centre) / (self.start - self.centre))
-        found: Points = self.centre + (self.start - self.centre) * np.exp(1j * turn * np.linspace(0, 1, ARC + 1))
+        found: Points = self.centre + (self.start - self.centre) * np.exp(
+            1j * turn * np.linspace(0, 1, CORNER_SIDES + 1)
+        )
         return found
 
     def pieces(self, per_area: float) -> list[tuple[int, Body]]:
@@ -288,7 +290,7 @@ def fillet(z: Points, foot: complex, inwards: int, radius: float) -> Fillet:
     k = int(np.abs(z - foot).argmin())
     sides = z[k - 1] - z[k], z[(k + 1) % len(z)] - z[k]
     base, other = sorted(sides, key=lambda side: abs(side.imag) - inwards * side.real)
-    if not (inwards * base.real > 0 and abs(base.imag) <= EXACT * abs(base)):
+    if not (inwards * base.real > 0 and abs(base.imag) <= ROUNDING_OVERLAP * abs(base)):
         raise ValueError("there is no level base at this foot to roll off")
     half = abs(np.angle(other / base)) / 2
     inset = radius / np.tan(half)

@@ -37,10 +37,10 @@ from rocking_cli.core import (
 from rocking_cli.core.coefficients import coefficients
 from rocking_cli.errors import MechanismError
 
-FINE = radians(1.0)  # longest arc that is drawn straight
-CUTS = 40  # possible cuts of a ring without voussoirs, beside its hinges
-NEAR = 0.25  # cuts nearer to a hinge are left out; over the angle between two cuts
-DRAWN = 200  # voussoirs that are drawn, at most
+MAX_STRAIGHT_ARC = radians(1.0)  # longest arc that is drawn straight
+RING_CUTS = 40  # possible cuts of a ring without voussoirs, beside its hinges
+MIN_CUT_ANGLE = 0.25  # from a hinge, over the angle between two cuts
+MAX_DRAWN_VOUSSOIRS = 200
 
 
 class Arch(Mechanism):
@@ -148,9 +148,9 @@ class Arch(Mechanism):
     @cached_property
     def _joint_angles(self) -> Sequence[float]:
         """Angles of the joints from the left springing [rad]: those between voussoirs, or possible cuts."""
-        even = np.linspace(0.0, self._beta, (self.voussoirs or CUTS) + 1)
+        even = np.linspace(0.0, self._beta, (self.voussoirs or RING_CUTS) + 1)
         hinges = np.array(self._cuts)
-        apart = np.abs(even[:, None] - hinges).min(axis=1) > NEAR * self._beta / (len(even) - 1)
+        apart = np.abs(even[:, None] - hinges).min(axis=1) > MIN_CUT_ANGLE * self._beta / (len(even) - 1)
         return sorted([*even[apart], *hinges])
 
     @property
@@ -202,8 +202,8 @@ class Arch(Mechanism):
         names = [body.name for body in self.bodies()]
         r, half = self.radius, self.thickness / 2
         springing = np.exp(1j * (pi + self._beta) / 2)  # the left one; the right one is its mirror image
-        joints = np.linspace(0.0, self._beta, (self.voussoirs or DRAWN) + 1)
-        parted = joints if self.voussoirs is not None and self.voussoirs <= DRAWN else joints[[0, -1]]
+        joints = np.linspace(0.0, self._beta, (self.voussoirs or MAX_DRAWN_VOUSSOIRS) + 1)
+        parted = joints if self.voussoirs is not None and self.voussoirs <= MAX_DRAWN_VOUSSOIRS else joints[[0, -1]]
         outlines = {}
         for name, (start, end) in zip(names, pairwise(self._cuts), strict=True):
             edges = [start, *parted[(parted > start + 1e-9) & (parted < end - 1e-9)], end]
@@ -247,7 +247,9 @@ class Arch(Mechanism):
     def _sector(self, start: float, end: float) -> Outline:
         """Return the outline of the ring between two angles from the left springing."""
         half = self.thickness / 2
-        turns = np.exp(1j * ((pi + self._beta) / 2 - np.linspace(start, end, max(2, ceil((end - start) / FINE) + 1))))
+        turns = np.exp(
+            1j * ((pi + self._beta) / 2 - np.linspace(start, end, max(2, ceil((end - start) / MAX_STRAIGHT_ARC) + 1)))
+        )
         return [*((self.radius + half) * turns).tolist(), *((self.radius - half) * turns[::-1]).tolist()]
 
     def _links(self) -> list[tuple[str, complex, complex, complex]]:
@@ -269,7 +271,7 @@ class Arch(Mechanism):
     def _thrust_line(self, direction: Direction) -> Line:
         ring = Ring(self.thickness / self.radius, self._beta)
         # With voussoirs the line matters at their joints only, else everywhere.
-        angles = np.linspace(0.0, self._beta, (self.voussoirs or DRAWN) + 1)
+        angles = np.linspace(0.0, self._beta, (self.voussoirs or MAX_DRAWN_VOUSSOIRS) + 1)
         angles = np.unique([*angles, *self.hinge_angles])
         points = ring.thrust_radius(angles, thrust(ring, self.hinge_angles)) * self.radius
         along = points * np.exp(1j * (pi / 2 + direction * (self._beta / 2 - angles)))

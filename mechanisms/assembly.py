@@ -35,26 +35,26 @@ from rocking_cli.core import (
     quantity,
     rotation,
 )
-from rocking_cli.core.contacts import MASONRY
+from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.fields import Described, Name
 from rocking_cli.core.reactions import Going, loading
 from rocking_cli.errors import MechanismError, StructureError
 from rocking_cli.text import in_short
 
-ABOVE = 1e-6  # difference in x of hinges above one another, over the width of all hinges
-SLIDING = 1e-6  # relative difference of the multiplier and the friction at which blocks slide
-SLIPS = 0.01  # rotation at which it is checked how a slipping face moves, over the limit
-GLUE = 0.01  # relative increase of lambda by shear without friction from which there is a caution
-OFF = 1e-7  # opening of a joint that counts as zero, over its length
-LIGHT = 1e-9  # weight of blocks that the analysis does not see, over that of the whole
-NAMED = 3  # such blocks that are named, at most
-LEADS = 1e-8  # rotation rates that count as zero, over the fastest one
+SAME_X = 1e-6  # difference in x of hinges above one another, over the width of all hinges
+SLIDING_DIFFERENCE = 1e-6  # relative difference of the multiplier and the friction at which blocks slide
+SLIP_CHECK_ROTATION = 0.01  # rotation at which it is checked how a slipping face moves, over the limit
+GLUE_INCREASE = 0.01  # relative increase of lambda by shear without friction from which there is a caution
+ZERO_OPENING = 1e-7  # opening of a joint that counts as zero, over its length
+LIGHT_WEIGHT = 1e-9  # weight of blocks that the analysis does not see, over the total weight
+MAX_NAMED_LIGHT = 3  # light blocks in a message
+ZERO_ROTATION_RATE = 1e-8  # rotation rates that count as zero, over the fastest one
 
 Coefficient = Annotated[float, Field(ge=0, le=10)]
 
 T = TypeVar("T")
-KEPT = "kept for each direction"
+KEEP_MARK = "kept for each direction"
 
 
 def per_direction(method: Callable[[Any, Direction], T]) -> Callable[[Any, Direction], T]:
@@ -62,7 +62,7 @@ def per_direction(method: Callable[[Any, Direction], T]) -> Callable[[Any, Direc
 
     @wraps(method)
     def answer(self: Any, direction: Direction) -> T:
-        kept = self.__dict__.setdefault(KEPT, {})
+        kept = self.__dict__.setdefault(KEEP_MARK, {})
         key = method.__name__, direction
         if key not in kept:
             kept[key] = method(self, direction)
@@ -215,7 +215,9 @@ class Assembly(LinkedBodies):
                     list(dict.fromkeys(in_short(shared.moves, " and ") for shared in collapse.several)), "; "
                 )
                 what = "Change a size or a density by a little, or tie what should not part"
-                if self.friction is not None and isclose(collapse.multiplier, self.friction, rel_tol=SLIDING):
+                if self.friction is not None and isclose(
+                    collapse.multiplier, self.friction, rel_tol=SLIDING_DIFFERENCE
+                ):
                     what = "This equals the friction given: the blocks slide, and no rocking model exists for sliding"
                 raise self._refused(
                     ("blocks",),
@@ -248,13 +250,19 @@ class Assembly(LinkedBodies):
         number = next((k for k, group in enumerate(found.groups) if told in group), None)
         turns = 0.0 if number is None else -int(direction) * float(found.velocity[number, 2])
         most = float(np.abs(found.velocity[:, 2]).max())
-        if turns > LEADS * most:
+        if turns > ZERO_ROTATION_RATE * most:
             return
-        does = "turns the other way" if turns < -LEADS * most else "rests" if number is None else "does not turn"
+        does = (
+            "turns the other way"
+            if turns < -ZERO_ROTATION_RATE * most
+            else "rests"
+            if number is None
+            else "does not turn"
+        )
         able = [
             name
             for group, velocity in zip(found.groups, found.velocity, strict=True) for name in group
-            if -int(direction) * velocity[2] > LEADS * most
+            if -int(direction) * velocity[2] > ZERO_ROTATION_RATE * most
         ]  # fmt: skip
         why = f"{told} {does} in the {direction.label} direction: it cannot lead; {in_short(able)} could"
         raise self._refused(("lead", direction.label), why)
@@ -394,7 +402,7 @@ class Assembly(LinkedBodies):
                     f"friction never slide: give `friction`, or `friction_of: {{{joints[0]}: 0}}`"
                 )
             elif joints := [self._joint(k) for k in analysis.sheared(self._needed(direction), self._contacts)]:
-                mu = f"{MASONRY:g}"
+                mu = f"{MASONRY_FRICTION:g}"
                 why = (
                     f"the mechanism at {self._collapse(direction).multiplier:.4g} g cannot move on. More shear than a "
                     f"friction of {mu} allows is carried between {in_short(joints, ', and between ')}, because joints "
@@ -413,7 +421,7 @@ class Assembly(LinkedBodies):
 
     def _check_slips_off(self, direction: Direction, linkage: LinkageMotion) -> None:
         """Raise an error if a corner that slips along a frictionless face does not lift off this face."""
-        found, phi = self._groups(direction), np.array([SLIPS * linkage.limit])
+        found, phi = self._groups(direction), np.array([SLIP_CHECK_ROTATION * linkage.limit])
         motions = linkage.motions(phi)
 
         def carried(name: str, at: complex) -> tuple[complex, complex]:
@@ -427,8 +435,8 @@ class Assembly(LinkedBodies):
                 (a, turn_a), (b, turn_b) = (carried(name, at) for name in (contact.a, contact.b))
                 turn = turn_a if contact.face_at(end) == contact.a else turn_b
                 gap = ((b - a) * (contact.normal * turn).conjugate()).real
-                if gap <= OFF * contact.length:
-                    what = "goes into" if gap < -OFF * contact.length else "slides along"
+                if gap <= ZERO_OPENING * contact.length:
+                    what = "goes into" if gap < -ZERO_OPENING * contact.length else "slides along"
                     raise StructureError(
                         f"in the {direction.label} direction {contact.b} {what} {contact.a} as it moves: no "
                         "rocking model exists for that"
@@ -487,13 +495,13 @@ class Assembly(LinkedBodies):
         raised = []
         for direction in self.directions:
             lambda_, usual = self._collapse(direction).multiplier, self._with_usual(direction)
-            if usual is not None and usual < (1 - GLUE) * lambda_:
+            if usual is not None and usual < (1 - GLUE_INCREASE) * lambda_:
                 raised.append(f"{usual:.4g} g instead of {lambda_:.4g} g in the {direction.label} direction")
         said = [self._of_grains(), self._of_confined()]
         if raised:
             said.append(
                 "Joints without `friction` never slide and may carry shear without a normal force, which raises "
-                f"lambda. With a friction of {MASONRY:g} it would be {' and '.join(raised)}: give `friction`."
+                f"lambda. With a friction of {MASONRY_FRICTION:g} it would be {' and '.join(raised)}: give `friction`."
             )
         return " ".join(filter(None, said))
 
@@ -530,13 +538,13 @@ class Assembly(LinkedBodies):
     def _of_grains(self) -> str:
         """Return a sentence on blocks that are too light for the analysis."""
         masses = [block.mass for block in self._blocks]
-        grains = [block.name for block in self._blocks if block.mass <= LIGHT * sum(masses)]
+        grains = [block.name for block in self._blocks if block.mass <= LIGHT_WEIGHT * sum(masses)]
         if not grains:
             return ""
         verb = "weighs" if len(grains) == 1 else "weigh"
         return (
-            f"{in_short(grains, most=NAMED)} {verb} no more than {LIGHT:g} of the whole: the analysis does not see "
-            "whether that moves earlier. Leave it out, or analyse it alone."
+            f"{in_short(grains, most=MAX_NAMED_LIGHT)} {verb} no more than {LIGHT_WEIGHT:g} of the whole: the analysis "
+            "does not see whether that moves earlier. Leave it out, or analyse it alone."
         )
 
     @per_direction
@@ -628,7 +636,7 @@ class Assembly(LinkedBodies):
             end = self.critical_rotation(direction)
         except NoCriticalRotation:
             end = self.limit(direction) * (1 - 1e-6)  # a tie holds it; at the very end it may lock
-        steps = np.linspace(0.0, end, analysis.STEPS + 1)
+        steps = np.linspace(0.0, end, analysis.SEARCH_STEPS + 1)
         places = dict(zip(steps.tolist(), self._held(direction, steps), strict=True))
         known: Reals | None = None  # forces in the joints at the last rotation that holds
 
@@ -671,11 +679,11 @@ class Assembly(LinkedBodies):
             friction = Extra("friction_needed", needed, "", "friction in every joint without which lambda is less")
         else:
             which = in_short(glued) or "joints"
-            most = f"no friction up to {analysis.MOST:g} does"
+            most = f"no friction up to {analysis.MAX_FRICTION:g} does"
             why = f"{most}: {which} would carry shear without pressing, and lambda be less"
             friction = Extra("friction_needed", nan, "", why)
         usual = self._with_usual(direction)
-        meaning = f"lambda with a friction of {MASONRY:g} in joints without any given"
+        meaning = f"lambda with a friction of {MASONRY_FRICTION:g} in joints without any given"
         known = (friction,) if usual is None else (friction, Extra("lambda_with_usual", usual, "g", meaning))
         found = self._valid_to(direction)
         if found is None:
@@ -726,7 +734,7 @@ def from_the_left(points: Sequence[complex]) -> list[int]:
     """Return the order of points from left to right, and from bottom to top at equal x, up to rounding."""
     x = np.array([each.real for each in points])
     order = np.argsort(x, kind="stable")
-    columns = np.cumsum(np.diff(x[order], prepend=x[order][:1]) > ABOVE * np.ptp(x)) if x.size else x
+    columns = np.cumsum(np.diff(x[order], prepend=x[order][:1]) > SAME_X * np.ptp(x)) if x.size else x
     pairs = sorted(zip(columns.tolist(), order.tolist(), strict=True), key=lambda pair: (pair[0], points[pair[1]].imag))
     return [k for _, k in pairs]
 

@@ -11,7 +11,7 @@ from pydantic import model_validator
 from mechanisms._single_body import SingleBody
 from rocking_cli.core import Body, Direction, Length, Outline, geometry_error, length, quantity
 
-SHELL = 0.97  # size of the inner cone with which a thin shell is drawn
+SHELL_SCALE = 0.97  # size of the inner cone with which a thin shell is drawn
 
 
 class Cone(SingleBody):
@@ -68,7 +68,7 @@ class Cone(SingleBody):
         apex = 1j * self.height
         if self.kind == "solid":
             return ((left, right, apex),)
-        k = self.inner_ratio or SHELL  # its section is that of a shell, cut through the axis
+        k = self.inner_ratio or SHELL_SCALE  # its section is that of a shell, cut through the axis
         return ((left, k * left, k * apex, k * right, right, apex),)
 
     def lengths(self) -> Sequence[Length]:

@@ -29,9 +29,9 @@ from rocking_cli.errors import InputError
 from rocking_cli.io.files import read_bytes
 
 Points = NDArray[np.complex128]
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(5)
-PIECES = 100  # pieces of the integration to the limit, beside those between the points of the curve
-WHERE = {"points": "file", "negative_points": "negative_file"}
+GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(5)
+LIMIT_PIECES = 100  # pieces of the integration to the limit, beside those between the points of the curve
+FILE_FIELDS = {"points": "file", "negative_points": "negative_file"}
 """Where points are read from."""
 
 
@@ -91,7 +91,7 @@ class Curve(Mechanism):
         if not isinstance(data, dict):
             return data
         data = dict(data)
-        for key, from_file in WHERE.items():
+        for key, from_file in FILE_FIELDS.items():
             if not isinstance(name := data.get(from_file), str):
                 continue
             if data.get(key) is not None:
@@ -112,7 +112,7 @@ class Curve(Mechanism):
     def _fits(self) -> Self:
         if self.points is None:
             raise geometry_error("points", "is missing: give the points of the curve, or a file that has them")
-        for key in WHERE:
+        for key in FILE_FIELDS:
             self._check_points(key, getattr(self, key) or [])
         for key in ("loads", "ties", "interlock", "density"):
             if getattr(self, key) is not None:
@@ -186,11 +186,11 @@ class Curve(Mechanism):
 
         def between(start: Reals, end: Reals) -> Points:
             half = (end - start)[:, None] / 2
-            r, _ = ratio((start + end)[:, None] / 2 + half * NODES)
-            found: Points = (half * WEIGHTS * _along(r, direction)).sum(axis=1)
+            r, _ = ratio((start + end)[:, None] / 2 + half * GAUSS_NODES)
+            found: Points = (half * GAUSS_WEIGHTS * _along(r, direction)).sum(axis=1)
             return found
 
-        knots = np.union1d(ratio.x, np.linspace(0.0, self.limit(direction), PIECES + 1))
+        knots = np.union1d(ratio.x, np.linspace(0.0, self.limit(direction), LIMIT_PIECES + 1))
         sums = np.concatenate([[0.0], np.cumsum(between(knots[:-1], knots[1:]))])
         k = np.clip(np.searchsorted(knots, phi, side="right") - 1, 0, len(knots) - 1)
         return sums[k] + between(knots[k], phi)
@@ -198,7 +198,9 @@ class Curve(Mechanism):
     def enlarged(self, factor: float) -> Self:
         """Return a structure of another size: displacements of the curve are multiplied, ratios stay."""
         moved = {
-            key: [[factor * d, r] for d, r in points] for key in WHERE if (points := getattr(self, key)) is not None
+            key: [[factor * d, r] for d, r in points]
+            for key in FILE_FIELDS
+            if (points := getattr(self, key)) is not None
         }
         sizes = {key: factor * getattr(self, key) for key in ("control_height", "centroid_height")}
         return self.model_copy(update={**moved, **sizes, "inertia": factor**2 * self.inertia})
@@ -215,13 +217,13 @@ def _along(r: Reals, direction: Direction) -> Points:
     return np.asarray((direction + 1j * r) * (1 / np.sqrt(1 + r**2)), np.complex128)
 
 
-LARGEST = 10_000_000  # size of a file, at most [bytes]
+MAX_FILE_BYTES = 10_000_000
 Point = list[float]
 
 
 def read_curve(path: Path) -> tuple[list[Point], list[int]]:
     """Return the two columns of a file, and the line of each row. Raises `InputError`, or `ValueError` with a line."""
-    text = read_bytes(path, "capacity curve", LARGEST).decode("utf-8-sig", "replace")
+    text = read_bytes(path, "capacity curve", MAX_FILE_BYTES).decode("utf-8-sig", "replace")
     points: list[Point] = []
     lines: list[int] = []
     for number, line in enumerate(text.splitlines(), 1):
@@ -244,8 +246,8 @@ def read_curve(path: Path) -> tuple[list[Point], list[int]]:
     return points, lines
 
 
-MOST = 1e6  # displacements [m] and ratios, at most
-LEAST = 1e-12  # least displacement or ratio other than zero: slopes of smaller ones overflow
+MAX_VALUE = 1e6  # displacements [m] and ratios
+MIN_VALUE = 1e-12  # other than zero: slopes of smaller values overflow
 
 
 def fault_of(points: Sequence[Point]) -> tuple[int, str] | None:
@@ -256,10 +258,10 @@ def fault_of(points: Sequence[Point]) -> tuple[int, str] | None:
     if not np.isfinite(points).all():
         return int(np.argmin(np.isfinite(points).all(axis=1))), "must be finite numbers"
     for k, values in enumerate(points):
-        if any(0 < abs(value) < LEAST for value in values):
-            return k, f"has a value closer to zero than {LEAST:g}: write 0"
-        if any(abs(value) > MOST for value in values):
-            return k, f"has a value beyond {MOST:g}: displacements are in m, ratios over g"
+        if any(0 < abs(value) < MIN_VALUE for value in values):
+            return k, f"has a value closer to zero than {MIN_VALUE:g}: write 0"
+        if any(abs(value) > MAX_VALUE for value in values):
+            return k, f"has a value beyond {MAX_VALUE:g}: displacements are in m, ratios over g"
     if points[0][0] != 0:
         return 0, f"begins at {points[0][0]:g} m: the first point is at rest, with the ratio at uplift"
     for k, ((d, _), (after, _)) in enumerate(pairwise(points), 1):

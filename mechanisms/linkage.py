@@ -14,7 +14,7 @@ from pydantic import ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from mechanisms import _faces as faces
-from mechanisms._cracks import EDGE, Crack, Cracked, active, cracked, weakest
+from mechanisms._cracks import MIN_EDGE_DISTANCE, Crack, Cracked, active, cracked, weakest
 from mechanisms._linkage_checks import beside, closing, face_at, turns_the_wrong_way
 from mechanisms._linkage_sides import GROUND, LinkageSide, PlacedSide, mirrored
 from mechanisms._linked_bodies import LinkedBodies
@@ -38,8 +38,8 @@ from rocking_cli.core.fields import Name
 from rocking_cli.core.hung.ties import Place, Tie
 from rocking_cli.errors import MechanismError, StructureError
 
-MOST_CRACKS = 2  # cracks in a direction, at most
-ALIKE = 1e-6  # largest distance of a mirror image from its body, over the size of the structure
+MAX_CRACKS = 2  # in one direction
+MIRROR_DISTANCE = 1e-6  # largest distance of a mirror image from its body, over the size of the structure
 
 EXAMPLE_BODIES = {
     "lower": {"polygon": [[0.0, 0.0], [0.3, 0.0], [0.3, 1.5], [0.0, 1.5]]},
@@ -128,7 +128,7 @@ class Linkage(LinkedBodies):
                 )
         for direction, side in self._sides.items():
             named = active(side, self.cracks or {})
-            if len(named) > MOST_CRACKS:
+            if len(named) > MAX_CRACKS:
                 raise geometry_error(direction.label, f"{', '.join(named)} are too many: one or two in a direction")
 
     def _check_names(self, direction: Direction, side: LinkageSide) -> None:
@@ -255,9 +255,9 @@ class Linkage(LinkedBodies):
             near = [
                 other.name
                 for other in bodies
-                if abs(other.centroid - at) <= ALIKE * size
-                and abs(other.mass - body.mass) <= ALIKE * body.mass
-                and abs(other.inertia - body.inertia) <= ALIKE * (body.inertia + body.mass * size**2)
+                if abs(other.centroid - at) <= MIRROR_DISTANCE * size
+                and abs(other.mass - body.mass) <= MIRROR_DISTANCE * body.mass
+                and abs(other.inertia - body.inertia) <= MIRROR_DISTANCE * (body.inertia + body.mass * size**2)
             ]
             if not near:
                 raise geometry_error(
@@ -296,7 +296,7 @@ class Linkage(LinkedBodies):
         for name, share in self._shares.get(direction, {}).items():
             crack = (self.cracks or {})[name]
             what = "height" if crack.cut == "horizontal" else "place"
-            at_end = not 10 * EDGE < share < 1 - 10 * EDGE
+            at_end = not 10 * MIN_EDGE_DISTANCE < share < 1 - 10 * MIN_EDGE_DISTANCE
             more = ", at the end of its line: beyond, lambda may be less" if at_end else ", where lambda is least"
             found.append(Extra(f"crack_{name}", crack.level(share), "m", f"{what} of the crack {name}{more}"))
         return found
@@ -472,7 +472,7 @@ def _on_ground(contact: Contact, ground: Collection[str]) -> Contact:
 
 def _is_of_one_face(one: Contact, other: Contact) -> bool:
     """Return whether two contacts are one joint, in either direction of rocking."""
-    return one.label == other.label and abs(one.normal - other.normal) <= ALIKE
+    return one.label == other.label and abs(one.normal - other.normal) <= MIRROR_DISTANCE
 
 
 def _is_on(contact: Contact, face: Contact) -> bool:
@@ -480,7 +480,9 @@ def _is_on(contact: Contact, face: Contact) -> bool:
     start, end = face.points
     along = (end - start) / abs(end - start)
     off = max(abs(((at - start) * along.conjugate()).imag) for at in contact.points)
-    return off <= ALIKE * abs(end - start) and abs((along.conjugate() * contact.normal).real) <= faces.PARALLEL
+    return (
+        off <= MIRROR_DISTANCE * abs(end - start) and abs((along.conjugate() * contact.normal).real) <= faces.MAX_SINE
+    )
 
 
 def _on_pieces(tie: Tie, found: Cracked) -> Tie:

@@ -11,8 +11,8 @@ from typing import ClassVar, Self
 import numpy as np
 from pydantic import model_validator
 
-from mechanisms._polygons import SAME, Bools, fault_of, size_of
-from mechanisms._shapes import EXACT, BodyPart, Fillet, Plate, fillet, foot_is_cut, plates, united
+from mechanisms._polygons import POINT_DISTANCE, Bools, fault_of, size_of
+from mechanisms._shapes import ROUNDING_OVERLAP, BodyPart, Fillet, Plate, fillet, foot_is_cut, plates, united
 from mechanisms._single_body import SingleBody
 from rocking_cli.core import (
     Body,
@@ -28,9 +28,9 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.kinematics import Points
 
-LEVEL = 1e-6  # height difference of corners that count as level, over the smaller of width and height
-MOST = 10_000  # corners at most
-WAYS = (
+LEVEL_DIFFERENCE = 1e-6  # height difference of corners that count as level, over the smaller of width and height
+MAX_CORNERS = 10_000
+SHAPE_OPTIONS = (
     ("R", "alpha_deg", "inertia_ratio"),
     ("polygon",),
     ("parts",),
@@ -69,7 +69,7 @@ class RigidBody(SingleBody):
         example=[[0.0, 0.0], [1.0, 0.0], [0.8, 3.0], [0.0, 3.0]],
         default=None,
         min_length=3,
-        max_length=MOST,
+        max_length=MAX_CORNERS,
     )
     parts: list[BodyPart] | None = quantity(
         "plates that make it, each {polygon, density, depth}, or an opening in one: {polygon, opening: true}",
@@ -113,7 +113,7 @@ class RigidBody(SingleBody):
     @cached_property
     def _way(self) -> str:
         """Name of the field that describes the body."""
-        begun = [way for way in WAYS if any(getattr(self, key) is not None for key in way if key != "mass")]
+        begun = [way for way in SHAPE_OPTIONS if any(getattr(self, key) is not None for key in way if key != "mass")]
         if not begun:
             raise geometry_error(
                 "inertia_ratio",
@@ -142,7 +142,7 @@ class RigidBody(SingleBody):
                 f"with each other, to {self._level:.2g} m",
             )
         for foot in self._feet:
-            if foot_is_cut(foot, holes, EXACT * size_of(self._corners)):
+            if foot_is_cut(foot, holes, ROUNDING_OVERLAP * size_of(self._corners)):
                 raise geometry_error(way, f"an opening takes away its foot at x = {foot.real:.4g} m")
         self._check_centroid(way)
         for direction in Direction:
@@ -266,7 +266,7 @@ class RigidBody(SingleBody):
     def _level(self) -> float:
         """Height up to which a corner counts as on the ground [m]."""
         narrow = min(np.ptp(self._corners.real), np.ptp(self._corners.imag))
-        return float(max(LEVEL * narrow, SAME * size_of(self._corners)))
+        return float(max(LEVEL_DIFFERENCE * narrow, POINT_DISTANCE * size_of(self._corners)))
 
     @cached_property
     def _body(self) -> Body:

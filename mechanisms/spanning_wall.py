@@ -31,10 +31,10 @@ from rocking_cli.core import (
     of_joints,
     quantity,
 )
-from rocking_cli.core.contacts import MASONRY
+from rocking_cli.core.contacts import MASONRY_FRICTION
 
-LOWER = 0.01  # relative decrease of lambda by the weakest hinge from which there is a caution
-TOP = 1e-9  # hinges nearer to the top are at the top, over the height; smaller loads are none, over the weight
+WEAK_HINGE_DECREASE = 0.01  # relative decrease of lambda by the weakest hinge from which there is a caution
+TOP_DISTANCE = 1e-9  # of a hinge at the top, over the height; also a load that counts as zero, over the weight
 
 
 class SpanningWall(Mechanism):
@@ -97,8 +97,8 @@ class SpanningWall(Mechanism):
 
     def _check_stands_alone(self, direction: Direction) -> None:
         load, lever = self._load_ratio, self._lever(direction)
-        if self.hinge == "weakest" and (load * lever <= 0 or 1 - self._hinges[direction] < TOP):
-            why = "without a load on top" if load < TOP else "with its load on the hinge's face or beyond"
+        if self.hinge == "weakest" and (load * lever <= 0 or 1 - self._hinges[direction] < TOP_DISTANCE):
+            why = "without a load on top" if load < TOP_DISTANCE else "with its load on the hinge's face or beyond"
             raise geometry_error(
                 "hinge",
                 f"{why} the weakest hinge of the {direction.label} direction runs to the top: the whole wall turns "
@@ -147,15 +147,19 @@ class SpanningWall(Mechanism):
         for direction in self.directions:
             rho, lever = self._load_ratio, self._lever(direction)
             xi, given = self._weakest(direction), self.uplift(direction)
-            at_top = 1 - xi < TOP
+            at_top = 1 - xi < TOP_DISTANCE
             opens = 0.0 if at_top else lever * xi / (1 - xi)
-            least = 0.0 if rho * lever < -TOP else 2 * self.thickness / (xi * self.height) * (1 + rho * (1 + opens))
-            if least < (1 - LOWER) * given:
+            least = (
+                0.0
+                if rho * lever < -TOP_DISTANCE
+                else 2 * self.thickness / (xi * self.height) * (1 + rho * (1 + opens))
+            )
+            if least < (1 - WEAK_HINGE_DECREASE) * given:
                 lowers = f"lambda is {least:.4g} g instead of {given:.4g} g"
                 place = above if at_top else inside
                 place.append((lowers if at_top else f"at {xi:.3g} of the height {lowers}", direction))
         said = [f"The hinge is not the weakest: {_by_direction(inside)}."] if inside else []
-        if inside and all(1 - self._weakest(direction) >= TOP for direction in self.directions):
+        if inside and all(1 - self._weakest(direction) >= TOP_DISTANCE for direction in self.directions):
             said.append("Give `hinge: weakest`, unless something fixes its height.")
         if above:
             said.append(
@@ -232,7 +236,7 @@ class SpanningWall(Mechanism):
         ]
         foot, crack, top = of_joints(self.joints(direction), self.friction)
         if self.overburden and self.support == "load":  # friction under the load is all that holds the top
-            friction = MASONRY if self.friction is None else self.friction
+            friction = MASONRY_FRICTION if self.friction is None else self.friction
             top = replace(top, pressed_by="overburden", friction=friction, name="the load and the top of the wall")
         return [foot, crack, top, *whole]
 

@@ -33,9 +33,9 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.reactions import at_uplift
 
-DRAWN = 6  # columns of a drawing that is not to scale, at most
-MOST = 20  # columns up to which joints are checked, as this takes seconds
-LIGHT = 1e-8  # mass of a beam that loads no column, over the mass of the columns
+MAX_DRAWN_COLUMNS = 6  # in a drawing that is not to scale
+MAX_CHECKED_COLUMNS = 20  # columns beyond would take seconds
+LIGHT_BEAM = 1e-8  # mass of a beam that loads no column, over the mass of the columns
 
 
 class SymmetricFrame(Mechanism):
@@ -73,7 +73,7 @@ class SymmetricFrame(Mechanism):
         if (self.spacing is None) != (self.beam_depth is None):
             missing = "spacing" if self.spacing is None else "beam_depth"
             raise geometry_error(missing, "is missing: give spacing and beam_depth, or neither")
-        if self.spacing is not None and (not 1 < self.columns <= MOST or self._is_unloaded):
+        if self.spacing is not None and (not 1 < self.columns <= MAX_CHECKED_COLUMNS or self._is_unloaded):
             raise geometry_error("spacing", f"has no effect, as {self.unchecked}: leave out spacing and beam_depth")
         if self.spacing is not None and self.spacing <= self.column_width:
             raise geometry_error(
@@ -177,14 +177,14 @@ class SymmetricFrame(Mechanism):
 
     @property
     def _is_unloaded(self) -> bool:
-        return self.columns > 2 and self.mass_ratio < LIGHT
+        return self.columns > 2 and self.mass_ratio < LIGHT_BEAM
 
     @property
     def unchecked(self) -> str:
         if self.columns == 1:
             return "the file does not say what keeps the beam on a single column level"
-        if self.columns > MOST:
-            return f"it has more than {MOST} columns"
+        if self.columns > MAX_CHECKED_COLUMNS:
+            return f"it has more than {MAX_CHECKED_COLUMNS} columns"
         if self._is_unloaded:
             return "its beam has no mass and loads no column"
         return "give spacing and beam_depth"
@@ -198,7 +198,7 @@ class SymmetricFrame(Mechanism):
         if self.spacing is not None:
             return [complex(k * self.spacing) for k in range(self.columns)]
         spacing = max(3 * self.column_width, 0.6 * self.column_height)
-        return [complex(k * spacing) for k in range(min(self.columns, DRAWN))]
+        return [complex(k * spacing) for k in range(min(self.columns, MAX_DRAWN_COLUMNS))]
 
     def sketch(self) -> Sketch:
         columns, beam = self.bodies()
@@ -215,7 +215,7 @@ class SymmetricFrame(Mechanism):
             lengths.append(Length("L", 0j, complex(self.spacing)))
         else:
             outlines[beam.name] = [rectangle(beam.centroid, self._axes[-1].real + 2 * b, 2 * b)]
-            few = f", {DRAWN} of {self.columns} columns" if self.columns > DRAWN else ""
+            few = f", {MAX_DRAWN_COLUMNS} of {self.columns} columns" if self.columns > MAX_DRAWN_COLUMNS else ""
             notes.append(f"spacing and depth of the beam are not to scale: they are not given{few}")
         return Sketch(
             outlines=outlines,

@@ -14,7 +14,7 @@ from pydantic import ValidationError
 
 from rocking_cli.core import Equivalence, Mechanism, NoEquivalentBlock, Statics, both_statics, equivalent_block
 from rocking_cli.core.advice import uplift_error
-from rocking_cli.core.equivalence import STRAIGHT
+from rocking_cli.core.equivalence import MAX_CURVATURE
 from rocking_cli.core.hung.element import Question
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build
 from rocking_cli.errors import InputError, MechanismError, Problem, of_structure
@@ -25,7 +25,7 @@ from rocking_cli.io.yaml_file import Place
 from rocking_cli.names import OPENING
 from rocking_cli.text import cut, did_you_mean
 
-WIDEST_OPENING = 1000.0  # over D_cr: then every outcome is known
+MAX_OPENING = 1000.0  # over D_cr; with wider openings every outcome is known
 
 
 def with_restitution(mechanism: Mechanism, eta: float) -> Mechanism:
@@ -52,8 +52,8 @@ def build_models(
 
 def check_opening(opening: float) -> None:
     """Raise `InputError` if a largest opening of joints, over D_cr, is out of range."""
-    if not 0 <= opening <= WIDEST_OPENING:
-        raise InputError(Problem(f"must be from 0 to {WIDEST_OPENING:g}, got {opening:g}", field="`opening`"))
+    if not 0 <= opening <= MAX_OPENING:
+        raise InputError(Problem(f"must be from 0 to {MAX_OPENING:g}, got {opening:g}", field="`opening`"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,12 +126,12 @@ class Structure:
             return why
         far = max(each.departure for each in self.statics)
         off = uplift_error(self.equivalence)
-        if far > STRAIGHT:
+        if far > MAX_CURVATURE:
             return (
                 f"the linear models mislead: the restoring moment leaves the straight line to phi_cr by {far:.2g} of "
                 "its value at rest"
             )
-        if abs(off) > STRAIGHT:
+        if abs(off) > MAX_CURVATURE:
             return (
                 "the linear models mislead: the uplift acceleration of the linearised mechanism is "
                 f"{1 + off:.3g} times its own"

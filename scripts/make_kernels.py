@@ -241,8 +241,8 @@ def main(folder: Path) -> None:
     made = {"python": ".".join(platform.python_version_tuple()[:2]), **given}
     made["llvm"] = ".".join(map(str, llvm.llvm_version_info))
     manifest = {"source": shipped.source_hash(), "made_by": made, "files": files}
-    (folder / shipped.MANIFEST).write_text(json.dumps(manifest, indent=1) + "\n", encoding="utf-8")
+    (folder / shipped.MANIFEST_FILE).write_text(json.dumps(manifest, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else shipped.FOLDER)
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else shipped.LIBRARY_FOLDER)

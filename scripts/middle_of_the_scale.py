@@ -30,7 +30,7 @@ from scipy.spatial import ConvexHull
 
 from rocking_cli import load_structure, read_record
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.model import KINEMATIC, SLENDERNESS, Model
+from rocking_cli.dynamics.model import KINEMATIC_SPREAD, SLENDERNESS_SPREAD, Model
 from rocking_cli.questions.score.study import ClusterDraws, ScoreEstimate, surprise
 from rocking_cli.structure import Structure
 from rocking_cli.studies import neighbours
@@ -48,7 +48,7 @@ POINTS = 2000  # histories of each test
 WIDE, DEEP = 0.2, 0.35  # of these: deviation of ln(amplitude/slenderness), and largest loss of restitution
 FURTHER = (1.25, 1.5, 2.0, 2.5)  # angle of the other edge of the foot over that of the first one
 SEEDS = range(neighbours.SEED, neighbours.SEED + 12)
-RULE = Neighbourhood(restitution=KINEMATIC, slenderness=SLENDERNESS)
+RULE = Neighbourhood(restitution=KINEMATIC_SPREAD, slenderness=SLENDERNESS_SPREAD)
 LOW, HIGH = 0.6, 0.8
 HALVINGS = 100
 FEW = 5  # tests with the largest change of the log loss
@@ -149,8 +149,8 @@ class Study:
         return 1 - 2 * half**2 / (height**2 + half**2 + gyration)
 
     def shares(
-        self, slenderness: float = SLENDERNESS, restitution: float = KINEMATIC, stout: float = 0.0,
-        density: Callable[[Reals], Reals] | None = None,
+        self, slenderness: float = SLENDERNESS_SPREAD, restitution: float = KINEMATIC_SPREAD,
+        stout: float = 0.0, density: Callable[[Reals], Reals] | None = None,
     ) -> Reals:  # fmt: skip
         """Return the share of each test, shape (tests, specimens).
 

@@ -13,12 +13,12 @@ from mechanisms._assembly.blocks import DoesNotStand as DoesNotStand
 from mechanisms._assembly.blocks import NoAnswer as NoAnswer
 from mechanisms._assembly.blocks import NothingMoves as NothingMoves
 from mechanisms._assembly.contacts import contacts as contacts
-from mechanisms._assembly.displaced import STEPS as STEPS
+from mechanisms._assembly.displaced import SEARCH_STEPS as SEARCH_STEPS
 from mechanisms._assembly.displaced import Admissible as Admissible
 from mechanisms._assembly.displaced import DisplacedAssembly as DisplacedAssembly
 from mechanisms._assembly.displaced import first_violation as first_violation
 from mechanisms._assembly.displaced import remaining as remaining
-from mechanisms._assembly.friction import MOST as MOST
+from mechanisms._assembly.friction import MAX_FRICTION as MAX_FRICTION
 from mechanisms._assembly.friction import Friction as Friction
 from mechanisms._assembly.friction import friction as friction
 from mechanisms._assembly.friction import sheared as sheared

@@ -88,7 +88,7 @@ class AssemblyContact:
         )
 
 
-NAMED = 5  # blocks named in a message, at most
+MAX_NAMED_BLOCKS = 5
 
 
 class AssemblyFault(Exception):
@@ -125,7 +125,7 @@ class NoAnswer(AssemblyFault):
 
 def listed(names: Sequence[str]) -> str:
     """Return names in quotes, joined by commas and a last `and`; of many names only the first ones."""
-    quoted = [repr(name) for name in names[:NAMED]]
-    if len(names) > NAMED:
-        quoted.append(f"{len(names) - NAMED} more")
+    quoted = [repr(name) for name in names[:MAX_NAMED_BLOCKS]]
+    if len(names) > MAX_NAMED_BLOCKS:
+        quoted.append(f"{len(names) - MAX_NAMED_BLOCKS} more")
     return " and ".join([", ".join(quoted[:-1]), quoted[-1]]) if len(quoted) > 1 else "".join(quoted)

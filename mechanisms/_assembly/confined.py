@@ -17,18 +17,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from mechanisms._assembly.blocks import NoAnswer
-from mechanisms._assembly.problem import STRONGEST, AssemblyProblem, moving
+from mechanisms._assembly.problem import MAX_MULTIPLIER, AssemblyProblem, moving
 from mechanisms._assembly.programme import Sparse, beside, from_blocks, from_entries, least, unit_columns
 from rocking_cli.core import Reals
-from rocking_cli.core.contacts import MASONRY
+from rocking_cli.core.contacts import MASONRY_FRICTION
 
-LOWER = 0.01  # least relative decrease of the multiplier, below that by associated flow, that is searched
-BUDGET, MOST = 10_000, 100  # joints times linear programmes of a search; joints that are searched; both at most
-BOTH = 1e-9  # forces over the weight, and rates over the unit velocity, that count as zero
-SIMPLEST = 1e-9  # relative increase of the multiplier that is allowed for the simplest mechanism
-TIE = 0.01  # additional cost of the last joint relative to the first, to choose among equal mechanisms
-MOVES = 1e-6  # speed from which a block moves, over the fastest one
-FREE = 1e3  # largest force of a guide, over the sum of all normal forces
+MIN_DECREASE = 0.01  # least relative decrease of the multiplier, below that by associated flow, that is searched
+MAX_JOINT_PROGRAMMES, MAX_JOINTS = 10_000, 100  # limits of a search: joints times linear programmes, and joints
+ZERO_PRODUCT = 1e-9  # forces over the weight, and rates over the unit velocity, that count as zero
+SIMPLEST_INCREASE = 1e-9  # relative increase of the multiplier that is allowed for the simplest mechanism
+LAST_JOINT_COST = 0.01  # additional cost of the last joint relative to the first, to choose among equal mechanisms
+MOVING_SPEED = 1e-6  # speed from which a block moves, over the fastest one
+MAX_GUIDE_FORCE = 1e3  # largest force of a guide, over the sum of all normal forces
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,13 +70,13 @@ def undilated(problem: AssemblyProblem, associated: float) -> Undilated | None:
     if not is_confined(problem):
         return None
     nothing = np.zeros(0)
-    if len(problem.bearings.contact) > MOST:
+    if len(problem.bearings.contact) > MAX_JOINTS:
         return Undilated(None, nothing, nothing, (), False)
     weight = _Search(problem, problem.dead, np.zeros_like(problem.dead), problem.inertia)
     found = weight.run(np.inf)
     if found is not None:
-        return Undilated(0.0, nothing, nothing, moving(problem.frame.names, weight.field(found), MOVES), True)
-    below = (1 - LOWER) * min(associated, STRONGEST)
+        return Undilated(0.0, nothing, nothing, moving(problem.frame.names, weight.field(found), MOVING_SPEED), True)
+    below = (1 - MIN_DECREASE) * min(associated, MAX_MULTIPLIER)
     shaking = _Search(problem, problem.live, problem.dead, np.zeros_like(problem.dead), _least_normals(problem, below))
     found = shaking.run(below)
     complete = weight.complete and shaking.complete
@@ -90,18 +90,18 @@ def is_confined(problem: AssemblyProblem) -> bool:
 
     Joints without given friction have the usual one here: what their glue alone confines has a caution of its own.
     """
-    rays, mu = problem.bearings.rays(usual=MASONRY), problem.bearings.friction
+    rays, mu = problem.bearings.rays(usual=MASONRY_FRICTION), problem.bearings.friction
     press = rays.one_sided & (np.append(mu, 0.0)[rays.contact] > 0)  # guides have contact -1, the last
     found = least(
         -np.append(press, 0.0),
         from_blocks([[rays.rates.T, None], [rays.one_sided[None, :], np.ones((1, 1))]]),
         np.append(np.zeros_like(problem.dead), 1.0),
-        np.append(np.where(rays.one_sided, 0.0, -FREE), 0.0),
-        np.append(np.where(rays.one_sided, np.inf, FREE), np.inf),
+        np.append(np.where(rays.one_sided, 0.0, -MAX_GUIDE_FORCE), 0.0),
+        np.append(np.where(rays.one_sided, np.inf, MAX_GUIDE_FORCE), np.inf),
     )
     assert found is not None  # nothing balances nothing
     # Forces that balance can be made any size, so that all or none of what is allowed is used.
-    return bool(found.value < -(BOTH**0.5))
+    return bool(found.value < -(ZERO_PRODUCT**0.5))
 
 
 def _least_normals(problem: AssemblyProblem, multiplier: float) -> Reals:
@@ -114,7 +114,7 @@ def _least_normals(problem: AssemblyProblem, multiplier: float) -> Reals:
     for k, ends in enumerate(normal):
         cost = rays.mix @ np.bincount(ends, minlength=rays.mix.shape[1])
         best = least(np.append(cost, 0.0), equal, -problem.dead, low, high)
-        found[k] = 0.0 if best is None else max(best.value - BOTH, 0.0)
+        found[k] = 0.0 if best is None else max(best.value - ZERO_PRODUCT, 0.0)
     return found
 
 
@@ -157,7 +157,7 @@ class _Search:
         self._low = np.full(starts[-1] + pairs + 1, -np.inf)
         for part in (self._left, self._rates, self._multiplier, -1):
             self._low[part] = 0.0
-        self._programmes = BUDGET // len(problem.bearings.contact)
+        self._programmes = MAX_JOINT_PROGRAMMES // len(problem.bearings.contact)
         self.complete = True
 
     def multiplier(self, found: Reals) -> float:
@@ -180,8 +180,8 @@ class _Search:
         if found is None:
             return None
         # Of several with that multiplier, the one with the least motion and the least forces.
-        high[self._multiplier] = self.multiplier(found) * (1 + SIMPLEST) + SIMPLEST
-        ways = np.linspace(1.0, 1.0 + TIE, len(self._left))
+        high[self._multiplier] = self.multiplier(found) * (1 + SIMPLEST_INCREASE) + SIMPLEST_INCREASE
+        ways = np.linspace(1.0, 1.0 + LAST_JOINT_COST, len(self._left))
         cost = np.zeros(len(self._low))
         cost[self._left], cost[self._rates] = ways, ways
         simplest, _ = self._least(cost, high, np.inf)
@@ -202,12 +202,12 @@ class _Search:
             if best is None or best.value >= below:
                 continue
             force, rate = best.x[self._left], best.x[self._rates]
-            both = np.minimum(force, rate) > BOTH
+            both = np.minimum(force, rate) > ZERO_PRODUCT
             if not both.any():
-                found, below = self._exactly(cost, bounds, best.x), best.value * (1 - SIMPLEST)
+                found, below = self._exactly(cost, bounds, best.x), best.value * (1 - SIMPLEST_INCREASE)
                 continue
             product = np.where(both, force * rate, 0.0)
-            k = int(np.flatnonzero(product >= product.max() * (1 - MOVES))[0])  # not by the last digits
+            k = int(np.flatnonzero(product >= product.max() * (1 - MOVING_SPEED))[0])  # not by the last digits
             for part in (self._left, self._rates):
                 without = bounds.copy()
                 without[part[k]] = 0.0

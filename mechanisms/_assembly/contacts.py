@@ -17,9 +17,9 @@ from mechanisms._polygons import nearby, overlap, size_of, thickness_of
 from rocking_cli.core import Reals
 from rocking_cli.core.kinematics import Points, distance, inside
 
-GAP = 2e-3  # largest gap of a joint over width plus height of the smaller block: 2 mm for 0.5 m x 0.5 m
-PARALLEL = 0.05  # sine of the largest angle between two edges in contact
-LEVEL = 1e-6  # upward components of normals below this count as zero
+MAX_GAP = 2e-3  # largest gap of a joint over width plus height of the smaller block: 2 mm for 0.5 m x 0.5 m
+MAX_SINE = 0.05  # sine of the largest angle between two edges in contact
+ZERO_UPWARD = 1e-6  # upward components of normals below this count as zero
 
 Gap = Callable[[str, str], float]
 Piece = tuple[complex, complex]  # from its start to its end the second body is on the left
@@ -29,7 +29,7 @@ def contacts(
     blocks: Sequence[AssemblyBlock],
     ground: Sequence[AssemblyBlock],
     *,
-    gap: float = GAP,
+    gap: float = MAX_GAP,
     within: float | None = None,
     friction: float | None = None,
     per_pair: Mapping[tuple[str, str], float | None] | None = None,
@@ -88,7 +88,7 @@ def contacts(
             normal = 1j * (end - start) / abs(end - start)
             joint = AssemblyContact(names[i], names[j], start, end, normal, friction)
             joint = replace(joint, faces=_faces(joint, outlines[i], outlines[j], tolerance))
-            bears = j >= len(blocks) or normal.imag < -LEVEL  # the ground, or the lower of the two
+            bears = j >= len(blocks) or normal.imag < -ZERO_UPWARD  # the ground, or the lower of the two
             found.append(joint.turned() if bears else joint)
     _all_touch(blocks, found)
     size = dict(zip(names, sizes, strict=True))
@@ -139,7 +139,7 @@ def _pieces(one: Points, other: Points, tolerance: float) -> list[Piece]:
     da, db = np.roll(one, -1) - one, np.roll(other, -1) - other
     ua, ub = da / np.abs(da), db / np.abs(db)
     product = ua.conj()[:, None] * ub
-    i, j = np.nonzero((product.real < 0) & (np.abs(product.imag) <= PARALLEL))
+    i, j = np.nonzero((product.real < 0) & (np.abs(product.imag) <= MAX_SINE))
     if i.size == 0:
         return []
     a, b, da, db = one[i], other[j], da[i], db[j]

@@ -20,14 +20,14 @@ from mechanisms._assembly.programme import TOLERANCE, beside, least, solved, sol
 from mechanisms._assembly.unique import velocity_space
 from rocking_cli.core import Guide, Reals
 
-BALANCED = 1e-6  # largest imbalance of given forces, over the weight
-HELD = 1e-9  # tension that counts as zero, over the weight
-FINE = 1e-8  # accuracy of the first violation, over the range searched
-TRIES = 6  # corrections of a similar state without tension, at most
-LESS = 0.3  # share of a multiplier that replaces it if it would be tension
-STEPS = 32  # steps in which the first violation is searched
+MAX_IMBALANCE = 1e-6  # largest imbalance of given forces, over the weight
+ZERO_TENSION = 1e-9  # tension that counts as zero, over the weight
+VIOLATION_ACCURACY = 1e-8  # accuracy of the first violation, over the range searched
+MAX_CORRECTIONS = 6  # for a similar state without tension
+TENSION_CUT = 0.3  # factor on a multiplier that would be tension
+SEARCH_STEPS = 32  # steps in which the first violation is searched
 
-ENDS = {Opening.CLOSED: (0, 1), Opening.START: (0,), Opening.END: (1,), Opening.LIFTED: ()}
+BEARING_ENDS = {Opening.CLOSED: (0, 1), Opening.START: (0,), Opening.END: (1,), Opening.LIFTED: ()}
 
 
 def remaining(
@@ -40,7 +40,7 @@ def remaining(
     for contact, state in zip(contacts, states, strict=True):
         if state is Opening.SLIDES:
             raise ValueError(f"the joint of {contact.a!r} and {contact.b!r} slides")
-    return Bearings.of(Frame.of(blocks), contacts, guides, [ENDS[state] for state in states])
+    return Bearings.of(Frame.of(blocks), contacts, guides, [BEARING_ENDS[state] for state in states])
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Admissible:
     @property
     def holds(self) -> bool:
         """Whether no tension is required."""
-        return self.margin >= -HELD
+        return self.margin >= -ZERO_TENSION
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +116,7 @@ class DisplacedAssembly:
         free = self._free
         largest = np.maximum(np.abs(cases).max(axis=1), 1.0)
         off = np.abs(cases @ free).max(axis=1, initial=0.0) / largest
-        if (off > BALANCED).any():
+        if (off > MAX_IMBALANCE).any():
             raise NoAnswer(f"forces on the displaced blocks are off their balance by {off.max():.2g} of the weight")
         cases = cases - cases @ free @ free.T
         rays = self.bearings.rays()
@@ -137,7 +137,7 @@ class DisplacedAssembly:
             if optimum is None:
                 raise NoAnswer("no forces in the joints balance those on the displaced blocks")
             blame = np.where(rays.one_sided, optimum.at_lower[:-1], 0.0)
-            decides = int(rays.contact[blame.argmax()]) if blame.max(initial=0.0) > HELD else None
+            decides = int(rays.contact[blame.argmax()]) if blame.max(initial=0.0) > ZERO_TENSION else None
             answers.append(Admissible(-optimum.value, decides, optimum.x[:-1] - optimum.value * rays.one_sided))
         return answers
 
@@ -160,7 +160,7 @@ class DisplacedAssembly:
         case = scaled(forces, self.frame, self.weight)
         case = case - self._free @ (self._free.T @ case)
         free = float(np.abs(state).max())
-        for _ in range(TRIES):
+        for _ in range(MAX_CORRECTIONS):
             share = np.where(rays.one_sided, state, free) ** 2
             solve = solver(weighted_squares(rays.rates, share))
             balanced = state
@@ -170,7 +170,7 @@ class DisplacedAssembly:
             if (balanced[rays.one_sided] >= 0).all() and np.abs(off).max() <= TOLERANCE:
                 return balanced
             # Reduce the multipliers that would be tension; the next correction balances that.
-            state = np.where(rays.one_sided, np.maximum(balanced, LESS * state), balanced)
+            state = np.where(rays.one_sided, np.maximum(balanced, TENSION_CUT * state), balanced)
         return None
 
 
@@ -185,12 +185,12 @@ def first_violation(
     low, missing = 0.0, 0.0
     high: float
     for high in steps.tolist():
-        if not (holds is not None and holds(high)) and (missing := -margin(high) - HELD) > 0:
+        if not (holds is not None and holds(high)) and (missing := -margin(high) - ZERO_TENSION) > 0:
             break
         low = high
     else:
         return None
-    close, root = FINE * float(steps[-1]), None
+    close, root = VIOLATION_ACCURACY * float(steps[-1]), None
     width = np.inf
     while high - low > close:
         # Bisect unless the secant step has just more than halved the interval.
@@ -198,7 +198,7 @@ def first_violation(
         if root is not None and high - low <= width / 2:
             guess = min(max(root, low + 0.9 * close), high - 0.9 * close)
         width = high - low
-        less = -margin(guess) - HELD
+        less = -margin(guess) - ZERO_TENSION
         if less > 0:
             slope = (missing - less) / (high - guess)
             high, missing = guess, less

@@ -14,15 +14,15 @@ import numpy as np
 from mechanisms._assembly.blocks import AssemblyContact
 from mechanisms._assembly.confined import undilated
 from mechanisms._assembly.limit import Collapse
-from mechanisms._assembly.mechanism import STILL
+from mechanisms._assembly.mechanism import ZERO_VELOCITY
 from mechanisms._assembly.problem import AssemblyProblem, Rays
 from mechanisms._assembly.programme import beside, least
 from rocking_cli.core import Reals
-from rocking_cli.core.contacts import MASONRY
+from rocking_cli.core.contacts import MASONRY_FRICTION
 
-MOST = 10.0  # larger coefficients of friction do not occur
-SAME = 1e-9  # relative difference of equal multipliers
-FINE = 1e-6  # relative accuracy of the coefficient of friction
+MAX_FRICTION = 10.0  # larger coefficients of friction do not occur
+EQUAL_MULTIPLIERS = 1e-9  # relative difference
+FRICTION_ACCURACY = 1e-6  # relative
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,21 +58,21 @@ def friction(found: Collapse) -> Friction:
     if found.associated is not None:  # without dilation: the friction that the state shown uses
         state = np.concatenate([np.column_stack([found.normal, found.shear]).ravel(), found.guide]) / problem.weight
         used = search.uses(state)
-        return Friction(used if used <= MOST else None, (), found.normal, found.shear, found.guide)
-    most = float(np.nan_to_num(problem.bearings.friction, nan=MOST).clip(max=MOST).max(initial=0.0))
+        return Friction(used if used <= MAX_FRICTION else None, (), found.normal, found.shear, found.guide)
+    most = float(np.nan_to_num(problem.bearings.friction, nan=MAX_FRICTION).clip(max=MAX_FRICTION).max(initial=0.0))
     shown = np.concatenate([np.column_stack([found.normal, found.shear]).ravel(), found.guide]) / problem.weight
     limit = search.uses(shown)
-    if most < MOST:
+    if most < MAX_FRICTION:
         search.bound(most, shown)  # the mechanism that was found has no more
-    elif limit < MOST:
+    elif limit < MAX_FRICTION:
         search.bound(limit, shown)
-    elif not search.carries(MOST):
+    elif not search.carries(MAX_FRICTION):
         # The state with the least shear beyond the greatest friction, and the joints that have such shear.
-        shown, beyond, _ = _beyond(problem, multiplier, MOST, _most(found, problem.bearings.rays(MOST)))
-        glued = tuple(int(k) for k in np.flatnonzero(np.abs(beyond) > SAME))
+        shown, beyond, _ = _beyond(problem, multiplier, MAX_FRICTION, _most(found, problem.bearings.rays(MAX_FRICTION)))
+        glued = tuple(int(k) for k in np.flatnonzero(np.abs(beyond) > EQUAL_MULTIPLIERS))
         return Friction(None, glued, *problem.by_contact(problem.weight * shown))
-    if not (most < MOST and not _may_carry(found, search)) and not search.carries(0.0):
-        while search.high - search.low > FINE * search.high:
+    if not (most < MAX_FRICTION and not _may_carry(found, search)) and not search.carries(0.0):
+        while search.high - search.low > FRICTION_ACCURACY * search.high:
             search.carries(search.guess)
     return Friction(search.high, (), *problem.by_contact(problem.weight * search.state))
 
@@ -92,9 +92,9 @@ def _roots(known: Sequence[tuple[float, float, float]]) -> Iterator[float]:
         width, start, end = more - lacks, -1 / growth, -1 / slower
         chord = (before - mu) / width
         bend, twist = (chord - start) / width, (start + end - 2 * chord) / width**2
-        yield (mu - start * lacks + bend * lacks**2 - twist * lacks**2 * more) * (1 + FINE / 3)
+        yield (mu - start * lacks + bend * lacks**2 - twist * lacks**2 * more) * (1 + FRICTION_ACCURACY / 3)
     if growth > 0:
-        yield (mu + lacks / growth) * (1 + FINE / 3)
+        yield (mu + lacks / growth) * (1 + FRICTION_ACCURACY / 3)
 
 
 class _FrictionSearch:
@@ -102,7 +102,7 @@ class _FrictionSearch:
 
     def __init__(self, problem: AssemblyProblem, multiplier: float) -> None:
         self.problem, self.multiplier = problem, multiplier
-        self.low, self.high = 0.0, MOST
+        self.low, self.high = 0.0, MAX_FRICTION
         self.state: Reals = np.zeros(0)
         self._lows: list[tuple[float, float, float]] = []  # friction, what is lacking, and how fast that shrinks
         self._stood = True
@@ -117,7 +117,7 @@ class _FrictionSearch:
         rays = self.problem.bearings.rays(mu)
         reached, forces, raw = self.problem.greatest(rays, exact=True)
         state = rays.mix.T @ forces
-        if reached >= self.multiplier * (1 - SAME):
+        if reached >= self.multiplier * (1 - EQUAL_MULTIPLIERS):
             self._carried += 1
             self.bound(mu, state)
             return True
@@ -136,7 +136,7 @@ class _FrictionSearch:
     @property
     def below(self) -> float:
         """A value just below the upper end of the bracket, near enough to end the search."""
-        return self.high * (1 - 0.9 * FINE)
+        return self.high * (1 - 0.9 * FRICTION_ACCURACY)
 
     @property
     def guess(self) -> float:
@@ -146,13 +146,16 @@ class _FrictionSearch:
             return max(self.below, middle)
         if self._carried > 1:  # even just below it did: the root was not near
             return middle
-        return next((min(root, self.below) for root in _roots(self._lows) if root > self.low * (1 + FINE / 2)), middle)
+        return next(
+            (min(root, self.below) for root in _roots(self._lows) if root > self.low * (1 + FRICTION_ACCURACY / 2)),
+            middle,
+        )
 
     def uses(self, state: Reals) -> float:
         """Return the largest ratio of shear to normal force over all joints of a state; infinite for a glued joint."""
         normal, shear, _ = self.problem.by_contact(state)
         pressed = np.maximum(normal.sum(axis=1), 0.0)
-        slipping = np.abs(shear) > SAME * np.abs(normal).max(initial=0.0)
+        slipping = np.abs(shear) > EQUAL_MULTIPLIERS * np.abs(normal).max(initial=0.0)
         with np.errstate(divide="ignore"):
             return float((np.abs(shear)[slipping] / pressed[slipping]).max(initial=0.0))
 
@@ -173,7 +176,7 @@ def with_usual(found: Collapse) -> float | None:
     if not np.isnan(problem.bearings.friction).any():
         return None
     mu = problem.bearings.friction
-    usual = replace(problem, bearings=replace(problem.bearings, friction=np.where(np.isnan(mu), MASONRY, mu)))
+    usual = replace(problem, bearings=replace(problem.bearings, friction=np.where(np.isnan(mu), MASONRY_FRICTION, mu)))
     reached, _, _ = usual.greatest(usual.bearings.rays())
     confined = undilated(usual, reached)
     if confined is not None and confined.multiplier is not None:
@@ -183,8 +186,8 @@ def with_usual(found: Collapse) -> float | None:
 
 def sheared(found: Friction, contacts: Sequence[AssemblyContact]) -> tuple[int, ...]:
     """Return the joints without given friction whose shear, in the shown state, exceeds the usual friction."""
-    least = SAME * float(np.abs(found.normal).max(initial=0.0))
-    beyond = np.abs(found.shear) > MASONRY * np.maximum(found.normal.sum(axis=1), 0.0) + least
+    least = EQUAL_MULTIPLIERS * float(np.abs(found.normal).max(initial=0.0))
+    beyond = np.abs(found.shear) > MASONRY_FRICTION * np.maximum(found.normal.sum(axis=1), 0.0) + least
     return tuple(k for k, each in enumerate(contacts) if each.friction is None and beyond[k])
 
 
@@ -203,7 +206,7 @@ def _may_carry(found: Collapse, search: _FrictionSearch) -> bool:
 def _most(found: Collapse, rays: Rays) -> Reals:
     """Return upper bounds of the forces along the rays in the collapse state: 0 if the joint opens along the ray."""
     field = (found.velocity * np.array([1.0, 1.0, found.problem.frame.size])).ravel()
-    return np.where(rays.one_sided & (rays.rates @ field > STILL * np.abs(field).max()), 0.0, np.inf)
+    return np.where(rays.one_sided & (rays.rates @ field > ZERO_VELOCITY * np.abs(field).max()), 0.0, np.inf)
 
 
 def _beyond(
@@ -238,7 +241,9 @@ def _beyond(
     extra = problem.bearings.rates[rows].T
     count, n = len(rows), rays.count
     # A slightly smaller multiplier is allowed, or rounding may leave no state at all.
-    least_, greatest = (SAME / 10, SAME / 10) if most is None else (SAME, -SAME)
+    least_, greatest = (
+        (EQUAL_MULTIPLIERS / 10, EQUAL_MULTIPLIERS / 10) if most is None else (EQUAL_MULTIPLIERS, -EQUAL_MULTIPLIERS)
+    )
     found = least(
         np.concatenate([np.zeros(n + 1), np.ones(2 * count)]),
         beside([rays.rates.T, problem.live, extra, -extra]),

@@ -16,11 +16,11 @@ import numpy as np
 
 from mechanisms._assembly.blocks import AssemblyBlock, AssemblyContact, DoesNotStand, NoAnswer, NothingMoves, listed
 from mechanisms._assembly.confined import Undilated, undilated
-from mechanisms._assembly.problem import NOTHING, STRONGEST, AssemblyProblem, moving
+from mechanisms._assembly.problem import MAX_MULTIPLIER, ZERO_LOAD, AssemblyProblem, moving
 from mechanisms._assembly.unique import kept_rays, mechanisms_of, smallest, velocity_space
 from rocking_cli.core import Direction, Guide, Reals
 
-NOISE = 1e-11  # rates that count as zero, over the fastest velocity
+ZERO_RATE = 1e-11  # rates that count as zero, over the fastest velocity
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +147,7 @@ def collapse(
     if falls:
         raise DoesNotStand(f"it does not stand by itself: nothing holds {listed(falls)}", falls)
     multiplier, forces, raw = problem.greatest(rays, exact=True)
-    locked = multiplier >= STRONGEST * (1 - NOTHING)
+    locked = multiplier >= MAX_MULTIPLIER * (1 - ZERO_LOAD)
     confined = undilated(problem, multiplier)
     if confined is not None:
         if confined.falls:
@@ -165,7 +165,7 @@ def collapse(
             )
     if locked:
         raise NothingMoves("no acceleration sets it in motion", problem.frame.names)
-    if multiplier <= NOTHING:
+    if multiplier <= ZERO_LOAD:
         falls = moving(problem.frame.names, raw, 1e-6) or problem.unheld(rays)[1]  # none if not even that is carried
         raise DoesNotStand(f"it barely stands: the least acceleration sets {listed(falls)} in motion", falls)
     kept = kept_rays(rays, problem.dead, problem.live, raw)
@@ -176,7 +176,7 @@ def collapse(
     fields.sort(
         key=lambda field: (
             not _worked_on(problem, field),
-            [problem.frame.index[name] for name in moving(problem.frame.names, field, NOTHING)],
+            [problem.frame.index[name] for name in moving(problem.frame.names, field, ZERO_LOAD)],
         )
     )
     several = tuple(_shared(problem, field) for field in fields) if len(fields) > 1 else ()
@@ -227,7 +227,7 @@ def _kinematic(problem: AssemblyProblem, field: Reals) -> float:
 
 def _worked_on(problem: AssemblyProblem, field: Reals) -> bool:
     """Return whether the live forces do work on a mechanism."""
-    return abs(float(problem.live @ field)) > NOTHING * float(np.abs(field).max())
+    return abs(float(problem.live @ field)) > ZERO_LOAD * float(np.abs(field).max())
 
 
 def _sized(problem: AssemblyProblem, field: Reals) -> Reals:
@@ -237,7 +237,7 @@ def _sized(problem: AssemblyProblem, field: Reals) -> Reals:
     """
     velocity = field.reshape(-1, 3) * np.array([problem.frame.size, problem.frame.size, 1.0])
     turns = np.abs(velocity[:, 2]).max()
-    most = turns if turns > NOTHING * np.abs(field).max() else np.abs(velocity).max()
+    most = turns if turns > ZERO_LOAD * np.abs(field).max() else np.abs(velocity).max()
     return np.asarray(velocity / most)
 
 
@@ -245,9 +245,9 @@ def _rates(problem: AssemblyProblem, velocity: Reals) -> Reals:
     """Return the opening and sliding velocities of each joint, with rounding errors set to zero."""
     field = (velocity * np.array([1.0, 1.0, problem.frame.size])).ravel()
     rates: Reals = problem.bearings.rates @ field
-    return np.asarray(np.where(np.abs(rates) > NOISE * np.abs(field).max(), rates, 0.0))
+    return np.asarray(np.where(np.abs(rates) > ZERO_RATE * np.abs(field).max(), rates, 0.0))
 
 
 def _shared(problem: AssemblyProblem, field: Reals) -> Shared:
     multiplier = _kinematic(problem, field) / problem.strength if _worked_on(problem, field) else np.nan
-    return Shared(multiplier, _sized(problem, field), moving(problem.frame.names, field, NOTHING))
+    return Shared(multiplier, _sized(problem, field), moving(problem.frame.names, field, ZERO_LOAD))

@@ -13,8 +13,8 @@ from mechanisms._assembly.limit import Collapse
 from mechanisms._assembly.problem import Frame
 from rocking_cli.core import Direction, Guide, Reals
 
-STILL = 1e-8  # velocities that count as zero, over the fastest one
-PRESSES = 1e-9  # normal forces that count as zero, over the largest one
+ZERO_VELOCITY = 1e-8  # over the fastest velocity
+ZERO_NORMAL_FORCE = 1e-9  # over the largest normal force
 SAME_PLACE = 1e-6  # distance of hinges that coincide, over the size of the assembly
 
 
@@ -108,14 +108,14 @@ def linkage(
     """
     size = Frame.of(blocks).size
     speed = np.abs(found.velocity * np.array([1.0, 1.0, size])).max(axis=1)
-    still = STILL * float(speed.max())
+    still = ZERO_VELOCITY * float(speed.max())
     states = tuple(
         _state(abs(o[0]), abs(o[1]), abs(s), c, still)
         for o, s, c in zip(found.opening, found.sliding, contacts, strict=True)
     )
     if found.associated is not None:  # without dilation the forces show whether what slides also presses
         normal = found.normal.sum(axis=1)
-        press = normal > PRESSES * normal.max(initial=0.0)
+        press = normal > ZERO_NORMAL_FORCE * normal.max(initial=0.0)
         states = tuple(
             (Opening.SLIDES if presses else Opening.LIFTED) if abs(slide) > still else state
             for state, slide, presses in zip(states, found.sliding, press, strict=True)
@@ -213,17 +213,17 @@ def leading(found: AssemblyLinkage, direction: Direction) -> int | None:
     turns = -int(direction) * found.velocity[:, 2]
     most = float(np.abs(turns).max(initial=0.0))
     grounded = {g for h in found.hinges if None in (h.one, h.other) for g in (h.one, h.other) if g is not None}
-    able = [k for k in range(len(turns)) if abs(turns[k]) > STILL * most]
+    able = [k for k in range(len(turns)) if abs(turns[k]) > ZERO_VELOCITY * most]
     if not able:
         return None
 
     best = max((k in grounded, bool(turns[k] > 0)) for k in able)
     able = [k for k in able if (k in grounded, bool(turns[k] > 0)) == best]
     fastest = max(abs(turns[k]) for k in able)
-    return next(k for k in able if abs(turns[k]) >= fastest * (1 - STILL))
+    return next(k for k in able if abs(turns[k]) >= fastest * (1 - ZERO_VELOCITY))
 
 
-NONE = 1e-9  # forces that count as zero, over the largest one
+ZERO_FORCE = 1e-9  # over the largest force
 
 
 @dataclass(frozen=True)
@@ -280,7 +280,7 @@ def thrust(contacts: Sequence[AssemblyContact], blocks: Sequence[str], normal: R
         state; others exist if blocks stay at rest.
     """
     total = normal.sum(axis=1)
-    least = NONE * max(float(np.abs(total).max(initial=0.0)), float(np.abs(shear).max(initial=0.0)))
+    least = ZERO_FORCE * max(float(np.abs(total).max(initial=0.0)), float(np.abs(shear).max(initial=0.0)))
     found = {}
     for k, contact in enumerate(contacts):
         if total[k] > least:

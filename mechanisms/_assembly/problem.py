@@ -24,8 +24,8 @@ from mechanisms._assembly.programme import Sparse, beside, from_entries, least, 
 from rocking_cli.core import Direction, Guide, Reals
 from rocking_cli.core.kinematics import Points
 
-STRONGEST = 1e4  # largest multiplier: beyond, nothing moves
-NOTHING = 1e-9  # forces, over the weight, and multipliers that count as zero
+MAX_MULTIPLIER = 1e4  # above it the assembly counts as immovable
+ZERO_LOAD = 1e-9  # forces, over the weight, and multipliers that count as zero
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +81,7 @@ class AssemblyProblem:
             beside([rays.rates.T, self.live]),
             -self.dead,
             np.append(rays.low, 0.0),
-            np.append(np.full(rays.count, np.inf), STRONGEST),
+            np.append(np.full(rays.count, np.inf), MAX_MULTIPLIER),
             exact=exact,
         )
         if found is None:
@@ -94,7 +94,7 @@ class AssemblyProblem:
         if least(np.zeros(rays.count), rays.rates.T.tocsc(), -self.dead, rays.low, unbounded) is not None:
             return ()
         missing, names = self.unheld(rays)
-        return names if missing > NOTHING else ()
+        return names if missing > ZERO_LOAD else ()
 
     def unheld(self, rays: Rays) -> tuple[float, tuple[str, ...]]:
         """Return the least additional forces that hold all blocks at rest, and the blocks that need them."""

@@ -21,13 +21,13 @@ from mechanisms._assembly.blocks import NoAnswer
 from rocking_cli.core import Reals
 
 TOLERANCE = 1e-10  # the solver's own 1e-7 is too coarse for a multiplier that two theorems must agree on
-EXACTING = {"primal_feasibility_tolerance": TOLERANCE, "dual_feasibility_tolerance": TOLERANCE}
-WAIT = 0.1  # interval at which interrupts are noticed [s]
-LARGE = 600  # equations from which interior points are faster
-SOON = 1  # iterations of a crossover over the number of equations; more of them do not converge
-EXACT = 1e-12  # residuals of a refined result, over its size
-INSIDE = 1e-9  # distance from a bound that counts as on the bound, over the largest variable
-ROUNDS, FINEST = 4, 1e7  # corrections at most, and largest magnification of a residual
+TIGHT_OPTIONS = {"primal_feasibility_tolerance": TOLERANCE, "dual_feasibility_tolerance": TOLERANCE}
+INTERRUPT_INTERVAL = 0.1  # s
+MIN_INTERIOR_EQUATIONS = 600  # equations from which interior points are faster
+CROSSOVER_ITERATIONS = 1  # over the number of equations; crossovers that take longer do not converge
+MAX_RESIDUAL = 1e-12  # residuals of a refined result, over its size
+BOUND_DISTANCE = 1e-9  # distance from a bound that counts as on the bound, over the largest variable
+MAX_REFINEMENTS, MAX_MAGNIFICATION = 4, 1e7
 
 
 @dataclass(frozen=True)
@@ -71,11 +71,11 @@ def least(cost: Reals, equal: Sparse, right: Reals, low: Reals, high: Reals, *, 
     """
     programme = _Programme(cost, equal, right, low, high)
     ways: list[Callable[[], Optimum | None]] = [
-        partial(programme.solve, "highs-ds", **EXACTING),
-        partial(programme.solve, "highs-ds", presolve=False, **EXACTING),
+        partial(programme.solve, "highs-ds", **TIGHT_OPTIONS),
+        partial(programme.solve, "highs-ds", presolve=False, **TIGHT_OPTIONS),
     ]
-    if len(right) >= LARGE:
-        close = partial(programme.solve, "highs-ipm", maxiter=SOON * len(right), **EXACTING)
+    if len(right) >= MIN_INTERIOR_EQUATIONS:
+        close = partial(programme.solve, "highs-ipm", maxiter=CROSSOVER_ITERATIONS * len(right), **TIGHT_OPTIONS)
         ways = [programme.refined, *ways] if exact else [close, programme.refined, *ways]
     for way in ways:
         try:
@@ -107,7 +107,7 @@ class _Programme:
             linprog, self.cost, A_eq=self.equal, b_eq=self.right, bounds=np.column_stack([self.low, self.high]),
             method=method, options=options,
         )  # fmt: skip
-        found = _beside(solve) if len(self.right) >= LARGE else solve()
+        found = _beside(solve) if len(self.right) >= MIN_INTERIOR_EQUATIONS else solve()
         if found.status == 2:
             return None
         if found.status != 0:
@@ -121,17 +121,17 @@ class _Programme:
         """
         nothing = np.zeros(len(self.cost))
         found = Optimum(nothing, 0.0, np.zeros(len(self.right)), nothing)
-        for _ in range(ROUNDS):
+        for _ in range(MAX_REFINEMENTS):
             off, uneven = self._errors(found)
-            if max(off, uneven) <= EXACT:
+            if max(off, uneven) <= MAX_RESIDUAL:
                 break
-            wide, steep = (min(1 / max(error, EXACT), FINEST) for error in (off, uneven))
+            wide, steep = (min(1 / max(error, MAX_RESIDUAL), MAX_MAGNIFICATION) for error in (off, uneven))
             left = replace(
                 self, cost=steep * self._rates(found), right=wide * (self.right - self.equal @ found.x),
                 low=wide * (self.low - found.x), high=wide * (self.high - found.x),
             )  # fmt: skip
             try:
-                more = left.solve("highs-ipm", maxiter=SOON * len(self.right))
+                more = left.solve("highs-ipm", maxiter=CROSSOVER_ITERATIONS * len(self.right))
             except _NotFound:
                 break
             if more is None:
@@ -151,7 +151,7 @@ class _Programme:
         size = max(1.0, np.abs(x).max())
         off = max(np.abs(self.equal @ x - self.right).max(), (self.low - x).max(), (x - self.high).max())
         # Above its lower bound no rate may be positive, below its upper one none negative.
-        rises, falls = rates[x - self.low > INSIDE * size], -rates[self.high - x > INSIDE * size]
+        rises, falls = rates[x - self.low > BOUND_DISTANCE * size], -rates[self.high - x > BOUND_DISTANCE * size]
         uneven = max(rises.max(initial=0.0), falls.max(initial=0.0))
         return float(off / size), float(uneven / max(1.0, np.abs(found.prices).max()))
 
@@ -170,13 +170,13 @@ def _beside(solve: Callable[[], Any]) -> Any:
     thread = Thread(target=run, daemon=True)
     thread.start()
     while thread.is_alive():
-        thread.join(WAIT)
+        thread.join(INTERRUPT_INTERVAL)
     if failed:
         raise failed[0]
     return found[0]
 
 
-LITTLE = 1e-12  # multiple of the unit matrix that is added, over the largest entry
+REGULARISATION = 1e-12  # multiple of the unit matrix that is added, over the largest entry
 Indices = NDArray[np.intp]
 Sparse = Any  # scipy.sparse.csr_array, which has no types
 
@@ -223,7 +223,7 @@ def weighted_squares(matrix: Sparse, weights: Reals) -> Sparse:
     from scipy.sparse import diags_array, eye_array
 
     squares = matrix.T @ diags_array(weights) @ matrix
-    return squares + LITTLE * np.abs(squares.diagonal()).max() * eye_array(matrix.shape[1])
+    return squares + REGULARISATION * np.abs(squares.diagonal()).max() * eye_array(matrix.shape[1])
 
 
 def components(one: ArrayLike, other: ArrayLike, count: int) -> Indices:

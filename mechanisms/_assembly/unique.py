@@ -29,18 +29,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from mechanisms._assembly.blocks import NoAnswer
-from mechanisms._assembly.problem import NOTHING, AssemblyProblem, Bools, Frame, Indices, Rays
+from mechanisms._assembly.problem import ZERO_LOAD, AssemblyProblem, Bools, Frame, Indices, Rays
 from mechanisms._assembly.programme import Sparse, beside, components, from_blocks, from_entries, least
 from rocking_cli.core import Reals
 from rocking_cli.core.kinematics import Points
 
-OPENS = 1e-7  # rate from which a ray opens, over the fastest rate
-CARRIES = 1e-9  # force from which a ray carries, over the weight
-ENOUGH = 1e-3  # most of the force of one ray that counts in the cost, over the weight
-LARGER = 1e3  # largest factor on a state, so that small forces are found
-RANK = 1e-10  # singular values below this share of the largest one count as zero
-CLEAN = 1e-12  # velocities below this share of the fastest one are set to zero
-MOST = 8  # mechanisms that are returned, at most
+OPENING_RATE = 1e-7  # rate from which a ray opens, over the fastest rate
+CARRIED_FORCE = 1e-9  # force from which a ray carries, over the weight
+MAX_COUNTED_FORCE = 1e-3  # largest force of a ray that counts in the cost, over the weight
+MAX_STATE_FACTOR = 1e3  # largest factor on a state, so that small forces are found
+RANK_TOLERANCE = 1e-10  # singular values below this share of the largest one count as zero
+VELOCITY_ROUNDING = 1e-12  # velocities below this share of the fastest one are set to zero
+MAX_MECHANISMS = 8
 
 
 def kept_rays(rays: Rays, dead: Reals, live: Reals, raw: Reals) -> Bools:
@@ -71,7 +71,7 @@ def kept_rays(rays: Rays, dead: Reals, live: Reals, raw: Reals) -> Bools:
     Todd, 1985). Another one is solved only if the scale reaches its bound, as rays with very small forces may be left.
     """
     rate = rays.rates @ raw
-    shut = np.abs(rate) <= OPENS * np.abs(rate).max()
+    shut = np.abs(rate) <= OPENING_RATE * np.abs(rate).max()
     kept = ~rays.one_sided
     asked = rays.one_sided & shut
     by_ray = rays.rates.T.tocsc()
@@ -85,15 +85,15 @@ def kept_rays(rays: Rays, dead: Reals, live: Reals, raw: Reals) -> Bools:
             beside([by_ray[:, k], by_ray[:, k], by_ray[:, known], live, dead]),
             np.zeros(len(dead)),
             np.concatenate([np.zeros(2 * count), rays.low[known], [-np.inf, 1.0]]),
-            np.concatenate([np.full(count, ENOUGH), np.full(count + rest + 1, np.inf), [LARGER]]),
+            np.concatenate([np.full(count, MAX_COUNTED_FORCE), np.full(count + rest + 1, np.inf), [MAX_STATE_FACTOR]]),
         )
         if found is None:
             raise NoAnswer("no forces belong to the mechanism that was found: the joints are too short, or too many")
         size = found.x[-1]
-        more = found.x[:count] + found.x[count : 2 * count] > CARRIES * size
+        more = found.x[:count] + found.x[count : 2 * count] > CARRIED_FORCE * size
         kept[k[more]] = True
         asked[k[more]] = False
-        if not more.any() or size < LARGER / 2:
+        if not more.any() or size < MAX_STATE_FACTOR / 2:
             break
     return kept
 
@@ -133,7 +133,7 @@ def null_space(rows: Reals) -> Reals:
     if len(rows) > rows.shape[1]:
         rows = np.asarray(np.linalg.qr(rows, mode="r"))  # the same squares of lengths in fewer rows
     _, values, ways = np.linalg.svd(rows)
-    rank = int(np.count_nonzero(values > RANK * values[0]))
+    rank = int(np.count_nonzero(values > RANK_TOLERANCE * values[0]))
     return np.asarray(ways[rank:].T)
 
 
@@ -166,9 +166,9 @@ def _extremes(opening: Reals, space: Reals) -> list[Reals]:
     found: list[Reals] = []
     wanted = np.vstack([space, -space])
     tried = np.zeros((0, d))
-    for row in wanted[np.abs(wanted).max(axis=1) > CLEAN]:
+    for row in wanted[np.abs(wanted).max(axis=1) > VELOCITY_ROUNDING]:
         unit = row / np.linalg.norm(row)
-        if (tried @ unit > 1 - CLEAN).any():
+        if (tried @ unit > 1 - VELOCITY_ROUNDING).any():
             continue  # blocks that move in proportion ask the same
         tried = np.vstack([tried, unit])
         best = least(np.append(row, np.zeros(n)), np.vstack([equal, total]), np.append(np.zeros(n), 1.0), low, high)
@@ -178,17 +178,17 @@ def _extremes(opening: Reals, space: Reals) -> list[Reals]:
         field /= np.linalg.norm(field)
         if all(np.abs(field - other).max() > 1e-6 for other in found):
             found.append(field)
-        if len(found) == MOST:
+        if len(found) == MAX_MECHANISMS:
             break
     return found + both_ways
 
 
 def _clean(field: Reals) -> Reals:
-    return np.where(np.abs(field) > CLEAN * np.abs(field).max(), field, 0.0)
+    return np.where(np.abs(field) > VELOCITY_ROUNDING * np.abs(field).max(), field, 0.0)
 
 
-ACROSS = 1e-3  # least sine of the angle between two different directions
-APART = 1e-9  # least distance of two different lines of action, over the size of the assembly
+MIN_SINE = 1e-3  # least sine of the angle between two different directions
+MIN_LINE_DISTANCE = 1e-9  # least distance of two different lines of action, over the size of the assembly
 
 
 @dataclass(frozen=True, eq=False)
@@ -277,7 +277,9 @@ def _holds(number: Indices, count: int, wrench: Reals, place: Points) -> Bools:
     for _ in range(2):  # once more, for what rounding left
         moment = without(without(moment, main), minor)
     length = np.sqrt(dot(main, main))
-    return (np.sqrt(dot(minor, minor)) > ACROSS * length) & (np.sqrt(dot(moment, moment)) > APART * length)
+    return (np.sqrt(dot(minor, minor)) > MIN_SINE * length) & (
+        np.sqrt(dot(moment, moment)) > MIN_LINE_DISTANCE * length
+    )
 
 
 def _parts(label: Indices, place: Points, between: Bools) -> RigidParts:
@@ -301,8 +303,8 @@ def _parts(label: Indices, place: Points, between: Bools) -> RigidParts:
     return RigidParts(of, len(about), basis, between)
 
 
-SAME = 1e-6  # relative difference of equal velocities
-DIMENSIONS = 30  # dimensions of the space of velocities up to which one motion is searched
+EQUAL_VELOCITY = 1e-6  # relative difference of equal velocities
+MAX_DIMENSIONS = 30  # dimensions of the space of velocities up to which one motion is searched
 
 
 def smallest(problem: AssemblyProblem, rays: Rays, kept: Bools, space: Reals) -> tuple[Reals, tuple[str, ...]] | None:
@@ -325,26 +327,26 @@ def smallest(problem: AssemblyProblem, rays: Rays, kept: Bools, space: Reals) ->
         The velocities of all blocks, zero for idle blocks, and the names of the idle blocks. None if the mechanisms are
         not the same motion, or `space` has fewer than 2 or more than 30 dimensions.
     """
-    if not 2 <= space.shape[1] <= DIMENSIONS:
+    if not 2 <= space.shape[1] <= MAX_DIMENSIONS:
         return None
     space = np.linalg.qr(space)[0]
     by_block = space.reshape(-1, 3, space.shape[1])
     ways, sizes, shares = np.linalg.svd(by_block, full_matrices=False)
-    able = sizes[:, 0] > NOTHING
+    able = sizes[:, 0] > ZERO_LOAD
     works = able & _does_work(problem, by_block)
-    if not works.any() or (sizes[works, 1] > SAME * sizes[works, 0]).any():
+    if not works.any() or (sizes[works, 1] > EQUAL_VELOCITY * sizes[works, 0]).any():
         return None  # a block that can move in two ways
     share = shares[:, 0]  # how much of its one way a block moves, by coordinates of the space
     opening = rays.rates[~kept] @ space
     for k in _candidates(share, np.flatnonzero(works)):
-        alike = works & (np.abs(share @ share[k]) > 1 - SAME**2)
+        alike = works & (np.abs(share @ share[k]) > 1 - EQUAL_VELOCITY**2)
         others = _candidates(share, np.flatnonzero(works & ~alike))
         if any(_reaches(opening, share[k], sign * share[j]) for j in others for sign in (1, -1)):
             continue  # others move without these
         field = _least_motion(opening, space, by_block, able, share[k])
         if field is None:
             continue
-        moves = np.abs(field.reshape(-1, 3)).max(axis=1) > SAME * np.abs(field).max()
+        moves = np.abs(field.reshape(-1, 3)).max(axis=1) > EQUAL_VELOCITY * np.abs(field).max()
         if (moves & works & ~alike).any() or not all(
             _turns_with(problem, field, moves & works, j, ways[j, :, 0])
             for j in np.flatnonzero(works & ~alike).tolist()
@@ -359,14 +361,14 @@ def _does_work(problem: AssemblyProblem, by_block: Reals) -> Bools:
     """Return on which blocks the forces do work, in any of the velocities."""
     work = [np.abs(np.einsum("bi,bid->bd", each.reshape(-1, 3), by_block)).max(axis=1)
             for each in (problem.dead, problem.live)]  # fmt: skip
-    return np.asarray(np.maximum(*work) > NOTHING * np.abs(by_block).max(axis=(1, 2)))
+    return np.asarray(np.maximum(*work) > ZERO_LOAD * np.abs(by_block).max(axis=(1, 2)))
 
 
 def _candidates(share: Reals, blocks: Indices) -> list[int]:
     """Return one block of each set of blocks that move in proportion, the largest set first."""
     found: dict[int, int] = {}
     for j in blocks.tolist():
-        same = next((k for k in found if abs(share[k] @ share[j]) > 1 - SAME**2), j)
+        same = next((k for k in found if abs(share[k] @ share[j]) > 1 - EQUAL_VELOCITY**2), j)
         found[same] = found.get(same, 0) + 1
     return sorted(found, key=lambda k: (-found[k], k))
 
@@ -379,7 +381,7 @@ def _reaches(opening: Reals, still: Reals, moves: Reals) -> bool:
         np.append(-moves, np.zeros(n)), equal, np.zeros(n + 1),
         np.append(np.full(d, -1.0), np.zeros(n)), np.append(np.ones(d), np.full(n, np.inf)),
     )  # fmt: skip
-    return found is not None and -found.value > SAME
+    return found is not None and -found.value > EQUAL_VELOCITY
 
 
 def _least_motion(opening: Reals, space: Reals, by_block: Reals, able: Bools, share: Reals) -> Reals | None:
@@ -407,10 +409,10 @@ def _turns_with(problem: AssemblyProblem, field: Reals, moves: Bools, block: int
     place = np.array(problem.frame.centroids) / problem.frame.size
     for k in np.flatnonzero(moves):
         vx, vy, turn = field[3 * k : 3 * k + 3]
-        if abs(turn) <= SAME * np.abs(field).max():
+        if abs(turn) <= EQUAL_VELOCITY * np.abs(field).max():
             continue  # what slides has no point about which to turn: it is another joint that slides
         arm = place[block] - place[k]
         along = np.array([vx - turn * arm.imag, vy + turn * arm.real, turn])
-        if np.linalg.norm(along - way * (along @ way)) <= SAME * np.linalg.norm(along):
+        if np.linalg.norm(along - way * (along @ way)) <= EQUAL_VELOCITY * np.linalg.norm(along):
             return True
     return False

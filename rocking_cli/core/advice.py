@@ -2,8 +2,8 @@
 
 Without an amplitude, the uplift acceleration is compared, which kappa2 keeps and kappa1 does not; at an amplitude, the
 free period and the overturning time as well; under a ground motion, the time histories. Each comparison is a relative
-error, and the largest error gives the grade. If the uplift acceleration of a kappa is in error by more than `LARGE`,
-that kappa is to be disregarded: any other agreement is chance.
+error, and the largest error gives the grade. If the uplift acceleration of a kappa is in error by more than
+`LARGE_ERROR`, that kappa is to be disregarded: any other agreement is chance.
 """
 
 from __future__ import annotations
@@ -16,8 +16,11 @@ from rocking_cli.core.equivalence import Equivalence, EquivalentBlock
 from rocking_cli.core.kinematics import Direction
 
 # The paper finds small errors with either kappa for walls of alpha < 0.2: lambda_lin/lambda = 0.2/tan(0.2) there.
-SLENDER = 0.2 / tan(0.2)
-SMALL, LARGE = 0.05, 0.15  # errors up to which a block agrees with its structure, and serves a first estimate
+SLENDER_LAMBDA_RATIO = 0.2 / tan(0.2)
+SMALL_ERROR, LARGE_ERROR = (
+    0.05,
+    0.15,
+)  # errors up to which a block agrees with its structure, and serves a first estimate
 
 
 class Grade(IntEnum):
@@ -33,7 +36,7 @@ class Grade(IntEnum):
         return ("agrees", "first_estimate", "disregard")[self]
 
 
-def grade(error: float, small: float = SMALL, large: float = LARGE) -> Grade:
+def grade(error: float, small: float = SMALL_ERROR, large: float = LARGE_ERROR) -> Grade:
     """Return the grade of an equivalent block with this error; NaN counts as too large.
 
     Parameters
@@ -67,4 +70,6 @@ def preferred_kappa(block: EquivalentBlock) -> Literal["kappa2", "either"]:
     lambda_lin/lambda is the paper's measure of effective slenderness: 1 for a slender structure, for which either will
     do.
     """
-    return "either" if SLENDER <= block.lambda_lin / block.lambda_ <= 1 / SLENDER else "kappa2"
+    return (
+        "either" if SLENDER_LAMBDA_RATIO <= block.lambda_lin / block.lambda_ <= 1 / SLENDER_LAMBDA_RATIO else "kappa2"
+    )

@@ -16,7 +16,7 @@ from rocking_cli.core.bodies import Body
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.errors import MechanismError, StructureError
 
-JUMP = 1e-5  # largest unexplained change of a coefficient between two rotations, over its size
+MAX_JUMP = 1e-5  # largest unexplained change of a coefficient between two rotations, over its size
 
 
 @dataclass(frozen=True)
@@ -152,6 +152,6 @@ def jump(phi: Reals, value: Reals, slope: Reals, size: float) -> float:
     """
     step = np.diff(phi)
     missed = np.abs(np.diff(value) - step / 2 * (slope[:-1] + slope[1:])) - step * np.abs(np.diff(slope))
-    allowed = JUMP * (size + np.abs(value[:-1]) + np.abs(value[1:]))
+    allowed = MAX_JUMP * (size + np.abs(value[:-1]) + np.abs(value[1:]))
     places = np.flatnonzero(~(missed <= allowed))  # what is not a number is a jump too
     return float(phi[places[0]]) if places.size else np.inf

@@ -62,7 +62,7 @@ class Piece:
     shift: complex = 0j
 
 
-MASONRY = 0.6
+MASONRY_FRICTION = 0.6
 """The coefficient of friction that joints of masonry usually have."""
 Held = Literal["slide", "level", "fixed"]
 

@@ -16,7 +16,7 @@ from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.errors import PluginError, RockingError, StructureError
 from rocking_cli.plugins.errors import plugin_error
 
-AGREEMENT = 1e-9  # relative difference below which the two directions count as the same
+EQUAL_DIRECTIONS = 1e-9  # relative difference
 
 
 class NoEquivalentBlock(StructureError):
@@ -92,7 +92,7 @@ def alike(one: EquivalentBlock | Statics, other: EquivalentBlock | Statics) -> b
 
 def _agree(one: float | str | None, other: float | str | None) -> bool:
     if isinstance(one, float) and isinstance(other, float):
-        return isclose(one, other, rel_tol=AGREEMENT, abs_tol=1e-12) or (isnan(one) and isnan(other))
+        return isclose(one, other, rel_tol=EQUAL_DIRECTIONS, abs_tol=1e-12) or (isnan(one) and isnan(other))
     return (one is None) == (other is None)  # texts have numbers in them that differ by rounding
 
 
@@ -208,8 +208,8 @@ def impulse_velocity(mechanism: Mechanism, direction: Direction, phi_cr: float) 
     return sqrt(2 * float(at.I[0]) * max(float(stored), 0.0)) / float(at.B[0])
 
 
-STEPS = 128  # steps to the critical rotation, between which jumps of the motion are searched
-STRAIGHT = 0.25  # departure from the straight line 1 - phi/phi_cr, over V'(0), beyond which linear models mislead
+JUMP_SEARCH_STEPS = 128  # steps to the critical rotation, between which jumps of the motion are searched
+MAX_CURVATURE = 0.25  # departure from the straight line 1 - phi/phi_cr, over V'(0), beyond which linear models mislead
 
 
 @dataclass(frozen=True)
@@ -274,7 +274,7 @@ def statics(mechanism: Mechanism, direction: Direction) -> Statics:
         if not mechanism.attached:
             raise
         phi_cr, why = None, f"its restoring moment does not vanish before the kinematic limit of {limit:.4g} rad"
-    way = np.linspace(0.0, limit if phi_cr is None else phi_cr, STEPS + 1)
+    way = np.linspace(0.0, limit if phi_cr is None else phi_cr, JUMP_SEARCH_STEPS + 1)
     here = mechanism.coefficients(way if phi_cr is not None else way[:-1], direction)
     check_continuous(mechanism.mechanism, direction, here, mechanism.jumps)
     moment, slope = here.restoring(mechanism.gravity), here.stiffness(mechanism.gravity)

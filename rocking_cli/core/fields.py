@@ -35,14 +35,14 @@ Name = Annotated[str, AfterValidator(_shown_as_it_is)]
 """What a user calls something: shown on terminals, in pictures and on pages."""
 
 
-LEAST = {
+MIN_BY_UNIT = {
     "m": 1e-6, "m2": 1e-12, "m3": 1e-18, "s": 1e-6, "kg": 1e-6, "kg/m3": 1e-6, "kg m2": 1e-18, "N/m3": 1e-6, "Pa": 1e-3,
     "m/s2": 1e-6, "g": 1e-6, "deg": 1e-6, "years": 1e-6,
 }  # fmt: skip
 """Least value of a quantity that must be positive, by its unit: far below any structure, far above underflow."""
 
 
-POWERS = {"m": 1, "m2": 2, "m3": 3, "kg m2": 2}  # of a length, by the unit of a field
+LENGTH_POWERS = {"m": 1, "m2": 2, "m3": 3, "kg m2": 2}  # power of a scale factor on lengths, by the unit of a field
 
 
 def quantity(description: str, *, unit: str = "", symbol: str = "", example: Any = None, **bounds: Any) -> Any:
@@ -122,7 +122,7 @@ def least(field: FieldInfo) -> float:
     """Return the least value of a field that must be positive; 0 if it need not be, or has no unit."""
     extra = field.json_schema_extra
     positive = any(getattr(rule, "gt", None) == 0 for rule in field.metadata)
-    return LEAST.get(str(extra.get("unit")), 0.0) if positive and isinstance(extra, dict) else 0.0
+    return MIN_BY_UNIT.get(str(extra.get("unit")), 0.0) if positive and isinstance(extra, dict) else 0.0
 
 
 def _multiplied(value: Any, factor: float, power: int) -> Any:
@@ -177,7 +177,7 @@ class Described(BaseModel):
         changed = {}
         for key, info in type(self).model_fields.items():
             extra, value = info.json_schema_extra, getattr(self, key)
-            power = POWERS.get(str(extra.get("unit")), 0) if isinstance(extra, dict) else 0
+            power = LENGTH_POWERS.get(str(extra.get("unit")), 0) if isinstance(extra, dict) else 0
             if (new := _multiplied(value, factor, power)) != value:
                 changed[key] = new
         return self.model_copy(update=changed)

@@ -18,18 +18,18 @@ from numpy.typing import NDArray
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion, rotation
 from rocking_cli.core.loops import LinkageJoint, Loops, Pin
 
-NULL = 1e-9  # singular values below this share of the largest one count as zero
-CLOSED = 1e-10  # largest gap of a joint, over the size of the linkage
-SURE = 1e-3  # rotation at which it is first checked whether the loops close [rad]
-FAR = 3e-3  # largest error of a prediction before the step is halved [rad, or of the size]
-ROUGH = 0.1  # largest relative error of the prediction of x'; it is larger across a singular position
-STEP = 0.05  # longest step [rad]
-LEAST = 1e-11  # shortest step: the motion ends there [rad]
-ROUNDS = 12  # iterations of Newton's method, at most
-SETTLED = 1e-10  # relative step of Newton's method at which it has converged
-FLAT = np.pi / 2  # rotation at which the leading body lies flat [rad]
-KEPT = 8  # motions that are kept
-AT_ONCE = 4_000_000  # entries of the matrices that are solved at once: 64 MB of complex numbers
+RANK_TOLERANCE = 1e-9  # singular values below this share of the largest one count as zero
+MAX_GAP = 1e-10  # largest gap of a joint, over the size of the linkage
+FIRST_ROTATION = 1e-3  # rotation at which it is first checked whether the loops close [rad]
+MAX_PREDICTION_ERROR = 3e-3  # largest error of a prediction before the step is halved [rad, or of the size]
+MAX_RATE_ERROR = 0.1  # largest relative error of the prediction of x'; it is larger across a singular position
+MAX_STEP = 0.05  # longest step [rad]
+MIN_STEP = 1e-11  # shortest step: the motion ends there [rad]
+MAX_ITERATIONS = 12  # of Newton's method
+CONVERGED_STEP = 1e-10  # relative step of Newton's method at which it has converged
+FLAT_ROTATION = np.pi / 2  # rotation at which the leading body lies flat [rad]
+CACHED_MOTIONS = 8
+MAX_ENTRIES = 4_000_000  # entries of the matrices that are solved at once: 64 MB of complex numbers
 
 
 class NoMotion(ValueError):
@@ -113,7 +113,7 @@ class LinkageMotion:
     ) -> None:
         self.direction, self.joints = direction, list(joints)
         self._bodies = list(bodies)
-        self._end = FLAT if end is None else end
+        self._end = FLAT_ROTATION if end is None else end
         first = _merged(self._bodies, fixed, ground)
         links = list(dict.fromkeys(name for name in first.values() if name is not None))
         self._link_of = {name: None if own is None else links.index(own) for name, own in first.items()}
@@ -201,7 +201,7 @@ class LinkageMotion:
 
     def _check_closes(self) -> None:
         """Raise `NoMotion` if the loops cannot close at a small rotation from rest."""
-        phi = np.array([min(SURE, self._end / 2)])
+        phi = np.array([min(FIRST_ROTATION, self._end / 2)])
         if self._stepped(self._first, float(phi[0])) is None:
             gaps = np.abs(self._residuals(self._newton(self._predicted(self._first, phi), phi), phi)[0][:-1])
             raise NoMotion(
@@ -222,10 +222,10 @@ class LinkageMotion:
 
     def _newton(self, x: Reals, phi: Reals) -> Reals:
         """Return the unknowns that solve the equations at `phi`, from guesses `x`, shape (n, unknowns)."""
-        for _ in range(ROUNDS):
+        for _ in range(MAX_ITERATIONS):
             step = _solved(self._matrix(x), self._residuals(x, phi)[:, self._rows])
             x = x - step
-            if not np.isfinite(step).all() or (np.abs(step) <= SETTLED * (1 + np.abs(x))).all():
+            if not np.isfinite(step).all() or (np.abs(step) <= CONVERGED_STEP * (1 + np.abs(x))).all():
                 break
         return x
 
@@ -251,13 +251,13 @@ class LinkageMotion:
         phi = np.array([node.phi + by])
         guess = self._predicted(node, phi)
         x = self._newton(guess, phi)
-        if not np.abs(x - guess).max() <= FAR or not np.abs(self._residuals(x, phi)).max() <= CLOSED:
+        if not np.abs(x - guess).max() <= MAX_PREDICTION_ERROR or not np.abs(self._residuals(x, phi)).max() <= MAX_GAP:
             return None
         if np.linalg.slogdet(self._matrix(x)[0])[0] != self._sign:
             return None
         found = self._node(x, phi)
         off = np.abs(found.dx - node.dx - by * node.ddx).max()
-        return found if off <= ROUGH * np.abs(found.dx).max() else None
+        return found if off <= MAX_RATE_ERROR * np.abs(found.dx).max() else None
 
     @cached_property
     def _sign(self) -> float:
@@ -267,15 +267,15 @@ class LinkageMotion:
     @cached_property
     def _nodes(self) -> list[_Node]:
         """Nodes of the motion from rest to its end, so close that Newton converges between them."""
-        found, by = [self._first], STEP / 4
+        found, by = [self._first], MAX_STEP / 4
         while found[-1].phi < self._end:
             by = min(by, self._end - found[-1].phi)
             if (node := self._stepped(found[-1], by)) is not None:
                 found.append(node)
-                by = min(1.5 * by, STEP)
+                by = min(1.5 * by, MAX_STEP)
             else:
                 by /= 2
-                if by < LEAST:
+                if by < MIN_STEP:
                     break
         return found
 
@@ -300,7 +300,7 @@ class LinkageMotion:
         phi = np.asarray(phi, dtype=np.float64)
         key = phi.tobytes()
         if key not in self._memory:
-            if len(self._memory) >= KEPT:
+            if len(self._memory) >= CACHED_MOTIONS:
                 self._memory.pop(next(iter(self._memory)))
             self._memory[key] = self._found(phi)
         still = rotation(phi, 0j, 0.0)
@@ -309,7 +309,7 @@ class LinkageMotion:
     def _found(self, phi: Reals) -> Sequence[RigidMotion]:
         if phi.any():
             inside = np.clip(phi, 0.0, self.limit)
-            count = min(inside.size, -(-inside.size * self._loops.size // AT_ONCE)) or 1
+            count = min(inside.size, -(-inside.size * self._loops.size // MAX_ENTRIES)) or 1
             each = map(self._followed, np.array_split(inside, count))
             x, dx, ddx = (np.concatenate(parts) for parts in zip(*each, strict=True))
         else:  # how far it goes does not matter
@@ -367,7 +367,7 @@ def _free(matrix: Reals) -> Reals:
     if not len(matrix):
         return np.eye(matrix.shape[1])
     _, values, ways = np.linalg.svd(matrix)
-    rank = int((values > NULL * values.max(initial=0.0)).sum())
+    rank = int((values > RANK_TOLERANCE * values.max(initial=0.0)).sum())
     return np.asarray(ways[rank:])
 
 

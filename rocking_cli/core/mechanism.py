@@ -31,7 +31,7 @@ from rocking_cli.core.hung.attachments import (
     followed,
     interlocked,
 )
-from rocking_cli.core.hung.element import NAME as INTERLOCK
+from rocking_cli.core.hung.element import INTERLOCK_NAME as INTERLOCK
 from rocking_cli.core.hung.element import Element, Stretched
 from rocking_cli.core.hung.everything import Hung
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
@@ -274,9 +274,9 @@ def _is_final(member: object) -> bool:
     return any(getattr(getattr(member, key, member), "__final__", False) for key in ("fget", "func", "__func__"))
 
 
-ROUNDING = 1e-9  # by which a restitution may exceed its bound, which the kinematic one of equal sides reaches
-LOOKED_AT = 129  # rotations at which it is checked whether a tie stretches
-STRETCHED = 1e-9  # elongation that counts, over the length of the path of a tie, or over 1 m if it is shorter
+RESTITUTION_ROUNDING = 1e-9  # the kinematic restitution of equal sides reaches the bound
+STRETCH_CHECKS = 129  # rotations at which it is checked whether a tie stretches
+MIN_ELONGATION = 1e-9  # elongation that counts, over the length of the path of a tie, or over 1 m if it is shorter
 NO_MASSES = "the structure has no masses: give density and depth, or its mass"
 
 
@@ -343,7 +343,7 @@ def check_restitution(mechanism: Mechanism) -> None:
     given = mechanism.restitution
     for direction in Direction if given is not None else ():
         own, most = mechanism.eta(direction), mechanism.greatest_restitution(direction)
-        if own > most * (1 + ROUNDING):
+        if own > most * (1 + RESTITUTION_ROUNDING):
             reason = f"must be at most {most:.6g}, got {own:g}: a larger value would add energy at an impact"
             if isinstance(given, DirectionalRestitution):
                 field = "positive_to_negative" if direction > 0 else "negative_to_positive"
@@ -363,10 +363,10 @@ def check_stretched(mechanism: Mechanism) -> None:
 
 def stretches(mechanism: Mechanism, tie: Stretched, direction: Direction) -> bool:
     """Return whether the motion in a direction stretches a tie, in the sense in which it can act."""
-    grid = np.linspace(0.0, mechanism.limit(direction), LOOKED_AT)[:-1]
+    grid = np.linspace(0.0, mechanism.limit(direction), STRETCH_CHECKS)[:-1]
     e, _, _ = tie.elongation(mechanism.followed(grid, direction))
     long = max(1.0, *(abs(b.at - a.at) for a, b in pairwise(tie.spots)))
-    return bool(((np.abs(e) > STRETCHED * long) & (tie.only is None or tie.force(e) != 0)).any())
+    return bool(((np.abs(e) > MIN_ELONGATION * long) & (tie.only is None or tie.force(e) != 0)).any())
 
 
 def check_stands(mechanism: Mechanism) -> None:
@@ -444,7 +444,7 @@ def why_none(eta: float) -> str:
     )
 
 
-SMALLEST, LARGEST = 0.01, 100.0  # m: what lies beyond is rarely meant
+MIN_USUAL_SIZE, MAX_USUAL_SIZE = 0.01, 100.0  # m: other sizes are usually mistakes of unit
 
 
 def extent(mechanism: Mechanism) -> float:
@@ -472,7 +472,7 @@ def doubtful_size(mechanism: Mechanism) -> str | None:
             size = extent(mechanism)
     except Exception:  # a plugin may fail in any way; whoever uses it next says so
         return None
-    if SMALLEST <= size <= LARGEST or not np.isfinite(size):
+    if MIN_USUAL_SIZE <= size <= MAX_USUAL_SIZE or not np.isfinite(size):
         return None
     odd = []
     for key, info in type(mechanism).model_fields.items():
@@ -481,9 +481,9 @@ def doubtful_size(mechanism: Mechanism) -> str | None:
             continue
         length = value if isinstance(value, float) else float(np.ptp(value, axis=0).max())
         says = f"{key} {'is' if isinstance(value, float) else 'spans'} {length:g} m"
-        if size > LARGEST and length > LARGEST:
+        if size > MAX_USUAL_SIZE and length > MAX_USUAL_SIZE:
             odd.append((says, f"{length:g} mm"))
-        elif size < SMALLEST and 0 < length < SMALLEST:
+        elif size < MIN_USUAL_SIZE and 0 < length < MIN_USUAL_SIZE:
             odd.append((says, f"{1000 * length:g} m"))
     if not odd:
         return f"it is {size:.3g} m large: are the units right?"

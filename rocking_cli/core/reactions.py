@@ -20,11 +20,11 @@ from rocking_cli.core.kinematics import Direction, Points, Reals, RigidMotion
 from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.core.released import Pieces
 
-LOOKED_AT = (0.21, 0.47)  # rotations over the kinematic limit at which motions of bodies are compared
-AS_ONE = 1e-9  # largest difference of two motions that count as one, over the largest displacement
-BALANCED = 1e-6  # largest imbalance at a joint, over the largest force
-COUPLE = 0j  # stands for a couple among the unit forces of a joint
-WHOLE = Joint("", 0j, ())
+COMPARED_ROTATIONS = (0.21, 0.47)  # over the kinematic limit
+EQUAL_MOTION = 1e-9  # largest difference of two motions that count as one, over the largest displacement
+MAX_IMBALANCE = 1e-6  # largest imbalance at a joint, over the largest force
+UNIT_COUPLE = 0j  # stands for a couple among the unit forces of a joint
+WHOLE_JOINT = Joint("", 0j, ())
 """Stands for all joints together where the forces at each are not known."""
 
 
@@ -35,7 +35,7 @@ class Reactions:
     Parameters
     ----------
     joints : sequence of Joint
-        Joints at which the forces act; only `WHOLE` if the sum of the forces is known and the single forces are not.
+        Joints at which the forces act; only `WHOLE_JOINT` if only the sum of the forces is known.
     force : ndarray of complex, shape (k, n)
         Fx + i Fy on the last of the bodies of each joint [N].
     across : ndarray of complex, shape (k, n)
@@ -63,7 +63,7 @@ class Reactions:
     @property
     def is_whole(self) -> bool:
         """Whether only the sum of the forces at all joints is known."""
-        return self.joints[0] is WHOLE
+        return self.joints[0] is WHOLE_JOINT
 
     @property
     def total(self) -> Points:
@@ -177,7 +177,7 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reactions | None:
         found = moving.at_joints()
         if found is not None:
             return found
-    level = all(abs(joint.normal - 1j) < AS_ONE for joint in joints if len(joint.bodies) == 1)
+    level = all(abs(joint.normal - 1j) < EQUAL_MOTION for joint in joints if len(joint.bodies) == 1)
     return moving.over_the_whole() if level and not any(joint.is_guide for joint in joints) else None
 
 
@@ -193,7 +193,7 @@ def _at_contacts(pieces: Pieces, contacts: Sequence[Contact], demand: Reals) -> 
     balance, needed = (jacobian / pieces.scale).swapaxes(1, 2), demand / pieces.scale
     values = np.einsum("nrq,nq->nr", np.linalg.pinv(balance), needed)
     off = np.abs(np.einsum("nqr,nr->nq", balance, values) - needed)
-    if off.max(initial=0.0) > BALANCED * np.abs(needed).max(initial=0.0):
+    if off.max(initial=0.0) > MAX_IMBALANCE * np.abs(needed).max(initial=0.0):
         return None
     joints: list[Joint] = []
     force: list[Points] = []
@@ -214,12 +214,12 @@ def _at_contacts(pieces: Pieces, contacts: Sequence[Contact], demand: Reals) -> 
 def parts(mechanism: Mechanism, direction: Direction) -> Mapping[str, int]:
     """Return a number for each body, by name: the same number for bodies that move as one, 0 for those at rest."""
     bodies = mechanism.bodies()
-    motions = mechanism.motion(np.array(LOOKED_AT) * mechanism.limit(direction), direction)
+    motions = mechanism.motion(np.array(COMPARED_ROTATIONS) * mechanism.limit(direction), direction)
     middle = sum(body.centroid for body in bodies) / len(bodies)
     size = max(abs(body.centroid - middle) for body in bodies) or 1.0
     two = (middle - size, middle + size)  # points of a plane that moves say all of its motion
     ways = [np.concatenate([motion.carry(point)[0] - point for point in two]) for motion in motions]
-    close = AS_ONE * max(float(np.abs(way).max()) for way in ways)
+    close = EQUAL_MOTION * max(float(np.abs(way).max()) for way in ways)
     kinds = [np.zeros_like(ways[0])]
     found: dict[str, int] = {}
     for body, way in zip(bodies, ways, strict=True):
@@ -268,7 +268,7 @@ class _Moving:
     def over_the_whole(self) -> Reactions:
         """Return the sum of the forces at all joints, for level ground."""
         total = np.sum([part.force for part in self._parts], axis=0)[None]
-        return Reactions((WHOLE,), total, np.full(total.shape, 1j))
+        return Reactions((WHOLE_JOINT,), total, np.full(total.shape, 1j))
 
     def at_joints(self) -> Reactions | None:
         """Return the forces at the joints; None if they do not follow from the motion."""
@@ -303,7 +303,7 @@ class _Moving:
             for k, sign in zip(self._numbers(joint)[::-1], (1, -1), strict=False):  # on the last body, and back
                 if not k:
                     continue
-                if force == COUPLE:
+                if force == UNIT_COUPLE:
                     turns[:, k - 1, column] = 1.0
                     break  # what keeps the last body level is several, and turns none of them
                 balance[2 * k - 2 : 2 * k, column] = sign * force.real, sign * force.imag
@@ -337,7 +337,7 @@ def _unknown(joint: Joint) -> list[complex]:
     """Return the unknown forces of a joint as unit vectors, and a couple if it keeps a body level."""
     if joint.is_guide:
         return [1j * joint.slide / abs(joint.slide)]
-    return [1 + 0j, 1j, *([COUPLE] if joint.level else [])]
+    return [1 + 0j, 1j, *([UNIT_COUPLE] if joint.level else [])]
 
 
 def _point(x: Reals, y: Reals) -> Points:

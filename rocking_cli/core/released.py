@@ -20,10 +20,10 @@ from rocking_cli.core.hung.attached import Path, PointMass, Spot
 from rocking_cli.core.kinematics import Direction, Integers, Points, Rates, Reals, RigidMotion, VelocityTerm, rotation
 from rocking_cli.core.mechanism import Mechanism
 
-SINGULAR = 1e-9  # 1/largest entry of the inverse of the rates over the size: below, forces are not determined
-AT_ONCE = 1_000_000  # entries of the matrices that are inverted at once: 8 MB of each
-NO_MASS = 1e-12  # mass given to a piece without mass, over the largest mass
-ONE, PUSH, RATE, WEIGHT = range(4)  # indices of the factors of 1, u_g'', phi.^2 and v_g'' in tables of forces
+MIN_PIVOT = 1e-9  # 1/largest entry of the inverse of the rates over the size: below, forces are not determined
+MAX_ENTRIES = 1_000_000  # entries of the matrices that are inverted at once: 8 MB of each
+MASSLESS_SHARE = 1e-12  # mass given to a piece without mass, over the largest mass
+ONE, PUSH, RATE, WEIGHT = range(4)  # columns of tables of forces: the factors of 1, u_g'', phi.^2 and v_g''
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,7 +166,7 @@ def _solved(rates: Rates, pieces: Pieces, demand: Reals) -> tuple[Reals, Reals]:
     rocking = pieces.momentum(pieces.dq) / scale
     rocking /= np.linalg.norm(rocking, axis=1, keepdims=True)
     force, compliance = [], []
-    parts = min(len(rocking), -(-rocking.size * rocking.shape[1] // AT_ONCE))
+    parts = min(len(rocking), -(-rocking.size * rocking.shape[1] // MAX_ENTRIES))
     for part in np.array_split(np.arange(len(rocking)), parts):
         square = np.concatenate([rates.rotations(part).dense() / scale, rocking[part, None, :]], axis=1)
         released = inverted(square)[:, :, :-1] / scale[:, None]
@@ -182,7 +182,7 @@ def inverted(square: Reals) -> Reals:
         inverse = np.linalg.inv(square)
     except np.linalg.LinAlgError:
         raise Undetermined(redundant=False) from None
-    if np.abs(inverse).max() > 1 / SINGULAR:
+    if np.abs(inverse).max() > 1 / MIN_PIVOT:
         raise Undetermined(redundant=False)
     return np.asarray(inverse)
 
@@ -284,7 +284,7 @@ class Pieces:
                     rate = rate.reshape(self.phi.size, -1, 3)
                     matrix += thing.mass / len(shifts) * share * rate[..., None] * rate[:, :, None, :]
         # A piece without mass has no accelerations: it is given a mass too small to change the others.
-        least = NO_MASS * np.abs(matrix).max()
+        least = MASSLESS_SHARE * np.abs(matrix).max()
         light = np.diagonal(matrix, axis1=2, axis2=3) < least
         return np.asarray(matrix + least * np.eye(3) * light[..., None, :])
 

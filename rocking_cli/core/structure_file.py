@@ -13,7 +13,7 @@ from rocking_cli.io.field_problems import problems
 from rocking_cli.io.yaml_file import Document, parse, read_text
 from rocking_cli.text import cut, did_you_mean, one_line
 
-HINT = "`rocking new block` prints a template"
+TEMPLATE_HINT = "`rocking new block` prints a template"
 
 
 def load_structure(path: str | Path, registry: Registry | None = None) -> Mechanism:
@@ -48,7 +48,7 @@ def default_name(path: str | Path) -> str:
 
 def parse_structure(text: str, file: str, default_name: str, registry: Registry | None = None) -> Mechanism:
     """Read a structure from YAML text; `file` is its name in messages. Raises as `load_structure`."""
-    document = parse(text, file, "structure", HINT)
+    document = parse(text, file, "structure", TEMPLATE_HINT)
     return of_document(document, default_name, Path(file).parent, registry)
 
 

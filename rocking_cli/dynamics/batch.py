@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.dynamics import kernels
-from rocking_cli.dynamics.deck import MOST_IMPACTS, lay_out, read_marks, run_deck
+from rocking_cli.dynamics.deck import MAX_IMPACTS, lay_out, read_marks, run_deck
 from rocking_cli.dynamics.history import RTOL, check_rtol, out_of_step
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcomes
@@ -20,9 +20,9 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 
 # Impacts after the record: one ends the motion under way, two a free excursion to either side; later ones only weaken.
-DECISIVE = 3
-ROUNDING = 1e-9  # by which an eta may exceed its bound: the kinematic one of two equal sides reaches it
-UNIT = 256  # histories a thread takes at a time: some 50 ms of work, against 20 us for handing them out
+DECISIVE_IMPACTS = 3
+RESTITUTION_ROUNDING = 1e-9  # the kinematic restitution of equal sides reaches the bound
+HISTORIES_PER_TASK = 256  # some 50 ms of work; handing it to a thread takes 20 us
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,15 +216,15 @@ def respond_many(
         rows[:, kernels.START] = starts[runs.model, which]
     rows[:, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = etas
     marks = np.full((len(runs), kernels.MARKS), np.nan)  # a run that is never computed has failed
-    most = DECISIVE - 1 if only_peaks else MOST_IMPACTS  # it is left after more than these
+    most = DECISIVE_IMPACTS - 1 if only_peaks else MAX_IMPACTS  # it is left after more than these
     rows[:, kernels.STRUCTURE] = runs.model
     if len(runs):
         run = partial(run_deck, lay_out(models, motions), rtol=rtol, most_impacts=most, brief=True)
-        in_parts(partial(run, rows, marks), len(rows), UNIT, threads, progress)
+        in_parts(partial(run, rows, marks), len(rows), HISTORIES_PER_TASK, threads, progress)
         loose = out_of_step(models, motions, rows, marks, tilts, rtol=rtol, most_impacts=most, threads=threads)
         again, found = rows[loose], marks[loose]
         again[:, kernels.LOOSE] = 1.0
-        in_parts(partial(run, again, found), len(again), UNIT, threads, None)
+        in_parts(partial(run, again, found), len(again), HISTORIES_PER_TASK, threads, None)
         marks[loose] = found
     reach = np.array([model.reach for model in models])
     phi_cr = np.array([model.phi_cr for model in models]).reshape(-1, 2)[runs.model]
@@ -244,7 +244,7 @@ def _etas(models: Sequence[Model], runs: Runs) -> Reals:
     etas = np.broadcast_to(runs.eta[:, None], (len(runs), 2)) if runs.eta.ndim == 1 else runs.eta
     most = np.maximum(1.0, np.array([model.most_eta for model in models]).reshape(-1, 2))[runs.model]
     with np.errstate(invalid="ignore"):
-        beyond = etas > most * (1 + ROUNDING)
+        beyond = etas > most * (1 + RESTITUTION_ROUNDING)
     if beyond.any():
         k, side = (int(place) for place in np.argwhere(beyond)[0])
         raise InputError(f"run {k}: eta must be in (0, {most[k, side]:.6g}], got {etas[k, side]:g}")

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 Number = TypeVar("Number", np.float64, np.int64)
 
-NOTHING, NO_IMPACTS = np.empty(0), np.empty((0, 3))
-RELEASE_DT = 0.005  # s between samples of a free motion without a record
-MOST_IMPACTS = 20_000  # after the record and its tail, to call it still rocking; eta = 0.999 rests in 14 000
+NO_VALUES, NO_IMPACTS = np.empty(0), np.empty((0, 3))
+RELEASE_DT = 0.005  # s, for a free motion without a record
+MAX_IMPACTS = 20_000  # after the record and its tail; with more a structure still rocks; eta = 0.999 rests in 14 000
 
 
 def run_deck(
@@ -35,11 +35,11 @@ def run_deck(
     stop: int | None = None,
     *,
     rtol: float,
-    most_impacts: int = MOST_IMPACTS,
+    most_impacts: int = MAX_IMPACTS,
     brief: bool = False,
     every: int = 1,
-    phi: Reals = NOTHING,
-    rate: Reals = NOTHING,
+    phi: Reals = NO_VALUES,
+    rate: Reals = NO_VALUES,
     impacts: Reals = NO_IMPACTS,
 ) -> None:
     """Run the kernel; it fills `marks` and, if given, the samples and the impacts of the last history."""
@@ -111,8 +111,8 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
     tied = any_vertical and any(len(model.held) for model in models)
     for motion in motions:
         up = motion.vertical if motion is not None else None
-        u, dt = (motion.acceleration, motion.dt) if motion is not None else (NOTHING, RELEASE_DT)
-        v, v_dt = (up.acceleration, up.dt) if up is not None else (NOTHING, 1.0)
+        u, dt = (motion.acceleration, motion.dt) if motion is not None else (NO_VALUES, RELEASE_DT)
+        v, v_dt = (up.acceleration, up.dt) if up is not None else (NO_VALUES, 1.0)
         length = max(u.size, ceil((v.size - 1) * v_dt / dt) + 1)
         places = (*us.add(u), *vs.add(v), *aheads.add(_strongest_to_come(np.abs(u), 1.0, length)))
         if any_vertical:
@@ -168,7 +168,7 @@ class _Row:
         return self.size - array.size, array.size
 
     def joined(self) -> Reals:
-        return _joined(self.arrays or [NOTHING])
+        return _joined(self.arrays or [NO_VALUES])
 
 
 def _strongest_to_come(strength: Reals, stride: float, length: int) -> Reals:

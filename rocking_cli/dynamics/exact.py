@@ -12,7 +12,7 @@ from math import asin, exp, inf, isfinite, log, nan, pi, sqrt
 from typing import TYPE_CHECKING, Literal
 
 from rocking_cli.dynamics import pulse_motion
-from rocking_cli.dynamics.outcome import UNCHECKED, Outcome
+from rocking_cli.dynamics.outcome import UNCHECKED_FIELDS, Outcome
 from rocking_cli.dynamics.pulse_motion import COLUMNS, Side
 from rocking_cli.errors import InputError, SolverError
 
@@ -20,11 +20,11 @@ if TYPE_CHECKING:  # numpy: only who has a structure and a pulse has paid for it
     from rocking_cli.core import Equivalence
     from rocking_cli.excitation.pulses import Pulse, Segment
 
-KEPT = 5_000  # impacts; eta = 0.995 rests after 2800
+MAX_IMPACTS = 5_000  # eta = 0.995 rests after 2800
 # How many cycles they last, and their phase at the start: those of `rocking_cli.excitation.pulses`, without its numpy.
-SHAPES = {"sine": (1.0, 0.0), "cosine": (1.0, pi / 2), "half_sine": (0.5, 0.0), "rectangular": (1.0, pi / 2)}
-LARGEST = 1e6  # a or omega, and 1/omega
-LONG = 690.0  # exp of more, with a factor of omega^2, overflows
+SHAPE_CYCLES = {"sine": (1.0, 0.0), "cosine": (1.0, pi / 2), "half_sine": (0.5, 0.0), "rectangular": (1.0, pi / 2)}
+MAX_INPUT = 1e6  # a or omega, and 1/omega
+MAX_EXPONENT = 690.0  # a larger exponential, times omega^2, overflows
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -142,7 +142,7 @@ def polarity_of(polarity: int) -> int:
 
 def solve(sides: tuple[Side, Side], segments: pulse_motion.Rows, polarity: int = 1) -> ExactResponse:
     """Return the response, with both peaks over the phi_cr of their direction, in any consistent units."""
-    log = [0.0] * (COLUMNS * KEPT)
+    log = [0.0] * (COLUMNS * MAX_IMPACTS)
     motion = pulse_motion.follow(sides, segments, float(polarity), 1.0, True, log)
     if motion.status == pulse_motion.SPENT:
         raise SolverError(
@@ -150,7 +150,7 @@ def solve(sides: tuple[Side, Side], segments: pulse_motion.Rows, polarity: int =
         )
     overturned = motion.status == pulse_motion.OVERTURNED
     fell_to = (1, -1)[motion.side] if overturned else 0
-    kept = [log[k : k + COLUMNS] for k in range(0, COLUMNS * min(motion.impacts, KEPT), COLUMNS)]
+    kept = [log[k : k + COLUMNS] for k in range(0, COLUMNS * min(motion.impacts, MAX_IMPACTS), COLUMNS)]
     return ExactResponse(
         still_rocking=False,
         failed=False,
@@ -162,7 +162,7 @@ def solve(sides: tuple[Side, Side], segments: pulse_motion.Rows, polarity: int =
         uplift_time=motion.uplift,
         impact_count=motion.impacts,
         end_time=nan,
-        **UNCHECKED,
+        **UNCHECKED_FIELDS,
         first_excursion=kept[0][3] if kept else nan,
         first_rebound=kept[1][3] if len(kept) > 1 else nan,
         impacts=tuple((time, int(sign), rate) for time, sign, rate, _ in kept),
@@ -210,10 +210,12 @@ class ClosedForm:
 
 def check_pulse(a: float, omega: float, eta: float) -> None:
     """Raise `InputError`, with the name of the parameter, if a parameter of the pulse or the block is not valid."""
-    if not 0 < a <= LARGEST:
-        raise InputError(f"a must be a positive number up to {LARGEST:g} (a_g over the uplift acceleration), got {a:g}")
-    if not 1 / LARGEST <= omega <= LARGEST:
-        raise InputError(f"omega must be a number from {1 / LARGEST:g} to {LARGEST:g} (omega_g/p), got {omega:g}")
+    if not 0 < a <= MAX_INPUT:
+        raise InputError(
+            f"a must be a positive number up to {MAX_INPUT:g} (a_g over the uplift acceleration), got {a:g}"
+        )
+    if not 1 / MAX_INPUT <= omega <= MAX_INPUT:
+        raise InputError(f"omega must be a number from {1 / MAX_INPUT:g} to {MAX_INPUT:g} (omega_g/p), got {omega:g}")
     if not 0 < eta <= 1:
         raise InputError(f"eta must be in (0, 1], got {eta:g}")
 
@@ -245,7 +247,7 @@ def closed_form(a: float, omega: float, eta: float) -> ClosedForm:
         return ClosedForm(None, None, False, _conditions(False, None, None))
     root = sqrt(a * a - 1)
     end = (2 * pi - asin(1 / a)) / omega  # tau from uplift to the end of the pulse
-    if end + log(a) > LONG:
+    if end + log(a) > MAX_EXPONENT:
         # The growing term decides all: D0 is beyond numbers, with the sign of root - omega.
         conditions = _conditions(True, root >= omega, root <= omega)
         return ClosedForm(None, None, False if all(conditions.values()) else None, conditions)
@@ -298,9 +300,9 @@ def exact_pulse(a: float, omega: float, eta: float, shape: str = "sine") -> Exac
     The motion of `rocking_cli.dynamics.pulse_motion`, with p, phi_cr and the uplift acceleration equal to 1.
     """
     check_pulse(a, omega, eta)
-    if shape not in SHAPES:
-        raise InputError(f"shape must be one of {', '.join(SHAPES)}, got {shape!r}")
-    cycles, phase = SHAPES[shape]
+    if shape not in SHAPE_CYCLES:
+        raise InputError(f"shape must be one of {', '.join(SHAPE_CYCLES)}, got {shape!r}")
+    cycles, phase = SHAPE_CYCLES[shape]
     side = Side(1.0, 1.0, 1.0, eta)
     duration = 2 * pi / omega * cycles
     # To the left, so that the positive direction is the first.

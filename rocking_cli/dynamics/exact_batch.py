@@ -13,12 +13,12 @@ from rocking_cli.core import Direction, Equivalence
 from rocking_cli.dynamics import pulse_motion, ways
 from rocking_cli.dynamics.calling import PULSES
 from rocking_cli.dynamics.exact import polarity_of, segments_of, sides_of
-from rocking_cli.dynamics.outcome import UNCHECKED, Outcome, Outcomes
+from rocking_cli.dynamics.outcome import UNCHECKED_FIELDS, Outcome, Outcomes
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.pulses import Pulse
 
-UNIT = 1024  # pulses a thread takes at a time: some milliseconds
+PULSES_PER_TASK = 1024  # some milliseconds of work for a thread
 
 
 def exact_many(
@@ -76,7 +76,7 @@ def exact_many(
         def follow(first: int, stop: int) -> None:
             many(sides, segments, factors, stretches, first, stop, results)
 
-        in_parts(follow, n, UNIT, threads, progress)
+        in_parts(follow, n, PULSES_PER_TASK, threads, progress)
     status, side, impacts, uplift_time, *ratios = results.T
     overturned = status == pulse_motion.OVERTURNED
     fell_to = np.where(overturned, 1 - 2 * side, 0).astype(np.int64)
@@ -95,7 +95,7 @@ def exact_many(
         uplift_time=uplift_time.copy(),
         impact_count=np.nan_to_num(impacts).astype(np.int64),
         end_time=np.full(n, np.nan),
-        **{name: np.full(n, value) for name, value in UNCHECKED.items()},
+        **{name: np.full(n, value) for name, value in UNCHECKED_FIELDS.items()},
     )
 
 

@@ -11,21 +11,21 @@ import numpy as np
 
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.dynamics import kernels
-from rocking_cli.dynamics.deck import MOST_IMPACTS, RELEASE_DT, lay_out, read_marks, run_deck
+from rocking_cli.dynamics.deck import MAX_IMPACTS, RELEASE_DT, lay_out, read_marks, run_deck
 from rocking_cli.dynamics.joints import JointCheck, check_of
 from rocking_cli.dynamics.model import Model, ModelName
-from rocking_cli.dynamics.outcome import OUTCOME, Outcome
+from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome
 from rocking_cli.dynamics.parallel import in_parts
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import GroundMotion
 
-FINEST_RTOL = 1e-14  # below it rounding refuses steps
-RTOL = 1e-9  # local error of a step, of the lower order of the pair: peaks are then right to 1e-11
-TAIL = 10.0  # s of motion kept after the record
+FINEST_RTOL = 1e-14  # a smaller tolerance is below rounding, so that no step is accepted
+RTOL = 1e-9  # local error of a step by the lower order of the pair; peaks are then accurate to 1e-11
+TAIL_SECONDS = 10.0  # motion kept after the record
 MOST_SAMPLES = 20_000_000
-ALONE = 256  # histories of columns alone that a thread takes at a time
-LEAST_ETA = 1e-3  # of a column alone whose restitution is shifted with that of the structure
-FELT = 0.02  # of the rate of rotation before the strongest impact: weaker ones are chatter
+COLUMNS_PER_TASK = 256  # histories of single columns that a thread computes at a time
+MIN_COLUMN_ETA = 1e-3  # lower bound on the restitution of a single column, which shifts with that of the structure
+MIN_IMPACT_RATE = 0.02  # impacts below this share of the fastest rate before an impact are chatter
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -93,10 +93,10 @@ class History(Outcome[bool, int, float]):
     def felt(self) -> Reals:
         """The impacts that are counted, listed and marked, as `impacts` has them: not the chatter before rest.
 
-        They are as fast as `FELT` of the fastest one or more.
+        They are as fast as `MIN_IMPACT_RATE` times the fastest one or more.
         """
         rate = self.impacts[:, 2]
-        felt: Reals = self.impacts[rate >= FELT * rate.max(initial=0.0)]
+        felt: Reals = self.impacts[rate >= MIN_IMPACT_RATE * rate.max(initial=0.0)]
         return felt
 
     @property
@@ -116,9 +116,9 @@ def follow(
     motion: GroundMotion | None,
     *,
     release: float = 0.0,
-    tail: float = TAIL,
+    tail: float = TAIL_SECONDS,
     rtol: float = RTOL,
-    most_kept: int = MOST_IMPACTS,
+    most_kept: int = MAX_IMPACTS,
     eta: float = float("nan"),
 ) -> History:
     """Simulate the time history of one model; most arguments are those of `rocking_cli.studies.engines.follow`.
@@ -147,7 +147,7 @@ def follow(
     )
     run()
     tilts = np.array([release])
-    if out_of_step([model], [motion], runs, marks, tilts, rtol=rtol, most_impacts=MOST_IMPACTS)[0]:
+    if out_of_step([model], [motion], runs, marks, tilts, rtol=rtol, most_impacts=MAX_IMPACTS)[0]:
         runs[0, kernels.LOOSE] = 1.0
         run()
     found = read_marks(marks, np.array([model.phi_cr]), np.array([model.reach]))
@@ -164,7 +164,7 @@ def follow(
     # The samples end with the record or with the motion, whichever is later; after overturning they are NaN.
     kept = min(samples, max(npts, int(end / dt) + (1 if marks[0, kernels.STATUS] == kernels.STILL_ROCKING else 3)))
     return History(
-        **{name: getattr(found, name)[0].item() for name in OUTCOME},
+        **{name: getattr(found, name)[0].item() for name in OUTCOME_FIELDS},
         model=model.name,
         time=np.arange(kept, dtype=np.float64) * dt,
         phi=phi[:kept],
@@ -219,10 +219,10 @@ def out_of_step(
             there[:, kernels.STRUCTURE] = 0
             there[:, kernels.START] = [column.q(tilt) for tilt in tilts[mine].tolist()]
             for place, eta, of in zip((kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE), column.eta, model.eta, strict=True):
-                there[:, place] = np.clip(eta + there[:, place] - of, LEAST_ETA, 1.0)  # NaN stays
+                there[:, place] = np.clip(eta + there[:, place] - of, MIN_COLUMN_ETA, 1.0)  # NaN stays
             deck = lay_out([column], motions)
             run = partial(run_deck, deck, there, found, rtol=rtol, most_impacts=most_impacts, brief=True)
-            in_parts(run, len(there), ALONE, threads, None)
+            in_parts(run, len(there), COLUMNS_PER_TASK, threads, None)
             alone, whole = (
                 read_marks(each, np.array([of.phi_cr]), np.array([of.reach]))
                 for each, of in ((found, column), (marks[mine], model))

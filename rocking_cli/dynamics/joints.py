@@ -24,19 +24,19 @@ from rocking_cli.dynamics.tables import DirectionTable
 from rocking_cli.names import OPENING
 from rocking_cli.text import in_short
 
-TO_CRITICAL = 32  # cells of the forces from rest to phi_cr
-COARSE = 40  # cells where joints are redundant, whose modes take longer to find
-MOST_CELLS = 128
-FINER = 4  # cells of the certain bounds in one of the forces
-TENSION = 1e-9  # of the weight: a force that is missing by rounding alone
-QUICK = 3e-3  # of 1/p: the longest step in which openings of a small structure are advanced
-ANY = 1e6  # m/s2: more than any ground acceleration
-NEVER = (np.inf, -1.0)  # all joints bear under no q.^2 at all
-ALWAYS = (-np.inf, np.inf)  # no joint fails at rest, whatever u_g''
-MANY = 1e3  # weights: a force that no motion of the ground takes up
-SAFE = 0.01  # of the width of the certain bounds, which the cubics may leave between two of their nodes
-LISTED = 4  # names of a kind: the hinges of a frame or an arch in both directions
-KINDS = (("foot", "feet"), ("hinge", "hinges"), ("closed joint", "closed joints"))
+FORCE_CELLS = 32  # cells of the forces from rest to phi_cr
+REDUNDANT_CELLS = 40  # cells where joints are redundant, whose modes take longer to find
+MAX_CELLS = 128
+CELL_SPLITS = 4  # cells of the certain bounds in one of the forces
+ZERO_TENSION = 1e-9  # of the weight: a force that is missing by rounding alone
+MAX_OPENING_STEP = 3e-3  # of 1/p: the longest step in which openings of a small structure are advanced
+MAX_ACCELERATION = 1e6  # m/s2: more than any ground acceleration
+NO_BOUNDS = (np.inf, -1.0)  # all joints bear under no q.^2 at all
+WHOLE_RANGE = (-np.inf, np.inf)  # no joint fails at rest, whatever u_g''
+MAX_MISSING_WEIGHTS = 1e3  # weights: a force that no motion of the ground takes up
+BOUND_MARGIN = 0.01  # of the width of the certain bounds, which the cubics may leave between two of their nodes
+MAX_LISTED_NAMES = 4  # names of a kind: the hinges of a frame or an arch in both directions
+PLACE_KINDS = (("foot", "feet"), ("hinge", "hinges"), ("closed joint", "closed joints"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +110,7 @@ class JointTables:
     asserted: Sequence[str]
     sliding: Collection[int] = ()
     redundant: bool = False
-    calm: tuple[float, float] = NEVER
+    calm: tuple[float, float] = NO_BOUNDS
     alone: bool = False
     checked: Sequence[str] = ()
     at_rest: bool = True
@@ -241,8 +241,8 @@ def joints_of(
     JointTables or None
         None if the joints are not known, so that no history is checked.
     """
-    cells = max(TO_CRITICAL * table.end / table.q(side.reference) for table, side in zip(tables, statics, strict=True))
-    cells = int(min(np.ceil(cells), MOST_CELLS))
+    cells = max(FORCE_CELLS * table.end / table.q(side.reference) for table, side in zip(tables, statics, strict=True))
+    cells = int(min(np.ceil(cells), MAX_CELLS))
     sides = list(zip(mechanism.sides, tables, strict=True))
     redundant = False
     try:
@@ -253,7 +253,7 @@ def joints_of(
     except Undetermined as error:
         if not error.redundant:
             return None
-        redundant, cells = True, min(cells, COARSE)
+        redundant, cells = True, min(cells, REDUNDANT_CELLS)
         answers = [
             modes(mechanism, direction, _at(table, cells), side.reference)
             for (direction, table), side in zip(sides, statics, strict=True)
@@ -272,14 +272,14 @@ def joints_of(
     most = max(one.force.shape[1] for one in found) + len(back)
     weight = mechanism.gravity * sum(body.mass for body in mechanism.weighed())
     rows = np.zeros((cells, 2, most, 20))
-    within = np.zeros((FINER * cells, 2, 5))
+    within = np.zeros((CELL_SPLITS * cells, 2, 5))
     struck = np.zeros((2, most, 2))
     rest, steady = _at_rest(still, labels, bearing, weight)
     plain = len(labels)
     labels += [mode.joint for mode in still.modes]
     for d, ((direction, table), one) in enumerate(zip(sides, found, strict=True)):
         force = one.force.copy()
-        force[:, [k for normal, _ in one.rows for k in normal], ONE] += TENSION * weight
+        force[:, [k for normal, _ in one.rows for k in normal], ONE] += ZERO_TENSION * weight
         inertia = mechanism.coefficients(_at(table, cells), direction).I
         force[:, :, RATE] /= inertia[:, None]  # phi.^2 = q.^2/I
         whole = np.concatenate([force, one.compliance[..., None]], axis=2)
@@ -301,7 +301,7 @@ def joints_of(
     sliding = {k for k, mode in enumerate(still.modes, plain) if mode.slides}
     return JointTables(
         labels, contacts, bearing, rows, struck, within, _reach(mechanism, statics), OPENING,
-        not any(table.held.size for table in tables), QUICK / p, mechanism.gravity, rest, steady,
+        not any(table.held.size for table in tables), MAX_OPENING_STEP / p, mechanism.gravity, rest, steady,
         mechanism.asserted(), sliding, redundant, _calm(within, tables, statics),
         len(mechanism.bodies()) == 1, checked_joints(mechanism), still.known,
     )  # fmt: skip
@@ -311,7 +311,7 @@ def _at_rest(still: Rest, labels: Sequence[str], bearing: Reals, weight: float) 
     """Return `JointTables.rest` and `steady`, and fill in the friction of joints that are joints at rest alone."""
     known = still.closed
     if known is None and not still.modes:
-        return np.zeros((len(bearing), 3, 4)), ALWAYS
+        return np.zeros((len(bearing), 3, 4)), WHOLE_RANGE
     rest, planes = np.zeros((len(bearing), 3, 4)), []
     if known is not None:
         factors = np.concatenate([known.force[0][:, [ONE, PUSH, WEIGHT]], known.compliance[0][:, None]], axis=1)
@@ -320,7 +320,7 @@ def _at_rest(still: Rest, labels: Sequence[str], bearing: Reals, weight: float) 
             continue
         j = labels.index(contact.label)
         rest[j, : len(normal)] = factors[list(normal)]
-        rest[j, : len(normal), 0] += TENSION * weight
+        rest[j, : len(normal), 0] += ZERO_TENSION * weight
         rest[j, 2] = factors[shear]
         planes += list(rest[j, : len(normal), :3])
         if contact.friction is not None:
@@ -328,15 +328,15 @@ def _at_rest(still: Rest, labels: Sequence[str], bearing: Reals, weight: float) 
             total = contact.friction * rest[j, :2, :3].sum(axis=0)
             planes += [total - rest[j, 2, :3], total + rest[j, 2, :3]]
     for j, mode in enumerate(still.modes, len(labels)):
-        force = mode.force[[ONE, PUSH, WEIGHT]] + [TENSION * weight, 0.0, 0.0]
+        force = mode.force[[ONE, PUSH, WEIGHT]] + [ZERO_TENSION * weight, 0.0, 0.0]
         planes.append(force)
         if mode.opens:
             rest[j, 0] = *force, mode.compliance
             continue
         # It slides in one sense alone: in the other a force of MANY weights is never missing.
         bearing[j, 0] = 1.0
-        rest[j, 0, :3] = force * [1.0, 0.0, 1.0] + [MANY * weight, 0.0, 0.0]
-        rest[j, 2] = MANY * weight, -force[1], 0.0, mode.compliance
+        rest[j, 0, :3] = force * [1.0, 0.0, 1.0] + [MAX_MISSING_WEIGHTS * weight, 0.0, 0.0]
+        rest[j, 2] = MAX_MISSING_WEIGHTS * weight, -force[1], 0.0, mode.compliance
     plane = np.array(planes).reshape(1, -1, 3) * [1.0, 1.0, 0.0]  # without v_g'', as rates are none
     low, high = _range(plane, np.zeros(1))
     return rest, (float(low[0]), float(high[0]))
@@ -400,10 +400,10 @@ def _lines(values: Reals) -> Reals:
 def _within(cubics: Reals, contacts: Integers, bearing: Reals) -> Reals:
     """Return the bounds of u_g'' and q.^2 inside which all joints of a direction hold, see `JointTables.within`.
 
-    Each cell of the cubics is divided into `FINER` cells. The bounds of a cell hold at both of its ends, with a margin
-    for the cubics in between.
+    Each cell of the cubics is divided into `CELL_SPLITS` cells. The bounds of a cell hold at both of its ends, with a
+    margin for the cubics in between.
     """
-    fine = np.arange(FINER) / FINER
+    fine = np.arange(CELL_SPLITS) / CELL_SPLITS
     powers = np.stack([np.append(fine, 1.0) ** k for k in range(4)], axis=-1)
     at = np.einsum("crvp,xp->cxrv", cubics, powers)
     nodes = np.concatenate([at[:, :-1].reshape(-1, *at.shape[2:]), at[-1:, -1]])
@@ -424,7 +424,7 @@ def _within(cubics: Reals, contacts: Integers, bearing: Reals) -> Reals:
     fast = _fastest(plane)
     low, high = _range(plane, np.zeros(len(nodes)))
     low_fast, high_fast = _range(plane, fast)
-    room = SAFE * np.minimum(high - low, 1e3)
+    room = BOUND_MARGIN * np.minimum(high - low, 1e3)
     low, high, low_fast, high_fast = low + room, high - room, low_fast + room, high_fast - room
     most = np.minimum(fast[:-1], fast[1:])
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -454,7 +454,7 @@ def _calm(within: Reals, tables: Sequence[DirectionTable], statics: Sequence[Sta
             narrows = slope < 0
             fast = min(fast, np.min(at[narrows] / -slope[narrows], initial=np.inf))
         fast = min(fast, line[:, 4].min())
-    return (float(push), float(fast)) if push > 0 and fast > 0 else NEVER
+    return (float(push), float(fast)) if push > 0 and fast > 0 else NO_BOUNDS
 
 
 def _range(plane: Reals, fast: Reals) -> tuple[Reals, Reals]:
@@ -465,10 +465,10 @@ def _range(plane: Reals, fast: Reals) -> tuple[Reals, Reals]:
     base, push = plane[..., ONE] + plane[..., RATE] * fast[:, None], plane[..., PUSH]
     with np.errstate(divide="ignore", invalid="ignore"):
         bound = -base / push
-    low = np.where(push > 0, bound, -ANY).max(axis=1, initial=-ANY)
-    high = np.where(push < 0, bound, ANY).min(axis=1, initial=ANY)
+    low = np.where(push > 0, bound, -MAX_ACCELERATION).max(axis=1, initial=-MAX_ACCELERATION)
+    high = np.where(push < 0, bound, MAX_ACCELERATION).min(axis=1, initial=MAX_ACCELERATION)
     never = ((push == 0) & (base < 0)).any(axis=1)
-    return np.where(never, ANY, low), np.where(never, -ANY, high)
+    return np.where(never, MAX_ACCELERATION, low), np.where(never, -MAX_ACCELERATION, high)
 
 
 def _fastest(plane: Reals) -> Reals:
@@ -529,7 +529,11 @@ def checked_joints(mechanism: Mechanism) -> Sequence[str]:
     names: tuple[set[str], set[str], set[str]] = (set(), set(), set())
     for label, known in letters.items():
         names[2 if not known else 0 if label in feet else 1].update(known or {label})
-    return [f"{KINDS[k][len(each) > 1]} {in_short(sorted(each), most=LISTED)}" for k, each in enumerate(names) if each]
+    return [
+        f"{PLACE_KINDS[k][len(each) > 1]} {in_short(sorted(each), most=MAX_LISTED_NAMES)}"
+        for k, each in enumerate(names)
+        if each
+    ]
 
 
 def laid_out(

@@ -38,10 +38,13 @@ from rocking_cli.names import OPENING
 ModelName = Literal["nonlinear", "linear1", "linear2"]
 MODELS: tuple[ModelName, ...] = ("nonlinear", "linear1", "linear2")
 
-FALLEN = 1e6  # rad: no acceleration turns a linear block back from there; without weight one might, beyond all meaning
-ALIKE = 1e-9  # of the largest: tables of two directions that differ by rounding alone
-KINEMATIC, MEASURED = 0.05, 0.03  # deviation of a restitution that follows from the shape, and of one that is given
-SLENDERNESS = 0.10  # deviation of ln slenderness
+FALLEN_ROTATION = 1e6  # rad: no realistic acceleration turns a linear block back from there
+EQUAL_TABLES = 1e-9  # difference of the tables of two directions by rounding, over the largest value
+KINEMATIC_SPREAD, MEASURED_SPREAD = (
+    0.05,
+    0.03,
+)  # of a restitution that follows from the shape, and of a given one
+SLENDERNESS_SPREAD = 0.10  # of ln slenderness
 REST_RATE = 1e-6  # post-impact rate over p phi_cr below which a structure is at rest: it would rock to 5e-13 phi_cr
 
 
@@ -104,7 +107,7 @@ class Model:
     most_eta: tuple[float, float] = (1.0, 1.0)
     corners: Integers = field(default_factory=lambda: np.zeros((0, 2), np.int64))
     joints: JointTables | None = None
-    scatter: Scatter = field(default_factory=lambda: Scatter(KINEMATIC, SLENDERNESS))
+    scatter: Scatter = field(default_factory=lambda: Scatter(KINEMATIC_SPREAD, SLENDERNESS_SPREAD))
     columns: tuple[Model, ...] = ()
 
     @property
@@ -149,9 +152,9 @@ class Model:
         if self.one_sided is not None:
             return False
         pairs = ((of[:, 0], of[:, 1]) for of in (self.forces, self.certain, self.held) if len(of))
-        same = all(np.allclose(one, other, rtol=0, atol=ALIKE * np.abs(one).max()) for one, other in pairs)
+        same = all(np.allclose(one, other, rtol=0, atol=EQUAL_TABLES * np.abs(one).max()) for one, other in pairs)
         one, other = self.numbers  # each in a unit of its own
-        return same and np.allclose(one, other, rtol=ALIKE, atol=ALIKE**2)
+        return same and np.allclose(one, other, rtol=EQUAL_TABLES, atol=EQUAL_TABLES**2)
 
     def q(self, ratio: float) -> float:
         """Return the kernel's coordinate q at a signed rotation, given as a fraction of the phi_cr of its direction."""
@@ -168,7 +171,7 @@ NO_REBOUND = Problem(
 )
 
 
-NEEDS = {"has_memory": "its past deformation (memory)", "has_rate": "its rate of deformation"}
+UNSUPPORTED_NEEDS = {"has_memory": "its past deformation (memory)", "has_rate": "its rate of deformation"}
 """What the kernel does not follow, on which the force of an element may depend, by the attribute that states it."""
 
 
@@ -178,7 +181,7 @@ def check_elements(mechanism: Mechanism) -> None:
     problems = [
         Problem(f"{each.name} of {of}: its force depends on {need}, {why}: use an elastic element instead")
         for each in mechanism.hung.elements
-        for attribute, need in NEEDS.items()
+        for attribute, need in UNSUPPORTED_NEEDS.items()
         if getattr(each, attribute)
     ]
     if problems:
@@ -254,10 +257,10 @@ def build(
 def _scatter(mechanism: Mechanism) -> Scatter:
     """Return the scatter of a structure: as given, or else as usual from tests of such bodies."""
     given = mechanism.uncertainty or Uncertainty()
-    usual = KINEMATIC if mechanism.restitution_is_kinematic else MEASURED
+    usual = KINEMATIC_SPREAD if mechanism.restitution_is_kinematic else MEASURED_SPREAD
     return Scatter(
         usual if given.restitution is None else given.restitution,
-        SLENDERNESS if given.slenderness is None else given.slenderness,
+        SLENDERNESS_SPREAD if given.slenderness is None else given.slenderness,
     )
 
 
@@ -347,7 +350,7 @@ def linear_model(label: str, name: ModelName, blocks: tuple[EquivalentBlock, Equ
         kappa = block.kappa1 if name == "linear1" else block.kappa2
         row = np.zeros(COLUMNS)
         row[LAMBDA], row[Q_CR], row[ETA], row[RATE] = block.phi_cr / kappa, block.phi_cr, block.eta, 1.0
-        row[REST], row[Q_END], row[PER_CELL] = REST_RATE * block.p * block.phi_cr, FALLEN, 1.0
+        row[REST], row[Q_END], row[PER_CELL] = REST_RATE * block.p * block.phi_cr, FALLEN_ROTATION, 1.0
         row[P], row[KAPPA_G], row[GRAVITY] = block.p, kappa / gravity, gravity
         numbers.append(row)
         stiffness = block.p**2 / gravity

@@ -27,20 +27,20 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array as Sparse
 
 Integers = NDArray[np.intp]
-NODES = 5  # rotations up to phi_cr at which edges are sought
-WAYS = 8  # directions in which the set is first looked at; between corners it is then refined
-MOST_CORNERS = 24  # of a set
-FAR = 30.0  # times the acceleration at uplift, and the square of the fastest rate: beyond, nothing is sought
-TIGHT = 1e-6  # of the largest velocity at a joint: one that does not move
-ALONE = 1e-7  # of the largest singular value: a mode is the only one of its pattern
-MOST_THROWN = 6  # modes of one impact
-CLOSED = 1e-5  # of the largest velocity at a joint: by so much one may seem to close
-ROUNDING = 1e-14  # of the largest factor: one that is none
-WIDE = 1e5  # the largest force in a linear programme, whose tolerances are absolute: forces of light pieces count too
-PARALLEL = 1e-12  # product of two lines that do not meet
-SAME = 1e-6  # of the set: corners that are one
-ACROSS = 1e-6  # square of the sine of the angle between directions that count as two
-APART = 1e-10  # square of the distance of lines of action that do not pass one point, over that of their arms
+EDGE_ROTATIONS = 5  # rotations up to phi_cr at which edges are sought
+FIRST_DIRECTIONS = 8  # directions in which the set is first looked at; between corners it is then refined
+MAX_CORNERS = 24  # of a set
+MAX_SEARCHED = 30.0  # times the acceleration at uplift, and the square of the fastest rate: beyond, nothing is sought
+ZERO_VELOCITY = 1e-6  # of the largest velocity at a joint: one that does not move
+RANK_TOLERANCE = 1e-7  # of the largest singular value: a mode is the only one of its pattern
+MAX_THROWN_MODES = 6  # modes of one impact
+CLOSING_TOLERANCE = 1e-5  # of the largest velocity at a joint: by so much one may seem to close
+ZERO_FACTOR = 1e-14  # of the largest factor: one that is none
+MAX_PROGRAMME_FORCE = 1e5  # the solver's tolerances are absolute, and forces of light pieces are to count
+ZERO_CROSS = 1e-12  # product of two lines that do not meet
+EQUAL_CORNERS = 1e-6  # of the set: corners that are one
+MIN_SINE_SQUARED = 1e-6  # square of the sine of the angle between directions that count as two
+MIN_DISTANCE_SQUARED = 1e-10  # of lines of action that do not pass through one point, over their arms squared
 
 
 class Pattern(NamedTuple):
@@ -89,8 +89,8 @@ def modes(mechanism: Mechanism, direction: Direction, phi: Reals, critical: floa
     """
     contacts = mechanism.contacts(direction) or ()
     there = _Placed(mechanism, direction, contacts, phi)
-    within = np.flatnonzero(phi <= critical * (1 + TIGHT))
-    places = np.unique(within[np.linspace(0, within.size - 1, NODES).astype(np.intp)])
+    within = np.flatnonzero(phi <= critical * (1 + ZERO_VELOCITY))
+    places = np.unique(within[np.linspace(0, within.size - 1, EDGE_ROTATIONS).astype(np.intp)])
     push = mechanism.uplift(direction) * mechanism.gravity
     fast = 2 * mechanism.potential_energy(np.array([critical]), direction)[0]
     fast /= float(mechanism.kinetic_inertia(np.zeros(1), direction)[0])
@@ -190,7 +190,7 @@ class _Placed:
         row, side = np.nonzero(self.rates.pieces != GROUND)
         piece, factors = self.rates.pieces[row, side], self.rates.factors[k, row, side]
         values = _turn(factors, self._turned[k, piece].conj())
-        values[np.abs(values) <= ROUNDING * np.abs(values).max(initial=0.0)] = 0.0
+        values[np.abs(values) <= ZERO_FACTOR * np.abs(values).max(initial=0.0)] = 0.0
         columns = 3 * piece[:, None] + np.arange(3)
         places = np.repeat(row, 3), columns.ravel()
         found = csr_array((values.ravel(), places), shape=(len(self.one_sided), 3 * self.rates.count))
@@ -209,7 +209,9 @@ class _Placed:
         speed = np.abs(self.rates.rotations([first]).at(mode.velocity[first][None])[0])
         most = [max((speed[row] for row in (*normal, *([] if shear is None else [shear]))), default=0.0)
                 for normal, shear in self.rows]  # fmt: skip
-        return self.contacts[int(np.argmax(np.array(most) >= (1 - TIGHT) * max(most)))].label  # the first of several
+        return self.contacts[
+            int(np.argmax(np.array(most) >= (1 - ZERO_VELOCITY) * max(most)))
+        ].label  # the first of several
 
     def jump(self, mechanism: Mechanism) -> Reals | None:
         """Return the change of momentum at an impact, over the rate before: a constant, and the factor of eta."""
@@ -221,7 +223,7 @@ class _Placed:
     def pattern(self, velocity: Reals, k: int) -> Pattern:
         """Return the pattern of a mode at rotation `k`: which rows have no motion."""
         speed = self.rates.rotations([k]).at(velocity[None])[0]
-        still = TIGHT * float(np.abs(speed).max())
+        still = ZERO_VELOCITY * float(np.abs(speed).max())
         slip = np.where((self.shear >= 0) & (np.abs(speed[self.shear]) > still), speed[self.shear], 0.0)
         sense = np.sign(slip).astype(int)
         shut = speed - np.abs(slip) * self.friction <= still
@@ -273,7 +275,7 @@ class _Placed:
 
     def _closes_nothing(self, speed: Reals) -> Bools:
         """Return whether no joint closes, or slides without dilating, at each rotation, shape (n,)."""
-        least = np.where(self.shear >= 0, self.friction * np.abs(speed[:, self.shear]), 0.0) - CLOSED
+        least = np.where(self.shear >= 0, self.friction * np.abs(speed[:, self.shear]), 0.0) - CLOSING_TOLERANCE
         return np.asarray((speed >= least)[:, self.one_sided].all(axis=1))
 
     def _alone(self, pattern: Pattern, *, dilates: bool) -> tuple[Reals, Bools] | None:
@@ -291,7 +293,7 @@ class _Placed:
         rocking /= np.linalg.norm(rocking, axis=1, keepdims=True)
         matrix = np.concatenate([one.contracted(held).dense() / scale, rocking[:, None, :]], axis=1)
         at_rest = _values(np.linalg.svd(matrix[0], compute_uv=False), matrix)
-        if at_rest[-2] < ALONE * at_rest[0]:  # as of most patterns of many pieces
+        if at_rest[-2] < RANK_TOLERANCE * at_rest[0]:  # as of most patterns of many pieces
             return None
         _, s, vt = np.linalg.svd(matrix, full_matrices=matrix.shape[1] < matrix.shape[2])
         padded = _values(s, matrix)
@@ -299,7 +301,7 @@ class _Placed:
         flips = np.sign(np.einsum("nc,nc->n", found[1:], found[:-1]))
         found[1:] *= np.cumprod(np.where(flips == 0, 1.0, flips))[:, None]
         # Where its rows leave more, or nothing, it is what it was before.
-        good = (padded[:, -2] >= ALONE * padded[:, 0]) & (padded[:, -1] <= TIGHT * padded[:, 0])
+        good = (padded[:, -2] >= RANK_TOLERANCE * padded[:, 0]) & (padded[:, -1] <= ZERO_VELOCITY * padded[:, 0])
         last = np.maximum.accumulate(np.where(good, np.arange(len(good)), 0))
         return found[last], good
 
@@ -336,11 +338,11 @@ def _edges(there: _Placed, k: int, unit: Reals, known: Mapping[Pattern, _Followe
         The modes found so far; None for patterns that are no mode.
     """
     corners: list[tuple[float, Reals]] = []  # the direction that found each, and its place
-    ways = [2 * np.pi * i / WAYS for i in range(WAYS)]
+    ways = [2 * np.pi * i / FIRST_DIRECTIONS for i in range(FIRST_DIRECTIONS)]
     while ways:
         way = ways.pop()
         along = np.array([np.cos(way), np.sin(way)])
-        if corners and _farthest(along, _lines(known, k, unit)) <= max(at @ along for _, at in corners) + SAME:
+        if corners and _farthest(along, _lines(known, k, unit)) <= max(at @ along for _, at in corners) + EQUAL_CORNERS:
             continue  # no mode lets it go beyond that corner
         solved = _corner(there, k, along / unit, unit)
         if solved is None:
@@ -348,7 +350,7 @@ def _edges(there: _Placed, k: int, unit: Reals, known: Mapping[Pattern, _Followe
         place, velocity = solved
         if velocity is not None:
             yield velocity
-        if any(np.abs(place - other).max() <= SAME for _, other in corners) or len(corners) >= MOST_CORNERS:
+        if any(np.abs(place - other).max() <= EQUAL_CORNERS for _, other in corners) or len(corners) >= MAX_CORNERS:
             continue
         corners.append((way, place))
         middle = np.mean([each for _, each in corners], axis=0)
@@ -356,7 +358,7 @@ def _edges(there: _Placed, k: int, unit: Reals, known: Mapping[Pattern, _Followe
         at = next(i for i, (_, other) in enumerate(corners) if other is place)
         for one, other in ((corners[at - 1][1], place), (place, corners[(at + 1) % len(corners)][1])):
             side = other - one
-            if np.abs(side).max() > SAME:
+            if np.abs(side).max() > EQUAL_CORNERS:
                 ways.append(float(np.arctan2(-side[0], side[1])))
 
 
@@ -366,7 +368,9 @@ def _lines(known: Mapping[Pattern, _Followed | None], k: int, unit: Reals) -> Re
     Each row (a, b, c) stands for a + b x + c y >= 0, where x and y are u_g'' and phi.^2, each divided by its `unit`.
     """
     rows = [each.force[k, [ONE, PUSH, RATE]] * [1.0, *unit] for each in known.values() if each is not None]
-    lines = np.array([[FAR, 1.0, 0.0], [FAR, -1.0, 0.0], [0.0, 0.0, 1.0], [FAR, 0.0, -1.0], *rows])
+    lines = np.array(
+        [[MAX_SEARCHED, 1.0, 0.0], [MAX_SEARCHED, -1.0, 0.0], [0.0, 0.0, 1.0], [MAX_SEARCHED, 0.0, -1.0], *rows]
+    )
     steep = np.abs(lines[:, 1:]).max(axis=1)
     return np.asarray((lines / np.where(steep > 0, steep, 1.0)[:, None])[steep > 0])
 
@@ -375,9 +379,9 @@ def _farthest(along: Reals, lines: Reals) -> float:
     """Return the largest extent along a direction within the bounds; infinity if they leave no point."""
     one, other = np.triu_indices(len(lines), 1)
     crossings = np.cross(lines[one], lines[other])  # as a + b x + c y is a product with (1, x, y)
-    meet = np.abs(crossings[:, 0]) > PARALLEL
+    meet = np.abs(crossings[:, 0]) > ZERO_CROSS
     points = crossings[meet] / crossings[meet, :1]
-    inside = (points @ lines.T >= -SAME * (1 + np.abs(lines[:, 0]))).all(axis=1)
+    inside = (points @ lines.T >= -EQUAL_CORNERS * (1 + np.abs(lines[:, 0]))).all(axis=1)
     return float((points[inside, 1:] @ along).max(initial=-np.inf)) if inside.any() else np.inf
 
 
@@ -391,14 +395,15 @@ def _corner(there: _Placed, k: int, way: Reals, unit: Reals) -> tuple[Reals, Rea
     from scipy.sparse import coo_array, hstack
 
     (rays, press), demand, scale = there.rays(k), there.turned(there.demand[k], k, 1), there.pieces.scale
-    count, unit_force = rays.shape[0], float(np.abs(demand[:, ONE]).max()) / WIDE
-    rays.data = rays.data / scale[rays.indices] * WIDE
+    count, unit_force = rays.shape[0], float(np.abs(demand[:, ONE]).max()) / MAX_PROGRAMME_FORCE
+    rays.data = rays.data / scale[rays.indices] * MAX_PROGRAMME_FORCE
     demand = demand / unit_force
     pushed = -demand[:, [PUSH, RATE]] * unit / scale[:, None]
     low = np.where(np.arange(count) < press, 0.0, -np.inf)
     solved = linprog(
         np.append(np.zeros(count), -way * unit), A_eq=hstack([rays.T, coo_array(pushed)], format="csc"),
-        b_eq=demand[:, ONE] / scale, bounds=[*((each, None) for each in low), (-FAR, FAR), (0.0, FAR)],
+        b_eq=demand[:, ONE] / scale,
+        bounds=[*((each, None) for each in low), (-MAX_SEARCHED, MAX_SEARCHED), (0.0, MAX_SEARCHED)],
         method="highs-ds",
     )  # fmt: skip
     if solved.status != 0:
@@ -406,8 +411,10 @@ def _corner(there: _Placed, k: int, way: Reals, unit: Reals) -> tuple[Reals, Rea
     place = np.asarray(solved.x[count:])
     velocity = -np.asarray(solved.eqlin.marginals) / scale
     own, *others = velocity @ demand[:, [ONE, PUSH, RATE]] * np.array([1.0, *unit])
-    bounds_it = np.abs(others).max() > TIGHT  # of a direction of length 1; else it is rounding: how far is looked does
-    at_edge = abs(own + others @ place) <= SAME * float(np.abs(velocity) @ np.abs(demand[:, ONE]) or 1.0)
+    bounds_it = (
+        np.abs(others).max() > ZERO_VELOCITY
+    )  # of a direction of length 1; else it is rounding: how far is looked does
+    at_edge = abs(own + others @ place) <= EQUAL_CORNERS * float(np.abs(velocity) @ np.abs(demand[:, ONE]) or 1.0)
     return place, there.turned(velocity / unit_force, k, -1) if bounds_it and at_edge else None
 
 
@@ -431,12 +438,12 @@ def _thrown(there: _Placed, jump: Reals) -> Iterator[Reals]:
     above = scaled(vstack([-rays[:press], row(np.asarray(normals.sum(axis=0)))]))
     most = np.append(np.zeros(press), 1.0)
     held = vstack([rays[press:], row(there.pieces.momentum(there.pieces.dq)[0])])
-    for _ in range(MOST_THROWN):
+    for _ in range(MAX_THROWN_MODES):
         solved = linprog(
             total / scale, A_ub=above, b_ub=most, A_eq=scaled(held),
             b_eq=np.zeros(held.shape[0]), bounds=(None, None), method="highs-ds",
         )  # fmt: skip
-        if solved.status != 0 or solved.fun > -TIGHT * float(np.abs(total / scale).max()):
+        if solved.status != 0 or solved.fun > -ZERO_VELOCITY * float(np.abs(total / scale).max()):
             return
         velocity = np.asarray(solved.x) / scale
         yield velocity
@@ -547,7 +554,7 @@ def _leave_nothing(number: Integers, wrench: Reals) -> Bools:
     gram = np.add.reduceat(each[..., :, None] * each[..., None, :], starts, axis=0)
     xx, yy, xy = gram[..., 0, 0], gram[..., 1, 1], gram[..., 0, 1]
     across = xx * yy - xy**2
-    two = across > ACROSS * (xx + yy) ** 2
+    two = across > MIN_SINE_SQUARED * (xx + yy) ** 2
     mx, my, mm = gram[..., 0, 2], gram[..., 1, 2], gram[..., 2, 2]
     left = mm - (mx**2 * yy + my**2 * xx - 2 * mx * my * xy) / np.where(two, across, 1.0)
-    return np.asarray((two & (left > APART * mm)).all(axis=1))
+    return np.asarray((two & (left > MIN_DISTANCE_SQUARED * mm)).all(axis=1))

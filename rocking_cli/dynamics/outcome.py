@@ -135,7 +135,7 @@ class Outcome(Generic[Flags, Counts, Numbers]):
         others : Outcome
             Further outcomes of many motions.
         """
-        return Outcome(**{name: change(*(getattr(each, name) for each in (self, *others))) for name in OUTCOME})
+        return Outcome(**{name: change(*(getattr(each, name) for each in (self, *others))) for name in OUTCOME_FIELDS})
 
     @property
     def words(self) -> str:
@@ -148,7 +148,13 @@ class Outcome(Generic[Flags, Counts, Numbers]):
         )
 
 
-UNCHECKED: dict[str, Any] = {"unknown": False, "known_to": nan, "warned": nan, "lower_bound": nan, "opening": nan}
+UNCHECKED_FIELDS: dict[str, Any] = {
+    "unknown": False,
+    "known_to": nan,
+    "warned": nan,
+    "lower_bound": nan,
+    "opening": nan,
+}
 """The fields of a model that has no joints to be checked, such as an equivalent block."""
 
 OneOutcome: TypeAlias = "Outcome[bool, int, float]"
@@ -156,4 +162,4 @@ OneOutcome: TypeAlias = "Outcome[bool, int, float]"
 Outcomes: TypeAlias = "Outcome[NDArray[np.bool_], NDArray[np.int64], NDArray[np.float64]]"
 """Of many motions, one a place."""
 
-OUTCOME = tuple(field.name for field in fields(Outcome))
+OUTCOME_FIELDS = tuple(field.name for field in fields(Outcome))

@@ -53,7 +53,7 @@ def in_parts(
             raise
 
 
-MOST = 8  # processes: each has the program in memory, some 200 MB
+MAX_PROCESSES = 8  # each takes some 200 MB of memory
 
 _work: Callable[[int, int], Any] | None = None
 

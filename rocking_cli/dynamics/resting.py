@@ -14,17 +14,17 @@ from typing import NamedTuple
 import numpy as np
 
 from rocking_cli.core.contacts import Contact
-from rocking_cli.core.equivalence import AGREEMENT
+from rocking_cli.core.equivalence import EQUAL_DIRECTIONS
 from rocking_cli.core.hung.attached import PointMass
 from rocking_cli.core.hung.element import ConstantForce
 from rocking_cli.core.kinematics import Direction, Reals
 from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.core.released import ONE, PUSH, Pieces, Released, Undetermined, inverted, released
 
-SAME = 1e-6  # of the size of the structure: points that are one; of lambda: accelerations that are
-FAR = 30.0  # g: ground accelerations beyond are not analysed
-MISSING = 1e-9  # of the weight: a force that is missing by rounding alone
-FEET = "the ground and the feet"
+RELATIVE_TOLERANCE = 1e-6  # of coinciding points, over the size of the structure; of equal accelerations, over lambda
+MAX_ACCELERATION_G = 30.0  # stronger ground accelerations are not analysed
+ZERO_MISSING_FORCE = 1e-9  # over the weight; a smaller missing force is rounding
+FEET_PLACE = "the ground and the feet"
 
 
 class Failure(NamedTuple):
@@ -107,7 +107,7 @@ def resting(mechanism: Mechanism) -> Rest:
     if contacts is None or len(names) > 1:
         return Rest(None, known=False)
     there = Pieces(mechanism, mechanism.directions[0], np.zeros(1))
-    closed = _closed(contacts, SAME * there.scale.max())
+    closed = _closed(contacts, RELATIVE_TOLERANCE * there.scale.max())
     if closed is None:
         return Rest(None, known=False)
     if mechanism.rocks_both_ways and sum(contact.forces for contact in closed) == there.dq.shape[1]:
@@ -135,7 +135,11 @@ def _closed(contacts: Sequence[Contact], near: float) -> list[Contact] | None:
     """Return the joints of both directions with all of their points; None if they are not those of one face."""
     found: dict[tuple[str, str | None, complex], Contact] = {}
     for each in contacts:
-        alike = (key for key in found if key[:2] == (each.label, each.held) and abs(key[2] - each.normal) <= SAME)
+        alike = (
+            key
+            for key in found
+            if key[:2] == (each.label, each.held) and abs(key[2] - each.normal) <= RELATIVE_TOLERANCE
+        )
         key = next(alike, (each.label, each.held, each.normal))
         known = found.setdefault(key, each)
         if known.pieces != each.pieces:
@@ -155,13 +159,13 @@ def _as_one(mechanism: Mechanism, there: Pieces, closed: Sequence[Contact]) -> R
     sideways = any(contact.held == "slide" for contact in closed)
     hung = all(isinstance(thing, PointMass | ConstantForce) for thing in mechanism.attached)
     friction = {contact.friction for contact in feet}
-    level = all(contact.pieces[0] is None and abs(contact.normal - 1j) < SAME for contact in feet)
+    level = all(contact.pieces[0] is None and abs(contact.normal - 1j) < RELATIVE_TOLERANCE for contact in feet)
     if sideways or not hung or not level or len(friction) != 1 or None in friction:
         return None
     total = there.held_still()[0].reshape(-1, 3, 4).sum(axis=0)  # over the pieces
     force = np.stack([total[1], total[0]])[None]  # N, T
     mass = there.mass[0, :, 0, 0].sum()
-    foot = Contact((None, None), (0j,), friction=friction.pop(), name=FEET)
+    foot = Contact((None, None), (0j,), friction=friction.pop(), name=FEET_PLACE)
     return Released([foot], [((0,), 1)], force, np.array([[0.0, 1 / mass]]))
 
 
@@ -199,13 +203,15 @@ def _first(
     rocks = direction in mechanism.directions
     if not rocks and not mechanism.propped:
         return None
-    uplift = mechanism.uplift(direction) if rocks else FAR
+    uplift = mechanism.uplift(direction) if rocks else MAX_ACCELERATION_G
     if rocks and _bears_at_uplift(mechanism, direction, uplift):
         return None
     mode = _weakest(there, closed, leaning, -int(direction), mechanism.gravity)
     slides = first_failure(known, direction)
     push = min(uplift * mechanism.gravity, np.inf if slides is None else slides.push)
-    return mode if mode is not None and mode.force[ONE] < (1 - SAME) * push * abs(mode.force[PUSH]) else None
+    return (
+        mode if mode is not None and mode.force[ONE] < (1 - RELATIVE_TOLERANCE) * push * abs(mode.force[PUSH]) else None
+    )
 
 
 def _bears_at_uplift(mechanism: Mechanism, direction: Direction, uplift: float) -> bool:
@@ -221,7 +227,7 @@ def _bears_at_uplift(mechanism: Mechanism, direction: Direction, uplift: float) 
     if rocking is None:
         return False
     push = -int(direction) * uplift * mechanism.gravity
-    least = -MISSING * np.abs(rocking.force[0, :, ONE]).sum()
+    least = -ZERO_MISSING_FORCE * np.abs(rocking.force[0, :, ONE]).sum()
     return all(force[ONE] + push * force[PUSH] >= least for force, _, _ in _conditions(rocking))
 
 
@@ -272,9 +278,9 @@ def _weakest(
         np.append(np.zeros(count), -float(sense)),
         A_ub=np.array(limits) if limits else None, b_ub=np.zeros(len(limits)) if limits else None,
         A_eq=np.column_stack([(jacobian / scale).T, pushed]), b_eq=demand[:, ONE] / scale / unit,
-        bounds=[*zip(low, high, strict=True), (-FAR, FAR)], method="highs-ds",
+        bounds=[*zip(low, high, strict=True), (-MAX_ACCELERATION_G, MAX_ACCELERATION_G)], method="highs-ds",
     )  # fmt: skip
-    if solved.status != 0 or sense * solved.x[-1] >= (1 - SAME) * FAR:
+    if solved.status != 0 or sense * solved.x[-1] >= (1 - RELATIVE_TOLERANCE) * MAX_ACCELERATION_G:
         return None
     velocity = -np.asarray(solved.eqlin.marginals) / scale
     speed = jacobian @ velocity
@@ -288,11 +294,11 @@ def _weakest(
     fastest = speed.max()
     plain = _undilated(jacobian, closed, rows, velocity, scale)
     presses = [row for normal, _ in rows for row in normal if row < len(names)]
-    most = int(np.argmax(speed >= (1 - SAME) * fastest))  # the first of several
+    most = int(np.argmax(speed >= (1 - RELATIVE_TOLERANCE) * fastest))  # the first of several
     return EarlyMechanism(
         names[most],
         most not in presses,
-        bool(np.abs((jacobian @ plain)[presses]).max(initial=0.0) > SAME * fastest),
+        bool(np.abs((jacobian @ plain)[presses]).max(initial=0.0) > RELATIVE_TOLERANCE * fastest),
         force / fastest,
         float(fastest**2 / (plain @ there.momentum(plain[None])[0])),
         velocity / fastest,
@@ -313,7 +319,7 @@ def _undilated(
             change[list(normal)] = -contact.friction * abs(jacobian[shear] @ velocity)
     by = np.linalg.lstsq(jacobian / scale, change, rcond=None)[0] / scale
     off = np.abs(jacobian @ by - change).max(initial=0.0)
-    return velocity + by if off <= SAME * np.abs(jacobian @ velocity).max() else velocity
+    return velocity + by if off <= RELATIVE_TOLERANCE * np.abs(jacobian @ velocity).max() else velocity
 
 
 def first_failure(found: Rest, direction: Direction) -> Failure | None:
@@ -326,7 +332,7 @@ def first_failure(found: Rest, direction: Direction) -> Failure | None:
         Failure(max(float(force[ONE]), 0.0) / (int(direction) * float(force[PUSH])), joint, slides, opens)
         for force, joint, slides, opens in rows if int(direction) * force[PUSH] > 0
     ]  # fmt: skip
-    least = min((each.push for each in fails), default=0.0) * (1 + SAME)
+    least = min((each.push for each in fails), default=0.0) * (1 + RELATIVE_TOLERANCE)
     return next((each for each in fails if each.push <= least), None)  # the first of several
 
 
@@ -344,6 +350,8 @@ def early_failures(mechanism: Mechanism) -> list[EarlyFailure]:
     for direction in Direction if mechanism.propped else mechanism.directions:
         failure = first_failure(still, direction)
         lambda_ = mechanism.uplift(direction) if direction in mechanism.directions else None
-        if failure is not None and (lambda_ is None or failure.push < (1 - AGREEMENT) * lambda_ * mechanism.gravity):
+        if failure is not None and (
+            lambda_ is None or failure.push < (1 - EQUAL_DIRECTIONS) * lambda_ * mechanism.gravity
+        ):
             found.append(EarlyFailure(direction, failure, lambda_))
     return found

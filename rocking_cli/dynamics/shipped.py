@@ -21,27 +21,27 @@ from typing import Any
 from rocking_cli.dynamics.calling import ARRAYS, FUNCTIONS, KernelSet, Layout, symbol
 from rocking_cli.errors import BrokenKernels
 
-FOLDER = Path(__file__).with_name("ready")
-MANIFEST = "manifest.json"
-SOURCES = ("calling.py", "kernels.py", "pulse_motion.py")
+LIBRARY_FOLDER = Path(__file__).with_name("ready")
+MANIFEST_FILE = "manifest.json"
+SOURCE_FILES = ("calling.py", "kernels.py", "pulse_motion.py")
 """The files of this folder that the shipped kernels are made of."""
 MADE_BY = {"numba": "0.61.2", "llvmlite": "0.44.0", "ziglang": "0.17.1"}
 """The versions that make them."""
 
-ENDINGS = {"linux": "so", "darwin": "dylib", "win32": "dll"}
-PROCESSORS = {"amd64": "x86_64", "arm64": "aarch64"}
+LIBRARY_SUFFIXES = {"linux": "so", "darwin": "dylib", "win32": "dll"}
+PROCESSOR_NAMES = {"amd64": "x86_64", "arm64": "aarch64"}
 """Other names of processors."""
 LIBRARIES = (
     "darwin-aarch64.dylib", "darwin-x86_64.dylib", "linux-aarch64.so", "linux-x86_64.so", "win32-x86_64.dll"
 )  # fmt: skip
 """The libraries that belong to the package."""
-_ROWS = (ctypes.POINTER(ctypes.c_int64), ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_int64))
+_ARGUMENT_TYPES = (ctypes.POINTER(ctypes.c_int64), ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_int64))
 
 
 def source_hash() -> str:
     """Return the hash of the sources of the shipped kernels, independent of their line endings."""
     digest = hashlib.sha256(repr(sorted(MADE_BY.items())).encode())
-    for name in SOURCES:
+    for name in SOURCE_FILES:
         digest.update(b"\0" + Path(__file__).with_name(name).read_bytes().replace(b"\r\n", b"\n"))
     return digest.hexdigest()
 
@@ -49,22 +49,24 @@ def source_hash() -> str:
 def manifest() -> dict[str, Any]:
     """Return the manifest of the shipped kernels: hashes of sources and libraries, and versions of the build tools."""
     try:
-        found = json.loads((FOLDER / MANIFEST).read_text(encoding="utf-8"))
+        found = json.loads((LIBRARY_FOLDER / MANIFEST_FILE).read_text(encoding="utf-8"))
         return {"source": str(found["source"]), "made_by": dict(found["made_by"]), "files": dict(found["files"])}
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise BrokenKernels(f"{FOLDER / MANIFEST} cannot be read, reinstall rocking-cli: {error}") from error
+        raise BrokenKernels(
+            f"{LIBRARY_FOLDER / MANIFEST_FILE} cannot be read, reinstall rocking-cli: {error}"
+        ) from error
 
 
 def place() -> Path:
     """Return the path of the library for this system, which may not exist."""
     machine = platform.machine().lower()
-    ending = ENDINGS.get(sys.platform, "so")
-    return FOLDER / f"{sys.platform}-{PROCESSORS.get(machine, machine)}.{ending}"
+    ending = LIBRARY_SUFFIXES.get(sys.platform, "so")
+    return LIBRARY_FOLDER / f"{sys.platform}-{PROCESSOR_NAMES.get(machine, machine)}.{ending}"
 
 
 def load(kernel: KernelSet) -> Any:
     """Return the function of a kernel. Raises `ImportError` if its library cannot be used."""
-    return ctypes.CFUNCTYPE(ctypes.c_int32, *_ROWS)((symbol(kernel.name), loaded()))
+    return ctypes.CFUNCTYPE(ctypes.c_int32, *_ARGUMENT_TYPES)((symbol(kernel.name), loaded()))
 
 
 @functools.cache

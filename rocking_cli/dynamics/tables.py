@@ -17,10 +17,10 @@ from rocking_cli.core import Direction, Mechanism, both_statics
 from rocking_cli.core.coefficients import check_continuous
 from rocking_cli.core.equivalence import Statics
 
-TO_CRITICAL = 512  # cells from rest to phi_cr: coefficients are then right to 1e-12, those of short links to 1e-10
-FEWEST, MOST = 2048, 16384  # cells from rest to the kinematic limit
-FINEST = 65536  # cells to have a corner of the force next to rest at a node
-END = 0.999  # of the kinematic limit: a locking linkage has infinite inertia at the limit itself
+CRITICAL_CELLS = 512  # cells from rest to phi_cr: coefficients are then right to 1e-12, those of short links to 1e-10
+MIN_CELLS, MAX_CELLS = 2048, 16384  # cells from rest to the kinematic limit
+MAX_CORNER_CELLS = 65536  # cells to have a corner of the force next to rest at a node
+LIMIT_SHARE = 0.999  # of the kinematic limit: a locking linkage has infinite inertia at the limit itself
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def tabulate(mechanism: Mechanism, statics: Sequence[Statics] | None = None) -> 
     """
     # A linkage may lock far beyond phi_cr, while its coefficients change within phi_cr.
     reach = max(each.limit / each.reference for each in statics or both_statics(mechanism))
-    cells = int(min(max(TO_CRITICAL * reach, FEWEST), MOST))
+    cells = int(min(max(CRITICAL_CELLS * reach, MIN_CELLS), MAX_CELLS))
     if not mechanism.smooth:
         corners = np.concatenate([_corners(mechanism, direction, cells) for direction in mechanism.directions])
         cells = _cells_for(corners, cells)
@@ -105,7 +105,7 @@ def _mirrored(mechanism: Mechanism, nodes: Reals) -> bool:
     one, other = mechanism.directions
     if not mechanism.smooth or mechanism.limit(one) != mechanism.limit(other):
         return False
-    for phi in (nodes[:: TO_CRITICAL // 4], nodes):  # most that differ do so at a few
+    for phi in (nodes[:: CRITICAL_CELLS // 4], nodes):  # most that differ do so at a few
         pair = [vars(mechanism.coefficients(phi, direction)) for direction in (one, other)]
         if not all(np.array_equal(pair[0][key], pair[1][key]) for key in pair[0]):
             return False
@@ -120,7 +120,7 @@ def _cells_for(corners: Reals, cells: int) -> int:
     """
     if not corners.size:
         return cells
-    fewest = int(max(cells, min(np.ceil(1 / corners.min()), FINEST)))
+    fewest = int(max(cells, min(np.ceil(1 / corners.min()), MAX_CORNER_CELLS)))
     counts = np.arange(fewest, fewest + cells)
     place = counts[:, None] * corners
     return int(counts[np.abs(place - np.round(place)).max(axis=1).argmin()])
@@ -193,7 +193,7 @@ def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Di
 def _even_steps(mechanism: Mechanism, direction: Direction, cells: int) -> tuple[Reals, float]:
     """Return rotations [rad] at equal steps of q from rest to the kinematic limit, and the size of a step."""
     # First over x with phi = end x (2 - x): where I grows like 1/(limit - phi), dq/dx stays smooth.
-    end = END * mechanism.limit(direction)
+    end = LIMIT_SHARE * mechanism.limit(direction)
     h = 0.5 / cells  # finer, as the steps near rest are twice as wide as the even ones
     x = np.linspace(0.0, 1.0, 2 * cells + 1)
     phi = end * x * (2 - x)

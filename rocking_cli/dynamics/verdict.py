@@ -16,12 +16,12 @@ from rocking_cli.core.advice import Grade, grade
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 
-CLOSE = 0.8  # phi/phi_cr from which a motion is close to overturning
+NEAR_OVERTURNING = 0.8  # phi/phi_cr from which a motion is close to overturning
 # Of two motions, the rms of the difference over that of the nonlinear one, up to which the other agrees with it, and
 # serves a first estimate. Two motions of one size that have nothing to do with each other differ by 1.4 of it.
-FOLLOWS, STRAYS = 0.25, 0.5
-ANOTHER = 1.0  # p times the time between two peaks, or overturnings, beyond which they are not the same one
-PEAK = 0.999  # of its largest sample: when a motion first comes so far it has its peak, rounding apart
+AGREEING_RMS, ESTIMATING_RMS = 0.25, 0.5
+SAME_PEAK_DELAY = 1.0  # p times the time between two peaks, or overturnings, beyond which they are not the same one
+PEAK_SHARE = 0.999  # of its largest sample: when a motion first comes so far it has its peak, rounding apart
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ def _compare(run: History, best: History) -> Agreement:
         found = Grade.DISREGARD
     elif best.fell:
         delay = run.overturning_time - best.overturning_time
-        alike = run.fell_to == best.fell_to and abs(delay) * best.p <= ANOTHER
+        alike = run.fell_to == best.fell_to and abs(delay) * best.p <= SAME_PEAK_DELAY
         found = Grade.AGREES if alike else Grade.ESTIMATE
     elif not best.peak_ratio:
         found = Grade.AGREES
@@ -90,8 +90,8 @@ def _compare(run: History, best: History) -> Agreement:
         found = grade(peak)
         if run.ratio.any() and best.ratio.any():  # else one has come and gone between two samples
             delay, apart = _peak_time(run) - _peak_time(best), _difference(run, best)
-            late = Grade.ESTIMATE if abs(delay) * best.p > ANOTHER else Grade.AGREES
-            found = max(found, grade(apart, FOLLOWS, STRAYS), late)
+            late = Grade.ESTIMATE if abs(delay) * best.p > SAME_PEAK_DELAY else Grade.AGREES
+            found = max(found, grade(apart, AGREEING_RMS, ESTIMATING_RMS), late)
     if grade(run.uplift_error) is Grade.DISREGARD:
         found = Grade.DISREGARD
     return Agreement(found, run.uplift_error, same, peak, delay, apart)
@@ -103,7 +103,7 @@ def _fate(run: History) -> str:
 
 def _peak_time(run: History) -> float:
     size = np.abs(run.ratio)
-    return float(run.time[int((size >= PEAK * size.max()).argmax())])
+    return float(run.time[int((size >= PEAK_SHARE * size.max()).argmax())])
 
 
 def _difference(run: History, best: History) -> float:

@@ -22,9 +22,9 @@ import numpy as np
 from rocking_cli.dynamics.calling import SETS, KernelSet
 from rocking_cli.errors import InputError, KernelWarning
 
-CHOSEN = "ROCKING_KERNELS"
+KERNELS_VARIABLE = "ROCKING_KERNELS"
 """The variable of the environment that names a way, and then no other one is tried."""
-READY, PYTHON = "ready", "python"
+MACHINE_CODE, PYTHON = "ready", "python"
 
 Kernel = Callable[..., None]
 _LOCK = threading.RLock()
@@ -37,7 +37,7 @@ def kernel(of: KernelSet) -> Kernel:
 
 
 def way() -> str:
-    """Return the way in which kernels are run: `READY` or `PYTHON`."""
+    """Return the way in which kernels are run: `MACHINE_CODE` or `PYTHON`."""
     return _chosen()[0]
 
 
@@ -62,19 +62,19 @@ def forget() -> None:
 
 def _chosen() -> tuple[str, dict[str, Kernel]]:
     with _LOCK:  # the threads of a batch come at once
-        return _choose(_forced or os.environ.get(CHOSEN) or None)
+        return _choose(_forced or os.environ.get(KERNELS_VARIABLE) or None)
 
 
 @functools.cache
 def _choose(asked: str | None) -> tuple[str, dict[str, Kernel]]:
-    if asked not in (None, READY, PYTHON):
-        raise InputError(f"{CHOSEN} is {asked!r}: give one of {READY}, {PYTHON}")
+    if asked not in (None, MACHINE_CODE, PYTHON):
+        raise InputError(f"{KERNELS_VARIABLE} is {asked!r}: give one of {MACHINE_CODE}, {PYTHON}")
     if asked != PYTHON:
         fault = fault_of_shipped()
         if fault is None:
-            return READY, {name: as_shipped(of) for name, of in SETS.items()}
-        if asked == READY:
-            raise InputError(f"{CHOSEN} is {asked!r}, but {fault}: leave it out") from fault
+            return MACHINE_CODE, {name: as_shipped(of) for name, of in SETS.items()}
+        if asked == MACHINE_CODE:
+            raise InputError(f"{KERNELS_VARIABLE} is {asked!r}, but {fault}: leave it out") from fault
         text = f"time histories are computed by Python itself, which takes some sixty times longer ({fault})"
         warnings.warn(KernelWarning(text), stacklevel=2)
     return PYTHON, {name: in_python(of) for name, of in SETS.items()}
@@ -122,7 +122,7 @@ def in_python(of: KernelSet) -> Kernel:
     return run
 
 
-LEAST = -(2**63)
+INT64_MIN = -(2**63)
 """What a processor makes of a number that is too large for a whole one, or of none."""
 
 
@@ -131,6 +131,6 @@ def _like_machine_code(rounded: Callable[[float], int]) -> Callable[[float], int
         try:
             return rounded(value)
         except (ValueError, OverflowError):
-            return LEAST
+            return INT64_MIN
 
     return whole

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.core.contacts import MASONRY, Contact
+from rocking_cli.core.contacts import MASONRY_FRICTION, Contact
 from rocking_cli.core.given import Strength
 from rocking_cli.core.reactions import Reactions, at_uplift, impulses, parts, reactions
 from rocking_cli.core.released import Undetermined, released
@@ -154,7 +154,7 @@ class ContactDemand:
     @property
     def beyond_masonry(self) -> bool:
         """Whether more friction is required than joints of masonry usually have."""
-        return self.friction_needed > MASONRY
+        return self.friction_needed > MASONRY_FRICTION
 
     @property
     def assumed_friction(self) -> float | None:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from math import isfinite
 
 from rocking_cli.dynamics import history
-from rocking_cli.dynamics.history import RTOL, TAIL, History, check_rtol
+from rocking_cli.dynamics.history import RTOL, TAIL_SECONDS, History, check_rtol
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
@@ -23,7 +23,7 @@ def follow(
     *,
     model: ModelName = "nonlinear",
     release: float | None = None,
-    tail: float = TAIL,
+    tail: float = TAIL_SECONDS,
     rtol: float = RTOL,
 ) -> History:
     """Simulate the motion of a structure under a ground motion, after a release from a tilt, or both.
@@ -79,7 +79,7 @@ def respond(
     *,
     models: Sequence[ModelName] = MODELS,
     release: float | None = None,
-    tail: float = TAIL,
+    tail: float = TAIL_SECONDS,
     rtol: float = RTOL,
 ) -> dict[ModelName, History]:
     """Simulate models of a structure; other parameters and errors are those of `follow`.

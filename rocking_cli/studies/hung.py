@@ -11,7 +11,7 @@ import numpy as np
 from rocking_cli.arrays import Bools, Points, Reals
 from rocking_cli.core import Direction, Mechanism, three_digits
 from rocking_cli.core.hung.attached import PointMass
-from rocking_cli.core.hung.element import TOGETHER, ConstantForce, Element, SpringBed, Stretched
+from rocking_cli.core.hung.element import COINCIDENT_DISTANCE, ConstantForce, Element, SpringBed, Stretched
 
 Copies = Mapping[str, Sequence[tuple[int, complex]]]
 """Of each body: its place among the parts, and how far from the body it is [m], of each part that it is drawn as."""
@@ -173,7 +173,7 @@ def _copies(body: str | None, copies: Copies, *, every: bool) -> Sequence[tuple[
 def _pieces(tie: Stretched, of_body: Mapping[str, int], shift: complex) -> Iterator[TiePiece]:
     for one, other in zip(tie.spots, tie.spots[1:], strict=False):
         parts = [None if spot.body is None else of_body[spot.body] for spot in (one, other)]
-        if abs(other.at - one.at) <= TOGETHER * (1 + abs(one.at)):
+        if abs(other.at - one.at) <= COINCIDENT_DISTANCE * (1 + abs(one.at)):
             # Its ends are together at rest: they are drawn apart, what holds it below what moves.
             up = -1j if parts[1] is None else 1j
             yield TiePiece(End(parts[0], one.at + shift, -up), End(parts[1], other.at + shift, up), "symbol")

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.hung.attached import PointMass, Spot
-from rocking_cli.core.hung.element import NAME as INTERLOCK
+from rocking_cli.core.hung.element import INTERLOCK_NAME as INTERLOCK
 from rocking_cli.core.hung.element import ConstantForce, Element, Stretched
 from rocking_cli.dynamics.history import History
 

@@ -28,7 +28,7 @@ from rocking_cli.verification.results import CLOSE, Verification, Verified
 from rocking_cli.views.template import starter
 from rocking_cli.views.verification import showing, table, view
 
-UNKNOWN = "no_field_of_any_code"
+UNKNOWN_FIELD = "no_field_of_any_code"
 
 
 class CodeContract:
@@ -69,12 +69,14 @@ class CodeContract:
 
     def test_a_wrong_field_is_reported_with_its_line(self) -> None:
         """A site refuses a field that it does not have, with the line of that field."""
-        text = f"{self.site_text.rstrip()}\n{UNKNOWN}: 1\n"
+        text = f"{self.site_text.rstrip()}\n{UNKNOWN_FIELD}: 1\n"
         try:
             _read(text)
         except InputError as error:
             places = [(each.field, each.line) for each in error.problems]
-            _demand((UNKNOWN, text.count("\n")) in places, f"a field in line {text.count(chr(10))} gives: {error}")
+            _demand(
+                (UNKNOWN_FIELD, text.count("\n")) in places, f"a field in line {text.count(chr(10))} gives: {error}"
+            )
         else:
             _demand(False, "a field that does not exist is accepted: keep the model_config of Site")
 

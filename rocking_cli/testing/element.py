@@ -7,8 +7,8 @@ import numpy as np
 from rocking_cli.core.hung import Element
 from rocking_cli.testing.mechanism import _demand
 
-POINTS = 20_001  # elongations at which force and energy are compared
-ROUNDING = 1e-6  # error of the differences, over the largest value
+ELONGATION_POINTS = 20_001
+MAX_RELATIVE_ERROR = 1e-6  # of the differences, over the largest value
 
 
 def check_law(element: Element, shortest: float, longest: float) -> None:
@@ -33,13 +33,13 @@ def check_law(element: Element, shortest: float, longest: float) -> None:
     >>> from rocking_cli.core.hung.element import Spring
     >>> check_law(Spring("bar", (Spot(None, 0j), Spot("block", 3j)), 1e6, 2e4, only="tension"), -0.05, 0.05)
     """
-    e = np.linspace(shortest, longest, POINTS)
-    force, energy, slope = element.force(e), element.energy(e), element.slope(e, np.ones(POINTS))
+    e = np.linspace(shortest, longest, ELONGATION_POINTS)
+    force, energy, slope = element.force(e), element.energy(e), element.slope(e, np.ones(ELONGATION_POINTS))
     _demand(abs(float(element.energy(np.zeros(1))[0])) == 0, f"{element.name}: its energy is not 0 at rest")
     step = e[1] - e[0]
     # Between two points that have no corner between them, whose slopes say what the change must be.
     for value, rate, said in ((energy, force, "its energy is not the integral of its force"),
                               (force, slope, "its slope is not the derivative of its force")):  # fmt: skip
         change, mean = np.diff(value), step / 2 * (rate[1:] + rate[:-1])
-        off = np.abs(change - mean) > np.abs(np.diff(rate)) * step + ROUNDING * np.abs(mean).max()
+        off = np.abs(change - mean) > np.abs(np.diff(rate)) * step + MAX_RELATIVE_ERROR * np.abs(mean).max()
         _demand(not off.any(), f"{element.name}: {said}, at e = {e[int(off.argmax())]:.4g} m")

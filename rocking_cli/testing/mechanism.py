@@ -55,24 +55,24 @@ from rocking_cli.studies.picture import picture
 Reals = NDArray[np.float64]
 Points = NDArray[np.complex128]
 
-STEP = 1e-4  # largest step of difference quotients [rad]
-FINER = 0.02  # finer step, over the step
-SHARE = 1e-3  # step, over the range of rotations
-BEYOND = 1.2  # rotation up to which the motion must be smooth, over the critical rotation
-REACH = 0.8  # the same over the kinematic limit, near which derivatives grow without bound
-FURTHEST = 0.999  # rotation up to which there must be no jump, over the kinematic limit
-SHIFTS = (-2, -1, 1, 2)  # steps at which difference quotients take values
-CELLS = 4096  # intervals in which a jump is searched
-ALIKE = 1e-9  # largest difference of equal values, over their size
-DRAWN = 2e-3  # largest difference of inertia or centroid from those of the outlines, over the size of the body
-A_LITTLE = 0.25  # rotation up to which nothing may pass through the ground, over the critical rotation
-FLUSH = 1e-8  # height that counts as on the ground, over the size of the structure
-BORNE = 1e-6  # largest imbalance of contact forces, over the weight
-A_BIT = 0.01  # weight of the loads that are tried, over the weight of the structure
-A_MASS = 1000.0  # mass of a structure without masses [kg]
-SIDED = ("one_sided", "rebound")
-HUNG = ("loads", "ties", "interlock", *SIDED)  # fields of every mechanism
-GIVEN = 0.625  # a rebound that no structure has by itself
+MAX_STEP = 1e-4  # largest step of difference quotients [rad]
+FINE_STEP_SHARE = 0.02  # finer step, over the step
+STEP_SHARE = 1e-3  # step, over the range of rotations
+SMOOTH_ROTATION = 1.2  # rotation up to which the motion must be smooth, over the critical rotation
+SMOOTH_LIMIT_SHARE = 0.8  # the same over the kinematic limit, near which derivatives grow without bound
+NO_JUMP_SHARE = 0.999  # rotation up to which there must be no jump, over the kinematic limit
+STENCIL = (-2, -1, 1, 2)  # steps at which difference quotients take values
+JUMP_INTERVALS = 4096
+EQUAL_VALUES = 1e-9  # largest difference of equal values, over their size
+OUTLINE_DIFFERENCE = 2e-3  # largest difference of inertia or centroid from the outlines, over the size of the body
+ABOVE_GROUND_ROTATION = 0.25  # rotation up to which nothing may pass through the ground, over the critical rotation
+GROUND_HEIGHT = 1e-8  # height that counts as on the ground, over the size of the structure
+MAX_IMBALANCE = 1e-6  # largest imbalance of contact forces, over the weight
+TRIAL_LOAD_SHARE = 0.01  # weight of the loads that are tried, over the weight of the structure
+TRIAL_MASS = 1000.0  # kg, of a structure without masses
+SIDED_FIELDS = ("one_sided", "rebound")
+COMMON_FIELDS = ("loads", "ties", "interlock", *SIDED_FIELDS)
+TRIAL_REBOUND = 0.625  # differs from the rebound of every structure
 
 
 def contract(structure: Mechanism) -> list[Verdict]:
@@ -165,7 +165,7 @@ def gives_a_motion_for_each_body(structure: Mechanism) -> None:
                     size = 1 + np.abs(its).max()
                     where = f"{quantity} of {body.name} at phi = {value:.4g} rad, {direction.label} direction,"
                     _demand(
-                        abs(mine[0] - its[k]) <= ALIKE * size,
+                        abs(mine[0] - its[k]) <= EQUAL_VALUES * size,
                         f"{where} is {mine[0]:.6g} if computed alone and {its[k]:.6g} among others",
                     )
 
@@ -177,7 +177,7 @@ def moves_from_rest(structure: Mechanism) -> None:
         for body, motion in zip(structure.bodies(), structure.motion(np.zeros(1), direction), strict=True):
             place, turn = complex(motion.carry(body.centroid)[0][0]), float(motion.psi[0])
             _demand(
-                abs(place - body.centroid) <= ALIKE * (size + abs(body.centroid)) and abs(turn) <= ALIKE,
+                abs(place - body.centroid) <= EQUAL_VALUES * (size + abs(body.centroid)) and abs(turn) <= EQUAL_VALUES,
                 f"{body.name} rests at {body.centroid:.6g} m and starts in the {direction.label} direction "
                 f"from {place:.6g} m, turned by {turn:.3g} rad",
             )
@@ -187,8 +187,8 @@ def moves_without_jumps(structure: Mechanism) -> None:
     """The places and velocities of all bodies are continuous up to the kinematic limit."""
     size = _size(structure)
     for direction in structure.directions:
-        x = np.linspace(0.0, 1.0, CELLS + 1)
-        phi = FURTHEST * structure.limit(direction) * x * (2 - x)  # finer near the limit, where a linkage locks
+        x = np.linspace(0.0, 1.0, JUMP_INTERVALS + 1)
+        phi = NO_JUMP_SHARE * structure.limit(direction) * x * (2 - x)  # finer near the limit, where a linkage locks
         for body, motion in zip(structure.bodies(), structure.motion(phi, direction), strict=True):
             z, dz, ddz = motion.carry(body.centroid)
             found = [jump(phi, part(z) - part(z[0]), part(dz), size) for part in (np.real, np.imag)]
@@ -204,11 +204,14 @@ def derivatives_are_those_of_the_motion(structure: Mechanism) -> None:
     """First and second derivatives agree with difference quotients."""
     for direction in structure.directions:
         top = _top(structure, direction)
-        step = min(STEP, SHARE * top)
+        step = min(MAX_STEP, STEP_SHARE * top)
         phi = np.linspace(0.02, 1.0, 9) * top
         here = structure.motion(phi, direction)
-        steps = (step, FINER * step)  # over a bend of a derivative, which it may have, the wider one says nothing
-        around = [structure.motion(phi + shift * step, direction) for step in steps for shift in SHIFTS]
+        steps = (
+            step,
+            FINE_STEP_SHARE * step,
+        )  # over a bend of a derivative, which it may have, the wider one says nothing
+        around = [structure.motion(phi + shift * step, direction) for step in steps for shift in STENCIL]
         for body, motion, *moved in zip(structure.bodies(), here, *around, strict=True):
             _, dz, ddz = motion.carry(body.centroid)
             speed = _size(structure) + np.abs(dz).max()
@@ -297,14 +300,14 @@ def contacts_bear_its_weight(structure: Mechanism) -> None:
         missing = np.abs(jacobian.T @ force[: len(jacobian)] - there.demands()[0] @ starts) / there.scale
         k = int(missing.argmax())
         _demand(
-            missing[k] <= BORNE * weight,
+            missing[k] <= MAX_IMBALANCE * weight,
             f"{here} do not balance {names[k // 3]} as rocking starts, {missing[k]:.4g} N are missing: they must be "
             "the joints that its motion keeps together",
         )
         for contact, (normal, _) in zip(found.contacts, found.rows, strict=True):
             least = min((float(force[row]) for row in normal), default=0.0)
             _demand(
-                least >= -BORNE * weight,
+                least >= -MAX_IMBALANCE * weight,
                 f"the contact of {contact.label} pulls with {-least:.4g} N as rocking starts in the {direction.label} "
                 "direction: its normal must point from the first piece into the second",
             )
@@ -326,12 +329,13 @@ def _pieces(structure: Mechanism, direction: Direction) -> Sequence[Piece]:
             mass = sum(part.body.mass for part in parts)
             moment = sum(part.body.mass * (part.body.centroid - part.shift) for part in parts) - mass * body.centroid
             _demand(
-                abs(mass - body.mass) <= BORNE * body.mass and abs(moment) <= DRAWN * body.mass * _size(structure),
+                abs(mass - body.mass) <= MAX_IMBALANCE * body.mass
+                and abs(moment) <= OUTLINE_DIFFERENCE * body.mass * _size(structure),
                 f"the pieces of {body.name} have {mass:.6g} kg of its {body.mass:.6g} kg, or another centroid",
             )
         else:
             rates = abs(complex(motion.carry(body.centroid)[1][0])), abs(float(motion.dpsi[0]))
-            _demand(max(rates) <= ALIKE * _size(structure), f"{body.name} moves, but no piece is of it")
+            _demand(max(rates) <= EQUAL_VALUES * _size(structure), f"{body.name} moves, but no piece is of it")
     return pieces
 
 
@@ -342,8 +346,12 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
     assert bare is not None
     spot, size = _liveliest(bare), _size(bare)
     weight = bare.gravity * sum(body.mass for body in bare.weighed())
-    mass, force, stiffness = A_BIT * weight / bare.gravity, A_BIT * weight * (0.3 - 1j), A_BIT * weight / size
-    prestress, anchor = 0.1 * A_BIT * weight, spot.at - size * (1 + 0.5j)
+    mass, force, stiffness = (
+        TRIAL_LOAD_SHARE * weight / bare.gravity,
+        TRIAL_LOAD_SHARE * weight * (0.3 - 1j),
+        TRIAL_LOAD_SHARE * weight / size,
+    )
+    prestress, anchor = 0.1 * TRIAL_LOAD_SHARE * weight, spot.at - size * (1 + 0.5j)
     share = {"horizontal": 0.6, "vertical": 0.7, "weight": 0.8}
     at = {"body": spot.body, "at": [spot.at.real, spot.at.imag]}
     ends = {"from": {"ground": [anchor.real, anchor.imag]}, "to": at}
@@ -362,12 +370,12 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
 
     for direction in structure.directions:
         top = _top(bare, direction)
-        step = min(STEP, SHARE * top)
+        step = min(MAX_STEP, STEP_SHARE * top)
         phi = np.linspace(0.02, 1.0, 9) * top
         says, own = (each.coefficients(phi, direction) for each in (laden, bare))
-        z = [bare.followed(phi + shift * step, direction)(spot).z for shift in SHIFTS]
+        z = [bare.followed(phi + shift * step, direction)(spot).z for shift in STENCIL]
         moved = _quotient(z, step)
-        around = [energies(phi + shift * step, direction) for shift in SHIFTS]
+        around = [energies(phi + shift * step, direction) for shift in STENCIL]
         here = energies(phi, direction)
         inertia = mass * (share["horizontal"] * moved.real**2 + share["vertical"] * moved.imag**2)
         moment = np.abs(own.G).max() + np.abs(own.B).max()
@@ -381,7 +389,7 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
         ):
             what = f"{name} of coefficients with a load and a tie, {direction.label} direction,"
             _near(what, phi, getattr(says, name), getattr(own, name) + added, 1e-6 * big, "bodies and load give")
-        beside = [laden.coefficients(phi + shift * step, direction).Q for shift in SHIFTS]
+        beside = [laden.coefficients(phi + shift * step, direction).Q for shift in STENCIL]
         turned = _quotient(beside, step).real
         _near(
             f"dQ, {direction.label} direction,",
@@ -409,7 +417,7 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
 def may_lean_on_side_walls(structure: Mechanism) -> None:
     """One-sided rocking, unless refused, has the uplift and critical rotation of that side."""
     for direction in structure.directions:
-        sided = _with(structure, one_sided=direction.label, rebound=GIVEN, restitution=None)
+        sided = _with(structure, one_sided=direction.label, rebound=TRIAL_REBOUND, restitution=None)
         if sided is None:
             return
         here = f"if it rocks in the {direction.label} direction only"
@@ -454,7 +462,7 @@ def hinges_hold_together(structure: Mechanism) -> None:
                 outlines = sketch.outlines.get(name) or [bodies[name].outline]
                 size = max(abs(corner - bodies[name].centroid) for each in outlines for corner in each)
                 off = min(float(distance(np.array([hinge.point]), np.asarray(each))[0]) for each in outlines)
-                _demand(off <= DRAWN * size, f"{which} is {off:.3g} m off the edge of {name}")
+                _demand(off <= OUTLINE_DIFFERENCE * size, f"{which} is {off:.3g} m off the edge of {name}")
 
 
 def joints_hold_what_moves(structure: Mechanism) -> None:
@@ -470,7 +478,10 @@ def joints_hold_what_moves(structure: Mechanism) -> None:
                 f"the face of {which} does not turn with a body: {joint.face}",
             )
             size = abs(joint.normal)
-            _demand(joint.is_guide or abs(size - 1) <= ALIKE, f"the normal of {which} has the length {size:.6g}, not 1")
+            _demand(
+                joint.is_guide or abs(size - 1) <= EQUAL_VALUES,
+                f"the normal of {which} has the length {size:.6g}, not 1",
+            )
         if joints:
             known = not reactions(structure, direction, np.zeros(1), np.zeros(1)).is_whole
             way = f"the joints of the {direction.label} direction"
@@ -491,7 +502,7 @@ def _holds_together(structure: Mechanism, direction: Direction, hinge: Hinge, wh
     first, *others = (moved[name].carry(about)[0] for name in hinge.bodies)
     gap = first - (others[0] if others else about + direction * hinge.roll * phi)
     across = np.abs((gap / hinge.slide).imag if hinge.slide else gap)
-    held = bool(across.max() <= ALIKE * (_size(structure) + abs(hinge.point)))
+    held = bool(across.max() <= EQUAL_VALUES * (_size(structure) + abs(hinge.point)))
     _demand(held, f"{which} opens by {across.max():.3g} m at phi = {phi[across.argmax()]:.4g} rad")
 
 
@@ -505,10 +516,10 @@ def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
     if not known:
         return
     size = abs(drawn.extent[1] - drawn.extent[0])
-    flush = FLUSH * size
+    flush = GROUND_HEIGHT * size
     bodies, level = structure.bodies(), not sketch.ground
     for direction in structure.directions:
-        phi = np.linspace(0.0, A_LITTLE, 9) * _phi_cr(structure, direction)
+        phi = np.linspace(0.0, ABOVE_GROUND_ROTATION, 9) * _phi_cr(structure, direction)
         motions = structure.motion(phi, direction)
         as_one = _moving_as_one(motions, size)
         within = f"within {phi[-1]:.4g} rad of the {direction.label} direction: it must turn about the edge of its base"
@@ -586,18 +597,18 @@ def _demand(holds: object, otherwise: str) -> None:
 
 def _alone(check: Callable[[Mechanism], object], structure: Mechanism) -> object:
     """Run a check on a structure without loads, ties and the like, which may leave it no critical rotation."""
-    hung = [key for key in HUNG if getattr(structure, key, None) is not None]
+    hung = [key for key in COMMON_FIELDS if getattr(structure, key, None) is not None]
     if not hung:
         return check(structure)
     alone = _with(structure, **dict.fromkeys(hung))
     if alone is None:  # it cannot rock in the other direction
-        alone = structure.model_copy(update=dict.fromkeys([key for key in hung if key not in SIDED]))
+        alone = structure.model_copy(update=dict.fromkeys([key for key in hung if key not in SIDED_FIELDS]))
     return check(alone)
 
 
 def _with(structure: Mechanism, **fields: object) -> Mechanism | None:
     """Return the structure with these fields, and with masses; None if it refuses the fields."""
-    masses = {} if structure.has_mass else {"mass": A_MASS}
+    masses = {} if structure.has_mass else {"mass": TRIAL_MASS}
     try:
         return structure.model_copy(update={**masses, **fields})
     except ValidationError as error:
@@ -633,7 +644,7 @@ def _near(what: str, phi: Reals, said: ArrayLike, found: ArrayLike, allowed: flo
 
 
 def _quotient(values: Sequence[ArrayLike], step: float) -> NDArray[np.complex128]:
-    """Return the derivative from values at `SHIFTS` steps."""
+    """Return the derivative from values at the steps of `STENCIL`."""
     before2, before, after, after2 = (np.asarray(each) for each in values)
     return np.asarray((8 * (after - before) - (after2 - before2)) / (12 * step))
 
@@ -655,7 +666,7 @@ def _overturns(structure: Mechanism, direction: Direction) -> bool:
 
 def _top(structure: Mechanism, direction: Direction) -> float:
     """Return the rotation up to which the motion must be smooth [rad]."""
-    return min(BEYOND * _phi_cr(structure, direction), REACH * structure.limit(direction))
+    return min(SMOOTH_ROTATION * _phi_cr(structure, direction), SMOOTH_LIMIT_SHARE * structure.limit(direction))
 
 
 def _size(structure: Mechanism) -> float:
@@ -680,7 +691,11 @@ def _moving_as_one(motions: Sequence[RigidMotion], size: float) -> list[int]:
     """Return for each body the first one with the same motion."""
     places = [np.concatenate([motion.carry(0j)[0], motion.carry(complex(size))[0]]) for motion in motions]
     return [
-        next(j for j, other in enumerate(places) if np.abs(place - other).max() <= ALIKE * (size + np.abs(place).max()))
+        next(
+            j
+            for j, other in enumerate(places)
+            if np.abs(place - other).max() <= EQUAL_VALUES * (size + np.abs(place).max())
+        )
         for place in places
     ]
 
@@ -700,11 +715,11 @@ def _is_uniform(body: Body, outlines: Sequence[Outline]) -> None:
     inertia = sum(plate.inertia + plate.mass * abs(plate.centroid - centroid) ** 2 for plate in plates)
     size = max(abs(corner - body.centroid) for each in outlines for corner in each)
     _demand(
-        body.mass == 0 or abs(centroid - body.centroid) <= DRAWN * size,
+        body.mass == 0 or abs(centroid - body.centroid) <= OUTLINE_DIFFERENCE * size,
         f"the centroid of {body.name} is {body.centroid:.6g} m, but that of its outlines {centroid:.6g} m",
     )
     _demand(
-        abs(inertia - body.inertia) <= DRAWN * body.mass * size**2,
+        abs(inertia - body.inertia) <= OUTLINE_DIFFERENCE * body.mass * size**2,
         f"the inertia of {body.name} is {body.inertia:.6g} kg m2, but that of its outlines {inertia:.6g} kg m2",
     )
 
@@ -715,9 +730,9 @@ def _can_be_within(body: Body) -> None:
     reach = float(np.abs(corners - body.centroid).max())
     turned = np.exp(1j * np.linspace(0.0, 2 * np.pi, 360, endpoint=False))
     out = float(((body.centroid - corners[:, None]) * turned).real.min(axis=0).max())
-    _demand(out <= DRAWN * reach, f"the centroid of {body.name} is {out:.4g} m outside of its outline")
+    _demand(out <= OUTLINE_DIFFERENCE * reach, f"the centroid of {body.name} is {out:.4g} m outside of its outline")
     _demand(
-        body.inertia <= body.mass * reach**2 * (1 + DRAWN),
+        body.inertia <= body.mass * reach**2 * (1 + OUTLINE_DIFFERENCE),
         f"the inertia of {body.name} is {body.inertia:.6g} kg m2, more than that of all its mass at the furthest "
         f"corner of its outline, {body.mass * reach**2:.6g} kg m2",
     )

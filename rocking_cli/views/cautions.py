@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isclose
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.equivalence import AGREEMENT
+from rocking_cli.core.equivalence import EQUAL_DIRECTIONS
 from rocking_cli.core.mechanism import why_none
 from rocking_cli.dynamics.resting import early_failures
 from rocking_cli.names import digits_apart
@@ -31,13 +31,13 @@ def of_restitution(mechanism: Mechanism) -> list[str]:
         return []
     cautions: list[str] = []
     etas = {direction: mechanism.eta(direction) for direction in mechanism.directions}
-    one = isclose(*etas.values(), rel_tol=AGREEMENT)
+    one = isclose(*etas.values(), rel_tol=EQUAL_DIRECTIONS)
     for direction, eta in list(etas.items())[: 1 if one else 2]:
         at = "at impacts" if one else f"at impacts that end motion in the {direction.label} direction"
         if eta <= 0:
             why = f"{why_none(eta)}. Time histories require a measured `restitution`"
             cautions.append(f"The kinematics give eta = {eta:.4g} {at}: {why}.")
-        elif eta > 1 + AGREEMENT:
+        elif eta > 1 + EQUAL_DIRECTIONS:
             kept = 100 * (eta / mechanism.greatest_restitution(direction)) ** 2
             cautions.append(
                 f"The eta of {eta:.4g} {at} compares the rates of two different mechanisms: such an impact keeps "

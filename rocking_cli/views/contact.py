@@ -7,7 +7,7 @@ from math import isnan
 from typing import Any
 
 from rocking_cli.core import Mechanism
-from rocking_cli.core.contacts import MASONRY
+from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.studies.contact import NEAR_PEAK, ContactDemand, SupportDemand
 from rocking_cli.views.column import Column, data_of, of, rounded
 from rocking_cli.views.restitution import restitution_source
@@ -117,7 +117,7 @@ def contact_words(found: ContactDemand, mechanism: Mechanism) -> str:
 
 def _at_impacts(found: ContactDemand, mechanism: Mechanism) -> str:
     """Return what to do about the friction that impacts require, as a clause with its colon."""
-    if found.friction is None and found.impact_friction <= MASONRY:
+    if found.friction is None and found.impact_friction <= MASONRY_FRICTION:
         return ""
     # The check uses impulses of the kinematic restitution; those of another one are not known at each joint.
     if not found.followed or restitution_source(mechanism) == "given":
@@ -132,7 +132,7 @@ def _friction(found: ContactDemand, beyond: str) -> str:
     where = _where(found.joint) if found.joint else "the structure"
     if found.friction is None:
         lasts = f"it requires more than {100 * NEAR_PEAK:.0f} % of this value for {number(found.duration, 2)} s"
-        usual = f"{'more' if found.beyond_masonry else 'no more'} than the {MASONRY:g} usual for masonry"
+        usual = f"{'more' if found.beyond_masonry else 'no more'} than the {MASONRY_FRICTION:g} usual for masonry"
         return (
             f"Contact: {where} requires a coefficient of friction of up to {needed}, {at}, {usual}; around this time "
             f"{lasts}."

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rocking_cli import names
 from rocking_cli.core import Direction, Mechanism
-from rocking_cli.dynamics.history import FELT, History, contact_lost
+from rocking_cli.dynamics.history import MIN_IMPACT_RATE, History, contact_lost
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.verdict import Agreement
@@ -436,7 +436,7 @@ def _impact_table(title: str, history: History, etas: tuple[float, float]) -> li
     table = table_of(title, IMPACTS, _impacts(history.felt[:MAX_LISTED_IMPACTS], etas))
     felt, chatter = len(history.felt), history.impact_count - len(history.felt)
     sentences = [f"{felt - MAX_LISTED_IMPACTS} more impacts follow"] if felt > MAX_LISTED_IMPACTS else []
-    sentences += [f"{chatter} weaker than {100 * FELT:g} % of the strongest are left out"] if chatter else []
+    sentences += [f"{chatter} weaker than {100 * MIN_IMPACT_RATE:g} % of the strongest are left out"] if chatter else []
     return [table, f"{' and '.join(sentences)}: the JSON output lists them."] if sentences else [table]
 
 

@@ -8,11 +8,11 @@ from math import isfinite, isnan
 from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade, grade
-from rocking_cli.core.contacts import MASONRY
+from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.joints import JointCheck
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.dynamics.verdict import ANOTHER, CLOSE, Agreement, disagree, remedy
+from rocking_cli.dynamics.verdict import NEAR_OVERTURNING, SAME_PEAK_DELAY, Agreement, disagree, remedy
 from rocking_cli.names import percent
 
 SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
@@ -66,7 +66,7 @@ def joints_in_words(history: History, assumed_friction: float | None = None) -> 
         is valid, why, and what to do next.
     """
     check = history.check
-    slides = [] if assumed_friction is None else [ASSUMED.format(assumed_friction, MASONRY)]
+    slides = [] if assumed_friction is None else [ASSUMED.format(assumed_friction, MASONRY_FRICTION)]
     if history.unknown:
         return " ".join([_until(history), *slides, NEXT_STEP.format(REMEDIES[remedy(history)])])
     if check is None:
@@ -174,7 +174,7 @@ def verdict(
         sentences += blocks_in_words(histories, agreed, {name: name for name in histories})
     if not run.unknown and disagree(histories):
         sentences.append("Do not trust any of them alone: run weaker and stronger motions as well.")
-    elif not run.fell and not run.unknown and run.peak_ratio > CLOSE and not any(run.ends_at_limit):
+    elif not run.fell and not run.unknown and run.peak_ratio > NEAR_OVERTURNING and not any(run.ends_at_limit):
         sentences.append("This is close to overturning: run weaker and stronger motions before relying on it.")
     still = [name for name, each in histories.items() if each.still_rocking]
     if still:
@@ -263,7 +263,7 @@ def _beside(found: Agreement, run: History, best: History) -> str:
     size = "the same" if size == percent(0) else f"{size} {'higher' if found.peak_error > 0 else 'lower'}"
     if found.difference is None:
         return f"its peak is {size}"
-    late = f" and {later}" if abs(delay) * best.p > ANOTHER else ""
+    late = f" and {later}" if abs(delay) * best.p > SAME_PEAK_DELAY else ""
     return f"its peak is {size}{late}, and its rotation history differs by {percent(found.difference)} (rms)"
 
 

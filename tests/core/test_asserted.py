@@ -9,7 +9,7 @@ import yaml
 import rocking_cli as rk
 from rocking_cli import GroundMotion, Runs, respond_many
 from rocking_cli.core import Direction
-from rocking_cli.core.contacts import MASONRY
+from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.core.reactions import reactions
 from rocking_cli.dynamics.resting import first_failure, resting
 from rocking_cli.structure import build_models
@@ -39,7 +39,7 @@ def test_a_top_that_friction_under_a_roof_holds_slides_where_its_levers_say(fric
     """The wall turns about its foot as one body, and the roof slides on it: moments about the foot."""
     wall = rk.SpanningWall(**ROOF, friction=friction)
     weight, height, half = 1800 * 0.4 * 3.5 * G, 3.5, 0.2
-    holds = (MASONRY if friction is None else friction) * 1000 * height
+    holds = (MASONRY_FRICTION if friction is None else friction) * 1000 * height
     expected = ((weight + 1000) * half + holds) / (weight * height / 2)
     for direction in Direction:
         failure = first_failure(resting(wall), direction)

@@ -16,7 +16,7 @@ from rocking_cli.dynamics import batch
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.deck import run_deck
 from rocking_cli.dynamics.model import MODELS
-from rocking_cli.dynamics.outcome import OUTCOME
+from rocking_cli.dynamics.outcome import OUTCOME_FIELDS
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import build_models
@@ -30,7 +30,7 @@ MECHANISMS = {
     "arch": lambda k=1.0: Arch(radius=10.0 * k, thickness=1.5 * k, inclusion_angle_deg=157.5),
 }
 FREE = {"free frame": lambda k=1.0: UncheckedFrame(**MECHANISMS["frame"](k).model_dump())}
-COLUMNS = OUTCOME
+COLUMNS = OUTCOME_FIELDS
 
 
 @cache
@@ -172,7 +172,7 @@ def test_a_run_takes_the_tables_and_the_samples_of_its_own_structure_and_record(
 def test_results_depend_neither_on_threads_nor_on_how_runs_are_dealt_out(monkeypatch, threads, unit):
     every, runs = mixed()
     expected = respond_many(every, motions(), runs, threads=1)
-    monkeypatch.setattr(batch, "UNIT", unit)
+    monkeypatch.setattr(batch, "HISTORIES_PER_TASK", unit)
     same(respond_many(every, motions(), runs, threads=threads), expected)
 
 
@@ -192,7 +192,7 @@ def test_progress_counts_every_run_once(count):
     seen = []
     assert respond_many(every, motions(), runs, progress=seen.append).fell.size == count
     assert sum(seen) == count
-    assert all(0 < part <= batch.UNIT for part in seen)
+    assert all(0 < part <= batch.HISTORIES_PER_TASK for part in seen)
 
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt, RuntimeError])
@@ -208,7 +208,7 @@ def test_an_interruption_in_progress_stops_what_has_not_begun(monkeypatch, error
         raise error
 
     monkeypatch.setattr(batch, "run_deck", counted)
-    monkeypatch.setattr(batch, "UNIT", 1)
+    monkeypatch.setattr(batch, "HISTORIES_PER_TASK", 1)
     with pytest.raises(error):
         respond_many(every, motions(), runs, threads=1, progress=interrupt)
     assert 1 <= len(begun) < 200

@@ -13,10 +13,10 @@ from mechanisms.block import Block
 from mechanisms.wall import Wall
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.dynamics import kernels
-from rocking_cli.dynamics.deck import MOST_IMPACTS, run_deck
+from rocking_cli.dynamics.deck import MAX_IMPACTS, run_deck
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import Model
-from rocking_cli.dynamics.outcome import OUTCOME
+from rocking_cli.dynamics.outcome import OUTCOME_FIELDS
 from rocking_cli.dynamics.tables import DirectionTable
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
@@ -432,7 +432,7 @@ def test_elastic_impacts_never_end_and_that_is_what_is_said(model):
     history = shake(model, None, None, mechanism=Block(width=0.7, height=2.8, restitution=1.0), release=0.5)
     assert history.still_rocking
     assert not history.overturned
-    assert history.impact_count >= MOST_IMPACTS
+    assert history.impact_count >= MAX_IMPACTS
     assert history.peak_positive == pytest.approx(0.5 * ONE.phi_cr, rel=1e-6)
     assert history.peak_negative == pytest.approx(0.5 * ONE.phi_cr, rel=1e-6)
     # Energy is kept, to what 20 000 impacts at a tolerance of 1e-10 leave.
@@ -455,8 +455,8 @@ def test_impacts_during_the_record_do_not_count_when_it_is_to_be_given_up(model)
     elastic = Block(width=0.7, height=2.8, restitution=1.0)
     history = shake(model, 0.5, np.zeros(121), mechanism=elastic, release=5e-5)
     during = np.count_nonzero(history.impacts[:, 0] < 60.0)
-    assert 2000 < during < MOST_IMPACTS
-    assert MOST_IMPACTS + during < history.impact_count < MOST_IMPACTS + during + 1000
+    assert 2000 < during < MAX_IMPACTS
+    assert MAX_IMPACTS + during < history.impact_count < MAX_IMPACTS + during + 1000
 
 
 # --- a hollow beyond phi_cr
@@ -553,7 +553,7 @@ def test_how_many_samples_are_kept_changes_no_motion(model):
         assert other.phi.tobytes() == all_of_it.phi[: other.phi.size].tobytes()
         assert other.rate.tobytes() == all_of_it.rate[: other.rate.size].tobytes()
         assert other.impacts.tobytes() == all_of_it.impacts.tobytes()
-        for name in OUTCOME:
+        for name in OUTCOME_FIELDS:
             assert repr(getattr(other, name)) == repr(getattr(all_of_it, name))
     assert none.time.size == 40 < some.time.size < all_of_it.time.size
 
@@ -681,7 +681,7 @@ def test_random_motions_are_consistent_and_never_fail(start, monkeypatch):
         kinds = [mechanism] if name != "arch" else [mechanism, Arch.model_validate(mechanism.model_dump())]
         for kind in kinds:
             # Where the joints of an elastic arch are open, twenty thousand impacts take seconds.
-            most = MOST_IMPACTS // (10 if type(kind) is Arch else 1)
+            most = MAX_IMPACTS // (10 if type(kind) is Arch else 1)
             monkeypatch.setitem(run_deck.__kwdefaults__, "most_impacts", most)
             for model, history in engines.respond(made_ready(kind, name), motion, release=release, tail=2.0).items():
                 unknown += history.unknown

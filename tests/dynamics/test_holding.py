@@ -10,7 +10,7 @@ import pytest
 import rocking_cli as rk
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.joints import checked_joints
-from rocking_cli.dynamics.resting import FEET
+from rocking_cli.dynamics.resting import FEET_PLACE
 from rocking_cli.structure import build_models
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.views.animation import verdict_of
@@ -55,12 +55,12 @@ def test_joints_that_are_checked_are_named_by_kind(structure, said):
 @pytest.mark.parametrize("name", ["frame", "linkage", "portal"])
 def test_all_joints_of_the_tables_are_named_and_no_others(name, monkeypatch):
     """A joint has one letter in each direction in which it is a hinge, and the name of both bodies if in none."""
-    monkeypatch.setattr("rocking_cli.dynamics.joints.LISTED", 1000)
+    monkeypatch.setattr("rocking_cli.dynamics.joints.MAX_LISTED_NAMES", 1000)
     made = rk.load_structure(next(EXAMPLES.rglob(f"{name}.yaml")))
     (model,) = build_models(made, ("nonlinear",))
     named = [each for kind in model.joints.checked for each in re.sub(r"^(closed )?\w+ ", "", kind).split(", ")]
     hinges = {(c.label, d) for d in Direction for c in made.contacts(d) if c.held is None and len(c.points) == 1}
-    closed = set(model.joints.labels) - {label for label, _ in hinges} - {FEET}
+    closed = set(model.joints.labels) - {label for label, _ in hinges} - {FEET_PLACE}
     letters = {joint.letter for direction in Direction for joint in made.joints(direction) if not joint.is_guide}
     assert len(named) == len(hinges) + len(closed) and set(named) == closed | letters
 

@@ -16,7 +16,7 @@ from rocking_cli.dynamics import kernels
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.joints import _calm
 from rocking_cli.dynamics.modes import modes
-from rocking_cli.dynamics.outcome import OUTCOME
+from rocking_cli.dynamics.outcome import OUTCOME_FIELDS
 from rocking_cli.errors import InputError
 from rocking_cli.structure import build_models
 from rocking_cli.views.verdict import joints_in_words
@@ -317,7 +317,7 @@ def test_the_quick_bounds_change_nothing(case):
     other = replace(model, joints=replace(model.joints, within=within, calm=(np.inf, -1.0)))
     found = respond_many([model, other], [motion], Runs.of(np.repeat([0, 1], 2), 0, scale=factors * 2))
     assert np.isfinite(found.warned).any() and found.opening.max() > 0
-    for field in OUTCOME:
+    for field in OUTCOME_FIELDS:
         one, all_looked_at = np.asarray(getattr(found, field)).reshape(2, -1)
         np.testing.assert_allclose(one, all_looked_at, rtol=1e-9, err_msg=field)
 

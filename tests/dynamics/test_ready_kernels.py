@@ -39,9 +39,9 @@ def choose(monkeypatch):
 
     def chosen(way=None):
         if way is None:
-            monkeypatch.delenv(ways.CHOSEN, raising=False)
+            monkeypatch.delenv(ways.KERNELS_VARIABLE, raising=False)
         else:
-            monkeypatch.setenv(ways.CHOSEN, way)
+            monkeypatch.setenv(ways.KERNELS_VARIABLE, way)
         ways.forget()
 
     yield chosen
@@ -56,7 +56,7 @@ class TestWhatIsShipped:
         assert {name: made[name] for name in shipped.MADE_BY} == shipped.MADE_BY
 
     def test_the_hash_follows_the_sources_and_the_builder_and_no_line_ends(self, monkeypatch, tmp_path):
-        for name in (*shipped.SOURCES, "shipped.py"):
+        for name in (*shipped.SOURCE_FILES, "shipped.py"):
             source = (PROJECT / "rocking_cli" / "dynamics" / name).read_bytes()
             (tmp_path / name).write_bytes(source.replace(b"\n", b"\r\n"))
         usual = shipped.source_hash()
@@ -69,7 +69,7 @@ class TestWhatIsShipped:
 
     @pytest.mark.parametrize("name", shipped.manifest()["files"])
     def test_a_library_is_whole_and_needs_nothing_of_others(self, name):
-        content = (shipped.FOLDER / name).read_bytes()
+        content = (shipped.LIBRARY_FOLDER / name).read_bytes()
         assert hashlib.sha256(content).hexdigest() == shipped.manifest()["files"][name]
         if name.endswith(".so"):  # of the others the linker sees to it
             assert missing(content) == []
@@ -78,8 +78,8 @@ class TestWhatIsShipped:
         assert not any(each in content for each in (b"NRT_", b"/home", b"/tmp", b"/root", str(PROJECT).encode()))
 
     def test_they_are_small_and_all_of_them(self):
-        files = {each.name: each.stat().st_size for each in shipped.FOLDER.iterdir()}
-        assert files.keys() == {*shipped.manifest()["files"], shipped.MANIFEST}
+        files = {each.name: each.stat().st_size for each in shipped.LIBRARY_FOLDER.iterdir()}
+        assert files.keys() == {*shipped.manifest()["files"], shipped.MANIFEST_FILE}
         assert sum(files.values()) < 1.5e6
 
     @pytest.mark.parametrize("system, machine, name", [
@@ -194,7 +194,7 @@ BLOCK = (
 
 class TestWays:
     def test_the_shipped_one_comes_first_and_numba_is_not_loaded(self):
-        environment = {name: value for name, value in os.environ.items() if name != ways.CHOSEN}
+        environment = {name: value for name, value in os.environ.items() if name != ways.KERNELS_VARIABLE}
         done = subprocess.run([sys.executable, "-c", BLOCK], capture_output=True, text=True, env=environment)
         assert done.stdout == "False\n" and "KernelWarning" not in done.stderr
 
@@ -241,8 +241,8 @@ class TestLibrary:
     def folder(self, choose, tmp_path, monkeypatch):
         """A folder with what is shipped, in the place of the one that is installed."""
         folder = tmp_path / "ready"
-        shutil.copytree(shipped.FOLDER, folder)
-        monkeypatch.setattr(shipped, "FOLDER", folder)
+        shutil.copytree(shipped.LIBRARY_FOLDER, folder)
+        monkeypatch.setattr(shipped, "LIBRARY_FOLDER", folder)
         choose()
         return folder
 
@@ -277,9 +277,9 @@ class TestLibrary:
     @pytest.mark.parametrize("manifest", [None, "", "{", "[1]", "{}", '{"source": 1, "made_by": 2, "files": 3}'])
     def test_a_manifest_that_is_none(self, folder, manifest):
         if manifest is None:
-            (folder / shipped.MANIFEST).unlink()
+            (folder / shipped.MANIFEST_FILE).unlink()
         else:
-            (folder / shipped.MANIFEST).write_text(manifest, encoding="utf-8")
+            (folder / shipped.MANIFEST_FILE).write_text(manifest, encoding="utf-8")
         with pytest.raises(BrokenKernels, match="cannot be read"):
             shipped.load(PULSES)
 
@@ -291,7 +291,7 @@ class TestLibrary:
             other = (folder / foreign).read_bytes()
         shipped.place().write_bytes(other)
         manifest["files"][shipped.place().name] = hashlib.sha256(other).hexdigest()
-        (folder / shipped.MANIFEST).write_text(json.dumps(manifest), encoding="utf-8")
+        (folder / shipped.MANIFEST_FILE).write_text(json.dumps(manifest), encoding="utf-8")
         with pytest.raises(BrokenKernels, match="cannot be loaded"):
             shipped.load(PULSES)
 

@@ -6,7 +6,7 @@ from scipy.integrate import quad
 
 from rocking_cli.core import Direction
 from rocking_cli.core.structure_file import load_structure
-from rocking_cli.dynamics.tables import END, tabulate
+from rocking_cli.dynamics.tables import LIMIT_SHARE, tabulate
 from tests.conftest import EXAMPLES
 
 FILES = sorted(path.name for path in EXAMPLES.glob("*.yaml"))
@@ -49,7 +49,7 @@ def test_tables_hold_up_to_where_a_linkage_locks(file, direction):
     table = tabulate(mechanism)[0 if direction > 0 else 1]
     q = np.random.default_rng(1).uniform(0.5 * table.end, table.end, 2000)
     phi, rate = interpolate(table.angles, table.cell, q)
-    assert phi.max() < END * mechanism.limit(direction)
+    assert phi.max() < LIMIT_SHARE * mechanism.limit(direction)
     at = mechanism.coefficients(phi, direction)
     for got, expected in zip(
         (rate, *interpolate(table.forces, table.cell, q)),
@@ -83,7 +83,7 @@ def test_q_is_the_integral_of_the_root_of_the_inertia(file, direction):
 def test_what_is_certain_to_overturn_can_not_be_turned_back_by_that_acceleration(file):
     mechanism = load_structure(EXAMPLES / file)
     table, _ = tabulate(mechanism)
-    assert table.nodes[-1] == pytest.approx(END * mechanism.limit(Direction.POSITIVE))
+    assert table.nodes[-1] == pytest.approx(LIMIT_SHARE * mechanism.limit(Direction.POSITIVE))
     nodes = table.nodes[:-1]
     at = mechanism.coefficients(nodes, Direction.POSITIVE)
     outside = nodes > mechanism.critical_rotation(Direction.POSITIVE)

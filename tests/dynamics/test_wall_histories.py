@@ -259,7 +259,7 @@ def test_joints_that_statics_determines_are_solved_in_parts(at_once, monkeypatch
     made = load_structure(EXAMPLES / "masonry/portal.yaml")
     phi = np.linspace(0.0, 0.1, 7)
     whole = released(made, FORWARD, phi)
-    monkeypatch.setattr(of_released, "AT_ONCE", at_once)
+    monkeypatch.setattr(of_released, "MAX_ENTRIES", at_once)
     parts = released(made, FORWARD, phi)
     assert parts.force == pytest.approx(whole.force, rel=1e-12, abs=1e-6)
     assert parts.compliance == pytest.approx(whole.compliance, rel=1e-12)
@@ -271,7 +271,7 @@ def test_a_long_motion_is_solved_in_parts(at_once, largest, monkeypatch):
     whole = load_structure(EXAMPLES / "linkages/two_storeys.yaml")
     phi = np.linspace(0.0, 0.9 * whole.limit(FORWARD), 50)
     expected = whole.motion(phi, FORWARD)
-    monkeypatch.setattr(of_linkages, "AT_ONCE", at_once)
+    monkeypatch.setattr(of_linkages, "MAX_ENTRIES", at_once)
     solved = []
     plain = of_linkages.LinkageMotion._followed
     monkeypatch.setattr(

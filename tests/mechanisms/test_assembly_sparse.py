@@ -20,7 +20,7 @@ from mechanisms._assembly import (
     linkage,
 )
 from mechanisms._assembly.problem import AssemblyProblem
-from mechanisms._assembly.programme import LARGE
+from mechanisms._assembly.programme import MIN_INTERIOR_EQUATIONS
 from mechanisms._assembly.unique import kept_rays, velocity_space
 from mechanisms._polygons import nearby
 from rocking_cli.core import Direction
@@ -82,7 +82,7 @@ def test_both_theorems_agree_on_two_hundred_assemblies():
 @pytest.mark.rest
 def test_a_wall_solved_by_interior_points_has_both_theorems():
     blocks = bond(14, 15)
-    assert 3 * len(blocks) > LARGE
+    assert 3 * len(blocks) > MIN_INTERIOR_EQUATIONS
     joints = contacts(blocks, FLOOR, friction=0.6)
     found = collapse(blocks, joints)
     assert found.kinematic == approx(found.multiplier, rel=1e-12)  # corrected until what is left is rounding
@@ -147,8 +147,8 @@ def test_the_friction_needed_is_a_bracket():
 def test_the_friction_needed_is_the_same_by_interior_points(monkeypatch):
     """Large walls are solved by interior points, whose multipliers are as exact only if they are corrected."""
     needed = []
-    for large in (LARGE, 0):
-        monkeypatch.setattr("mechanisms._assembly.programme.LARGE", large)
+    for large in (MIN_INTERIOR_EQUATIONS, 0):
+        monkeypatch.setattr("mechanisms._assembly.programme.MIN_INTERIOR_EQUATIONS", large)
         needed.append([])
         for seed in range(0, 12):
             blocks, joints, direction = jumble(seed)

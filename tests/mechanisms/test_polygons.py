@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from mechanisms._polygons import any_alike, any_meet
 from mechanisms.block import Block
-from mechanisms.rigid_body import MOST, RigidBody
+from mechanisms.rigid_body import MAX_CORNERS, RigidBody
 from rocking_cli.core import Direction, equivalent_block
 from rocking_cli.errors import FieldError, MechanismError
 from rocking_cli.questions.error.study import compare
@@ -80,11 +80,11 @@ def tower(count):
 
 
 def test_ten_thousand_corners_are_a_structure_and_more_are_refused():
-    assert RigidBody(polygon=tower(MOST)).uplift(Direction.POSITIVE) == pytest.approx(
-        RigidBody(polygon=tower(MOST // 10)).uplift(Direction.POSITIVE), rel=1e-4
+    assert RigidBody(polygon=tower(MAX_CORNERS)).uplift(Direction.POSITIVE) == pytest.approx(
+        RigidBody(polygon=tower(MAX_CORNERS // 10)).uplift(Direction.POSITIVE), rel=1e-4
     )
     with pytest.raises(ValueError, match="at most 10000 entries"):
-        RigidBody(polygon=tower(MOST + 1))
+        RigidBody(polygon=tower(MAX_CORNERS + 1))
 
 
 def test_the_sides_of_many_corners_are_not_compared_one_by_one(monkeypatch):

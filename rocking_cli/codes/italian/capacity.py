@@ -13,7 +13,7 @@ from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.core import Mechanism
 from rocking_cli.core.equilibrium import NoCriticalRotation
 from rocking_cli.core.hung.attached import Spot
-from rocking_cli.core.hung.element import NAME as INTERLOCK
+from rocking_cli.core.hung.element import INTERLOCK_NAME as INTERLOCK
 from rocking_cli.core.kinematics import Reals
 from rocking_cli.errors import InputError, Problem, StructureError
 from rocking_cli.verification.results import Control

@@ -18,9 +18,9 @@ from rocking_cli.core.kinematics import Points, RigidMotion, distance, inside
 from rocking_cli.core.sketch import Outline
 from rocking_cli.text import did_you_mean
 
-OUTSIDE = 1e-6  # distance from a body of a point that counts as on it, over the size of the body
+OUTSIDE_DISTANCE = 1e-6  # distance from a body of a point that counts as on it, over the size of the body
 OWN_NAMES = ("top", "centroid")  # names of points of the structure itself in results
-FAR = 1.0  # distance of a load from its body from which there is a warning, over the size of the body
+FAR_LOAD_DISTANCE = 1.0  # distance of a load from its body from which there is a warning, over the size of the body
 
 Loc = tuple[str | int, ...]
 
@@ -168,7 +168,7 @@ def far_off(carrier: Carrier, loads: Sequence[Load]) -> Iterator[str]:
     for load in loads:
         at = complex(*load.at)
         body = carrier.carrying(load.body, at, ())
-        if (off := carrier.off(body, at)) > FAR:
+        if (off := carrier.off(body, at)) > FAR_LOAD_DISTANCE:
             yield (
                 f"the load {load.name} at [{at.real:g}, {at.imag:g}] m is {off:.2g} times the size of {body} away from "
                 "it: are its coordinates those of `rocking draw`?"
@@ -211,5 +211,5 @@ def followed(bodies: Sequence[Body], motions: Sequence[RigidMotion], shape: tupl
 
 def _holds(corners: Points, at: Points) -> bool:
     """Return whether a point, given as an array of one, is in a polygon, or next to its edge."""
-    close = OUTSIDE * float(np.abs(corners - corners.mean()).max())
+    close = OUTSIDE_DISTANCE * float(np.abs(corners - corners.mean()).max())
     return bool(distance(at, corners)[0] <= close or inside(at, corners)[0])

@@ -36,9 +36,9 @@ NO_ANSWER: dict[Question, str] = {
 }
 """What a structure may be asked beside its nonlinear history, and what is said where its elements do not allow it."""
 
-TOGETHER = 1e-9  # distance of points that coincide at rest [m], plus this share of their distance from the origin
-ROUNDING = 1e-14  # elongations that count as zero [m], plus this share of that distance
-NEAR = 1e-6  # rotation [rad] below which the distance of points that coincide at rest is its derivative times phi
+COINCIDENT_DISTANCE = 1e-9  # of points at rest [m], plus this share of their distance from the origin
+ZERO_ELONGATION = 1e-14  # elongations that count as zero [m], plus this share of that distance
+SMALL_ROTATION = 1e-6  # rad; below it the distance of points that coincide at rest is its derivative times phi
 
 
 class Element(ABC):
@@ -171,7 +171,7 @@ class Stretched(Element):
             first += np.where(still, 0.0, rate)
             second += np.where(still, 0.0, bend)
         reach = 1 + max(abs(spot.at) for spot in self.spots)
-        return np.where(np.abs(e) <= ROUNDING * reach, 0.0, e), first, second
+        return np.where(np.abs(e) <= ZERO_ELONGATION * reach, 0.0, e), first, second
 
     def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
         """Add the moment N L' to Q."""
@@ -203,7 +203,7 @@ def dot(u: complex | Points, v: Points) -> Reals:
 def _apart(one: Spot, other: Spot) -> float:
     """Return the distance of two points at rest [m]; exactly 0 if they coincide to rounding."""
     rest = abs(other.at - one.at)
-    return 0.0 if rest <= TOGETHER * (1 + abs(one.at)) else rest
+    return 0.0 if rest <= COINCIDENT_DISTANCE * (1 + abs(one.at)) else rest
 
 
 def _met(d: Points, dd: Points, rest: float) -> Bools:
@@ -211,7 +211,7 @@ def _met(d: Points, dd: Points, rest: float) -> Bools:
 
     At these rotations, their distance is taken as its derivative times phi.
     """
-    return np.abs(d) <= NEAR * np.abs(dd) if rest == 0.0 else np.zeros(d.shape, bool)
+    return np.abs(d) <= SMALL_ROTATION * np.abs(dd) if rest == 0.0 else np.zeros(d.shape, bool)
 
 
 @dataclass(frozen=True)
@@ -420,9 +420,9 @@ class SpringBed(Element):
         return [push for spring in self.stretched for push in spring.forces(direction, follow)]
 
 
-NAME = "interlock"
-SHARE = 0.4  # share of the sliding force of all courses that the code counts, for blocks laid with care
-ARM = 1 / 3  # height of the resultant friction of courses under their own weight, over the height
+INTERLOCK_NAME = "interlock"
+COUNTED_SHARE = 0.4  # share of the sliding force of all courses that the code counts, for blocks laid with care
+FRICTION_HEIGHT = 1 / 3  # height of the resultant friction of courses under their own weight, over the height
 
 
 class Interlock(Described):
@@ -464,17 +464,26 @@ class Interlock(Described):
         """
         n, course = self.courses, self.height / self.courses
         weight = density * gravity  # w, per volume
-        return SHARE * n * (n + 1) * (course / self.overlap) * self.friction * self.overlap**2 * self.thickness * weight
+        return (
+            COUNTED_SHARE
+            * n
+            * (n + 1)
+            * (course / self.overlap)
+            * self.friction
+            * self.overlap**2
+            * self.thickness
+            * weight
+        )
 
     def attached(self, foot: Spot, density: float, gravity: float) -> ConstantForce:
         """Return the friction of all crossing walls as one force on the body whose foot is at a point."""
-        spot = Spot(foot.body, foot.at + 1j * ARM * self.height)
-        return ConstantForce(NAME, spot, complex(-self.walls * self.force(density, gravity)), friction=True)
+        spot = Spot(foot.body, foot.at + 1j * FRICTION_HEIGHT * self.height)
+        return ConstantForce(INTERLOCK_NAME, spot, complex(-self.walls * self.force(density, gravity)), friction=True)
 
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Newtons = Annotated[float, Field(ge=-1e12, le=1e12)]
-FLOORS: dict[str, dict[str, float]] = {
+FLOOR_MATERIALS: dict[str, dict[str, float]] = {
     "borne": {"vertical": 1 / 3, "weight": 1 / 2},
     "sliding": {"horizontal": 0.0, "vertical": 1 / 3, "weight": 1 / 2},
     "dragged": {"horizontal": 1.0, "vertical": 1 / 3, "weight": 1 / 2},
@@ -524,7 +533,7 @@ class Load(Described):
             raise geometry_error("seat", "a force has no seat: it is of a mass")
         if self.floor is not None:
             for key in shares:
-                if key in FLOORS[self.floor]:
+                if key in FLOOR_MATERIALS[self.floor]:
                     raise geometry_error(key, f"is already set by floor: {self.floor}; give one of the two")
         return self
 
@@ -536,4 +545,4 @@ class Load(Described):
         assert self.mass is not None
         shares = {"horizontal": self.horizontal, "vertical": self.vertical, "weight": self.weight}
         given = {key: value for key, value in shares.items() if value is not None}
-        return PointMass(self.name, spot, count * self.mass, **{**FLOORS.get(self.floor or "", {}), **given})
+        return PointMass(self.name, spot, count * self.mass, **{**FLOOR_MATERIALS.get(self.floor or "", {}), **given})

@@ -17,7 +17,7 @@ from rocking_cli.errors import MechanismError
 from rocking_cli.plugins.registry import Plugins, origin
 from rocking_cli.text import did_you_mean
 
-LATER = {
+LATER_FIELDS = {
     "yield": "a yield force", "break": "an elongation at which it breaks", "damper": "a damper", "damping": "a damper",
     "inerter": "an inerter", "inertance": "an inerter", "exponent": "the exponent of a damper",
 }  # fmt: skip
@@ -62,7 +62,7 @@ class Tie(Described):
 
     model_config = ConfigDict(validate_by_name=True)
     refused: ClassVar[Mapping[str, str]] = {
-        key: f"{what} of a tie is not supported in this version: leave it out" for key, what in LATER.items()
+        key: f"{what} of a tie is not supported in this version: leave it out" for key, what in LATER_FIELDS.items()
     }
 
     name: Name = Field(description="what to call it")

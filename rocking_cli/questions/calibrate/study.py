@@ -17,7 +17,7 @@ from scipy.optimize import least_squares
 
 from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction
-from rocking_cli.dynamics.model import MEASURED
+from rocking_cli.dynamics.model import MEASURED_SPREAD
 from rocking_cli.errors import InputError
 from rocking_cli.questions.calibrate.free_rocking import (
     FreeRocking,
@@ -491,7 +491,7 @@ def _each(problem: _Problem, x: Reals, trace: Trace, structure: Structure, free_
     covariance = noise**2 * max(1.0, pattern) * solve @ solve.T
     deviation = np.sqrt(np.diag(covariance))
     last = ETA + count - 1  # left out, as all later impacts share it
-    pooled = pool(own[ETA:last], covariance[ETA:last, ETA:last], MEASURED)
+    pooled = pool(own[ETA:last], covariance[ETA:last, ETA:last], MEASURED_SPREAD)
     w = pooled.weights
     variance = w @ covariance[ETA:last, ETA:last] @ w + pooled.scatter**2 * (w @ w)
     for error in errors:

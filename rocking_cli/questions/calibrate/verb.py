@@ -15,7 +15,7 @@ from rocking_cli.ask.given import StructureLike, structure_of
 from rocking_cli.ask.ground_motions import ReadingArguments
 from rocking_cli.ask.numbers import takes_numbers
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.dynamics.model import MEASURED
+from rocking_cli.dynamics.model import MEASURED_SPREAD
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.questions.score.verb import motions_of, tests_of
 from rocking_cli.studies.neighbours import Neighbourhood
@@ -165,7 +165,7 @@ def _write(structure: Structure, source: Path, out: Path, found: TraceFit) -> No
     where = f"fitted to {Path(found.trace.name).name}, {len(found.etas)} impacts"
     fields = {
         "restitution" if mechanism.rocks_both_ways else "rebound": f"{found.eta.value:.4f}  # {where}",
-        "uncertainty": f"{{{words}}}  # restitution: scatter from impact to impact, drawn towards {MEASURED:g}",
+        "uncertainty": f"{{{words}}}  # restitution: scatter from impact to impact, drawn towards {MEASURED_SPREAD:g}",
     }
     if found.p is not None and found.alpha is not None:
         size = 1.5 * mechanism.gravity / found.p.value**2  # 2R of a uniform block

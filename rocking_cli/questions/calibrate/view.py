@@ -7,7 +7,7 @@ from math import degrees
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from rocking_cli.dynamics.model import MEASURED
+from rocking_cli.dynamics.model import MEASURED_SPREAD
 from rocking_cli.names import percent
 from rocking_cli.questions.calibrate.region import REGION_PROBABILITY, JointRegion
 from rocking_cli.questions.calibrate.study import MAX_RESIDUAL_TO_NOISE, Estimated, TraceFit
@@ -64,8 +64,8 @@ def _trace_parts(found: TraceFit, structure: Structure) -> Iterator[Table | str]
     low, high = pooled.interval
     yield (
         f"From impact to impact eta scatters by {pooled.seen:.2g}, the last one left out; 5 to 95 %: {low:.2g} to "
-        f"{high:.2g}. Neighbours should draw {pooled.scatter:.2g}, which is drawn towards {MEASURED:g}, the scatter of "
-        "bodies whose restitution was measured: few impacts do not show that there is none."
+        f"{high:.2g}. Neighbours should draw {pooled.scatter:.2g}, which is drawn towards {MEASURED_SPREAD:g}, the "
+        "scatter of bodies whose restitution was measured: few impacts do not show that there is none."
     )
     if found.sides is not None:
         yield (

@@ -8,7 +8,7 @@ from operator import itemgetter
 from typing import Any
 
 from rocking_cli.core import CollapseHinge, CollapseMechanism, Direction, Mechanism
-from rocking_cli.core.contacts import MASONRY
+from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.names import digits_apart
 from rocking_cli.text import in_short
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, rounded, table_of
@@ -99,7 +99,7 @@ def _sentences(mechanism: Mechanism, found: CollapseMechanism) -> list[str]:
         )
     if found.with_usual is not None:
         sentences.append(
-            f"With a coefficient of friction of {MASONRY:g} in joints that are given none, lambda is "
+            f"With a coefficient of friction of {MASONRY_FRICTION:g} in joints that are given none, lambda is "
             f"{number(found.with_usual)} g."
         )
     if found.valid_to is not None and found.held_by is not None:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from rocking_cli.core import Direction, EquivalentBlock, Mechanism, PointMass, Statics, one_block
 from rocking_cli.core.advice import Grade, grade, preferred_kappa
-from rocking_cli.core.equivalence import AGREEMENT, alike
+from rocking_cli.core.equivalence import EQUAL_DIRECTIONS, alike
 from rocking_cli.core.hung.element import Element
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.structure import Structure
@@ -190,7 +190,7 @@ def is_symmetric(structure: Structure) -> bool:
     """Return whether one column is enough for both directions."""
     if structure.why_no_block is None:
         return structure.equivalence.symmetric
-    return alike(*structure.statics) and isclose(*structure.etas, rel_tol=AGREEMENT)
+    return alike(*structure.statics) and isclose(*structure.etas, rel_tol=EQUAL_DIRECTIONS)
 
 
 def _data(side: EquivalentSide) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from math import isnan
 
 from rocking_cli import names
 from rocking_cli.dynamics.outcome import OneOutcome
-from rocking_cli.dynamics.verdict import CLOSE
+from rocking_cli.dynamics.verdict import NEAR_OVERTURNING
 from rocking_cli.questions.equivalent.study import EquivalentResponses, PulsedStructure
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.response import known_data
@@ -139,10 +139,10 @@ def judge(found: EquivalentResponses) -> list[str]:
         else:
             how = "" if found.relative_spread <= MAX_SPREAD else "approximately "
             sentences.append(f"They are {how}equivalently vulnerable to these pulses.")
-    if peaks and max(peaks.values()) > CLOSE:
+    if peaks and max(peaks.values()) > NEAR_OVERTURNING:
         sentences.append(
-            f"Above {CLOSE:g} of the critical rotation, small differences decide the outcome: do not rely on the "
-            "equivalence there."
+            f"Above {NEAR_OVERTURNING:g} of the critical rotation, small differences decide the outcome: do not rely "
+            "on the equivalence there."
         )
     if not found.one_eta:
         sentences.append(

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rocking_cli.core import Equivalence, Mechanism
-from rocking_cli.core.advice import SMALL, Grade
+from rocking_cli.core.advice import SMALL_ERROR, Grade
 from rocking_cli.names import percent
 from rocking_cli.questions.error.study import Errors, Linearisation, errors, preferred, velocity_ratios
 from rocking_cli.views.column import Column, of, only_shown, table_of
@@ -145,17 +145,17 @@ def _on(kappa: int, found: Errors) -> str:
 def _ranges(curves: Sequence[Linearisation], kappa: int) -> list[str]:
     """Return sentences on the ranges in which errors are no longer small."""
     sentences = []
-    far = [each.amplitude[np.abs(each.period_ratio - 1) > SMALL] for each in curves]
+    far = [each.amplitude[np.abs(each.period_ratio - 1) > SMALL_ERROR] for each in curves]
     if any(values.size for values in far):
         wide = np.concatenate(far)
         where = f"for phi/phi_cr from {wide.min():.2g} to {wide.max():.2g}"
         if any(values.size == each.amplitude.size for values, each in zip(far, curves, strict=True)):
             where = "at every amplitude"
-        sentences.append(f"The free period is off by more than {percent(SMALL)} {where}.")
-    slow = [each.acceleration[np.abs(getattr(each, f"overturning_ratio{kappa}") - 1) > SMALL] for each in curves]
+        sentences.append(f"The free period is off by more than {percent(SMALL_ERROR)} {where}.")
+    slow = [each.acceleration[np.abs(getattr(each, f"overturning_ratio{kappa}") - 1) > SMALL_ERROR] for each in curves]
     if any(values.size for values in slow):
         where = f"for accelerations below {np.concatenate(slow).max():.3g} times uplift"
         if any(values.size == each.acceleration.size for values, each in zip(slow, curves, strict=True)):
             where = "at every acceleration"
-        sentences.append(f"The overturning time with kappa{kappa} is off by more than {percent(SMALL)} {where}.")
+        sentences.append(f"The overturning time with kappa{kappa} is off by more than {percent(SMALL_ERROR)} {where}.")
     return sentences

@@ -98,8 +98,8 @@ def examine() -> Installation:
 
 
 def _why_slow() -> str | None:
-    if os.environ.get(ways.CHOSEN) == ways.PYTHON:
-        return f"{ways.CHOSEN} is {ways.PYTHON}"
+    if os.environ.get(ways.KERNELS_VARIABLE) == ways.PYTHON:
+        return f"{ways.KERNELS_VARIABLE} is {ways.PYTHON}"
     fault = ways.fault_of_shipped()
     return None if fault is None else str(fault)
 

@@ -113,7 +113,7 @@ def pulse(
 
 
 def _on_block(a: float | None, omega: float | None, eta: float, shape: str) -> MappingAnswer[Any, Any]:
-    from rocking_cli.dynamics.exact import SHAPES, closed_form, exact_pulse
+    from rocking_cli.dynamics.exact import SHAPE_CYCLES, closed_form, exact_pulse
     from rocking_cli.questions.pulse.view import view
 
     if a is None or omega is None:
@@ -122,10 +122,10 @@ def _on_block(a: float | None, omega: float | None, eta: float, shape: str) -> M
             f"{' and '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing: give `a` and `omega` for the "
             "dimensionless block, or a structure with `ag` and `period`"
         )
-    if shape not in SHAPES:
+    if shape not in SHAPE_CYCLES:
         raise InputError(
-            f"the dimensionless block accepts the shapes {', '.join(SHAPES)}, not {shape!r}: for other shapes, give a "
-            "structure, `ag` and `period`"
+            f"the dimensionless block accepts the shapes {', '.join(SHAPE_CYCLES)}, not {shape!r}: for other shapes, "
+            "give a structure, `ag` and `period`"
         )
     closed, exact = closed_form(a, omega, eta) if shape == "sine" else None, exact_pulse(a, omega, eta, shape)
     responses = {"exact": exact} if closed is None else {"exact": exact, "closed_form": closed}

@@ -9,9 +9,9 @@ from math import pi
 import numpy as np
 
 from rocking_cli.core import Mechanism
-from rocking_cli.dynamics.history import RTOL, TAIL, History
+from rocking_cli.dynamics.history import RTOL, TAIL_SECONDS, History
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.dynamics.verdict import CLOSE, disagree
+from rocking_cli.dynamics.verdict import NEAR_OVERTURNING, disagree
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.doubts import coarse_for, doubts
@@ -96,7 +96,7 @@ class MotionResult(Response):
         best = self.histories["nonlinear"]
         if best.unknown:
             return False
-        if disagree(self.histories) or self.neighbours[self.polarity].sensitive or best.peak_ratio > CLOSE:
+        if disagree(self.histories) or self.neighbours[self.polarity].sensitive or best.peak_ratio > NEAR_OVERTURNING:
             return True
         close = (self.margin.factors > 1 / MAX_CLOSE_FACTOR) & (self.margin.factors < MAX_CLOSE_FACTOR)
         falls, may_fall = self.margin.overturned[close], self.margin.at_most[close]
@@ -267,7 +267,7 @@ def _result(structure: Structure, given: Scaled, polarities: Sequence[int], arou
     ground = given.motion.of_ground
     doubtful = [] if given.pulse is not None else doubts(ground, measure(ground))
     doubtful = [*doubtful, *(coarse_for(given.motion, structure.p) if given.pulse is None else [])]
-    question = Question(tuple(polarities), release=None, tail=TAIL, rtol=RTOL, around=around)
+    question = Question(tuple(polarities), release=None, tail=TAIL_SECONDS, rtol=RTOL, around=around)
     response = response_of(structure, structure.default_models, given, question)
     scaled = given.motion.scaled(given.factor)
     fits = _fits(given, scaled)

@@ -9,7 +9,7 @@ from math import degrees, isclose
 from rocking_cli import names
 from rocking_cli.core import Direction
 from rocking_cli.core.advice import Grade
-from rocking_cli.core.equivalence import AGREEMENT
+from rocking_cli.core.equivalence import EQUAL_DIRECTIONS
 from rocking_cli.core.mechanism import doubts as doubts_about_size
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import disagree
@@ -248,7 +248,7 @@ def _uplift(content: Assessment, result: MotionResult) -> str:
     best, pga = result.histories["nonlinear"], result.measured.pga
     least = _least(content)
     one, other = (side.lambda_ for side in content.structure.statics)
-    both = "" if isclose(one, other, rel_tol=AGREEMENT) else " in its weaker direction"
+    both = "" if isclose(one, other, rel_tol=EQUAL_DIRECTIONS) else " in its weaker direction"
     needed = f"A ground acceleration of {_ground(content, least)} is enough to uplift it{both}"
     if best.uplift_time >= 0:
         return f"Yes, first at {best.uplift_time:.2f} s. {needed}; this motion reaches {pga:.3g} g."

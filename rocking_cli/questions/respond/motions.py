@@ -18,7 +18,7 @@ from rocking_cli.ask.watcher import SILENT, Watcher
 from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.history import RTOL
 from rocking_cli.dynamics.model import MODELS, ModelName
-from rocking_cli.dynamics.outcome import OUTCOME, Outcomes
+from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcomes
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import measure
@@ -284,7 +284,7 @@ def respond_each(
     data: dict[str, Any] = {}
     for name, each in outcomes.items():
         data[name] = {"overturned": _with_gaps(each.fell, each.unknown | each.failed)}
-        data[name] |= {column: getattr(each, column) for column in OUTCOME}
+        data[name] |= {column: getattr(each, column) for column in OUTCOME_FIELDS}
         if name == "nonlinear" and np.isnan(each.opening).any():
             data[name]["unknown"] = _with_gaps(each.unknown, np.isnan(each.opening) & ~each.unknown)
     figure = no_plot("many responses have no plot of their own: plot a spectrum, a map or a margin")

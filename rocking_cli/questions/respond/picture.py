@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from rocking_cli import names
 from rocking_cli.core import Direction
-from rocking_cli.dynamics.history import FELT, History
+from rocking_cli.dynamics.history import MIN_IMPACT_RATE, History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.dynamics.verdict import known_until
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
@@ -26,7 +26,7 @@ CUT_RATIO = 1.5  # phi/phi_cr at which a curve that overturns is cut off, with a
 MIN_TIME_AXIS = 0.1  # s
 PULSE_POINTS = 1000
 MAX_SHOWN_FRICTION = 2.0  # a joint with almost no normal force may require any
-IMPACTS_LABEL = f"impacts of {100 * FELT:g} % of the strongest or more, in the order of the legend"
+IMPACTS_LABEL = f"impacts of {100 * MIN_IMPACT_RATE:g} % of the strongest or more, in the order of the legend"
 FORCE_SUFFIX = " force [N]"  # of columns of forces
 MAX_TIES, MAX_TIE_NAME = 6, 30  # in a panel; characters
 MAX_LABELLED_SHARE = 0.7  # of the time axis: beyond, the right of it has no room for a label

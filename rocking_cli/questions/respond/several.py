@@ -7,7 +7,7 @@ from functools import partial
 from typing import NamedTuple
 
 from rocking_cli import names
-from rocking_cli.core.contacts import MASONRY
+from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -148,7 +148,7 @@ class Several:
     def _friction(self, asks: Mapping[str, ContactDemand], order: Sequence[str]) -> str:
         """Return the friction that motions require, the largest first, and under which it is more than there is."""
         friction = asks[order[0]].friction
-        there, of = (MASONRY, "usual for masonry") if friction is None else (friction, "available")
+        there, of = (MASONRY_FRICTION, "usual for masonry") if friction is None else (friction, "available")
         needs = {name: asks[name].friction_needed for name in order}
         shown = [f"{number(need, digits_apart(need, there, 3))} under {name}" for name, need in needs.items()]
         each = in_short(shown, most=MAX_NAMED_MOTIONS)

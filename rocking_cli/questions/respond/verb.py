@@ -17,7 +17,7 @@ from rocking_cli.ask.ground_motions import Motion, MotionArguments, Motions, sig
 from rocking_cli.ask.numbers import refuse_idle, takes_numbers
 from rocking_cli.ask.several import Answers, answers, are_several, ask_each, places_of, under_motions, write_files
 from rocking_cli.ask.watcher import SILENT, Watcher
-from rocking_cli.dynamics.history import FINEST_RTOL, RTOL, TAIL, History
+from rocking_cli.dynamics.history import FINEST_RTOL, RTOL, TAIL_SECONDS, History
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
@@ -56,7 +56,7 @@ def respond(
     vertical_channel: str | None = None,
     with_pulse: str | None = None,
     release: Release | float | str | None = None,
-    tail: float = TAIL,
+    tail: float = TAIL_SECONDS,
     rtol: float = RTOL,
     neighbours: int = 0,
     amplitude_deviation: float = Neighbourhood.amplitude,
@@ -164,7 +164,7 @@ def respond(
     drawn_around = around_of(neighbours, amplitude_deviation, restitution_deviation, slenderness_deviation)
     if motions.reading.azimuth == ALL:
         idle = {"polarity": signs != (1,), "with_pulse": with_pulse, "impacts": impacts, "contact": contact,
-                "tail": tail != TAIL, "neighbours": neighbours}  # fmt: skip
+                "tail": tail != TAIL_SECONDS, "neighbours": neighbours}  # fmt: skip
         if sentences := [f"`{name}`" for name, given in idle.items() if given]:
             raise InputError(f"{', '.join(sentences)} cannot be combined with `azimuth` all: give one angle")
         third = (vertical, vertical_dt, vertical_channel)

@@ -26,7 +26,7 @@ from rocking_cli.dynamics.batch import Runs, respond_many
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import ModelName
-from rocking_cli.dynamics.outcome import OUTCOME, Outcomes
+from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcomes
 from rocking_cli.errors import BrokenKernels, RockingError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses.shapes import Sine
@@ -488,27 +488,27 @@ def _histories_in(parts: int) -> int:
     """Compare histories in so many parts, each of which is done by one thread."""
     models = [wall(0.3, 3.0).structure.model("nonlinear")]  # a wall with a joint that is checked for opening
     models += block(0.7, 2.8).structure.models(("nonlinear", "linear2"))
-    scales = np.linspace(0.5, 2.0, parts * batch.UNIT // (len(models) * len(MOTIONS)))
+    scales = np.linspace(0.5, 2.0, parts * batch.HISTORIES_PER_TASK // (len(models) * len(MOTIONS)))
     runs = Runs.every(len(models), len(MOTIONS), scales=scales.tolist())
     return _wrong(*(respond_many(models, MOTIONS, runs, threads=n, only_peaks=True) for n in (1, THREADS)))
 
 
 def _pulses_in(parts: int) -> int:
     """Compare pulses in so many parts."""
-    count, equivalence = parts * exact_batch.UNIT, block(0.7, 2.8).structure.equivalence
+    count, equivalence = parts * exact_batch.PULSES_PER_TASK, block(0.7, 2.8).structure.equivalence
     amplitudes, periods = np.geomspace(2.0, 20.0, count), np.geomspace(3.0, 0.3, count)
     many = partial(exact_many, equivalence, Sine(1.0, 1.0), amplitudes, periods, kappa=2, gravity=GRAVITY)
     return _wrong(*(many(threads=n) for n in (1, THREADS)))
 
 
 def _wrong(one: Outcomes, other: Outcomes) -> int:
-    different = sum(different_values(getattr(one, name), getattr(other, name)) for name in OUTCOME)
+    different = sum(different_values(getattr(one, name), getattr(other, name)) for name in OUTCOME_FIELDS)
     return different + int(one.failed.sum() + other.failed.sum())  # runs that were never computed count as failed
 
 
 def another_way() -> bool:
     """Return whether Python runs the kernels because the shipped ones are broken, and not as the user chose it."""
-    return isinstance(ways.fault_of_shipped(), BrokenKernels) and not os.environ.get(ways.CHOSEN)
+    return isinstance(ways.fault_of_shipped(), BrokenKernels) and not os.environ.get(ways.KERNELS_VARIABLE)
 
 
 def kernels(quick: bool) -> float:
@@ -527,7 +527,7 @@ def kernels(quick: bool) -> float:
     if fault is not None:
         raise NotRun(f"{fault}; Python computes histories") from fault
     computed = []
-    for engine in (ways.READY, ways.PYTHON):
+    for engine in (ways.MACHINE_CODE, ways.PYTHON):
         with ways.forced(engine):
             computed.append(list(_computed(quick)))
     return sum(different_values(*pair) for pair in zip(*computed, strict=True))
@@ -539,14 +539,14 @@ def _computed(quick: bool) -> Iterator[NDArray[Any]]:
     tied = made("block", width=0.7, height=2.8, mass=1000.0, ties=[TIE])
     amplitudes, periods = np.geomspace(2.0, 20.0, 50), np.geomspace(3.0, 0.3, 50)
     responses = exact_many(free.equivalence, Sine(1.0, 1.0), amplitudes, periods, kappa=2, gravity=GRAVITY)
-    yield from (getattr(responses, name) for name in OUTCOME)
+    yield from (getattr(responses, name) for name in OUTCOME_FIELDS)
     for motion in MOTIONS[:1] if quick else MOTIONS:
         both = replace(motion, vertical=GroundMotion("vertical", 0.07, motion.acceleration[::-1] / 2))
         for model in (*free.models(("nonlinear", "linear2")), two.model("nonlinear"), tied.model("nonlinear")):
             for each in (motion, both):
                 history = follow(model, each, eta=0.9, most_kept=20)
                 yield from (history.phi, history.rate, history.impacts)
-                yield np.array([getattr(history, name) for name in OUTCOME], dtype=np.float64)
+                yield np.array([getattr(history, name) for name in OUTCOME_FIELDS], dtype=np.float64)
 
 
 # --- records ---------------------------------------------------------------------------------------------------------

@@ -15,7 +15,7 @@ import yaml
 
 from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
-from rocking_cli.core.structure_file import HINT, of_document
+from rocking_cli.core.structure_file import TEMPLATE_HINT, of_document
 from rocking_cli.errors import InputError, MechanismError, Problem
 from rocking_cli.io.dotted import closed, put, replace_at, words
 from rocking_cli.io.field_problems import lists_models, types_at
@@ -146,7 +146,7 @@ class StructureTable(Sequence["TableRow"]):
         if named not in self._bases:
             path = self.folder / named
             try:
-                document = parse(read_text(path, "structure"), str(path), "structure", HINT)
+                document = parse(read_text(path, "structure"), str(path), "structure", TEMPLATE_HINT)
                 document.check()
                 self._bases[named] = document.data
             except InputError as error:

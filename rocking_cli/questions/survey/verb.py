@@ -137,9 +137,9 @@ def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
 
 def _processes(rows: int, shaken: bool) -> int | None:
     """Return the number of processes that share the work; None if threads are as fast."""
-    from rocking_cli.dynamics.parallel import MOST
+    from rocking_cli.dynamics.parallel import MAX_PROCESSES
 
-    count = min(os.cpu_count() or 1, MOST)
+    count = min(os.cpu_count() or 1, MAX_PROCESSES)
     if count < 2 or rows < (MIN_ROWS_FOR_PROCESSES_WITH_MOTION if shaken else MIN_ROWS_FOR_PROCESSES):
         return None
     return count

@@ -206,7 +206,7 @@ def test_a_key_that_only_a_squeeze_holds_is_refused(tmp_path):
 
 
 def test_a_search_that_ends_early_is_never_silent(infill, monkeypatch):
-    for limit, value in (("BUDGET", 0), ("MOST", 2)):
+    for limit, value in (("MAX_JOINT_PROGRAMMES", 0), ("MAX_JOINTS", 2)):
         with monkeypatch.context() as short:
             short.setattr(confined, limit, value)
             refused = " ".join(run("collapse", infill, code=2).stderr.split())
@@ -218,6 +218,6 @@ def test_a_search_that_ends_early_is_never_silent(infill, monkeypatch):
     given["ground"] = {"floor": box(-2.0, -0.5, 6.0, 0.0), "ceiling": box(-1.0, 2.4, 2.0, 2.9)}
     infill.write_text(yaml.safe_dump(given), encoding="utf-8")
     assert "is not complete" not in str(run_json("equiv", infill))
-    monkeypatch.setattr(confined, "MOST", 2)
+    monkeypatch.setattr(confined, "MAX_JOINTS", 2)
     said = str(run_json("equiv", infill))
     assert "is not complete in the positive direction and in the negative direction: lambda may be lower" in said

@@ -151,7 +151,7 @@ def test_who_waits_for_the_solver_is_interrupted_at_once():
     began = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
         programmes._beside(lambda: deaf(2_000_000))
-    assert time.monotonic() - began < 6 * short + 2 * programmes.WAIT
+    assert time.monotonic() - began < 6 * short + 2 * programmes.INTERRUPT_INTERVAL
 
 
 # --- large files -----------------------------------------------------------------------------------------------------
@@ -217,7 +217,7 @@ def planned(seed, rows=80, columns=200):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_programme_is_refined_until_its_errors_are_rounding(seed, monkeypatch):
-    monkeypatch.setattr(programmes, "SOON", 100)
+    monkeypatch.setattr(programmes, "CROSSOVER_ITERATIONS", 100)
     programme, x, prices, slope = planned(seed)
     found = programmes._Programme(*programme).refined()
     assert found.x == pytest.approx(x, rel=1e-8, abs=1e-8)
@@ -227,7 +227,7 @@ def test_a_programme_is_refined_until_its_errors_are_rounding(seed, monkeypatch)
 
 
 def test_a_refined_programme_without_an_answer_has_none(monkeypatch):
-    monkeypatch.setattr(programmes, "SOON", 100)
+    monkeypatch.setattr(programmes, "CROSSOVER_ITERATIONS", 100)
     (cost, equal, right, low, high), *_ = planned(0)
     row = np.asarray(equal[[0]].toarray()).ravel()
     twice = vstack([equal, equal[[0]]], format="csc")

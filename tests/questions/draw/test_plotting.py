@@ -12,7 +12,7 @@ from rocking_cli.excitation.measures import measure
 from rocking_cli.plotting import style
 from rocking_cli.plotting.style import BINS_ACROSS, visible
 from rocking_cli.questions.record.picture import draw_record
-from rocking_cli.questions.respond.picture import FELT, draw_history
+from rocking_cli.questions.respond.picture import MIN_IMPACT_RATE, draw_history
 from rocking_cli.studies.contact import Contacts
 from tests.following import respond
 
@@ -54,7 +54,7 @@ def test_notes_are_on_no_peak_and_the_marks_say_which_impacts_they_are():
     bottom = above.transData.inverted().transform(note.get_window_extent())[0, 1]
     assert above.get_lines()[0].get_ydata().max() < bottom
     (key,) = (text.get_text() for text in below.texts if "impacts" in text.get_text())
-    assert f"{100 * FELT:g} %" in key
+    assert f"{100 * MIN_IMPACT_RATE:g} %" in key
     for axes, name in zip(draw_record(late, measure(late)).axes, ("PGA", "PGV", "PGD"), strict=False):
         low, high = axes.get_ylim()
         assert any(name in text.get_text() for text in axes.texts)

@@ -12,7 +12,7 @@ from matplotlib.patches import Rectangle
 import rocking_cli as rk
 from mechanisms.block import Block
 from rocking_cli.core.structure_file import load_structure
-from rocking_cli.dynamics.outcome import OUTCOME, Outcome
+from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import COARSE, parse_pulse
 from rocking_cli.excitation.records import read_record
@@ -57,7 +57,9 @@ def made(**fields):
     """Outcomes of which all is known, but for what is given."""
     many = len(next(iter(fields.values())))
     flags = {"still_rocking", "failed", "unknown"}
-    usual = {name: name not in flags and (0 if name in ("fell_to", "impact_count") else np.nan) for name in OUTCOME}
+    usual = {
+        name: name not in flags and (0 if name in ("fell_to", "impact_count") else np.nan) for name in OUTCOME_FIELDS
+    }
     return Outcome(**{name: np.array(fields.get(name, [value] * many)) for name, value in usual.items()})
 
 

@@ -140,11 +140,11 @@ class TestEachCheck:
     @pytest.mark.parametrize(
         ("check", "place", "value"),
         [
-            ("release", "rocking_cli.dynamics.tables.MOST", 16),
-            ("joints", "rocking_cli.dynamics.joints.MOST_CELLS", 16),
+            ("release", "rocking_cli.dynamics.tables.MAX_CELLS", 16),
+            ("joints", "rocking_cli.dynamics.joints.MAX_CELLS", 16),
             ("filters", "rocking_cli.processing.steps.ORDER", 3),
-            ("neighbours", "rocking_cli.dynamics.model.SLENDERNESS", 0.11),
-            ("neighbours", "rocking_cli.dynamics.model.KINEMATIC", 0.06),
+            ("neighbours", "rocking_cli.dynamics.model.SLENDERNESS_SPREAD", 0.11),
+            ("neighbours", "rocking_cli.dynamics.model.KINEMATIC_SPREAD", 0.06),
         ],
     )
     def test_they_fail_if_a_constant_of_the_code_is_another(self, monkeypatch, check, place, value):
@@ -247,8 +247,8 @@ class TestEachCheck:
         self, spoil, passed, why, monkeypatch, tmp_path
     ):
         folder = tmp_path / "ready"
-        shutil.copytree(shipped.FOLDER, folder)
-        monkeypatch.setattr(shipped, "FOLDER", folder)
+        shutil.copytree(shipped.LIBRARY_FOLDER, folder)
+        monkeypatch.setattr(shipped, "LIBRARY_FOLDER", folder)
         spoil()
         if passed is None:
             monkeypatch.setattr(shipped.platform, "machine", lambda: "abacus")
@@ -260,8 +260,8 @@ class TestEachCheck:
 
     def test_python_does_not_compute_instead_of_a_library_that_is_broken(self, monkeypatch, tmp_path):
         folder = tmp_path / "ready"
-        shutil.copytree(shipped.FOLDER, folder)
-        monkeypatch.setattr(shipped, "FOLDER", folder)
+        shutil.copytree(shipped.LIBRARY_FOLDER, folder)
+        monkeypatch.setattr(shipped, "LIBRARY_FOLDER", folder)
         shipped.place().unlink()
         ways.forget()
         done = asked("--quick", "--json")
@@ -346,7 +346,7 @@ class TestHostilePlaces:
 
     @pytest.mark.rest
     def test_with_a_kernel_that_is_none(self, monkeypatch):
-        monkeypatch.setenv(ways.CHOSEN, "fast")
+        monkeypatch.setenv(ways.KERNELS_VARIABLE, "fast")
         ways.forget()
         found = rk.selfcheck(quick=True)
         monkeypatch.undo()

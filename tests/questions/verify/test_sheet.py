@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from mechanisms.symmetric_frame import MOST
+from mechanisms.symmetric_frame import MAX_CHECKED_COLUMNS
 from rocking_cli.codes.italian import Italian
 from rocking_cli.codes.italian.remarks import differences
 from rocking_cli.codes.italian.sheet import build, dynamic, site, steps, summary
@@ -682,7 +682,7 @@ def test_every_text_has_a_user():
     families |= {*calendar.month_name[1:], "Project", "Place", "Author", "Structure file", "Site file"}
     families |= {"drawing at rest", *(f"drawing {each.label} ({SENSE[each]})" for each in Direction)}
     families |= {f"end_direction_{each.label}" for each in Direction} | {f"end_{each}" for each in ENDS}
-    families |= {"a_g_start_iterated", "a_g_method_iterated", f"it has more than {MOST} columns"}
+    families |= {"a_g_start_iterated", "a_g_method_iterated", f"it has more than {MAX_CHECKED_COLUMNS} columns"}
     files = [each for folder in ("rocking_cli", "mechanisms") for each in files_of(folder).rglob("*")
              if each.suffix in (".py", ".html")]  # fmt: skip
     written = "".join(each.read_text(encoding="utf-8") for each in files)
