@@ -137,32 +137,36 @@ def cracked(
     """
     levels = {d: {name: cracks[name].level(share) for name, share in of.items()} for d, of in shares.items()}
     _join_equal(levels, cracks)
-    made, pieces, ends = dict(shapes), dict[str, Sequence[str]](), dict[tuple[str, float], tuple[complex, complex]]()
+    shapes_of_pieces, pieces, ends = (
+        dict(shapes),
+        dict[str, Sequence[str]](),
+        dict[tuple[str, float], tuple[complex, complex]](),
+    )
     for body in dict.fromkeys(crack.body for crack in cracks.values()):
-        own = {name: crack for name, crack in cracks.items() if crack.body == body}
-        cuts = sorted({level for of in levels.values() for name, level in of.items() if name in own})
+        body_cracks = {name: crack for name, crack in cracks.items() if crack.body == body}
+        cuts = sorted({level for of in levels.values() for name, level in of.items() if name in body_cracks})
         if not cuts:
             continue
         rest, names = np.array(shapes[body].corners), []
         whole = abs(area_of(rest))
-        flat = next(iter(own.values())).cut == "horizontal"
+        flat = next(iter(body_cracks.values())).cut == "horizontal"
         for k, level in enumerate(cuts):
             cut = halves(rest, level, level_cut=flat)
             if cut is None:
                 at = f"{'y' if flat else 'x'} = {level:.4g} m"
                 why = f"at {at} it does not cut {body} in two: a crack goes through it once"
-                raise geometry_error(("cracks", next(iter(own)), "along"), why)
+                raise geometry_error(("cracks", next(iter(body_cracks)), "along"), why)
             names.append(f"{body} {k + 1}")
-            made[names[-1]] = _piece(shapes[body], cut.low, whole)
+            shapes_of_pieces[names[-1]] = _piece(shapes[body], cut.low, whole)
             ends[body, level] = cut.ends
             rest = cut.high
         names.append(f"{body} {len(cuts) + 1}")
-        made[names[-1]] = _piece(shapes[body], rest, whole)
-        del made[body]
+        shapes_of_pieces[names[-1]] = _piece(shapes[body], rest, whole)
+        del shapes_of_pieces[body]
         pieces[body] = names
-    found = Cracked(made, {}, pieces)
-    told = {d: _Names(d, cracks, levels[d], found, ends).side(side) for d, side in sides.items()}
-    return found._replace(sides=told)
+    cut_structure = Cracked(shapes_of_pieces, {}, pieces)
+    named_sides = {d: _Names(d, cracks, levels[d], cut_structure, ends).side(side) for d, side in sides.items()}
+    return cut_structure._replace(sides=named_sides)
 
 
 def _join_equal(levels: dict[Direction, dict[str, float]], cracks: Mapping[str, Crack]) -> None:
@@ -171,10 +175,10 @@ def _join_equal(levels: dict[Direction, dict[str, float]], cracks: Mapping[str, 
     for of in levels.values():
         for name, level in of.items():
             span = abs(cracks[name].level(1.0) - cracks[name].level(0.0))
-            near = [
+            equal_levels = [
                 other for other in known.setdefault(cracks[name].body, []) if abs(other - level) < SAME_PLACE * span
             ]
-            of[name] = near[0] if near else level
+            of[name] = equal_levels[0] if equal_levels else level
             known[cracks[name].body].append(of[name])
 
 
@@ -203,7 +207,7 @@ class _Names(NamedTuple):
             joints[name] = each.renamed(partial(self._piece, at=at), **moved)
         for body, names in self.made.pieces.items():
             open_here = {level for crack, level in self.levels.items() if self.cracks[crack].body == body}
-            cuts = sorted(level for own, level in self.ends if own == body)
+            cuts = sorted(level for cut_body, level in self.ends if cut_body == body)
             for k, level in enumerate(cuts):
                 if level not in open_here:
                     joints[f"{names[k]}, {names[k + 1]}"] = Connection(fixed=[names[k], names[k + 1]])
@@ -226,7 +230,7 @@ class _Names(NamedTuple):
             body = self.cracks[crack].body
             for k, side in enumerate(self.cracks[crack].sides):
                 if name == f"{body} {side} {crack}":
-                    cuts = sorted(own for other, own in self.ends if other == body)
+                    cuts = sorted(crack_level for other, crack_level in self.ends if other == body)
                     return self.made.pieces[body][cuts.index(level) + k]
         if isinstance(at, list):
             return self.made.piece(name, complex(*at))

@@ -62,15 +62,15 @@ def under(body: Sequence[Outline], at: complex) -> BearingFace | None:
 def shared(one: Sequence[Outline], other: Sequence[Outline]) -> list[tuple[complex, tuple[complex, complex]]]:
     """Return the faces on which two bodies lie on one another: unit normals out of the first, and both ends."""
     size = _size([*one, *other])
-    found = []
+    faces = []
     for (p, q), other_side, low, high in _facing(_sides(one), list(_sides(other))):
         along = (q - p) / abs(q - p)
         if (
             high - low > SIDE_DISTANCE * size
             and max(abs(((z - p) / along).imag) for z in other_side) <= SIDE_DISTANCE * size
         ):
-            found.append((-1j * along, (p + low * along, p + high * along)))
-    return found
+            faces.append((-1j * along, (p + low * along, p + high * along)))
+    return faces
 
 
 def lowest(body: Sequence[Outline]) -> tuple[complex, complex] | None:

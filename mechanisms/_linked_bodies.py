@@ -67,8 +67,8 @@ class LinkedBodies(Mechanism):
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
         if direction not in self.directions:  # it leans, and rests
             return [rotation(np.asarray(phi, np.float64), 0j, 0.0) for _ in self._members]
-        found = self._linkage(direction).motions(phi)
-        return [found[name] for name in self._members]
+        motions = self._linkage(direction).motions(phi)
+        return [motions[name] for name in self._members]
 
     def limit(self, direction: Direction) -> float:
         return self._linkage(direction).limit
@@ -77,19 +77,19 @@ class LinkedBodies(Mechanism):
         if not self.rocks_both_ways:
             return ()
         feet, names = zip(*(columns_of(self.contacts(direction) or ()) for direction in Direction), strict=True)
-        found: list[RigidBody] = []
+        columns: list[RigidBody] = []
         for body in self.weighed():
             if not all(body.name in each for each in names):
                 continue
             right, left = (each[body.name] for each in feet)
             centroid, right = body.centroid - left, right - left
-            if not any(_alike(each, body, centroid, right) for each in found):
-                found.append(RigidBody(
+            if not any(_alike(each, body, centroid, right) for each in columns):
+                columns.append(RigidBody(
                     mass=body.mass, inertia=body.inertia, centroid=[centroid.real, centroid.imag],
                     left_foot=[0.0, 0.0], right_foot=[right.real, right.imag],
                     gravity=self.gravity, friction=self.friction, restitution=self.restitution,
                 ))  # fmt: skip
-        return found
+        return columns
 
 
 def columns_of(contacts: Sequence[Contact]) -> tuple[Mapping[str, complex], Collection[str]]:

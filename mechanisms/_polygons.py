@@ -90,8 +90,8 @@ def _nearest(corners: Points, z: Points) -> tuple[int, int, complex]:
     side = np.roll(z, -1) - z
     along = np.clip(((corners[k] - z) * side.conj()).real / squared(side), 0.0, 1.0)
     on = z + along * side
-    near = int(np.abs(corners[k] - on).argmin())
-    return k, near, complex(on[near])
+    nearest_side = int(np.abs(corners[k] - on).argmin())
+    return k, nearest_side, complex(on[nearest_side])
 
 
 def _boxes_meet(one: Points, other: Points, margin: float) -> bool:
@@ -116,7 +116,7 @@ def _beside(one: Points, other: Points, tolerance: float) -> bool:
 
 def _middles(z: Points, other: Points) -> Points:
     """Return the midpoints of the pieces into which another polygon cuts the sides of a polygon."""
-    found = []
+    middles = []
     far = np.roll(other, -1) - other
     for start, end in zip(z, np.roll(z, -1), strict=True):
         side, away = end - start, other - start
@@ -126,8 +126,8 @@ def _middles(z: Points, other: Points) -> Points:
         corners = (away * side.conjugate()).real / abs(side) ** 2
         places = np.concatenate([cuts[area != 0], corners, [0.0, 1.0]])
         places = np.unique(places[(places >= 0) & (places <= 1)])
-        found.append(start + side * (places[:-1] + places[1:]) / 2)
-    return np.concatenate(found)
+        middles.append(start + side * (places[:-1] + places[1:]) / 2)
+    return np.concatenate(middles)
 
 
 def _within(z: Points) -> complex:

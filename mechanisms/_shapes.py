@@ -66,19 +66,21 @@ class Shape(Described):
 
     @model_validator(mode="after")
     def _one_description(self) -> Self:
-        given = [key for key in SHAPES if getattr(self, key) is not None]
+        descriptions = [key for key in SHAPES if getattr(self, key) is not None]
         numbers = [key for key in ("centroid", "inertia") if getattr(self, key) is not None]
         if numbers:
             for key in ("mass", "centroid", "inertia"):
                 if getattr(self, key) is None:
                     raise geometry_error(key, "is missing: give mass, centroid and inertia, all of them")
-            if given and given != ["polygon"]:
+            if descriptions and descriptions != ["polygon"]:
                 raise geometry_error(
-                    given[0], "cannot be combined with centroid and inertia: only `polygon` can, for the drawing"
+                    descriptions[0], "cannot be combined with centroid and inertia: only `polygon` can, for the drawing"
                 )
-        elif len(given) != 1:
-            what = "give one of them" if given else "is missing: give a polygon, parts, a disc, masses, or numbers"
-            raise geometry_error(given[1] if given else "polygon", what)
+        elif len(descriptions) != 1:
+            what = (
+                "give one of them" if descriptions else "is missing: give a polygon, parts, a disc, masses, or numbers"
+            )
+            raise geometry_error(descriptions[1] if descriptions else "polygon", what)
         if self.masses is not None:
             for key in ("mass", "density", "depth"):
                 if getattr(self, key) is not None:
@@ -102,14 +104,14 @@ class Shape(Described):
         if self.masses is not None:
             points = [(1, Body("", each.mass, 0.0, complex(*each.at))) for each in self.masses]
             return Member(united(name, points), [], True)
-        own = self.density or density, self.depth or depth
-        body, outlines = self._plate(name, own)
+        density_and_depth = self.density or density, self.depth or depth
+        body, outlines = self._plate(name, density_and_depth)
         if self.mass is not None:
             body = replace(body, mass=self.mass, inertia=body.inertia * self.mass / body.mass)
-        return Member(body, outlines, self.mass is not None or self._is_weighed(own))
+        return Member(body, outlines, self.mass is not None or self._is_weighed(density_and_depth))
 
-    def _plate(self, name: str, own: Sequence[float | None]) -> tuple[Body, Sequence[Outline]]:
-        density, depth = (each or 1.0 for each in own)
+    def _plate(self, name: str, density_and_depth: Sequence[float | None]) -> tuple[Body, Sequence[Outline]]:
+        density, depth = (each or 1.0 for each in density_and_depth)
         if self.polygon is not None:
             flat = polygon(name, 1.0, self.corners)
             mass = density * depth * abs(area_of(np.array(self.corners)))
@@ -119,17 +121,19 @@ class Shape(Described):
             mass = density * depth * pi * radius**2
             return Body(name, mass, mass * radius**2 / 2, centre), [disc(centre, radius)]
         per_area = [(part.density or density) * (part.depth or depth) for part in self._solids]
-        found = plates(self.parts or [], per_area)
-        whole = united(name, [piece for plate in found for piece in plate.pieces])
-        return whole, [plate.outline for plate in found]
+        all_plates = plates(self.parts or [], per_area)
+        whole = united(name, [piece for plate in all_plates for piece in plate.pieces])
+        return whole, [plate.outline for plate in all_plates]
 
     @property
     def _solids(self) -> list[BodyPart]:
         return [part for part in self.parts or [] if not part.opening]
 
-    def _is_weighed(self, own: Sequence[float | None]) -> bool:
+    def _is_weighed(self, density_and_depth: Sequence[float | None]) -> bool:
         """Return whether density and depth are known, for the body or for all of its parts."""
-        parts = [(part.density or own[0], part.depth or own[1]) for part in self._solids] or [(own[0], own[1])]
+        parts = [
+            (part.density or density_and_depth[0], part.depth or density_and_depth[1]) for part in self._solids
+        ] or [(density_and_depth[0], density_and_depth[1])]
         return all(None not in each for each in parts)
 
 
@@ -177,8 +181,8 @@ class Plate:
     @property
     def outline(self) -> Outline:
         """Outline as one closed line, which includes the openings [m]."""
-        found: list[complex] = pierced(self.corners, self.holes).tolist()
-        return found
+        closed: list[complex] = pierced(self.corners, self.holes).tolist()
+        return closed
 
     @property
     def pieces(self) -> list[tuple[int, Body]]:
@@ -216,12 +220,12 @@ def _check_joined(z: Sequence[Points], names: Sequence[int], touch: float) -> No
     joined, left = {0}, set(range(1, len(z)))
     while left:
         gaps = {k: min(gap(z[k], z[j]) for j in joined) for k in left}
-        near = {k for k, apart in gaps.items() if apart <= touch}
-        if not near:
+        touching = {k for k, apart in gaps.items() if apart <= touch}
+        if not touching:
             k = min(left)
             why = f"it is joined to no other part: the nearest is {gaps[k]:.4g} m away"
             raise geometry_error(("parts", names[k], "polygon"), why)
-        joined, left = joined | near, left - near
+        joined, left = joined | touching, left - touching
 
 
 def united(name: str, pieces: Sequence[tuple[int, Body]]) -> Body:
@@ -256,10 +260,10 @@ class Fillet:
     def arc(self) -> Points:
         """Points of the circle, starting at the base [m]."""
         turn = np.angle((self.end - self.centre) / (self.start - self.centre))
-        found: Points = self.centre + (self.start - self.centre) * np.exp(
+        points: Points = self.centre + (self.start - self.centre) * np.exp(
             1j * turn * np.linspace(0, 1, CORNER_SIDES + 1)
         )
-        return found
+        return points
 
     def pieces(self, per_area: float) -> list[tuple[int, Body]]:
         """Return the pieces cut off the plate: the kite between both sides and the centre, less the sector."""
@@ -278,8 +282,8 @@ class Fillet:
             abs(np.angle((z[k - 1] - z[k]) / (end - self.corner))) for end in (self.start, self.end)
         )
         arc = self.arc if from_base < from_side else self.arc[::-1]
-        found: list[complex] = np.concatenate([z[:k], arc, z[k + 1 :]]).tolist()
-        return found
+        corners: list[complex] = np.concatenate([z[:k], arc, z[k + 1 :]]).tolist()
+        return corners
 
 
 def fillet(z: Points, foot: complex, inwards: int, radius: float) -> Fillet:

@@ -84,11 +84,11 @@ class SingleBody(Mechanism):
         (body,) = self.bodies()
         centres = {side: self.centre(side) for side in Direction}
         alike = isclose(self.alpha(Direction.POSITIVE), self.alpha(Direction.NEGATIVE), rel_tol=1e-9)
-        shown = [Direction.POSITIVE] if alike else list(Direction)
+        sides = [Direction.POSITIVE] if alike else list(Direction)
         subscript = {Direction.POSITIVE: "" if alike else "₊", Direction.NEGATIVE: "₋"}
         return Sketch(
             outlines={body.name: self.outlines()} if self.outlines() else {},
             hinges={side: [self._foot_joint(side)] for side in Direction},
-            lengths=[*self.lengths(), *(Length(f"R{subscript[s]}", centres[s], body.centroid, s) for s in shown)],
-            angles=[Angle(f"α{subscript[s]}", centres[s], centres[s] + 1j, body.centroid, s) for s in shown],
+            lengths=[*self.lengths(), *(Length(f"R{subscript[s]}", centres[s], body.centroid, s) for s in sides)],
+            angles=[Angle(f"α{subscript[s]}", centres[s], centres[s] + 1j, body.centroid, s) for s in sides],
         )

@@ -161,7 +161,7 @@ class Arch(Mechanism):
     def pieces(self, direction: Direction) -> Sequence[Piece]:
         """Return the voussoirs, or the pieces between cuts; those beyond the outer hinges are at rest."""
         half, left = self.thickness / 2, pi / 2 + self._beta / 2
-        bodies, found = self.weighed(), []
+        bodies, pieces = self.weighed(), []
         density = bodies[0].mass / (self._cuts[1] - self._cuts[0])  # per angle
         inner, outer = self.radius - half, self.radius + half
         per_area = 2 * density / (outer**2 - inner**2)
@@ -169,8 +169,8 @@ class Arch(Mechanism):
             at = int(np.searchsorted(self._cuts, (start + end) / 2))
             of = bodies[at - 1].name if 0 < at < len(self._cuts) else None
             piece = annular_sector(f"{self._part} {k + 1}", per_area, inner, outer, left - start, left - end)
-            found.append(Piece(piece, of))
-        return found
+            pieces.append(Piece(piece, of))
+        return pieces
 
     def piece_at(self, body: str, at: complex, direction: Direction) -> str:
         number = next(k for k, each in enumerate(self.bodies()) if each.name == body)
@@ -185,15 +185,15 @@ class Arch(Mechanism):
         hinged = {
             int(np.abs(np.array(angles) - (a if direction > 0 else self._beta - a)).argmin()): z for z, a in hinges
         }
-        found = []
+        contacts = []
         for k, angle in enumerate(angles):
             out = complex(np.exp(1j * (pi / 2 + self._beta / 2 - angle)))
             ends = (hinged[k],) if k in hinged else ((self.radius - half) * out, (self.radius + half) * out)
             # Seen from the springing of its half of the ring: what bears comes first.
             on_the_left = angle <= self._beta / 2
             pair = (names[k], names[k + 1]) if on_the_left else (names[k + 1], names[k])
-            found.append(Contact(pair, ends, out * (-1j if on_the_left else 1j), pair[0], self.friction))
-        return found
+            contacts.append(Contact(pair, ends, out * (-1j if on_the_left else 1j), pair[0], self.friction))
+        return contacts
 
     def limit(self, direction: Direction) -> float:
         return four_bar_limit(direction, *self.hinges(direction))

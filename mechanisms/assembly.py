@@ -66,8 +66,8 @@ def per_direction(method: Callable[[Any, Direction], T]) -> Callable[[Any, Direc
         key = method.__name__, direction
         if key not in kept:
             kept[key] = method(self, direction)
-        found: T = kept[key]
-        return found
+        value: T = kept[key]
+        return value
 
     return answer
 
@@ -245,24 +245,24 @@ class Assembly(LinkedBodies):
     def _check_lead(self, direction: Direction) -> None:
         """Raise a geometry error if a given block cannot lead a mechanism."""
         told = getattr(self.lead, direction.label, None)
-        if told is None or (found := self._groups(direction)).slides:
+        if told is None or (mechanism := self._groups(direction)).slides:
             return
-        number = next((k for k, group in enumerate(found.groups) if told in group), None)
-        turns = 0.0 if number is None else -int(direction) * float(found.velocity[number, 2])
-        most = float(np.abs(found.velocity[:, 2]).max())
-        if turns > ZERO_ROTATION_RATE * most:
+        number = next((k for k, group in enumerate(mechanism.groups) if told in group), None)
+        turns = 0.0 if number is None else -int(direction) * float(mechanism.velocity[number, 2])
+        fastest = float(np.abs(mechanism.velocity[:, 2]).max())
+        if turns > ZERO_ROTATION_RATE * fastest:
             return
         does = (
             "turns the other way"
-            if turns < -ZERO_ROTATION_RATE * most
+            if turns < -ZERO_ROTATION_RATE * fastest
             else "rests"
             if number is None
             else "does not turn"
         )
         able = [
             name
-            for group, velocity in zip(found.groups, found.velocity, strict=True) for name in group
-            if -int(direction) * velocity[2] > ZERO_ROTATION_RATE * most
+            for group, velocity in zip(mechanism.groups, mechanism.velocity, strict=True) for name in group
+            if -int(direction) * velocity[2] > ZERO_ROTATION_RATE * fastest
         ]  # fmt: skip
         why = f"{told} {does} in the {direction.label} direction: it cannot lead; {in_short(able)} could"
         raise self._refused(("lead", direction.label), why)
@@ -297,8 +297,8 @@ class Assembly(LinkedBodies):
             return analysis.contacts(blocks, ground, friction=self.friction, per_pair=pairs, within=self.gap)
         except analysis.ContactFault as error:
             names = [name for name in error.blocks if name in self.blocks]
-            asked = [words for words in self._frictions if set(self._pair(words)) == set(error.blocks)]
-            where = ("friction_of", asked[0]) if asked else ("blocks", *names[:1])
+            keys = [words for words in self._frictions if set(self._pair(words)) == set(error.blocks)]
+            where = ("friction_of", keys[0]) if keys else ("blocks", *names[:1])
             raise geometry_error(where, str(error)) from None
 
     @property
@@ -310,18 +310,18 @@ class Assembly(LinkedBodies):
         parts = words.split(" and ")
         ways = [(" and ".join(parts[:k]), " and ".join(parts[k:])) for k in range(1, len(parts))]
         names = {*self.blocks, *self.ground}
-        found = [pair for pair in ways if names.issuperset(pair)]
-        if len(found) != 1 or found[0][0] == found[0][1]:
+        pairs = [pair for pair in ways if names.issuperset(pair)]
+        if len(pairs) != 1 or pairs[0][0] == pairs[0][1]:
             why = (
                 "fits several pairs of bodies"
-                if found[1:]
+                if pairs[1:]
                 else "does not name a joint: write the names of two bodies, as `a and b`"
             )
             raise geometry_error(
                 ("friction_of", words),
                 f"{why}; the blocks are {in_short(list(self.blocks))}, on {in_short(list(self.ground))}",
             )
-        return found[0]
+        return pairs[0]
 
     @cached_property
     def _guides(self) -> Sequence[Guide]:
@@ -361,10 +361,10 @@ class Assembly(LinkedBodies):
         told = getattr(self.lead, direction.label, None)
         if told is not None:
             return str(told)
-        found = self._groups(direction)
-        k = analysis.leading(found, direction)
-        group = found.groups[k if k is not None else 0]
-        hinged = {self._contacts[h.contact].b for h in found.hinges if None in (h.one, h.other)}
+        mechanism = self._groups(direction)
+        k = analysis.leading(mechanism, direction)
+        group = mechanism.groups[k if k is not None else 0]
+        hinged = {self._contacts[h.contact].b for h in mechanism.hinges if None in (h.one, h.other)}
         return next((name for name in group if name in hinged), group[0])
 
     @per_direction
@@ -421,7 +421,7 @@ class Assembly(LinkedBodies):
 
     def _check_slips_off(self, direction: Direction, linkage: LinkageMotion) -> None:
         """Raise an error if a corner that slips along a frictionless face does not lift off this face."""
-        found, phi = self._groups(direction), np.array([SLIP_CHECK_ROTATION * linkage.limit])
+        mechanism, phi = self._groups(direction), np.array([SLIP_CHECK_ROTATION * linkage.limit])
         motions = linkage.motions(phi)
 
         def carried(name: str, at: complex) -> tuple[complex, complex]:
@@ -429,7 +429,7 @@ class Assembly(LinkedBodies):
                 return at, 1 + 0j
             return complex(motions[name].carry(at)[0][0]), complex(np.exp(1j * motions[name].psi[0]))
 
-        for k in found.lifted:
+        for k in mechanism.lifted:
             contact = self._contacts[k]
             for end, at in enumerate(contact.ends):
                 (a, turn_a), (b, turn_b) = (carried(name, at) for name in (contact.a, contact.b))
@@ -455,21 +455,21 @@ class Assembly(LinkedBodies):
     def joints(self, direction: Direction) -> Sequence[Joint]:
         if direction not in self.directions:
             return ()
-        found = self._groups(direction)
+        mechanism = self._groups(direction)
         joints = []
         for letter, contact, at in self._hinges(direction):
             end = 0 if abs(at - contact.start) <= abs(at - contact.end) else 1
             face = contact.face_at(end)
             names = tuple(name for name in (contact.a, contact.b) if name in self.blocks)
             joints.append(Joint(letter, at, names, normal=contact.normal, face=face if face in self.blocks else None))
-        for guide in found.guides:
+        for guide in mechanism.guides:
             joints.append(Joint(guide.name, guide.at, guide.bodies, slide=guide.along / abs(guide.along)))
         return joints
 
     def contacts(self, direction: Direction) -> Sequence[Contact] | None:
         if direction not in self.directions:
             return None
-        found = []
+        contacts = []
         for contact, state in zip(self._contacts, self._groups(direction).states, strict=True):
             ends = {analysis.Opening.CLOSED: (0, 1), analysis.Opening.START: (0,), analysis.Opening.END: (1,)}.get(
                 state, ()
@@ -482,11 +482,11 @@ class Assembly(LinkedBodies):
                 for name in (contact.a, contact.b, contact.face_at(ends[0]) if len(ends) == 1 else contact.a)
             )
             points = tuple(contact.ends[end] for end in ends)
-            found.append(Contact((a, b), points, contact.normal, face, contact.friction, name=_name(contact)))
+            contacts.append(Contact((a, b), points, contact.normal, face, contact.friction, name=_name(contact)))
         for guide in self._guides:
             along = guide.along / abs(guide.along)
-            found.append(Contact((None, guide.bodies[0]), (guide.at,), 1j * along, held="slide", name=guide.name))
-        return found
+            contacts.append(Contact((None, guide.bodies[0]), (guide.at,), 1j * along, held="slide", name=guide.name))
+        return contacts
 
     # What is said of it
 
@@ -497,13 +497,13 @@ class Assembly(LinkedBodies):
             lambda_, usual = self._collapse(direction).multiplier, self._with_usual(direction)
             if usual is not None and usual < (1 - GLUE_INCREASE) * lambda_:
                 raised.append(f"{usual:.4g} g instead of {lambda_:.4g} g in the {direction.label} direction")
-        said = [self._of_grains(), self._of_confined()]
+        sentences = [self._of_grains(), self._of_confined()]
         if raised:
-            said.append(
+            sentences.append(
                 "Joints without `friction` never slide and may carry shear without a normal force, which raises "
                 f"lambda. With a friction of {MASONRY_FRICTION:g} it would be {' and '.join(raised)}: give `friction`."
             )
-        return " ".join(filter(None, said))
+        return " ".join(filter(None, sentences))
 
     def _beside(self, direction: Direction) -> str:
         """Return what associated flow gives, in brackets, if the mechanism is one without dilation; else nothing."""
@@ -517,23 +517,23 @@ class Assembly(LinkedBodies):
         """Return sentences on mechanisms without dilation of confined blocks."""
         lower, early = [], []
         for direction in self.directions:
-            found, where = self._collapse(direction), f"in the {direction.label} direction"
-            if found.associated is not None:
-                lower.append(f"{found.multiplier:.4g} g {where}{self._beside(direction)}")
-            if not found.complete:
+            collapsed, where = self._collapse(direction), f"in the {direction.label} direction"
+            if collapsed.associated is not None:
+                lower.append(f"{collapsed.multiplier:.4g} g {where}{self._beside(direction)}")
+            if not collapsed.complete:
                 early.append(where)
-        said = []
+        sentences = []
         if lower:
-            said.append(
+            sentences.append(
                 f"Fixed sides confine blocks, and joints slide without opening: lambda is {' and '.join(lower)}."
             )
         if early:
-            said.append(
+            sentences.append(
                 "Fixed sides confine blocks, where associated flow may overestimate lambda by any amount. The search "
                 f"for mechanisms that slide without opening is not complete {' and '.join(early)}: lambda may be "
                 "lower. Analyse fewer blocks."
             )
-        return " ".join(said)
+        return " ".join(sentences)
 
     def _of_grains(self) -> str:
         """Return a sentence on blocks that are too light for the analysis."""
@@ -652,9 +652,9 @@ class Assembly(LinkedBodies):
 
         def margin(phi: float) -> float:
             nonlocal known
-            found = held(phi)
-            known = found.forces if found.margin > 0 else None
-            return found.margin
+            state = held(phi)
+            known = state.forces if state.margin > 0 else None
+            return state.margin
 
         def holds(phi: float) -> bool:
             nonlocal known
@@ -666,8 +666,8 @@ class Assembly(LinkedBodies):
         first = analysis.first_violation(margin, steps, holds=holds)
         if first is None:
             return None
-        found = held(first)
-        return first, found.contact if found.contact is not None else 0, at(first)[2]
+        state = held(first)
+        return first, state.contact if state.contact is not None else 0, at(first)[2]
 
     @per_direction
     def _needed(self, direction: Direction) -> analysis.Friction:
@@ -679,16 +679,16 @@ class Assembly(LinkedBodies):
             friction = Extra("friction_needed", needed, "", "friction in every joint without which lambda is less")
         else:
             which = in_short(glued) or "joints"
-            most = f"no friction up to {analysis.MAX_FRICTION:g} does"
-            why = f"{most}: {which} would carry shear without pressing, and lambda be less"
+            up_to = f"no friction up to {analysis.MAX_FRICTION:g} does"
+            why = f"{up_to}: {which} would carry shear without pressing, and lambda be less"
             friction = Extra("friction_needed", nan, "", why)
         usual = self._with_usual(direction)
         meaning = f"lambda with a friction of {MASONRY_FRICTION:g} in joints without any given"
         known = (friction,) if usual is None else (friction, Extra("lambda_with_usual", usual, "g", meaning))
-        found = self._valid_to(direction)
-        if found is None:
+        end = self._valid_to(direction)
+        if end is None:
             return known
-        phi, k, share = found
+        phi, k, share = end
         return (
             *known,
             Extra("valid_to", phi, "rad", f"rotation at which, held there, the joint of {self._joint(k)} opens too"),
@@ -713,20 +713,20 @@ class Assembly(LinkedBodies):
         return analysis.thrust(self._contacts, list(self.blocks), friction.normal, friction.shear)
 
     def _thrust_line(self, direction: Direction) -> Line | None:
-        found = self._thrust(direction)
-        if not found.chain:
+        line = self._thrust(direction)
+        if not line.chain:
             return None
         name = f"a line of thrust at uplift, {self._collapse(direction).multiplier:.3g} g"
-        return Line(name, [each.point for each in found.passages], direction)
+        return Line(name, [each.point for each in line.passages], direction)
 
     def _joint_forces(self, direction: Direction) -> Forces | None:
         """Return the joint forces of one state at uplift, if they do not form a line of thrust; else None."""
-        found = self._thrust(direction)
-        if found.chain or not found.passages:
+        line = self._thrust(direction)
+        if line.chain or not line.passages:
             return None
         lambda_ = self._collapse(direction).multiplier
         name = f"forces in the joints at uplift, {lambda_:.3g} g, in one state of equilibrium"
-        points, forces = zip(*((each.point, each.force) for each in found.passages), strict=True)
+        points, forces = zip(*((each.point, each.force) for each in line.passages), strict=True)
         return Forces(name, points, forces, direction)
 
 

@@ -70,13 +70,13 @@ class AsymmetricFrame(Mechanism):
             )
         by_density = [self.density, self.depth]
         by_mass = [self.left_mass, self.beam_mass, self.right_mass]
-        given = [value is not None for value in by_density + by_mass]
-        if self.mass is None and given not in ([True] * 2 + [False] * 3, [False] * 2 + [True] * 3):
+        is_given = [value is not None for value in by_density + by_mass]
+        if self.mass is None and is_given not in ([True] * 2 + [False] * 3, [False] * 2 + [True] * 3):
             raise geometry_error(
                 "density",
                 "give density and depth, or left_mass, beam_mass and right_mass: all of one set, none of the other",
             )
-        if self.mass is not None and any(given):
+        if self.mass is not None and any(is_given):
             raise geometry_error(
                 "mass", "cannot be combined with other masses: leave out density, depth and the three masses"
             )

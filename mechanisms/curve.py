@@ -167,8 +167,8 @@ class Curve(Mechanism):
 
     def _turning(self, direction: Direction) -> float:
         """Return the ratio of the body's rotation to phi: 1, or less in the direction with the larger R."""
-        most = max(self._central(each) for each in Direction)
-        return sqrt(self._central(direction) / most) if most > 0 else 1.0
+        largest = max(self._central(each) for each in Direction)
+        return sqrt(self._central(direction) / largest) if largest > 0 else 1.0
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
         ratio, arm = self._ratios[direction], self._arm(direction)
@@ -187,8 +187,8 @@ class Curve(Mechanism):
         def between(start: Reals, end: Reals) -> Points:
             half = (end - start)[:, None] / 2
             r, _ = ratio((start + end)[:, None] / 2 + half * GAUSS_NODES)
-            found: Points = (half * GAUSS_WEIGHTS * _along(r, direction)).sum(axis=1)
-            return found
+            integral: Points = (half * GAUSS_WEIGHTS * _along(r, direction)).sum(axis=1)
+            return integral
 
         knots = np.union1d(ratio.x, np.linspace(0.0, self.limit(direction), LIMIT_PIECES + 1))
         sums = np.concatenate([[0.0], np.cumsum(between(knots[:-1], knots[1:]))])
@@ -305,9 +305,9 @@ class MonotoneCubic:
             mean = (one + other) / (one / s[:-1] + other / s[1:])
         self.slope = np.concatenate([[s[0]], np.where(s[:-1] * s[1:] > 0, mean, 0.0), [s[-1]]])
         if len(s) > 1:
-            for end, near, next_ in ((0, 0, 1), (-1, -1, -2)):
-                three = ((2 * h[near] + h[next_]) * s[near] - h[near] * s[next_]) / (h[near] + h[next_])
-                self.slope[end] = s[near] * np.clip(three / s[near], 0.1, 3.0) if s[near] else 0.0
+            for end, beside, next_ in ((0, 0, 1), (-1, -1, -2)):
+                three = ((2 * h[beside] + h[next_]) * s[beside] - h[beside] * s[next_]) / (h[beside] + h[next_])
+                self.slope[end] = s[beside] * np.clip(three / s[beside], 0.1, 3.0) if s[beside] else 0.0
 
     def __call__(self, x: Reals) -> tuple[Reals, Reals]:
         """Return value and slope at `x`, an array of any shape."""

@@ -156,9 +156,9 @@ class Linkage(LinkedBodies):
         held, motions = self._held[direction], linkage.motions(np.zeros(1))
         if (wrong := turns_the_wrong_way(self._members, held.lead, motions, direction)) is not None:
             raise geometry_error(direction.label, wrong)
-        for found in (beside(self._members, held), closing(self._members, held, motions)):
-            if found is not None:
-                raise self._refused(direction, *found)
+        for fault in (beside(self._members, held), closing(self._members, held, motions)):
+            if fault is not None:
+                raise self._refused(direction, *fault)
 
     def _refused(self, direction: Direction, joint: str | None, reason: str) -> PydanticCustomError:
         """Return the error of a joint at its place in the file; a mirrored joint has no place of its own."""
@@ -183,14 +183,14 @@ class Linkage(LinkedBodies):
     @cached_property
     def _sides(self) -> Mapping[Direction, LinkageSide]:
         """The joints of the directions of rocking, as given or mirrored."""
-        found = {}
+        sides = {}
         for direction in self.directions:
             side, other = (getattr(self, each.label) for each in (direction, direction.opposite))
             if side == "mirror" and isinstance(other, LinkageSide):
                 side = mirrored(other, self._middle, self._images(direction))
             if isinstance(side, LinkageSide):
-                found[direction] = side
-        return found
+                sides[direction] = side
+        return sides
 
     @cached_property
     def _cracked(self) -> Cracked:
@@ -209,17 +209,26 @@ class Linkage(LinkedBodies):
             return {}
 
         def at(shares: Mapping[str, float]) -> float:
-            found = cracked(self.members, {direction: side}, cracks, {direction: shares})
+            shares_of_cracks = cracked(self.members, {direction: side}, cracks, {direction: shares})
             kept = {key: getattr(self, key) for key in ("density", "depth", "mass", "gravity") if getattr(self, key)}
             loads = [
-                load.model_copy(update={"body": found.piece(load.body, complex(*load.at))}) if load.body else load
+                load.model_copy(update={"body": shares_of_cracks.piece(load.body, complex(*load.at))})
+                if load.body
+                else load
                 for load in self.loads or []
             ]
-            ties = [_on_pieces(tie, found) for tie in self.ties or []]
-            sides = {direction.label: found.sides[direction], direction.opposite.label: "none"}
+            ties = [_on_pieces(tie, shares_of_cracks) for tie in self.ties or []]
+            sides = {direction.label: shares_of_cracks.sides[direction], direction.opposite.label: "none"}
             leans = {"one_sided": direction.label, "rebound": 0.0}
             one = Linkage.from_fields(
-                {"members": found.shapes, **sides, **leans, **kept, "loads": loads or None, "ties": ties or None}
+                {
+                    "members": shares_of_cracks.shapes,
+                    **sides,
+                    **leans,
+                    **kept,
+                    "loads": loads or None,
+                    "ties": ties or None,
+                }
             )
             return one.uplift(direction)
 
@@ -232,10 +241,10 @@ class Linkage(LinkedBodies):
                 failed.append(error)
                 return inf
 
-        found = weakest(lambda_at, list(cracks))
-        if not lambda_at(found) < inf:
+        shares_of_cracks = weakest(lambda_at, list(cracks))
+        if not lambda_at(shares_of_cracks) < inf:
             raise failed[-1]
-        return found
+        return shares_of_cracks
 
     @property
     def _middle(self) -> float:
@@ -252,19 +261,19 @@ class Linkage(LinkedBodies):
         images = {}
         for body in bodies:
             at = complex(2 * self._middle - body.centroid.real, body.centroid.imag)
-            near = [
+            images_of_body = [
                 other.name
                 for other in bodies
                 if abs(other.centroid - at) <= MIRROR_DISTANCE * size
                 and abs(other.mass - body.mass) <= MIRROR_DISTANCE * body.mass
                 and abs(other.inertia - body.inertia) <= MIRROR_DISTANCE * (body.inertia + body.mass * size**2)
             ]
-            if not near:
+            if not images_of_body:
                 raise geometry_error(
                     direction.label,
                     f"{body.name} has no mirror image among the bodies: give the joints of both directions",
                 )
-            images[body.name] = near[0]
+            images[body.name] = images_of_body[0]
         for name, crack in (self.cracks or {}).items():
             if images[crack.body] != crack.body or crack.cut == "vertical":
                 why = f"the crack {name} has no mirror image: give the joints of both directions"
@@ -292,14 +301,14 @@ class Linkage(LinkedBodies):
         return self._cracked.piece(body, at)
 
     def extras(self, direction: Direction) -> Sequence[Extra]:
-        found = []
+        extras = []
         for name, share in self._shares.get(direction, {}).items():
             crack = (self.cracks or {})[name]
             what = "height" if crack.cut == "horizontal" else "place"
             at_end = not 10 * MIN_EDGE_DISTANCE < share < 1 - 10 * MIN_EDGE_DISTANCE
             more = ", at the end of its line: beyond, lambda may be less" if at_end else ", where lambda is least"
-            found.append(Extra(f"crack_{name}", crack.level(share), "m", f"{what} of the crack {name}{more}"))
-        return found
+            extras.append(Extra(f"crack_{name}", crack.level(share), "m", f"{what} of the crack {name}{more}"))
+        return extras
 
     # Contacts and picture
 
@@ -349,27 +358,27 @@ class Linkage(LinkedBodies):
             (body,) = (name for name in pair if name != GROUND)
             ends = faces.lowest(shapes[0])
             return [] if ends is None else [Contact((None, body), ends, face=None, friction=self.friction)]
-        found: list[Contact] = []
+        contacts: list[Contact] = []
         one, other = pair
         for normal, ends in faces.shared(*shapes):
             # The second one bears the first if the normal points down.
             below, above, upwards = (one, other, normal) if normal.imag >= 0 else (other, one, -normal)
-            name = f"{below} and {above}" + (f", face {len(found) + 1}" if found else "")
-            found.append(Contact((below, above), ends, upwards, below, self.friction, name=name))
-        return found
+            name = f"{below} and {above}" + (f", face {len(contacts) + 1}" if contacts else "")
+            contacts.append(Contact((below, above), ends, upwards, below, self.friction, name=name))
+        return contacts
 
     @cached_property
     def _anchored(self) -> Mapping[Direction, Collection[str]]:
         """Bodies that are as the ground: nothing between them and it may open."""
-        found = {}
+        anchored = {}
         for direction, closed in self._closed.items():
             names = {GROUND}
             for _ in closed:
                 names |= {
                     name for pair, faces in closed.items() if not faces and names.intersection(pair) for name in pair
                 }
-            found[direction] = names
-        return found
+            anchored[direction] = names
+        return anchored
 
     def contacts(self, direction: Direction) -> Sequence[Contact] | None:
         if direction not in self._held:
@@ -392,20 +401,20 @@ class Linkage(LinkedBodies):
 
     def contacts_at_rest(self) -> Sequence[Contact] | None:
         """Return the joints of all directions, faces on which bodies lie without a joint, and whole feet."""
-        found = super().contacts_at_rest()
-        if found is None:
+        contacts = super().contacts_at_rest()
+        if contacts is None:
             return None
         ground = self._anchored[self.directions[0]]
         for pair in combinations([name for name in self._members if name not in ground], 2):
             for k, face in enumerate(self._closed_faces(pair), 1):
-                joined = [each for each in found if set(each.pieces) == set(pair)]
+                joined = [each for each in contacts if set(each.pieces) == set(pair)]
                 if not any(each.held == "fixed" or _is_on(each, face) for each in joined):
-                    found = [*found, replace(face, name=f"{face.pieces[0]} and {face.pieces[1]}, face {k}")]
+                    contacts = [*contacts, replace(face, name=f"{face.pieces[0]} and {face.pieces[1]}, face {k}")]
         return [
             self._whole_face(each)
-            if all(other.points == each.points for other in found if _is_of_one_face(each, other))
+            if all(other.points == each.points for other in contacts if _is_of_one_face(each, other))
             else each
-            for each in found
+            for each in contacts
         ]
 
     def _whole_face(self, contact: Contact) -> Contact:
@@ -485,11 +494,11 @@ def _is_on(contact: Contact, face: Contact) -> bool:
     )
 
 
-def _on_pieces(tie: Tie, found: Cracked) -> Tie:
+def _on_pieces(tie: Tie, pieces: Cracked) -> Tie:
     """Return a tie whose ends are on the pieces of cut bodies."""
 
     def moved(place: Place) -> Place:
-        return place.model_copy(update={"body": found.piece(place.body, place.point)}) if place.body else place
+        return place.model_copy(update={"body": pieces.piece(place.body, place.point)}) if place.body else place
 
     changed = {key: moved(place) for key in ("start", "end") if (place := getattr(tie, key)) is not None}
     return tie.model_copy(update={**changed, **({"path": [moved(each) for each in tie.path]} if tie.path else {})})

@@ -207,8 +207,8 @@ class RigidBody(SingleBody):
 
     def _of_parts(self, key: str) -> list[float | None]:
         """Return density or depth of every plate among the parts: its own, or else that of the body."""
-        own = [getattr(part, key) for part in self.parts or () if not part.opening]
-        return [each if each is not None else getattr(self, key) for each in own]
+        values = [getattr(part, key) for part in self.parts or () if not part.opening]
+        return [each if each is not None else getattr(self, key) for each in values]
 
     @cached_property
     def _plates(self) -> list[Plate]:
@@ -217,19 +217,19 @@ class RigidBody(SingleBody):
         per_area = np.ones(sum(not part.opening for part in self.parts))
         for key in ("density", "depth"):
             values = self._of_parts(key)
-            given = [each for each in values if each is not None]
-            if given and len(given) < len(values):
+            given_values = [each for each in values if each is not None]
+            if given_values and len(given_values) < len(values):
                 solids = [k for k, part in enumerate(self.parts) if not part.opening]
                 k = solids[values.index(None)]
                 raise geometry_error(("parts", k, key), f"is missing: give {key} to all parts, or to the body")
-            if given:
-                per_area = per_area * np.array(given)
+            if given_values:
+                per_area = per_area * np.array(given_values)
         return plates(self.parts, per_area.tolist())
 
     @cached_property
     def _fillets(self) -> dict[Direction, tuple[Plate, Fillet]]:
         """Rounded feet of the plates, by direction."""
-        found: dict[Direction, tuple[Plate, Fillet]] = {}
+        fillets: dict[Direction, tuple[Plate, Fillet]] = {}
         for direction, foot in zip(Direction, reversed(self._feet), strict=True):
             if self.corner_radius is None:
                 continue
@@ -237,10 +237,10 @@ class RigidBody(SingleBody):
             if others:
                 raise geometry_error("corner_radius", f"two parts share the foot at x = {foot.real:.4g} m")
             try:
-                found[direction] = plate, fillet(plate.corners, foot, -direction, self.corner_radius)
+                fillets[direction] = plate, fillet(plate.corners, foot, -direction, self.corner_radius)
             except ValueError as error:
                 raise geometry_error("corner_radius", str(error)) from None
-        return found
+        return fillets
 
     @cached_property
     def _pieces(self) -> list[tuple[int, Body]]:
@@ -325,13 +325,13 @@ class RigidBody(SingleBody):
     def outlines(self) -> Sequence[Outline]:
         if self._way not in ("polygon", "parts"):
             return ()
-        found = []
+        outlines = []
         for plate in self._plates:
             outline = plate.outline
             for cut in (cut for home, cut in self._fillets.values() if home is plate):
                 outline = cut.rounded(outline)
-            found.append(outline)
-        return found
+            outlines.append(outline)
+        return outlines
 
     def lengths(self) -> Sequence[Length]:
         if self._way not in ("polygon", "parts"):

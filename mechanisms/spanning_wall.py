@@ -146,7 +146,7 @@ class SpanningWall(Mechanism):
         above: list[tuple[str, Direction]] = []
         for direction in self.directions:
             rho, lever = self._load_ratio, self._lever(direction)
-            xi, given = self._weakest(direction), self.uplift(direction)
+            xi, lambda_ = self._weakest(direction), self.uplift(direction)
             at_top = 1 - xi < TOP_DISTANCE
             opens = 0.0 if at_top else lever * xi / (1 - xi)
             least = (
@@ -154,19 +154,19 @@ class SpanningWall(Mechanism):
                 if rho * lever < -TOP_DISTANCE
                 else 2 * self.thickness / (xi * self.height) * (1 + rho * (1 + opens))
             )
-            if least < (1 - WEAK_HINGE_DECREASE) * given:
-                lowers = f"lambda is {least:.4g} g instead of {given:.4g} g"
+            if least < (1 - WEAK_HINGE_DECREASE) * lambda_:
+                lowers = f"lambda is {least:.4g} g instead of {lambda_:.4g} g"
                 place = above if at_top else inside
                 place.append((lowers if at_top else f"at {xi:.3g} of the height {lowers}", direction))
-        said = [f"The hinge is not the weakest: {_by_direction(inside)}."] if inside else []
+        sentences = [f"The hinge is not the weakest: {_by_direction(inside)}."] if inside else []
         if inside and all(1 - self._weakest(direction) >= TOP_DISTANCE for direction in self.directions):
-            said.append("Give `hinge: weakest`, unless something fixes its height.")
+            sentences.append("Give `hinge: weakest`, unless something fixes its height.")
         if above:
-            said.append(
+            sentences.append(
                 f"The higher the hinge, the lower lambda: with the hinge near the top {_by_direction(above)}. Check at "
                 "which height the wall hinges."
             )
-        return " ".join(said)
+        return " ".join(sentences)
 
     @cached_property
     def _cuts(self) -> list[float]:
@@ -256,9 +256,9 @@ class SpanningWall(Mechanism):
         )
 
 
-def _by_direction(found: Sequence[tuple[str, Direction]]) -> str:
+def _by_direction(texts_of: Sequence[tuple[str, Direction]]) -> str:
     """Return texts with their directions; a text that is that of both once."""
-    texts = {text for text, _ in found}
-    if len(texts) < len(found):
-        return found[0][0]
-    return " and ".join(f"{text} in the {direction.label} direction" for text, direction in found)
+    texts = {text for text, _ in texts_of}
+    if len(texts) < len(texts_of):
+        return texts_of[0][0]
+    return " and ".join(f"{text} in the {direction.label} direction" for text, direction in texts_of)

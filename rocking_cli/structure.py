@@ -229,17 +229,17 @@ class Structure:
         """
         cls, path = type(self.mechanism), words(field)
         place = put(deepcopy(self._data), path, 1.0, is_list=partial(lists_models, cls), grow=False)
-        found: Place = ()
+        known_path: Place = ()
         for k, part in enumerate(place):
             if isinstance(part, str):
-                named = names_at(cls, found)
-                known = list(self._entries(found) if named else fields_at(cls, found))
+                named = names_at(cls, known_path)
+                known = list(self._entries(known_path) if named else fields_at(cls, known_path))
                 if part not in known:
                     within = ".".join(path[:k]) or cls.mechanism
                     message = f"{within} has no {cut(part)}" if named else f"{cut(part)} is not a field of {within}"
                     message, hint = message if k else f"is not a field of {within}", did_you_mean(part, known)
                     raise InputError(Problem(message, field=field, hint=hint))
-            found = (*found, part)
+            known_path = (*known_path, part)
         if float not in types_at(cls, place) or (isinstance(place[-1], str) and is_plural(cls, place)):
             raise InputError(Problem("is not a numeric field, so it cannot be varied", field=field))
         return place

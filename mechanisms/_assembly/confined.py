@@ -73,16 +73,16 @@ def undilated(problem: AssemblyProblem, associated: float) -> Undilated | None:
     if len(problem.bearings.contact) > MAX_JOINTS:
         return Undilated(None, nothing, nothing, (), False)
     weight = _Search(problem, problem.dead, np.zeros_like(problem.dead), problem.inertia)
-    found = weight.run(np.inf)
-    if found is not None:
-        return Undilated(0.0, nothing, nothing, moving(problem.frame.names, weight.field(found), MOVING_SPEED), True)
+    unknowns = weight.run(np.inf)
+    if unknowns is not None:
+        return Undilated(0.0, nothing, nothing, moving(problem.frame.names, weight.field(unknowns), MOVING_SPEED), True)
     below = (1 - MIN_DECREASE) * min(associated, MAX_MULTIPLIER)
     shaking = _Search(problem, problem.live, problem.dead, np.zeros_like(problem.dead), _least_normals(problem, below))
-    found = shaking.run(below)
+    unknowns = shaking.run(below)
     complete = weight.complete and shaking.complete
-    if found is None:
+    if unknowns is None:
         return Undilated(None, nothing, nothing, (), complete)
-    return Undilated(shaking.multiplier(found), shaking.field(found), shaking.state(found), (), complete)
+    return Undilated(shaking.multiplier(unknowns), shaking.field(unknowns), shaking.state(unknowns), (), complete)
 
 
 def is_confined(problem: AssemblyProblem) -> bool:
@@ -92,16 +92,16 @@ def is_confined(problem: AssemblyProblem) -> bool:
     """
     rays, mu = problem.bearings.rays(usual=MASONRY_FRICTION), problem.bearings.friction
     press = rays.one_sided & (np.append(mu, 0.0)[rays.contact] > 0)  # guides have contact -1, the last
-    found = least(
+    optimum = least(
         -np.append(press, 0.0),
         from_blocks([[rays.rates.T, None], [rays.one_sided[None, :], np.ones((1, 1))]]),
         np.append(np.zeros_like(problem.dead), 1.0),
         np.append(np.where(rays.one_sided, 0.0, -MAX_GUIDE_FORCE), 0.0),
         np.append(np.where(rays.one_sided, np.inf, MAX_GUIDE_FORCE), np.inf),
     )
-    assert found is not None  # nothing balances nothing
+    assert optimum is not None  # nothing balances nothing
     # Forces that balance can be made any size, so that all or none of what is allowed is used.
-    return bool(found.value < -(ZERO_PRODUCT**0.5))
+    return bool(optimum.value < -(ZERO_PRODUCT**0.5))
 
 
 def _least_normals(problem: AssemblyProblem, multiplier: float) -> Reals:
@@ -110,12 +110,12 @@ def _least_normals(problem: AssemblyProblem, multiplier: float) -> Reals:
     normal = problem.by_contact(np.arange(rays.mix.shape[1]))[0].astype(np.intp)
     equal = beside([rays.rates.T, problem.live])
     low, high = np.append(rays.low, 0.0), np.append(np.full(rays.count, np.inf), multiplier)
-    found = np.zeros(len(normal))
+    least_normals = np.zeros(len(normal))
     for k, ends in enumerate(normal):
         cost = rays.mix @ np.bincount(ends, minlength=rays.mix.shape[1])
         best = least(np.append(cost, 0.0), equal, -problem.dead, low, high)
-        found[k] = 0.0 if best is None else max(best.value - ZERO_PRODUCT, 0.0)
-    return found
+        least_normals[k] = 0.0 if best is None else max(best.value - ZERO_PRODUCT, 0.0)
+    return least_normals
 
 
 class _Search:
@@ -160,39 +160,39 @@ class _Search:
         self._programmes = MAX_JOINT_PROGRAMMES // len(problem.bearings.contact)
         self.complete = True
 
-    def multiplier(self, found: Reals) -> float:
+    def multiplier(self, unknowns: Reals) -> float:
         """Return the multiplier of a mechanism."""
-        return float(found[self._multiplier])
+        return float(unknowns[self._multiplier])
 
-    def field(self, found: Reals) -> Reals:
+    def field(self, unknowns: Reals) -> Reals:
         """Return the velocities of a mechanism."""
-        return found[self._field]
+        return unknowns[self._field]
 
-    def state(self, found: Reals) -> Reals:
+    def state(self, unknowns: Reals) -> Reals:
         """Return the forces in the joints at the start of a mechanism."""
-        return found[self._forces]
+        return unknowns[self._forces]
 
     def run(self, below: float) -> Reals | None:
         """Return the simplest mechanism of the least multiplier below a limit; None if none is found."""
         high, cost = np.full(len(self._low), np.inf), np.zeros(len(self._low))
         cost[self._multiplier] = np.isfinite(below)  # without a limit any mechanism will do
-        found, self.complete = self._least(cost, high, below)
-        if found is None:
+        unknowns, self.complete = self._least(cost, high, below)
+        if unknowns is None:
             return None
         # Of several with that multiplier, the one with the least motion and the least forces.
-        high[self._multiplier] = self.multiplier(found) * (1 + SIMPLEST_INCREASE) + SIMPLEST_INCREASE
+        high[self._multiplier] = self.multiplier(unknowns) * (1 + SIMPLEST_INCREASE) + SIMPLEST_INCREASE
         ways = np.linspace(1.0, 1.0 + LAST_JOINT_COST, len(self._left))
         cost = np.zeros(len(self._low))
         cost[self._left], cost[self._rates] = ways, ways
         simplest, _ = self._least(cost, high, np.inf)
-        return found if simplest is None else simplest
+        return unknowns if simplest is None else simplest
 
     def _least(self, cost: Reals, high: Reals, below: float) -> tuple[Reals | None, bool]:
         """Return the unknowns at the least cost below a limit, if any, and whether the search was complete."""
-        found, complete, left = None, True, [high]
+        unknowns, complete, left = None, True, [high]
         for _ in range(self._programmes):
             if not left:
-                return found, complete
+                return unknowns, complete
             bounds = left.pop()
             try:
                 best = least(cost, self._equal, self._right, self._low, bounds)
@@ -204,7 +204,7 @@ class _Search:
             force, rate = best.x[self._left], best.x[self._rates]
             both = np.minimum(force, rate) > ZERO_PRODUCT
             if not both.any():
-                found, below = self._exactly(cost, bounds, best.x), best.value * (1 - SIMPLEST_INCREASE)
+                unknowns, below = self._exactly(cost, bounds, best.x), best.value * (1 - SIMPLEST_INCREASE)
                 continue
             product = np.where(both, force * rate, 0.0)
             k = int(np.flatnonzero(product >= product.max() * (1 - MOVING_SPEED))[0])  # not by the last digits
@@ -212,17 +212,17 @@ class _Search:
                 without = bounds.copy()
                 without[part[k]] = 0.0
                 left.append(without)
-        return found, complete and not left
+        return unknowns, complete and not left
 
-    def _exactly(self, cost: Reals, high: Reals, found: Reals) -> Reals:
+    def _exactly(self, cost: Reals, high: Reals, unknowns: Reals) -> Reals:
         """Return the unknowns without forces and rates that the tolerance of the solver leaves in the way."""
         high = high.copy()
-        high[np.where(found[self._left] < found[self._rates], self._left, self._rates)] = 0.0
+        high[np.where(unknowns[self._left] < unknowns[self._rates], self._left, self._rates)] = 0.0
         try:
             best = least(cost, self._equal, self._right, self._low, high)
         except NoAnswer:
             best = None
-        return found if best is None else best.x
+        return unknowns if best is None else best.x
 
 
 def _alternatives(problem: AssemblyProblem) -> tuple[Sparse, Sparse]:

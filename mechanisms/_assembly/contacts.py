@@ -70,7 +70,7 @@ def contacts(
         raise ContactFault(f"more than one body is called {listed(twice)}", twice)
     outlines = [body.outline for body in bodies]
     sizes = [size_of(z) if k < len(blocks) else np.inf for k, z in enumerate(outlines)]
-    found: list[AssemblyContact] = []
+    joints: list[AssemblyContact] = []
     reach = np.array(
         [0.0 if k >= len(blocks) else gap * size if within is None else within for k, size in enumerate(sizes)]
     )
@@ -89,27 +89,27 @@ def contacts(
             joint = AssemblyContact(names[i], names[j], start, end, normal, friction)
             joint = replace(joint, faces=_faces(joint, outlines[i], outlines[j], tolerance))
             bears = j >= len(blocks) or normal.imag < -ZERO_UPWARD  # the ground, or the lower of the two
-            found.append(joint.turned() if bears else joint)
-    _all_touch(blocks, found)
+            joints.append(joint.turned() if bears else joint)
+    _all_touch(blocks, joints)
     size = dict(zip(names, sizes, strict=True))
     _none_bridged(
-        found,
+        joints,
         dict(zip(names, outlines, strict=True)),
         thick,
         lambda one, other: gap * min(size[one], size[other]) if within is None else within,
     )
-    return _with_friction(found, per_pair or {})
+    return _with_friction(joints, per_pair or {})
 
 
 def _none_bridged(
-    found: Sequence[AssemblyContact], bodies: Mapping[str, Points], thick: Mapping[str, float], gap: Gap
+    joints: Sequence[AssemblyContact], bodies: Mapping[str, Points], thick: Mapping[str, float], gap: Gap
 ) -> None:
     """Raise `ContactFault` if two neighbours of a block are joined across the block."""
     touch: dict[str, set[str]] = {name: set() for name in bodies}
-    for joint in found:
+    for joint in joints:
         touch[joint.a].add(joint.b)
         touch[joint.b].add(joint.a)
-    for joint in found:
+    for joint in joints:
         tolerance = gap(joint.a, joint.b)
         for name in sorted(touch[joint.a] & touch[joint.b]):
             if thick.get(name, np.inf) <= tolerance:
@@ -186,8 +186,8 @@ def _faces(joint: AssemblyContact, one: Points, other: Points, tolerance: float)
     return first, last
 
 
-def _all_touch(blocks: Sequence[AssemblyBlock], found: Sequence[AssemblyContact]) -> None:
-    touched = {name for joint in found for name in (joint.a, joint.b)}
+def _all_touch(blocks: Sequence[AssemblyBlock], joints: Sequence[AssemblyContact]) -> None:
+    touched = {name for joint in joints for name in (joint.a, joint.b)}
     loose = [block.name for block in blocks if block.name not in touched]
     if loose:
         verb = "touches" if len(loose) == 1 else "touch"
@@ -197,11 +197,11 @@ def _all_touch(blocks: Sequence[AssemblyBlock], found: Sequence[AssemblyContact]
 
 
 def _with_friction(
-    found: list[AssemblyContact], per_pair: Mapping[tuple[str, str], float | None]
+    joints: list[AssemblyContact], per_pair: Mapping[tuple[str, str], float | None]
 ) -> list[AssemblyContact]:
-    given = {frozenset(pair): value for pair, value in per_pair.items()}
-    touch = {frozenset((c.a, c.b)) for c in found}
+    friction_of = {frozenset(pair): value for pair, value in per_pair.items()}
+    touch = {frozenset((c.a, c.b)) for c in joints}
     missing = [pair for pair in per_pair if frozenset(pair) not in touch]
     if missing:
         raise ContactFault(f"{listed(missing[0])} have no joint that could be given a friction", missing[0])
-    return [replace(c, friction=given.get(frozenset((c.a, c.b)), c.friction)) for c in found]
+    return [replace(c, friction=friction_of.get(frozenset((c.a, c.b)), c.friction)) for c in joints]

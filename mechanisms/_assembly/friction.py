@@ -46,32 +46,41 @@ class Friction:
     guide: Reals
 
 
-def friction(found: Collapse) -> Friction:
+def friction(collapsed: Collapse) -> Friction:
     """Return the friction that a mechanism requires: the root of its multiplier as a function of friction.
 
     By Newton's method: the derivative of the multiplier by the friction follows from the work that the mechanism with
     too little friction dissipates in sliding. Each guess is a linear programme that carries the multiplier or does not,
     so that the root is always bracketed.
     """
-    problem, multiplier = found.problem, found.multiplier * found.problem.strength
+    problem, multiplier = collapsed.problem, collapsed.multiplier * collapsed.problem.strength
     search = _FrictionSearch(problem, multiplier)
-    if found.associated is not None:  # without dilation: the friction that the state shown uses
-        state = np.concatenate([np.column_stack([found.normal, found.shear]).ravel(), found.guide]) / problem.weight
+    if collapsed.associated is not None:  # without dilation: the friction that the state shown uses
+        state = (
+            np.concatenate([np.column_stack([collapsed.normal, collapsed.shear]).ravel(), collapsed.guide])
+            / problem.weight
+        )
         used = search.uses(state)
-        return Friction(used if used <= MAX_FRICTION else None, (), found.normal, found.shear, found.guide)
-    most = float(np.nan_to_num(problem.bearings.friction, nan=MAX_FRICTION).clip(max=MAX_FRICTION).max(initial=0.0))
-    shown = np.concatenate([np.column_stack([found.normal, found.shear]).ravel(), found.guide]) / problem.weight
-    limit = search.uses(shown)
-    if most < MAX_FRICTION:
-        search.bound(most, shown)  # the mechanism that was found has no more
+        return Friction(used if used <= MAX_FRICTION else None, (), collapsed.normal, collapsed.shear, collapsed.guide)
+    given_friction = float(
+        np.nan_to_num(problem.bearings.friction, nan=MAX_FRICTION).clip(max=MAX_FRICTION).max(initial=0.0)
+    )
+    shown_state = (
+        np.concatenate([np.column_stack([collapsed.normal, collapsed.shear]).ravel(), collapsed.guide]) / problem.weight
+    )
+    limit = search.uses(shown_state)
+    if given_friction < MAX_FRICTION:
+        search.bound(given_friction, shown_state)  # the mechanism that was found has no more
     elif limit < MAX_FRICTION:
-        search.bound(limit, shown)
+        search.bound(limit, shown_state)
     elif not search.carries(MAX_FRICTION):
         # The state with the least shear beyond the greatest friction, and the joints that have such shear.
-        shown, beyond, _ = _beyond(problem, multiplier, MAX_FRICTION, _most(found, problem.bearings.rays(MAX_FRICTION)))
+        shown_state, beyond, _ = _beyond(
+            problem, multiplier, MAX_FRICTION, _most(collapsed, problem.bearings.rays(MAX_FRICTION))
+        )
         glued = tuple(int(k) for k in np.flatnonzero(np.abs(beyond) > EQUAL_MULTIPLIERS))
-        return Friction(None, glued, *problem.by_contact(problem.weight * shown))
-    if not (most < MAX_FRICTION and not _may_carry(found, search)) and not search.carries(0.0):
+        return Friction(None, glued, *problem.by_contact(problem.weight * shown_state))
+    if not (given_friction < MAX_FRICTION and not _may_carry(collapsed, search)) and not search.carries(0.0):
         while search.high - search.low > FRICTION_ACCURACY * search.high:
             search.carries(search.guess)
     return Friction(search.high, (), *problem.by_contact(problem.weight * search.state))
@@ -167,12 +176,12 @@ class _FrictionSearch:
         return float((normal.sum(axis=1) * slides)[~(bearings.friction <= mu)].sum())
 
 
-def with_usual(found: Collapse) -> float | None:
+def with_usual(collapsed: Collapse) -> float | None:
     """Return the multiplier if joints without given friction have the usual one; 0 if the assembly then falls.
 
     None if all joints have a given friction.
     """
-    problem = found.problem
+    problem = collapsed.problem
     if not np.isnan(problem.bearings.friction).any():
         return None
     mu = problem.bearings.friction
@@ -184,33 +193,33 @@ def with_usual(found: Collapse) -> float | None:
     return max(reached, 0.0) / problem.strength
 
 
-def sheared(found: Friction, contacts: Sequence[AssemblyContact]) -> tuple[int, ...]:
+def sheared(required: Friction, contacts: Sequence[AssemblyContact]) -> tuple[int, ...]:
     """Return the joints without given friction whose shear, in the shown state, exceeds the usual friction."""
-    least = EQUAL_MULTIPLIERS * float(np.abs(found.normal).max(initial=0.0))
-    beyond = np.abs(found.shear) > MASONRY_FRICTION * np.maximum(found.normal.sum(axis=1), 0.0) + least
+    least = EQUAL_MULTIPLIERS * float(np.abs(required.normal).max(initial=0.0))
+    beyond = np.abs(required.shear) > MASONRY_FRICTION * np.maximum(required.normal.sum(axis=1), 0.0) + least
     return tuple(k for k, each in enumerate(contacts) if each.friction is None and beyond[k])
 
 
-def _may_carry(found: Collapse, search: _FrictionSearch) -> bool:
+def _may_carry(collapsed: Collapse, search: _FrictionSearch) -> bool:
     """Return whether the multiplier may be carried with slightly less friction than that of the sliding joints.
 
     With less friction, joints open faster than they slide along the cone, and so carry no force. Mostly there is no
     equilibrium without them, which is found quickly; otherwise a linear programme decides.
     """
-    problem, rays = found.problem, found.problem.bearings.rays(search.below)
-    low, high = np.append(rays.low, -np.inf), np.append(_most(found, rays), np.inf)
+    problem, rays = collapsed.problem, collapsed.problem.bearings.rays(search.below)
+    low, high = np.append(rays.low, -np.inf), np.append(_most(collapsed, rays), np.inf)
     balance = least(np.zeros(rays.count + 1), beside([rays.rates.T, problem.live]), -problem.dead, low, high)
     return balance is not None and search.carries(search.below)
 
 
-def _most(found: Collapse, rays: Rays) -> Reals:
+def _most(collapsed: Collapse, rays: Rays) -> Reals:
     """Return upper bounds of the forces along the rays in the collapse state: 0 if the joint opens along the ray."""
-    field = (found.velocity * np.array([1.0, 1.0, found.problem.frame.size])).ravel()
+    field = (collapsed.velocity * np.array([1.0, 1.0, collapsed.problem.frame.size])).ravel()
     return np.where(rays.one_sided & (rays.rates @ field > ZERO_VELOCITY * np.abs(field).max()), 0.0, np.inf)
 
 
 def _beyond(
-    problem: AssemblyProblem, multiplier: float, mu: float, most: Reals | None = None
+    problem: AssemblyProblem, multiplier: float, mu: float, upper: Reals | None = None
 ) -> tuple[Reals, Reals, Reals]:
     """Find the state of forces that needs the least shear in excess of a given coefficient of friction.
 
@@ -242,21 +251,21 @@ def _beyond(
     count, n = len(rows), rays.count
     # A slightly smaller multiplier is allowed, or rounding may leave no state at all.
     least_, greatest = (
-        (EQUAL_MULTIPLIERS / 10, EQUAL_MULTIPLIERS / 10) if most is None else (EQUAL_MULTIPLIERS, -EQUAL_MULTIPLIERS)
+        (EQUAL_MULTIPLIERS / 10, EQUAL_MULTIPLIERS / 10) if upper is None else (EQUAL_MULTIPLIERS, -EQUAL_MULTIPLIERS)
     )
-    found = least(
+    optimum = least(
         np.concatenate([np.zeros(n + 1), np.ones(2 * count)]),
         beside([rays.rates.T, problem.live, extra, -extra]),
         -problem.dead,
         np.concatenate([rays.low, [multiplier * (1 - least_)], np.zeros(2 * count)]),
-        np.concatenate([np.full(n, np.inf) if most is None else most, [multiplier * (1 - greatest)],
+        np.concatenate([np.full(n, np.inf) if upper is None else upper, [multiplier * (1 - greatest)],
                         np.full(2 * count, np.inf)]),
     )  # fmt: skip
     beyond = np.zeros(len(problem.bearings.contact))
-    if found is None:  # rounding took even that
+    if optimum is None:  # rounding took even that
         _, forces, raw = problem.greatest(free)
         return free.mix.T @ forces, beyond, raw
-    state = rays.mix.T @ found.x[:n]
-    beyond[joints] = found.x[n + 1 : n + 1 + count] - found.x[n + 1 + count :]
+    state = rays.mix.T @ optimum.x[:n]
+    beyond[joints] = optimum.x[n + 1 : n + 1 + count] - optimum.x[n + 1 + count :]
     state[rows] += beyond[joints]
-    return state, beyond, found.prices
+    return state, beyond, optimum.prices

@@ -199,25 +199,25 @@ def collapse(
     )
 
 
-def _without_dilation(problem: AssemblyProblem, found: Undilated, associated: float) -> Collapse:
+def _without_dilation(problem: AssemblyProblem, mechanism: Undilated, associated: float) -> Collapse:
     """Return the mechanism without dilation of confined blocks."""
-    assert found.multiplier is not None
-    velocity = _sized(problem, found.field)
+    assert mechanism.multiplier is not None
+    velocity = _sized(problem, mechanism.field)
     # Its joints dissipate work, which no joint does by associated flow.
-    resisted = float((problem.dead + problem.bearings.rates.T @ found.state) @ found.field)
+    resisted = float((problem.dead + problem.bearings.rates.T @ mechanism.state) @ mechanism.field)
     return Collapse(
-        found.multiplier / problem.strength,
-        -resisted / float(problem.live @ found.field) / problem.strength,
+        mechanism.multiplier / problem.strength,
+        -resisted / float(problem.live @ mechanism.field) / problem.strength,
         velocity,
         *problem.by_contact(_rates(problem, velocity))[:2],
-        *problem.by_contact(problem.weight * found.state),
+        *problem.by_contact(problem.weight * mechanism.state),
         True,
         (),
         (),
         problem,
         associated,
         True,
-        found.complete,
+        mechanism.complete,
     )
 
 
@@ -237,8 +237,8 @@ def _sized(problem: AssemblyProblem, field: Reals) -> Reals:
     """
     velocity = field.reshape(-1, 3) * np.array([problem.frame.size, problem.frame.size, 1.0])
     turns = np.abs(velocity[:, 2]).max()
-    most = turns if turns > ZERO_LOAD * np.abs(field).max() else np.abs(velocity).max()
-    return np.asarray(velocity / most)
+    fastest = turns if turns > ZERO_LOAD * np.abs(field).max() else np.abs(velocity).max()
+    return np.asarray(velocity / fastest)
 
 
 def _rates(problem: AssemblyProblem, velocity: Reals) -> Reals:

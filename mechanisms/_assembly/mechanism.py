@@ -90,7 +90,7 @@ def linkage(
     blocks: Sequence[AssemblyBlock],
     contacts: Sequence[AssemblyContact],
     guides: Sequence[Guide],
-    found: Collapse,
+    collapsed: Collapse,
 ) -> AssemblyLinkage:
     """Return the groups, hinges and guides of a mechanism.
 
@@ -107,18 +107,18 @@ def linkage(
         The linkage, with its groups in the order of their first blocks.
     """
     size = Frame.of(blocks).size
-    speed = np.abs(found.velocity * np.array([1.0, 1.0, size])).max(axis=1)
+    speed = np.abs(collapsed.velocity * np.array([1.0, 1.0, size])).max(axis=1)
     still = ZERO_VELOCITY * float(speed.max())
     states = tuple(
         _state(abs(o[0]), abs(o[1]), abs(s), c, still)
-        for o, s, c in zip(found.opening, found.sliding, contacts, strict=True)
+        for o, s, c in zip(collapsed.opening, collapsed.sliding, contacts, strict=True)
     )
-    if found.associated is not None:  # without dilation the forces show whether what slides also presses
-        normal = found.normal.sum(axis=1)
+    if collapsed.associated is not None:  # without dilation the forces show whether what slides also presses
+        normal = collapsed.normal.sum(axis=1)
         press = normal > ZERO_NORMAL_FORCE * normal.max(initial=0.0)
         states = tuple(
             (Opening.SLIDES if presses else Opening.LIFTED) if abs(slide) > still else state
-            for state, slide, presses in zip(states, found.sliding, press, strict=True)
+            for state, slide, presses in zip(states, collapsed.sliding, press, strict=True)
         )
     moves = {block.name: bool(v > still) for block, v in zip(blocks, speed, strict=True)}
     parts = JoinedNames([name for name, does in moves.items() if does])
@@ -130,7 +130,7 @@ def linkage(
     ground = dict.fromkeys(name for c in contacts for name in (c.a, c.b) if name not in moves)
     first = {group[0]: k for k, group in enumerate(groups)}
     velocity = np.zeros((len(groups), 3))
-    for block, (vx, vy, omega) in zip(blocks, found.velocity, strict=True):
+    for block, (vx, vy, omega) in zip(blocks, collapsed.velocity, strict=True):
         if block.name in first:
             origin = complex(vx, vy) - 1j * omega * block.centroid
             velocity[first[block.name]] = origin.real, origin.imag, omega
@@ -160,22 +160,22 @@ def _state(start: float, end: float, slide: float, contact: AssemblyContact, sti
 
 
 def _hinges(
-    contacts: Sequence[AssemblyContact], states: Sequence[Opening], number: dict[str, int], near: float
+    contacts: Sequence[AssemblyContact], states: Sequence[Opening], number: dict[str, int], same_place: float
 ) -> tuple[AssemblyHinge, ...]:
     """Return a hinge for each joint that opens about an end, without those that other hinges at the point imply."""
     places: list[tuple[complex, JoinedNames]] = []
-    found = []
+    hinges = []
     for k, (contact, state) in enumerate(zip(contacts, states, strict=True)):
         if state not in (Opening.START, Opening.END):
             continue
         point = contact.start if state is Opening.START else contact.end
         one, other = number.get(contact.a), number.get(contact.b)
-        if not any(abs(point - place) <= near for place, _ in places):
+        if not any(abs(point - place) <= same_place for place, _ in places):
             places.append((point, JoinedNames([None, *range(len(number))])))
         here = min(places, key=lambda place: abs(place[0] - point))[1]
         if here.join(one, other):
-            found.append(AssemblyHinge(one, other, point, k))
-    return tuple(found)
+            hinges.append(AssemblyHinge(one, other, point, k))
+    return tuple(hinges)
 
 
 class JoinedNames:
@@ -198,22 +198,22 @@ class JoinedNames:
 
     def all(self) -> list[tuple[str, ...]]:
         """Return the groups, each in the order of their first names."""
-        found: dict[str | int | None, list[str]] = {}
+        groups: dict[str | int | None, list[str]] = {}
         for name in self.of:
-            found.setdefault(self.root(name), []).append(str(name))
-        return [tuple(group) for group in found.values()]
+            groups.setdefault(self.root(name), []).append(str(name))
+        return [tuple(group) for group in groups.values()]
 
 
-def leading(found: AssemblyLinkage, direction: Direction) -> int | None:
+def leading(mechanism: AssemblyLinkage, direction: Direction) -> int | None:
     """Return the group whose rotation measures a mechanism; None if no group rotates.
 
     Groups that hinge on blocks at rest are preferred, then those that turn clockwise in the positive direction, then
     the fastest one; of groups that turn equally fast, the first.
     """
-    turns = -int(direction) * found.velocity[:, 2]
-    most = float(np.abs(turns).max(initial=0.0))
-    grounded = {g for h in found.hinges if None in (h.one, h.other) for g in (h.one, h.other) if g is not None}
-    able = [k for k in range(len(turns)) if abs(turns[k]) > ZERO_VELOCITY * most]
+    turns = -int(direction) * mechanism.velocity[:, 2]
+    fastest_turn = float(np.abs(turns).max(initial=0.0))
+    grounded = {g for h in mechanism.hinges if None in (h.one, h.other) for g in (h.one, h.other) if g is not None}
+    able = [k for k in range(len(turns)) if abs(turns[k]) > ZERO_VELOCITY * fastest_turn]
     if not able:
         return None
 
@@ -281,15 +281,17 @@ def thrust(contacts: Sequence[AssemblyContact], blocks: Sequence[str], normal: R
     """
     total = normal.sum(axis=1)
     least = ZERO_FORCE * max(float(np.abs(total).max(initial=0.0)), float(np.abs(shear).max(initial=0.0)))
-    found = {}
+    passages = {}
     for k, contact in enumerate(contacts):
         if total[k] > least:
             point = (normal[k, 0] * contact.start + normal[k, 1] * contact.end) / total[k]
-            found[k] = Passage(k, complex(point), complex(total[k] * contact.normal - 1j * contact.normal * shear[k]))
+            passages[k] = Passage(
+                k, complex(point), complex(total[k] * contact.normal - 1j * contact.normal * shear[k])
+            )
     order = _chain(contacts, blocks)
     if order is None:
-        return Thrust(tuple(found.values()), False)
-    return Thrust(tuple(found[k] for k in order if k in found), True)
+        return Thrust(tuple(passages.values()), False)
+    return Thrust(tuple(passages[k] for k in order if k in passages), True)
 
 
 def _chain(contacts: Sequence[AssemblyContact], blocks: Sequence[str]) -> list[int] | None:

@@ -76,7 +76,7 @@ class AssemblyProblem:
 
     def greatest(self, rays: Rays, *, exact: bool = False) -> tuple[float, Reals, Reals]:
         """Return the greatest multiplier of `live`, the forces of the rays that carry it, and the velocities."""
-        found = least(
+        optimum = least(
             np.append(np.zeros(rays.count), -1.0),
             beside([rays.rates.T, self.live]),
             -self.dead,
@@ -84,9 +84,9 @@ class AssemblyProblem:
             np.append(np.full(rays.count, np.inf), MAX_MULTIPLIER),
             exact=exact,
         )
-        if found is None:
+        if optimum is None:
             return -np.inf, np.zeros(rays.count), np.zeros(len(self.dead))
-        return -found.value, found.x[:-1], -found.prices
+        return -optimum.value, optimum.x[:-1], -optimum.prices
 
     def why_not(self, rays: Rays) -> tuple[str, ...]:
         """Return the names of the blocks that no forces hold at rest; empty if the assembly stands."""
@@ -100,15 +100,15 @@ class AssemblyProblem:
         """Return the least additional forces that hold all blocks at rest, and the blocks that need them."""
         n = len(self.dead)
         extra = unit_columns(np.arange(n), n)
-        found = least(
+        optimum = least(
             np.append(np.zeros(rays.count), np.ones(2 * n)),
             beside([rays.rates.T, extra, -extra]),
             -self.dead,
             np.append(rays.low, np.zeros(2 * n)),
             np.full(rays.count + 2 * n, np.inf),
         )
-        assert found is not None  # the extra forces balance anything
-        return found.value, moving(self.frame.names, found.prices, 1e-6)
+        assert optimum is not None  # the extra forces balance anything
+        return optimum.value, moving(self.frame.names, optimum.prices, 1e-6)
 
     def by_contact(self, values: Reals) -> tuple[Reals, Reals, Reals]:
         """Split values of all forces into those of the two ends of each joint, of its shear, and of the guides."""
@@ -256,13 +256,13 @@ class Bearings:
         """Row of the shear of each joint, after the rows of its normals."""
         return np.asarray(np.cumsum(self.count + 1) - 1, np.intp)
 
-    def rays(self, most: float | None = None, *, usual: float | None = None) -> Rays:
+    def rays(self, max_friction: float | None = None, *, usual: float | None = None) -> Rays:
         """Return the rays of the forces.
 
         The friction of joints is limited to `most`; joints without given friction have `usual`.
         """
         mu = self.friction if usual is None else np.where(np.isnan(self.friction), usual, self.friction)
-        mu = mu if most is None else np.fmin(mu, most)
+        mu = mu if max_friction is None else np.fmin(mu, max_friction)
         # Two edges of a cone at each point with friction, else its normal alone.
         joint = np.repeat(np.arange(len(mu)), self.count)
         normal = np.arange(len(joint)) + joint

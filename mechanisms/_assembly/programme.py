@@ -107,12 +107,12 @@ class _Programme:
             linprog, self.cost, A_eq=self.equal, b_eq=self.right, bounds=np.column_stack([self.low, self.high]),
             method=method, options=options,
         )  # fmt: skip
-        found = _beside(solve) if len(self.right) >= MIN_INTERIOR_EQUATIONS else solve()
-        if found.status == 2:
+        result = _beside(solve) if len(self.right) >= MIN_INTERIOR_EQUATIONS else solve()
+        if result.status == 2:
             return None
-        if found.status != 0:
-            raise _NotFound(found.message)
-        return Optimum(found.x, float(found.fun), found.eqlin.marginals, found.lower.marginals)
+        if result.status != 0:
+            raise _NotFound(result.message)
+        return Optimum(result.x, float(result.fun), result.eqlin.marginals, result.lower.marginals)
 
     def refined(self) -> Optimum | None:
         """Return the optimum by repeated corrections, from zero, until its errors are rounding errors.
@@ -120,15 +120,15 @@ class _Programme:
         The corrections end earlier if the solver finds no further one.
         """
         nothing = np.zeros(len(self.cost))
-        found = Optimum(nothing, 0.0, np.zeros(len(self.right)), nothing)
+        optimum = Optimum(nothing, 0.0, np.zeros(len(self.right)), nothing)
         for _ in range(MAX_REFINEMENTS):
-            off, uneven = self._errors(found)
+            off, uneven = self._errors(optimum)
             if max(off, uneven) <= MAX_RESIDUAL:
                 break
             wide, steep = (min(1 / max(error, MAX_RESIDUAL), MAX_MAGNIFICATION) for error in (off, uneven))
             left = replace(
-                self, cost=steep * self._rates(found), right=wide * (self.right - self.equal @ found.x),
-                low=wide * (self.low - found.x), high=wide * (self.high - found.x),
+                self, cost=steep * self._rates(optimum), right=wide * (self.right - self.equal @ optimum.x),
+                low=wide * (self.low - optimum.x), high=wide * (self.high - optimum.x),
             )  # fmt: skip
             try:
                 more = left.solve("highs-ipm", maxiter=CROSSOVER_ITERATIONS * len(self.right))
@@ -136,34 +136,34 @@ class _Programme:
                 break
             if more is None:
                 return None  # what there was lay within the tolerance alone
-            x, prices = found.x + more.x / wide, found.prices + more.prices / steep
-            found = Optimum(x, float(self.cost @ x), prices, more.at_lower / steep)
-        if max(self._errors(found)) > TOLERANCE:
+            x, prices = optimum.x + more.x / wide, optimum.prices + more.prices / steep
+            optimum = Optimum(x, float(self.cost @ x), prices, more.at_lower / steep)
+        if max(self._errors(optimum)) > TOLERANCE:
             raise _NotFound("its errors remain large")
-        return found
+        return optimum
 
-    def _rates(self, found: Optimum) -> Reals:
-        return np.asarray(self.cost - self.equal.T @ found.prices)
+    def _rates(self, optimum: Optimum) -> Reals:
+        return np.asarray(self.cost - self.equal.T @ optimum.prices)
 
-    def _errors(self, found: Optimum) -> tuple[float, float]:
+    def _errors(self, optimum: Optimum) -> tuple[float, float]:
         """Return the largest relative residuals: of equations and bounds, and of the prices."""
-        x, rates = found.x, self._rates(found)
+        x, rates = optimum.x, self._rates(optimum)
         size = max(1.0, np.abs(x).max())
         off = max(np.abs(self.equal @ x - self.right).max(), (self.low - x).max(), (x - self.high).max())
         # Above its lower bound no rate may be positive, below its upper one none negative.
         rises, falls = rates[x - self.low > BOUND_DISTANCE * size], -rates[self.high - x > BOUND_DISTANCE * size]
         uneven = max(rises.max(initial=0.0), falls.max(initial=0.0))
-        return float(off / size), float(uneven / max(1.0, np.abs(found.prices).max()))
+        return float(off / size), float(uneven / max(1.0, np.abs(optimum.prices).max()))
 
 
 def _beside(solve: Callable[[], Any]) -> Any:
     """Solve in a separate thread, so that the user can interrupt the wait for the solver."""
-    found: list[Any] = []
+    results: list[Any] = []
     failed: list[BaseException] = []
 
     def run() -> None:
         try:
-            found.append(solve())
+            results.append(solve())
         except BaseException as error:  # raised again below
             failed.append(error)
 
@@ -173,7 +173,7 @@ def _beside(solve: Callable[[], Any]) -> Any:
         thread.join(INTERRUPT_INTERVAL)
     if failed:
         raise failed[0]
-    return found[0]
+    return results[0]
 
 
 REGULARISATION = 1e-12  # multiple of the unit matrix that is added, over the largest entry

@@ -73,26 +73,26 @@ def kept_rays(rays: Rays, dead: Reals, live: Reals, raw: Reals) -> Bools:
     rate = rays.rates @ raw
     shut = np.abs(rate) <= OPENING_RATE * np.abs(rate).max()
     kept = ~rays.one_sided
-    asked = rays.one_sided & shut
+    undecided = rays.one_sided & shut
     by_ray = rays.rates.T.tocsc()
-    while asked.any():
+    while undecided.any():
         # Unknown: of each ray asked after what counts of it and the surplus, then the rays known to be kept, the
         # multiplier, and the size of the state.
-        k, known = np.flatnonzero(asked), np.flatnonzero(kept)
+        k, known = np.flatnonzero(undecided), np.flatnonzero(kept)
         count, rest = len(k), len(known)
-        found = least(
+        optimum = least(
             np.concatenate([np.full(count, -1.0), np.zeros(count + rest + 2)]),
             beside([by_ray[:, k], by_ray[:, k], by_ray[:, known], live, dead]),
             np.zeros(len(dead)),
             np.concatenate([np.zeros(2 * count), rays.low[known], [-np.inf, 1.0]]),
             np.concatenate([np.full(count, MAX_COUNTED_FORCE), np.full(count + rest + 1, np.inf), [MAX_STATE_FACTOR]]),
         )
-        if found is None:
+        if optimum is None:
             raise NoAnswer("no forces belong to the mechanism that was found: the joints are too short, or too many")
-        size = found.x[-1]
-        more = found.x[:count] + found.x[count : 2 * count] > CARRIED_FORCE * size
+        size = optimum.x[-1]
+        more = optimum.x[:count] + optimum.x[count : 2 * count] > CARRIED_FORCE * size
         kept[k[more]] = True
-        asked[k[more]] = False
+        undecided[k[more]] = False
         if not more.any() or size < MAX_STATE_FACTOR / 2:
             break
     return kept
@@ -112,11 +112,11 @@ def velocity_space(rates: Sparse, frame: Frame) -> Reals:
     of_row[entries.row] = part
     label = components(of_row[entries.row], part, parts.count)
     rows, columns = _members(label[of_row]), _members(np.repeat(label, 3))
-    found = []
+    spans = []
     for k, these in columns.items():
         chosen = rows.get(k, np.zeros(0, np.intp))
-        found.append(parts.basis[:, these] @ null_space(left[chosen][:, these].toarray()))
-    return np.column_stack([np.zeros((rates.shape[1], 0)), *found])
+        spans.append(parts.basis[:, these] @ null_space(left[chosen][:, these].toarray()))
+    return np.column_stack([np.zeros((rates.shape[1], 0)), *spans])
 
 
 def _members(label: Indices) -> dict[int, Indices]:
@@ -163,7 +163,7 @@ def _extremes(opening: Reals, space: Reals) -> list[Reals]:
     equal = np.column_stack([opening, -np.eye(n)])
     total = np.append(np.zeros(d), np.ones(n))
     low, high = np.append(np.full(d, -1e6), np.zeros(n)), np.append(np.full(d, 1e6), np.full(n, np.inf))
-    found: list[Reals] = []
+    fields: list[Reals] = []
     wanted = np.vstack([space, -space])
     tried = np.zeros((0, d))
     for row in wanted[np.abs(wanted).max(axis=1) > VELOCITY_ROUNDING]:
@@ -176,11 +176,11 @@ def _extremes(opening: Reals, space: Reals) -> list[Reals]:
             continue
         field = _clean(space @ best.x[:d])
         field /= np.linalg.norm(field)
-        if all(np.abs(field - other).max() > 1e-6 for other in found):
-            found.append(field)
-        if len(found) == MAX_MECHANISMS:
+        if all(np.abs(field - other).max() > 1e-6 for other in fields):
+            fields.append(field)
+        if len(fields) == MAX_MECHANISMS:
             break
-    return found + both_ways
+    return fields + both_ways
 
 
 def _clean(field: Reals) -> Reals:
@@ -366,22 +366,22 @@ def _does_work(problem: AssemblyProblem, by_block: Reals) -> Bools:
 
 def _candidates(share: Reals, blocks: Indices) -> list[int]:
     """Return one block of each set of blocks that move in proportion, the largest set first."""
-    found: dict[int, int] = {}
+    set_sizes: dict[int, int] = {}
     for j in blocks.tolist():
-        same = next((k for k in found if abs(share[k] @ share[j]) > 1 - EQUAL_VELOCITY**2), j)
-        found[same] = found.get(same, 0) + 1
-    return sorted(found, key=lambda k: (-found[k], k))
+        same = next((k for k in set_sizes if abs(share[k] @ share[j]) > 1 - EQUAL_VELOCITY**2), j)
+        set_sizes[same] = set_sizes.get(same, 0) + 1
+    return sorted(set_sizes, key=lambda k: (-set_sizes[k], k))
 
 
 def _reaches(opening: Reals, still: Reals, moves: Reals) -> bool:
     """Return whether some velocity closes no ray, keeps one set of blocks at rest and moves another."""
     n, d = opening.shape
     equal = from_blocks([[opening, -np.eye(n)], [still[None, :], None]])
-    found = least(
+    optimum = least(
         np.append(-moves, np.zeros(n)), equal, np.zeros(n + 1),
         np.append(np.full(d, -1.0), np.zeros(n)), np.append(np.ones(d), np.full(n, np.inf)),
     )  # fmt: skip
-    return found is not None and -found.value > EQUAL_VELOCITY
+    return optimum is not None and -optimum.value > EQUAL_VELOCITY
 
 
 def _least_motion(opening: Reals, space: Reals, by_block: Reals, able: Bools, share: Reals) -> Reals | None:
@@ -395,12 +395,12 @@ def _least_motion(opening: Reals, space: Reals, by_block: Reals, able: Bools, sh
         equal = from_blocks(
             [[opening, -np.eye(n), None, None], [rows, None, -np.eye(m), np.eye(m)], [share[None, :], None, None, None]]
         )
-        found = least(
+        optimum = least(
             np.concatenate([np.zeros(d + n), np.ones(2 * m)]), equal, np.append(np.zeros(n + m), sign),
             np.concatenate([np.full(d, -np.inf), np.zeros(n + 2 * m)]), np.full(d + n + 2 * m, np.inf),
         )  # fmt: skip
-        if found is not None:
-            return np.asarray(space @ found.x[:d])
+        if optimum is not None:
+            return np.asarray(space @ optimum.x[:d])
     return None
 
 

@@ -132,8 +132,8 @@ def check_continuous(mechanism: str, direction: Direction, at: Coefficients, in_
     moment = np.median(np.abs(at.G) + np.abs(at.B))  # its size: m R, and V has the same unit
     pairs = {"V": (at.V, at.G, moment), "G": (at.G, at.dG, moment), "B": (at.B, at.dB, moment)}
     pairs["I"] = (at.I, 2 * at.J, np.median(at.I))
-    found = {name: jump(at.phi, *pair) for name, pair in pairs.items()}
-    first = min((phi, name) for name, phi in found.items())
+    jumps = {name: jump(at.phi, *pair) for name, pair in pairs.items()}
+    first = min((phi, name) for name, phi in jumps.items())
     where = f"jumps at phi = {first[0]:.4g} rad in the {direction.label} direction"
     if first[0] < np.inf and in_file:
         raise StructureError(f"it {where}: {in_file}")

@@ -136,14 +136,16 @@ def of_joints(joints: Sequence[Joint], friction: float | None) -> list[Contact]:
     friction : float or None
         Coefficient of friction of all joints.
     """
-    found = []
+    contacts = []
     for joint in joints:
         bears, borne = (None, *joint.bodies)[-2:]
         if joint.is_guide:
-            found.append(Contact((None, borne), (joint.point,), 1j * joint.slide / abs(joint.slide), held="slide"))
+            contacts.append(Contact((None, borne), (joint.point,), 1j * joint.slide / abs(joint.slide), held="slide"))
             continue
         at = (joint.point,)
-        found.append(Contact((bears, borne), at, joint.normal, joint.face, friction, joint.roll, letter=joint.letter))
+        contacts.append(
+            Contact((bears, borne), at, joint.normal, joint.face, friction, joint.roll, letter=joint.letter)
+        )
         if joint.level:
-            found.append(Contact((bears, borne), at, held="level"))
-    return found
+            contacts.append(Contact((bears, borne), at, held="level"))
+    return contacts

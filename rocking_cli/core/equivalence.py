@@ -137,8 +137,8 @@ def one_block(mechanism: Mechanism, direction: Direction, known: Statics) -> Equ
 def both_statics(mechanism: Mechanism) -> tuple[Statics, Statics]:
     """Return the statics of both directions, positive first; needs no equivalent block. Raises `MechanismError`."""
     with _held_to_numbers(mechanism):
-        found = [statics(mechanism, direction) for direction in mechanism.directions]
-        return found[0], found[-1]
+        both = [statics(mechanism, direction) for direction in mechanism.directions]
+        return both[0], both[-1]
 
 
 @contextmanager
@@ -167,12 +167,12 @@ def _beyond_range(error: BaseException | None) -> StructureError:
     )
 
 
-def _one_direction(mechanism: Mechanism, direction: Direction, found: Statics) -> EquivalentBlock:
-    if found.phi_cr is None or found.why_no_block is not None:
+def _one_direction(mechanism: Mechanism, direction: Direction, at_rest: Statics) -> EquivalentBlock:
+    if at_rest.phi_cr is None or at_rest.why_no_block is not None:
         raise NoEquivalentBlock(
-            f"no single block is equivalent to it in the {direction.label} direction: {found.why_no_block}"
+            f"no single block is equivalent to it in the {direction.label} direction: {at_rest.why_no_block}"
         )
-    lam, phi_cr = found.lambda_, found.phi_cr
+    lam, phi_cr = at_rest.lambda_, at_rest.phi_cr
     critical = mechanism.coefficients(np.array([phi_cr]), direction)
     I_eq, B_eq = float(critical.I[0]), float(critical.B[0])  # Eq. 13
     G_eq = -float(critical.stiffness(mechanism.gravity)[0])  # Eq. 13, with -V''(phi_cr)/g in place of -G'

@@ -108,14 +108,14 @@ def in_unit(value: Any, unit: str) -> Any:
         try:
             return read(each, unit)
         except UnitError as error:
-            said = PydanticCustomError("unit", "{reason}", {"reason": error.message, "hint": error.hint})
-            wrong.append(InitErrorDetails(type=said, loc=place, input=each))
+            problem = PydanticCustomError("unit", "{reason}", {"reason": error.message, "hint": error.hint})
+            wrong.append(InitErrorDetails(type=problem, loc=place, input=each))
             return each
 
-    found = number(value, ())
+    converted = number(value, ())
     if wrong:
         raise ValidationError.from_exception_data("quantity", wrong)
-    return found
+    return converted
 
 
 def least(field: FieldInfo) -> float:
@@ -146,9 +146,9 @@ class Described(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _no_such_field(cls, data: Any) -> Any:
-        for key, said in cls.refused.items():
+        for key, reason in cls.refused.items():
             if isinstance(data, dict) and key in data and key not in cls.model_fields:
-                raise geometry_error(key, said)
+                raise geometry_error(key, reason)
         return data
 
     def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:

@@ -209,9 +209,9 @@ class Given(Described):
             If a validator of the plugin fails in any other way.
         """
         with blame(f"the mechanism {cls.mechanism} failed on these fields", cls.__module__, but=ValidationError):
-            made = cls.model_validate(dict(fields), context={"folder": folder})
-            made._hold_together()
-            return made
+            structure = cls.model_validate(dict(fields), context={"folder": folder})
+            structure._hold_together()
+            return structure
 
     def _hold_together(self) -> None:
         """Raise `ValidationError` with the fields that do not fit together; here, none."""

@@ -183,8 +183,8 @@ def inside(points: Points, z: Points) -> NDArray[np.bool_]:
 
 def squared(side: Points) -> Reals:
     """Return the squared lengths of sides, with 1 for sides so short that the square vanishes."""
-    found = np.abs(side) ** 2
-    return np.where(found == 0, 1.0, found)
+    squares = np.abs(side) ** 2
+    return np.where(squares == 0, 1.0, squares)
 
 
 Integers = NDArray[np.intp]
@@ -230,10 +230,10 @@ class Rates:
     def dense(self) -> Reals:
         """Return the factors of all rows as one matrix per rotation, shape (n, rows, 3 count)."""
         n, rows = self.factors.shape[:2]
-        found = np.zeros((n, rows, self.count + 1, 3))
+        matrix = np.zeros((n, rows, self.count + 1, 3))
         for side in (0, 1):
-            found[:, np.arange(rows), self.pieces[:, side]] += self.factors[:, :, side]
-        return found[:, :, :-1].reshape(n, rows, 3 * self.count)  # the last is the ground
+            matrix[:, np.arange(rows), self.pieces[:, side]] += self.factors[:, :, side]
+        return matrix[:, :, :-1].reshape(n, rows, 3 * self.count)  # the last is the ground
 
     def at(self, velocity: Reals) -> Reals:
         """Return the velocities of all rows, shape (n, rows), from those of the pieces, shape (n, 3 count)."""

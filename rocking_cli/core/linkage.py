@@ -116,7 +116,9 @@ class LinkageMotion:
         self._end = FLAT_ROTATION if end is None else end
         first = _merged(self._bodies, fixed, ground)
         links = list(dict.fromkeys(name for name in first.values() if name is not None))
-        self._link_of = {name: None if own is None else links.index(own) for name, own in first.items()}
+        self._link_of = {
+            name: None if first_body is None else links.index(first_body) for name, first_body in first.items()
+        }
         self._check_held(lead)
         self._lead_name, self._lead = lead, self._link_of[lead] or 0
         points = [*bodies.values(), *(joint.at for joint in self.joints)]
@@ -135,7 +137,7 @@ class LinkageMotion:
         held = {self._link_of[name] for joint in self.joints for name in joint.bodies}
         for link in self._link_of.values():
             if link is not None and link not in held:
-                what = " and ".join(other for other, own in self._link_of.items() if own == link)
+                what = " and ".join(other for other, own_link in self._link_of.items() if own_link == link)
                 raise NoMotion(f"no joint holds {what}: if it stays at rest, fix it to the ground")
 
     def _of(self, joints: Sequence[LinkageJoint]) -> Loops:
@@ -255,9 +257,9 @@ class LinkageMotion:
             return None
         if np.linalg.slogdet(self._matrix(x)[0])[0] != self._sign:
             return None
-        found = self._node(x, phi)
-        off = np.abs(found.dx - node.dx - by * node.ddx).max()
-        return found if off <= MAX_RATE_ERROR * np.abs(found.dx).max() else None
+        stepped = self._node(x, phi)
+        off = np.abs(stepped.dx - node.dx - by * node.ddx).max()
+        return stepped if off <= MAX_RATE_ERROR * np.abs(stepped.dx).max() else None
 
     @cached_property
     def _sign(self) -> float:
@@ -267,17 +269,17 @@ class LinkageMotion:
     @cached_property
     def _nodes(self) -> list[_Node]:
         """Nodes of the motion from rest to its end, so close that Newton converges between them."""
-        found, by = [self._first], MAX_STEP / 4
-        while found[-1].phi < self._end:
-            by = min(by, self._end - found[-1].phi)
-            if (node := self._stepped(found[-1], by)) is not None:
-                found.append(node)
+        nodes, by = [self._first], MAX_STEP / 4
+        while nodes[-1].phi < self._end:
+            by = min(by, self._end - nodes[-1].phi)
+            if (node := self._stepped(nodes[-1], by)) is not None:
+                nodes.append(node)
                 by = min(1.5 * by, MAX_STEP)
             else:
                 by /= 2
                 if by < MIN_STEP:
                     break
-        return found
+        return nodes
 
     @property
     def resting(self) -> set[str]:
@@ -335,12 +337,12 @@ class LinkageMotion:
         t = (phi - at[left])[:, None] / h
         x, dx, ddx = (np.stack([getattr(node, key) for node in self._nodes]) for key in ("x", "dx", "ddx"))
         ends = [(x[k], h * dx[k], h**2 * ddx[k]) for k in (left, left + 1)]
-        found = np.zeros_like(ends[0][0])
+        guess = np.zeros_like(ends[0][0])
         for (value, slope, bend), s, sign in zip(ends, (t, 1 - t), (1, -1), strict=True):
-            found += (1 - 10 * s**3 + 15 * s**4 - 6 * s**5) * value
-            found += sign * (s - 6 * s**3 + 8 * s**4 - 3 * s**5) * slope
-            found += (s**2 - 3 * s**3 + 3 * s**4 - s**5) / 2 * bend
-        return found
+            guess += (1 - 10 * s**3 + 15 * s**4 - 6 * s**5) * value
+            guess += sign * (s - 6 * s**3 + 8 * s**4 - 3 * s**5) * slope
+            guess += (s**2 - 3 * s**3 + 3 * s**4 - s**5) / 2 * bend
+        return guess
 
 
 def _merged(names: Sequence[str], fixed: Iterable[tuple[str, str]], ground: Iterable[str]) -> dict[str, str | None]:
@@ -348,8 +350,8 @@ def _merged(names: Sequence[str], fixed: Iterable[tuple[str, str]], ground: Iter
     link: dict[str, str | None] = {name: name for name in names}
 
     def put(old: str | None, new: str | None) -> None:
-        for name, own in link.items():
-            if own == old:
+        for name, link_of_name in link.items():
+            if link_of_name == old:
                 link[name] = new
 
     for one, other in fixed:

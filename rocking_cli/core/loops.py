@@ -109,11 +109,11 @@ class Loops:
 
     def _grown(self, pins: Sequence[Pin]) -> tuple[list[Pin], list[_Sum]]:
         """Return the hinges of the trees that place the links, and the reference point of each link."""
-        near: dict[int | None, list[tuple[int | None, Pin]]] = {}
+        neighbours: dict[int | None, list[tuple[int | None, Pin]]] = {}
         for pin in pins:
             a, b = self._ends(pin)
-            near.setdefault(a, []).append((b, pin))
-            near.setdefault(b, []).append((a, pin))
+            neighbours.setdefault(a, []).append((b, pin))
+            neighbours.setdefault(b, []).append((a, pin))
         used: list[Pin] = []
         placed: dict[int, _Sum] = {}
         self.trees = 0
@@ -122,12 +122,12 @@ class Loops:
             waiting = [start]
             while waiting:
                 here = waiting.pop(0)
-                for there, pin in near.get(here, []):
+                for there, pin in neighbours.get(here, []):
                     if there is None or there in placed:
                         continue
-                    found = self._point(here, pin.at, placed)
-                    found.arms[there] -= pin.at - self._centres[there]
-                    placed[there] = found
+                    point = self._point(here, pin.at, placed)
+                    point.arms[there] -= pin.at - self._centres[there]
+                    placed[there] = point
                     used.append(pin)
                     waiting.append(there)
 
@@ -206,9 +206,9 @@ class Loops:
         The factor turns the component of the gap that must be zero into the imaginary part; see `_gather`.
         """
         body = self._turn >= 0
-        found = np.broadcast_to(self._w, (len(e), len(self._w))).copy()
-        found[:, body] *= np.conj(e[:, self._turn[body]])
-        return found
+        factors = np.broadcast_to(self._w, (len(e), len(self._w))).copy()
+        factors[:, body] *= np.conj(e[:, self._turn[body]])
+        return factors
 
     def residuals(self, x: Reals) -> Reals:
         """Return the residuals of the loop equations, shape (n, m), divided by the size of the linkage."""
@@ -221,13 +221,13 @@ class Loops:
         psi, u = self._parts(x)
         e = np.exp(1j * psi)
         w, gap = self._turned(e), self._k + e @ self._C.T + u @ self._S.T
-        found = np.empty((len(x), len(self._w), self.unknowns))
-        found[:, :, : self.count] = (w[:, :, None] * (1j * self._C) * e[:, None, :]).imag
+        jacobian = np.empty((len(x), len(self._w), self.unknowns))
+        jacobian[:, :, : self.count] = (w[:, :, None] * (1j * self._C) * e[:, None, :]).imag
         body = np.flatnonzero(self._turn >= 0)
-        found[:, body, self._turn[body]] -= (w * gap).real[:, body]
-        found[:, :, self.count : self.count + self.trees] = w.imag[:, :, None] * self._S
-        found[:, :, self.count + self.trees :] = w.real[:, :, None] * self._S
-        return found
+        jacobian[:, body, self._turn[body]] -= (w * gap).real[:, body]
+        jacobian[:, :, self.count : self.count + self.trees] = w.imag[:, :, None] * self._S
+        jacobian[:, :, self.count + self.trees :] = w.real[:, :, None] * self._S
+        return jacobian
 
     def bending(self, x: Reals, dx: Reals) -> Reals:
         """Return the second derivatives of the loop equations in phi without the terms in x'', shape (n, m)."""

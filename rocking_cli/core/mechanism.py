@@ -102,8 +102,8 @@ class Mechanism(Jointed):
             raise RefusedFields.first_of(error) from None
         per_metre = 2 * self.crushing.strength * (self.crushing.depth or self.depth or 1.0)
         moved = {direction: sound.bearing(direction) for direction in Direction}
-        found = {s: {joint: max(force, 0.0) / per_metre for joint, force in moved[s].items()} for s in Direction}
-        return found if all(found.values()) else {}
+        distances = {s: {joint: max(force, 0.0) / per_metre for joint, force in moved[s].items()} for s in Direction}
+        return distances if all(distances.values()) else {}
 
     @final
     def found(self, direction: Direction) -> Sequence[Extra]:
@@ -116,14 +116,14 @@ class Mechanism(Jointed):
     @final
     def hung(self) -> Hung:
         """Loads, forces and ties of the structure, with what the mechanism `carries`."""
-        found: list[tuple[Loc, Attached]] = [((), thing) for thing in self.carries()]
+        attached: list[tuple[Loc, Attached]] = [((), thing) for thing in self.carries()]
         if self.is_laden:
-            taken = [*(thing.name for _, thing in found), *([INTERLOCK] if self.interlock is not None else [])]
-            found += attach(self.carrier, self.loads or [], self.ties or [], taken)
+            taken = [*(thing.name for _, thing in attached), *([INTERLOCK] if self.interlock is not None else [])]
+            attached += attach(self.carrier, self.loads or [], self.ties or [], taken)
         if self.interlock is not None:
             friction = interlocked(self.interlock, self.carrier, self.density, self.gravity)
-            found.append((("interlock",), friction))
-        return Hung(found)
+            attached.append((("interlock",), friction))
+        return Hung(attached)
 
     @property
     @final
@@ -253,20 +253,20 @@ class Mechanism(Jointed):
             rebound = self.rebound if self.rebound is not None else self.rebound_from_impacts()
             return nan if rebound is None else rebound
         if isinstance(self.restitution, DirectionalRestitution):
-            given = self.restitution
-            return given.positive_to_negative if direction > 0 else given.negative_to_positive
+            restitution = self.restitution
+            return restitution.positive_to_negative if direction > 0 else restitution.negative_to_positive
         return self.restitution if self.restitution is not None else self.restitution_from_kinematics(direction)
 
 
 def _rotations(phi: Any) -> Reals:
     """Return rotations as an array of reals. Raises `InputError` if they are not numbers in an array."""
     try:
-        found = np.asarray(phi, dtype=np.float64)  # whole numbers too, which hold no sums of reals
+        rotations = np.asarray(phi, dtype=np.float64)  # whole numbers too, which hold no sums of reals
     except (TypeError, ValueError):
-        found = np.zeros(())
-    if found.ndim == 0:
+        rotations = np.zeros(())
+    if rotations.ndim == 0:
         raise InputError(Problem(f"must be an array of rotations, got {phi!r}", field="phi", hint="write [0.1]"))
-    return found
+    return rotations
 
 
 def _is_final(member: object) -> bool:
@@ -322,8 +322,8 @@ def check_one_sided(mechanism: Mechanism) -> None:
         raise RefusedFields((), "rebound", NEEDS_A_SIDE)
     if mechanism.one_sided is not None and mechanism.restitution is not None:
         raise RefusedFields((), "restitution", "cannot be combined with `one_sided`: give `rebound` instead")
-    asked = "rebound" in mechanism.model_fields_set and mechanism.rebound is None
-    if mechanism.one_sided is not None and asked and mechanism.rebound_from_impacts() is None:
+    is_null = "rebound" in mechanism.model_fields_set and mechanism.rebound is None
+    if mechanism.one_sided is not None and is_null and mechanism.rebound_from_impacts() is None:
         why = "only for a plain rectangle does it follow from the shape; give a number in [0, 1)"
         raise RefusedFields((), "rebound", f"cannot be {KINEMATIC}: {why}")
 
@@ -340,12 +340,12 @@ def check_strength(mechanism: Mechanism) -> None:
 
 def check_restitution(mechanism: Mechanism) -> None:
     """Refuse a restitution with which an impact would add energy."""
-    given = mechanism.restitution
-    for direction in Direction if given is not None else ():
-        own, most = mechanism.eta(direction), mechanism.greatest_restitution(direction)
-        if own > most * (1 + RESTITUTION_ROUNDING):
-            reason = f"must be at most {most:.6g}, got {own:g}: a larger value would add energy at an impact"
-            if isinstance(given, DirectionalRestitution):
+    restitution = mechanism.restitution
+    for direction in Direction if restitution is not None else ():
+        eta, bound = mechanism.eta(direction), mechanism.greatest_restitution(direction)
+        if eta > bound * (1 + RESTITUTION_ROUNDING):
+            reason = f"must be at most {bound:.6g}, got {eta:g}: a larger value would add energy at an impact"
+            if isinstance(restitution, DirectionalRestitution):
                 field = "positive_to_negative" if direction > 0 else "negative_to_positive"
                 raise RefusedFields(("restitution",), field, reason)
             raise RefusedFields((), "restitution", reason)
@@ -415,18 +415,18 @@ def kinematic_restitution(
     float
         eta; it does not depend on the scale of the masses.
     """
-    mixed = own = 0.0
+    products = squares = 0.0
     for body, old, new in zip(bodies, before, after, strict=True):
         u, v = old.carry(body.centroid)[1][0], new.carry(body.centroid)[1][0]
-        mixed += body.mass * (u.conjugate() * v).real + body.inertia * old.dpsi[0] * new.dpsi[0]
-        own += body.mass * abs(v) ** 2 + body.inertia * new.dpsi[0] ** 2
+        products += body.mass * (u.conjugate() * v).real + body.inertia * old.dpsi[0] * new.dpsi[0]
+        squares += body.mass * abs(v) ** 2 + body.inertia * new.dpsi[0] ** 2
     by_name = {body.name: pair for body, pair in zip(bodies, zip(before, after, strict=True), strict=True)}
     for load in loads:
         old, new = by_name[load.spot.body or ""]
         u, v = (complex(motion.carry(load.spot.at)[1][0]) for motion in (old, new))
-        mixed += load.product(u, v)
-        own += load.product(v, v)
-    return float(-mixed / own)
+        products += load.product(u, v)
+        squares += load.product(v, v)
+    return float(-products / squares)
 
 
 def why_none(eta: float) -> str:

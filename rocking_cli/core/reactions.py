@@ -104,12 +104,12 @@ def reactions(
     loads = loading(bodies, moving.motions, mechanism.attached, direction, mechanism.gravity, going)
     for body, motion, load in zip(bodies, moving.motions, loads.swapaxes(0, 1), strict=True):
         moving.demand(body.name, motion.carry(body.centroid)[0], -_point(load[:, 0], load[:, 1]), -load[:, 2])
-    found = moving.at_joints()
-    if found is None and (contacts := _instead_of_joints(mechanism, direction)):
+    forces = moving.at_joints()
+    if forces is None and (contacts := _instead_of_joints(mechanism, direction)):
         pieces = Pieces(mechanism, direction, phi)
         terms = np.stack([np.ones_like(phi), ground.real, rate**2, ground.imag], axis=-1)
-        found = _at_contacts(pieces, contacts, np.einsum("nqk,nk->nq", pieces.demands(), terms))
-    return found or moving.over_the_whole()
+        forces = _at_contacts(pieces, contacts, np.einsum("nqk,nk->nq", pieces.demands(), terms))
+    return forces or moving.over_the_whole()
 
 
 def acceleration(
@@ -169,14 +169,14 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reactions | None:
     if contacts := _instead_of_joints(mechanism, ended.opposite):
         pieces = Pieces(mechanism, ended.opposite, rest)
         before_it = Pieces(mechanism, ended, rest)
-        found = _at_contacts(pieces, contacts, eta * pieces.momentum(pieces.dq) + before_it.momentum(before_it.dq))
-        if found is not None:
-            return found
+        at_joints = _at_contacts(pieces, contacts, eta * pieces.momentum(pieces.dq) + before_it.momentum(before_it.dq))
+        if at_joints is not None:
+            return at_joints
     joints = mechanism.joints(ended.opposite)
     if len(joints) == 1 or isclose(eta, mechanism.restitution_from_kinematics(ended), rel_tol=1e-9):
-        found = moving.at_joints()
-        if found is not None:
-            return found
+        at_joints = moving.at_joints()
+        if at_joints is not None:
+            return at_joints
     level = all(abs(joint.normal - 1j) < EQUAL_MOTION for joint in joints if len(joint.bodies) == 1)
     return moving.over_the_whole() if level and not any(joint.is_guide for joint in joints) else None
 
@@ -221,13 +221,13 @@ def parts(mechanism: Mechanism, direction: Direction) -> Mapping[str, int]:
     ways = [np.concatenate([motion.carry(point)[0] - point for point in two]) for motion in motions]
     close = EQUAL_MOTION * max(float(np.abs(way).max()) for way in ways)
     kinds = [np.zeros_like(ways[0])]
-    found: dict[str, int] = {}
+    part_of: dict[str, int] = {}
     for body, way in zip(bodies, ways, strict=True):
         k = next((k for k, kind in enumerate(kinds) if np.abs(way - kind).max() <= close), len(kinds))
         if k == len(kinds):
             kinds.append(way)
-        found[body.name] = k
-    return found
+        part_of[body.name] = k
+    return part_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -391,21 +391,21 @@ def loading(
     index = {body.name: k for k, body in enumerate(bodies)}
     follow = followed(bodies, motions, going.rate.shape)
     weight = going.ground + 1j * gravity
-    found = np.zeros((len(going.rate), len(bodies), 3))
+    loads = np.zeros((len(going.rate), len(bodies), 3))
     centres = []
     for k, (body, motion) in enumerate(zip(bodies, motions, strict=True)):
         z, dz, ddz = motion.carry(body.centroid)
         centres.append(z)
         force = -body.mass * (dz * going.turning + ddz * going.rate**2 + weight)
-        found[:, k, 0], found[:, k, 1] = force.real, force.imag
-        found[:, k, 2] = -body.inertia * (motion.dpsi * going.turning + motion.ddpsi * going.rate**2)
+        loads[:, k, 0], loads[:, k, 1] = force.real, force.imag
+        loads[:, k, 2] = -body.inertia * (motion.dpsi * going.turning + motion.ddpsi * going.rate**2)
 
     def add(body: str | None, at: Points, force: Points) -> None:
         if body is not None:
             k = index[body]
-            found[:, k, 0] += force.real
-            found[:, k, 1] += force.imag
-            found[:, k, 2] += (np.conj(at - centres[k]) * force).imag
+            loads[:, k, 0] += force.real
+            loads[:, k, 1] += force.imag
+            loads[:, k, 2] += (np.conj(at - centres[k]) * force).imag
 
     for thing in attached:
         if isinstance(thing, PointMass):
@@ -416,4 +416,4 @@ def loading(
             add(thing.spot.body, z, -(across + 1j * up))
         for push in thing.forces(direction, follow):
             add(push.spot.body, follow(push.spot).z, push.force)
-    return found
+    return loads

@@ -139,12 +139,12 @@ def _with_loads(
     contacts: Sequence[Contact], rows: Sequence[tuple[tuple[int, ...], int | None]]
 ) -> Sequence[tuple[tuple[int, ...], int | None]]:
     """Return the rows of contacts with those of guides under a load, whose own rows come after all others."""
-    found, own = list(rows), sum(contact.forces for contact in contacts)
+    all_rows, next_row = list(rows), sum(contact.forces for contact in contacts)
     for k, contact in enumerate(contacts):
         if contact.pressed_by:
-            found[k] = ((own,), sum(each.forces for each in contacts[:k]))
-            own += 1
-    return found
+            all_rows[k] = ((next_row,), sum(each.forces for each in contacts[:k]))
+            next_row += 1
+    return all_rows
 
 
 def _check_count(contacts: Sequence[Contact], pieces: Sequence[Piece]) -> None:
@@ -216,8 +216,8 @@ class Pieces:
             each.body.name: self._motions[each.body.name].carry(each.body.centroid) for each in self._parts
         }
         self.dq, self.ddq = (self._coordinates(k) for k in (1, 2))
-        given = (*(mechanism.loads or ()), *(mechanism.ties or ()))
-        self._each = {thing.name for thing in given if thing.each}
+        attached = (*(mechanism.loads or ()), *(mechanism.ties or ()))
+        self._each = {thing.name for thing in attached if thing.each}
         masses = (thing for thing in mechanism.attached if isinstance(thing, PointMass))
         self._masses = [thing for thing in masses if self._moves(thing.spot)]
         self.mass = self._mass()
@@ -232,12 +232,12 @@ class Pieces:
         return np.tile([1.0, 1.0, size], len(self._parts))
 
     def _coordinates(self, order: int) -> Reals:
-        found = np.zeros((self.phi.size, 3 * len(self._parts)))
+        derivatives = np.zeros((self.phi.size, 3 * len(self._parts)))
         for name, k in self._column.items():
             at, motion = self._centres[name][order], self._motions[name]
-            found[:, k], found[:, k + 1] = at.real, at.imag
-            found[:, k + 2] = motion.dpsi if order == 1 else motion.ddpsi
-        return found
+            derivatives[:, k], derivatives[:, k + 1] = at.real, at.imag
+            derivatives[:, k + 2] = motion.dpsi if order == 1 else motion.ddpsi
+        return derivatives
 
     def _carried(self, name: str | None, at: complex) -> Points:
         return (self._motions[name] if name is not None else self._still).carry(at)[0]
@@ -259,13 +259,13 @@ class Pieces:
 
         With several `shifts`, this is the mean over the points so far beside it.
         """
-        found = np.zeros((self.phi.size, 3 * len(self._parts)))
+        derivative = np.zeros((self.phi.size, 3 * len(self._parts)))
         for shift in shifts:
             copies = (each.body.name for each in self._parts if (each.of, each.shift) == (spot.body, shift))
             name = next(copies, self._piece(spot)) if shift else self._piece(spot)
             k = self._column[name]
-            found[:, k : k + 3] += self._factors(name, self._carried(name, spot.at + shift), along) / len(shifts)
-        return found
+            derivative[:, k : k + 3] += self._factors(name, self._carried(name, spot.at + shift), along) / len(shifts)
+        return derivative
 
     def _factors(self, name: str, at: Points, along: Points) -> Reals:
         """Return the derivative of a point's velocity along a unit vector by its piece's coordinates, shape (n, 3)."""
@@ -384,21 +384,21 @@ class Pieces:
         at the middle of these points. For each contact, the second result has the numbers of its opening rows and the
         number of its sliding row. Rows of guides are not listed: a guide has an empty tuple and None.
         """
-        found: list[list[VelocityTerm]] = []
+        terms: list[list[VelocityTerm]] = []
         rows: list[tuple[tuple[int, ...], int | None]] = []
         for contact in contacts:
             normal = self.normal(contact)
             if contact.held is not None:
-                found += self._of_held(contact, normal)
+                terms += self._of_held(contact, normal)
                 rows.append(((), None))
                 continue
             points = [self._bears_at(contact, at, normal) for at in contact.points]
-            first = len(found)
-            found += [self._between(contact, at, normal) for at in points]
+            first = len(terms)
+            terms += [self._between(contact, at, normal) for at in points]
             middle = np.mean(points, axis=0)
-            found.append(self._between(contact, middle, -1j * normal))
-            rows.append((tuple(range(first, first + len(points))), len(found) - 1))
-        return Rates.of(found, len(self._parts), self.phi.size), rows
+            terms.append(self._between(contact, middle, -1j * normal))
+            rows.append((tuple(range(first, first + len(points))), len(terms) - 1))
+        return Rates.of(terms, len(self._parts), self.phi.size), rows
 
     def number(self, name: str | None) -> int:
         """Return the number of a piece, from 0; -1 for the ground."""

@@ -152,10 +152,10 @@ class Sketch:
     def __post_init__(self) -> None:
         kinds = {"lengths": Length, "angles": Angle, "lines": Line, "forces": Forces, "notes": str}
         for name, kind in kinds.items():
-            given = getattr(self, name)
-            if isinstance(given, str) or not all(isinstance(each, kind) for each in given):
+            value = getattr(self, name)
+            if isinstance(value, str) or not all(isinstance(each, kind) for each in value):
                 what = "of texts" if kind is str else f"of {kind.__name__}"
-                raise TypeError(f"{name} of a sketch must be a sequence {what}, got {given!r}")
+                raise TypeError(f"{name} of a sketch must be a sequence {what}, got {value!r}")
 
 
 def three_digits(value: float) -> str:

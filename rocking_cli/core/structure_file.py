@@ -61,8 +61,8 @@ def of_document(document: Document, default_name: str, folder: Path, registry: R
             mechanism = cls.from_fields({**fields, "name": fields.get("name", default_name) or default_name}, folder)
         except ValidationError as error:
             lister = f"`rocking mechanisms {cls.mechanism}` lists the fields"
-            found = error.errors(include_url=False)
-            document.problems += problems(document, cls, found, owner=cls.mechanism, lister=lister)
+            errors = error.errors(include_url=False)
+            document.problems += problems(document, cls, errors, owner=cls.mechanism, lister=lister)
     document.check()
     return mechanism
 
@@ -72,9 +72,11 @@ def _mechanism(document: Document, registry: Registry) -> type[Mechanism] | None
     data = document.data
     if "mechanism" not in data:
         known = ", ".join(registry)
-        near = get_close_matches("mechanism", list(data), n=1)
+        similar = get_close_matches("mechanism", list(data), n=1)
         hint = (
-            f"did you mean mechanism instead of {near[0]}?" if near else f"add a line `mechanism: NAME`; known: {known}"
+            f"did you mean mechanism instead of {similar[0]}?"
+            if similar
+            else f"add a line `mechanism: NAME`; known: {known}"
         )
         document.problems.append(document.problem("is missing", document.values[()], "mechanism", hint))
         return None

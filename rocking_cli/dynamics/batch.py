@@ -216,16 +216,16 @@ def respond_many(
         rows[:, kernels.START] = starts[runs.model, which]
     rows[:, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = etas
     marks = np.full((len(runs), kernels.MARKS), np.nan)  # a run that is never computed has failed
-    most = DECISIVE_IMPACTS - 1 if only_peaks else MAX_IMPACTS  # it is left after more than these
+    most_impacts = DECISIVE_IMPACTS - 1 if only_peaks else MAX_IMPACTS  # it is left after more than these
     rows[:, kernels.STRUCTURE] = runs.model
     if len(runs):
-        run = partial(run_deck, lay_out(models, motions), rtol=rtol, most_impacts=most, brief=True)
+        run = partial(run_deck, lay_out(models, motions), rtol=rtol, most_impacts=most_impacts, brief=True)
         in_parts(partial(run, rows, marks), len(rows), HISTORIES_PER_TASK, threads, progress)
-        loose = out_of_step(models, motions, rows, marks, tilts, rtol=rtol, most_impacts=most, threads=threads)
-        again, found = rows[loose], marks[loose]
+        loose = out_of_step(models, motions, rows, marks, tilts, rtol=rtol, most_impacts=most_impacts, threads=threads)
+        again, new_marks = rows[loose], marks[loose]
         again[:, kernels.LOOSE] = 1.0
-        in_parts(partial(run, again, found), len(again), HISTORIES_PER_TASK, threads, None)
-        marks[loose] = found
+        in_parts(partial(run, again, new_marks), len(again), HISTORIES_PER_TASK, threads, None)
+        marks[loose] = new_marks
     reach = np.array([model.reach for model in models])
     phi_cr = np.array([model.phi_cr for model in models]).reshape(-1, 2)[runs.model]
     outcomes = read_marks(marks, phi_cr, reach[runs.model])
@@ -242,10 +242,10 @@ def _etas(models: Sequence[Model], runs: Runs) -> Reals:
     below 1 may do so, which is left to the user.
     """
     etas = np.broadcast_to(runs.eta[:, None], (len(runs), 2)) if runs.eta.ndim == 1 else runs.eta
-    most = np.maximum(1.0, np.array([model.most_eta for model in models]).reshape(-1, 2))[runs.model]
+    bounds = np.maximum(1.0, np.array([model.most_eta for model in models]).reshape(-1, 2))[runs.model]
     with np.errstate(invalid="ignore"):
-        beyond = etas > most * (1 + RESTITUTION_ROUNDING)
+        beyond = etas > bounds * (1 + RESTITUTION_ROUNDING)
     if beyond.any():
         k, side = (int(place) for place in np.argwhere(beyond)[0])
-        raise InputError(f"run {k}: eta must be in (0, {most[k, side]:.6g}], got {etas[k, side]:g}")
+        raise InputError(f"run {k}: eta must be in (0, {bounds[k, side]:.6g}], got {etas[k, side]:g}")
     return etas

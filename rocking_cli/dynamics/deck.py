@@ -45,12 +45,12 @@ def run_deck(
     """Run the kernel; it fills `marks` and, if given, the samples and the impacts of the last history."""
     run = ways.kernel(TIED if deck.forces.ndim == 4 else HISTORIES)
     samples = kernels.Samples(every, phi, rate, impacts, np.empty(kernels.MARKS))
-    most = int(deck.joints.sizes[:, 1].max(initial=0))
+    joint_count = int(deck.joints.sizes[:, 1].max(initial=0))
     room = kernels.Room(
         np.empty((2, kernels.COLUMNS)),
-        np.empty((most, kernels.KEPT)),
+        np.empty((joint_count, kernels.KEPT)),
         np.empty(kernels.NOTES),
-        np.empty(4 * most, np.int64),
+        np.empty(4 * joint_count, np.int64),
     )
     run(first, len(runs) if stop is None else stop, runs, deck, rtol, most_impacts, brief, samples, marks, room)
 

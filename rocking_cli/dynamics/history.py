@@ -150,27 +150,27 @@ def follow(
     if out_of_step([model], [motion], runs, marks, tilts, rtol=rtol, most_impacts=MAX_IMPACTS)[0]:
         runs[0, kernels.LOOSE] = 1.0
         run()
-    found = read_marks(marks, np.array([model.phi_cr]), np.array([model.reach]))
+    outcome = read_marks(marks, np.array([model.phi_cr]), np.array([model.reach]))
     end = float(marks[0, kernels.ENDED])
-    if found.failed[0]:
+    if outcome.failed[0]:
         raise SolverError(
             f"the {model.name} time history could not be simulated past t = {end:.6g} s: the steps became too small"
         )
-    if found.unknown[0]:  # nothing from there on is a result
-        until = float(found.known_to[0])
+    if outcome.unknown[0]:  # nothing from there on is a result
+        until = float(outcome.known_to[0])
         beyond = np.arange(samples) * dt > until
         phi[beyond] = rate[beyond] = np.nan
         end = min(end, until)
     # The samples end with the record or with the motion, whichever is later; after overturning they are NaN.
     kept = min(samples, max(npts, int(end / dt) + (1 if marks[0, kernels.STATUS] == kernels.STILL_ROCKING else 3)))
     return History(
-        **{name: getattr(found, name)[0].item() for name in OUTCOME_FIELDS},
+        **{name: getattr(outcome, name)[0].item() for name in OUTCOME_FIELDS},
         model=model.name,
         time=np.arange(kept, dtype=np.float64) * dt,
         phi=phi[:kept],
         rate=rate[:kept],
         ratio=phi[:kept] / np.where(phi[:kept] < 0, model.phi_cr[1], model.phi_cr[0]),
-        impacts=impacts[: min(int(found.impact_count[0]), len(impacts))],
+        impacts=impacts[: min(int(outcome.impact_count[0]), len(impacts))],
         contact_lost=contact_lost(motion, model.gravity),
         uplift_error=model.uplift_error,
         p=model.p,
@@ -211,21 +211,21 @@ def out_of_step(
         As in `respond_many`.
     """
     differs = np.zeros(len(rows), bool)
-    own = rows[:, kernels.STRUCTURE].astype(np.int64)
+    structure_of_run = rows[:, kernels.STRUCTURE].astype(np.int64)
     for k, model in enumerate(models):
-        mine = np.flatnonzero((own == k) & (marks[:, kernels.IMPACTS] > 0))
+        mine = np.flatnonzero((structure_of_run == k) & (marks[:, kernels.IMPACTS] > 0))
         for column in model.columns if mine.size else ():
-            there, found = rows[mine].copy(), np.full((mine.size, kernels.MARKS), np.nan)
+            there, column_marks = rows[mine].copy(), np.full((mine.size, kernels.MARKS), np.nan)
             there[:, kernels.STRUCTURE] = 0
             there[:, kernels.START] = [column.q(tilt) for tilt in tilts[mine].tolist()]
             for place, eta, of in zip((kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE), column.eta, model.eta, strict=True):
                 there[:, place] = np.clip(eta + there[:, place] - of, MIN_COLUMN_ETA, 1.0)  # NaN stays
             deck = lay_out([column], motions)
-            run = partial(run_deck, deck, there, found, rtol=rtol, most_impacts=most_impacts, brief=True)
+            run = partial(run_deck, deck, there, column_marks, rtol=rtol, most_impacts=most_impacts, brief=True)
             in_parts(run, len(there), COLUMNS_PER_TASK, threads, None)
             alone, whole = (
                 read_marks(each, np.array([of.phi_cr]), np.array([of.reach]))
-                for each, of in ((found, column), (marks[mine], model))
+                for each, of in ((column_marks, column), (marks[mine], model))
             )
             differs[mine] |= alone.unknown | (alone.fell != whole.fell)
     return differs

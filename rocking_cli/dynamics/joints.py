@@ -258,26 +258,26 @@ def joints_of(
             modes(mechanism, direction, _at(table, cells), side.reference)
             for (direction, table), side in zip(sides, statics, strict=True)
         ]
-    found = [one for one, _ in answers if one is not None]
-    if len(found) < len(sides) or not all(one.contacts for one in found):
+    released_sides = [one for one, _ in answers if one is not None]
+    if len(released_sides) < len(sides) or not all(one.contacts for one in released_sides):
         return None
     still = resting(mechanism)
     back = still.modes if mechanism.propped else ()  # what is pushed back goes on as the structure rocks
-    known = [*found, still.closed] if still.closed is not None else found
+    known = [*released_sides, still.closed] if still.closed is not None else released_sides
     labels = list(dict.fromkeys(
         contact.label for one in known
         for contact, (_, shear) in zip(one.contacts, one.rows, strict=True) if shear is not None
     ))  # fmt: skip
-    contacts, bearing = _contacts(mechanism, found, labels, still.modes)
-    most = max(one.force.shape[1] for one in found) + len(back)
+    contacts, bearing = _contacts(mechanism, released_sides, labels, still.modes)
+    row_count = max(one.force.shape[1] for one in released_sides) + len(back)
     weight = mechanism.gravity * sum(body.mass for body in mechanism.weighed())
-    rows = np.zeros((cells, 2, most, 20))
+    rows = np.zeros((cells, 2, row_count, 20))
     within = np.zeros((CELL_SPLITS * cells, 2, 5))
-    struck = np.zeros((2, most, 2))
+    struck = np.zeros((2, row_count, 2))
     rest, steady = _at_rest(still, labels, bearing, weight)
     plain = len(labels)
     labels += [mode.joint for mode in still.modes]
-    for d, ((direction, table), one) in enumerate(zip(sides, found, strict=True)):
+    for d, ((direction, table), one) in enumerate(zip(sides, released_sides, strict=True)):
         force = one.force.copy()
         force[:, [k for normal, _ in one.rows for k in normal], ONE] += ZERO_TENSION * weight
         inertia = mechanism.coefficients(_at(table, cells), direction).I
@@ -352,7 +352,7 @@ def _at(table: DirectionTable, cells: int) -> Reals:
 
 
 def _contacts(
-    mechanism: Mechanism, found: Sequence[Released], labels: Sequence[str], modes: Sequence[EarlyMechanism]
+    mechanism: Mechanism, released_sides: Sequence[Released], labels: Sequence[str], modes: Sequence[EarlyMechanism]
 ) -> tuple[Integers, Reals]:
     """Return `JointTables.contacts` and `bearing`, of joints first and then of mechanisms at rest."""
     count = len(labels) + len(modes)
@@ -361,7 +361,7 @@ def _contacts(
     bearing = np.tile([np.nan, np.inf], (count, 1))
     points: dict[str, list[tuple[complex, ...]]] = {label: [(), ()] for label in labels}
     strength, depth, alike = mechanism.strength, mechanism.depth, mechanism.alike()
-    for d, one in enumerate(found):
+    for d, one in enumerate(released_sides):
         for contact, (normal, shear) in zip(one.contacts, one.rows, strict=True):
             if shear is None:
                 continue
@@ -380,21 +380,23 @@ def _contacts(
 def _cubics(values: Reals) -> Reals:
     """Return cubics through values at equidistant nodes, shape (cells, rows, columns, 4), by the four nearest nodes."""
     n = len(values)
-    found = np.empty((n - 1, *values.shape[1:], 4))
+    cubics = np.empty((n - 1, *values.shape[1:], 4))
     first = np.clip(np.arange(n - 1) - 1, 0, n - 4)
     for start in (0, 1, 2):  # where in its four nodes a cell lies
         mine = np.flatnonzero(np.arange(n - 1) - first == start)
         nodes = np.arange(4.0) - start
         inverse = np.linalg.inv(np.vander(nodes, 4, increasing=True))
-        found[mine] = np.einsum("pk,ckrv->crvp", inverse, np.stack([values[first[mine] + k] for k in range(4)], axis=1))
-    return found
+        cubics[mine] = np.einsum(
+            "pk,ckrv->crvp", inverse, np.stack([values[first[mine] + k] for k in range(4)], axis=1)
+        )
+    return cubics
 
 
 def _lines(values: Reals) -> Reals:
     """Return straight lines between values at equidistant nodes, in the form of `_cubics`; used for modes."""
-    found = np.zeros((len(values) - 1, *values.shape[1:], 4))
-    found[..., 0], found[..., 1] = values[:-1], np.diff(values, axis=0)
-    return found
+    lines = np.zeros((len(values) - 1, *values.shape[1:], 4))
+    lines[..., 0], lines[..., 1] = values[:-1], np.diff(values, axis=0)
+    return lines
 
 
 def _within(cubics: Reals, contacts: Integers, bearing: Reals) -> Reals:
@@ -416,28 +418,28 @@ def _within(cubics: Reals, contacts: Integers, bearing: Reals) -> Reals:
         if np.isfinite(friction) and shear >= 0:
             total = friction * np.sum(normals, axis=0)
             planes += [total - nodes[:, shear, :3], total + nodes[:, shear, :3]]
-    found = np.zeros((len(nodes) - 1, 5))
+    bounds = np.zeros((len(nodes) - 1, 5))
     if not planes:  # nothing to check
-        found[:] = -np.inf, 0.0, np.inf, 0.0, np.inf
-        return found
+        bounds[:] = -np.inf, 0.0, np.inf, 0.0, np.inf
+        return bounds
     plane = np.stack(planes, axis=1)
     fast = _fastest(plane)
     low, high = _range(plane, np.zeros(len(nodes)))
     low_fast, high_fast = _range(plane, fast)
     room = BOUND_MARGIN * np.minimum(high - low, 1e3)
     low, high, low_fast, high_fast = low + room, high - room, low_fast + room, high_fast - room
-    most = np.minimum(fast[:-1], fast[1:])
+    fastest = np.minimum(fast[:-1], fast[1:])
     with np.errstate(divide="ignore", invalid="ignore"):
         rise, fall = (low_fast - low) / fast, (high_fast - high) / fast
     rise, fall = (np.where(np.isfinite(each), each, 0.0) for each in (rise, fall))
-    found[:, 4] = most
+    bounds[:, 4] = fastest
     for column, base, slope, worse in ((0, low, rise, np.maximum), (2, high, fall, np.minimum)):
-        ends = worse((base + slope * np.append(most, 0.0))[:-1], base[1:] + slope[1:] * most)
+        ends = worse((base + slope * np.append(fastest, 0.0))[:-1], base[1:] + slope[1:] * fastest)
         begins = worse(base[:-1], base[1:])
-        found[:, column] = begins
+        bounds[:, column] = begins
         with np.errstate(divide="ignore", invalid="ignore"):
-            found[:, column + 1] = np.where(most > 0, (ends - begins) / most, 0.0)
-    return found
+            bounds[:, column + 1] = np.where(fastest > 0, (ends - begins) / fastest, 0.0)
+    return bounds
 
 
 def _calm(within: Reals, tables: Sequence[DirectionTable], statics: Sequence[Statics]) -> tuple[float, float]:

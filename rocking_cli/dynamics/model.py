@@ -256,11 +256,11 @@ def build(
 
 def _scatter(mechanism: Mechanism) -> Scatter:
     """Return the scatter of a structure: as given, or else as usual from tests of such bodies."""
-    given = mechanism.uncertainty or Uncertainty()
+    uncertainty = mechanism.uncertainty or Uncertainty()
     usual = KINEMATIC_SPREAD if mechanism.restitution_is_kinematic else MEASURED_SPREAD
     return Scatter(
-        usual if given.restitution is None else given.restitution,
-        SLENDERNESS_SPREAD if given.slenderness is None else given.slenderness,
+        usual if uncertainty.restitution is None else uncertainty.restitution,
+        SLENDERNESS_SPREAD if uncertainty.slenderness is None else uncertainty.slenderness,
     )
 
 

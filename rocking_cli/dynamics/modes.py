@@ -176,8 +176,8 @@ class _Placed:
         leans = self.one_sided & (self.friction > 0)
         shears = rates[self.shear[leans]].multiply(self.friction[leans][:, None])
         presses = [rates[self.one_sided & ~leans], rates[leans] + shears, rates[leans] - shears]
-        found = vstack([*presses, rates[~self.one_sided & (self.shear < 0)]], format="csr")
-        return found, sum(each.shape[0] for each in presses)
+        all_rays = vstack([*presses, rates[~self.one_sided & (self.shear < 0)]], format="csr")
+        return all_rays, sum(each.shape[0] for each in presses)
 
     def sparse(self, k: int) -> Sparse:
         """Return the velocities at the contacts at rotation `k` as a sparse matrix, shape (rows, coordinates).
@@ -193,9 +193,9 @@ class _Placed:
         values[np.abs(values) <= ZERO_FACTOR * np.abs(values).max(initial=0.0)] = 0.0
         columns = 3 * piece[:, None] + np.arange(3)
         places = np.repeat(row, 3), columns.ravel()
-        found = csr_array((values.ravel(), places), shape=(len(self.one_sided), 3 * self.rates.count))
-        found.eliminate_zeros()
-        return found
+        matrix = csr_array((values.ravel(), places), shape=(len(self.one_sided), 3 * self.rates.count))
+        matrix.eliminate_zeros()
+        return matrix
 
     def turned(self, vectors: Reals, k: int, sense: int) -> Reals:
         """Return vectors of all coordinates, shape (coordinates, ...), in the axes of `sparse`; back if sense is -1."""
@@ -207,10 +207,10 @@ class _Placed:
         """Return the name of the contact that a mode opens most, at the first rotation where the mode exists."""
         first = int(np.argmax(mode.exists))
         speed = np.abs(self.rates.rotations([first]).at(mode.velocity[first][None])[0])
-        most = [max((speed[row] for row in (*normal, *([] if shear is None else [shear]))), default=0.0)
+        speeds = [max((speed[row] for row in (*normal, *([] if shear is None else [shear]))), default=0.0)
                 for normal, shear in self.rows]  # fmt: skip
         return self.contacts[
-            int(np.argmax(np.array(most) >= (1 - ZERO_VELOCITY) * max(most)))
+            int(np.argmax(np.array(speeds) >= (1 - ZERO_VELOCITY) * max(speeds)))
         ].label  # the first of several
 
     def jump(self, mechanism: Mechanism) -> Reals | None:
@@ -297,13 +297,13 @@ class _Placed:
             return None
         _, s, vt = np.linalg.svd(matrix, full_matrices=matrix.shape[1] < matrix.shape[2])
         padded = _values(s, matrix)
-        found = one.spread(vt[:, -1] / scale)
-        flips = np.sign(np.einsum("nc,nc->n", found[1:], found[:-1]))
-        found[1:] *= np.cumprod(np.where(flips == 0, 1.0, flips))[:, None]
+        motion = one.spread(vt[:, -1] / scale)
+        flips = np.sign(np.einsum("nc,nc->n", motion[1:], motion[:-1]))
+        motion[1:] *= np.cumprod(np.where(flips == 0, 1.0, flips))[:, None]
         # Where its rows leave more, or nothing, it is what it was before.
         good = (padded[:, -2] >= RANK_TOLERANCE * padded[:, 0]) & (padded[:, -1] <= ZERO_VELOCITY * padded[:, 0])
         last = np.maximum.accumulate(np.where(good, np.arange(len(good)), 0))
-        return found[last], good
+        return motion[last], good
 
 
 def _turn(vectors: Reals, by: Points) -> Reals:
@@ -410,11 +410,11 @@ def _corner(there: _Placed, k: int, way: Reals, unit: Reals) -> tuple[Reals, Rea
         return None
     place = np.asarray(solved.x[count:])
     velocity = -np.asarray(solved.eqlin.marginals) / scale
-    own, *others = velocity @ demand[:, [ONE, PUSH, RATE]] * np.array([1.0, *unit])
+    constant, *others = velocity @ demand[:, [ONE, PUSH, RATE]] * np.array([1.0, *unit])
     bounds_it = (
         np.abs(others).max() > ZERO_VELOCITY
     )  # of a direction of length 1; else it is rounding: how far is looked does
-    at_edge = abs(own + others @ place) <= EQUAL_CORNERS * float(np.abs(velocity) @ np.abs(demand[:, ONE]) or 1.0)
+    at_edge = abs(constant + others @ place) <= EQUAL_CORNERS * float(np.abs(velocity) @ np.abs(demand[:, ONE]) or 1.0)
     return place, there.turned(velocity / unit_force, k, -1) if bounds_it and at_edge else None
 
 
@@ -428,19 +428,19 @@ def _thrown(there: _Placed, jump: Reals) -> Iterator[Reals]:
     normals = rates[there.one_sided]
 
     def scaled(rows: Sparse) -> Sparse:
-        found = csr_array(rows)
-        found.data = found.data / scale[found.indices]
-        return found
+        copy = csr_array(rows)
+        copy.data = copy.data / scale[copy.indices]
+        return copy
 
     def row(values: Reals) -> Sparse:
         return csr_array(values[None])
 
     above = scaled(vstack([-rays[:press], row(np.asarray(normals.sum(axis=0)))]))
-    most = np.append(np.zeros(press), 1.0)
+    bounds = np.append(np.zeros(press), 1.0)
     held = vstack([rays[press:], row(there.pieces.momentum(there.pieces.dq)[0])])
     for _ in range(MAX_THROWN_MODES):
         solved = linprog(
-            total / scale, A_ub=above, b_ub=most, A_eq=scaled(held),
+            total / scale, A_ub=above, b_ub=bounds, A_eq=scaled(held),
             b_eq=np.zeros(held.shape[0]), bounds=(None, None), method="highs-ds",
         )  # fmt: skip
         if solved.status != 0 or solved.fun > -ZERO_VELOCITY * float(np.abs(total / scale).max()):
@@ -478,11 +478,11 @@ class Stuck:
     def gathered(self, pieces: Reals) -> Reals:
         """Return the momenta of the parts, shape (n, 3 parts), from those of the pieces, shape (n, 3 pieces)."""
         n = len(pieces)
-        found = np.zeros((n, self.count + 1, 3))
+        momenta = np.zeros((n, self.count + 1, 3))
         each = _about(pieces.reshape(n, -1, 3), self.arm)
         for k, part in enumerate(self.part):
-            found[:, part] += each[:, k]
-        return found[:, :-1].reshape(n, -1)
+            momenta[:, part] += each[:, k]
+        return momenta[:, :-1].reshape(n, -1)
 
     def contracted(self, rates: Rates) -> Rates:
         """Return the rates as functions of the velocities of the parts.

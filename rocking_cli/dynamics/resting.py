@@ -121,8 +121,8 @@ def resting(mechanism: Mechanism) -> Rest:
     whole = _as_one(mechanism, there, closed)
     if mechanism.rocks_both_ways or mechanism.propped:
         known = Rest(whole if mechanism.rocks_both_ways else None)
-        found = [_first(mechanism, there, closed, direction, known) for direction in Direction]
-        return known._replace(modes=[mode for mode in found if mode is not None])
+        first_modes = [_first(mechanism, there, closed, direction, known) for direction in Direction]
+        return known._replace(modes=[mode for mode in first_modes if mode is not None])
     (direction,) = mechanism.directions
     known = Rest(None, [] if whole is None else [_slides_out(whole, there, direction)])
     if any(each.held is None and len(each.points) == 1 for each in closed):  # its whole face is not known
@@ -133,15 +133,15 @@ def resting(mechanism: Mechanism) -> Rest:
 
 def _closed(contacts: Sequence[Contact], near: float) -> list[Contact] | None:
     """Return the joints of both directions with all of their points; None if they are not those of one face."""
-    found: dict[tuple[str, str | None, complex], Contact] = {}
+    joints: dict[tuple[str, str | None, complex], Contact] = {}
     for each in contacts:
         alike = (
             key
-            for key in found
+            for key in joints
             if key[:2] == (each.label, each.held) and abs(key[2] - each.normal) <= RELATIVE_TOLERANCE
         )
         key = next(alike, (each.label, each.held, each.normal))
-        known = found.setdefault(key, each)
+        known = joints.setdefault(key, each)
         if known.pieces != each.pieces:
             return None
         apart = (each.points[0] - known.points[0]) * known.normal.conjugate()
@@ -149,8 +149,8 @@ def _closed(contacts: Sequence[Contact], near: float) -> list[Contact] | None:
             return None
         if each.held is None:
             new = [at for at in each.points if min(abs(at - old) for old in known.points) > near]
-            found[key] = replace(known, points=(*known.points, *new), face=None)
-    return None if any(len(each.points) > 2 for each in found.values()) else list(found.values())
+            joints[key] = replace(known, points=(*known.points, *new), face=None)
+    return None if any(len(each.points) > 2 for each in joints.values()) else list(joints.values())
 
 
 def _as_one(mechanism: Mechanism, there: Pieces, closed: Sequence[Contact]) -> Released | None:
@@ -231,15 +231,15 @@ def _bears_at_uplift(mechanism: Mechanism, direction: Direction, uplift: float) 
     return all(force[ONE] + push * force[PUSH] >= least for force, _, _ in _conditions(rocking))
 
 
-def _conditions(found: Released) -> Iterator[tuple[Reals, str, bool]]:
+def _conditions(joints: Released) -> Iterator[tuple[Reals, str, bool]]:
     """Yield what must not be negative at the first rotation, its joint, and whether this joint slides otherwise."""
-    for contact, (normal, shear) in zip(found.contacts, found.rows, strict=True):
+    for contact, (normal, shear) in zip(joints.contacts, joints.rows, strict=True):
         for row in normal:
-            yield found.force[0, row], contact.label, False
+            yield joints.force[0, row], contact.label, False
         if contact.friction is not None and shear is not None:
-            total = contact.friction * found.force[0, list(normal)].sum(axis=0)
+            total = contact.friction * joints.force[0, list(normal)].sum(axis=0)
             for sense in (1, -1):
-                yield total - sense * found.force[0, shear], contact.label, True
+                yield total - sense * joints.force[0, shear], contact.label, True
 
 
 def _weakest(
@@ -294,10 +294,10 @@ def _weakest(
     fastest = speed.max()
     plain = _undilated(jacobian, closed, rows, velocity, scale)
     presses = [row for normal, _ in rows for row in normal if row < len(names)]
-    most = int(np.argmax(speed >= (1 - RELATIVE_TOLERANCE) * fastest))  # the first of several
+    fastest_row = int(np.argmax(speed >= (1 - RELATIVE_TOLERANCE) * fastest))  # the first of several
     return EarlyMechanism(
-        names[most],
-        most not in presses,
+        names[fastest_row],
+        fastest_row not in presses,
         bool(np.abs((jacobian @ plain)[presses]).max(initial=0.0) > RELATIVE_TOLERANCE * fastest),
         force / fastest,
         float(fastest**2 / (plain @ there.momentum(plain[None])[0])),
@@ -322,11 +322,11 @@ def _undilated(
     return velocity + by if off <= RELATIVE_TOLERANCE * np.abs(jacobian @ velocity).max() else velocity
 
 
-def first_failure(found: Rest, direction: Direction) -> Failure | None:
+def first_failure(rest: Rest, direction: Direction) -> Failure | None:
     """Return the joint that fails first at rest as a growing acceleration of the ground tips a structure one way."""
-    rows = [(mode.force, mode.joint, mode.slides, mode.opens) for mode in found.modes]
-    if found.closed is not None:
-        rows += [(force, joint, slides, not slides) for force, joint, slides in _conditions(found.closed)]
+    rows = [(mode.force, mode.joint, mode.slides, mode.opens) for mode in rest.modes]
+    if rest.closed is not None:
+        rows += [(force, joint, slides, not slides) for force, joint, slides in _conditions(rest.closed)]
     # A ground acceleration to the left tips it to the right.
     fails = [
         Failure(max(float(force[ONE]), 0.0) / (int(direction) * float(force[PUSH])), joint, slides, opens)
@@ -346,12 +346,12 @@ class EarlyFailure(NamedTuple):
 
 def early_failures(mechanism: Mechanism) -> list[EarlyFailure]:
     """Return what slides or opens at rest before a structure rocks, or pushes back what props it, by direction."""
-    still, found = resting(mechanism), []
+    still, failures = resting(mechanism), []
     for direction in Direction if mechanism.propped else mechanism.directions:
         failure = first_failure(still, direction)
         lambda_ = mechanism.uplift(direction) if direction in mechanism.directions else None
         if failure is not None and (
             lambda_ is None or failure.push < (1 - EQUAL_DIRECTIONS) * lambda_ * mechanism.gravity
         ):
-            found.append(EarlyFailure(direction, failure, lambda_))
-    return found
+            failures.append(EarlyFailure(direction, failure, lambda_))
+    return failures

@@ -49,8 +49,8 @@ def source_hash() -> str:
 def manifest() -> dict[str, Any]:
     """Return the manifest of the shipped kernels: hashes of sources and libraries, and versions of the build tools."""
     try:
-        found = json.loads((LIBRARY_FOLDER / MANIFEST_FILE).read_text(encoding="utf-8"))
-        return {"source": str(found["source"]), "made_by": dict(found["made_by"]), "files": dict(found["files"])}
+        content = json.loads((LIBRARY_FOLDER / MANIFEST_FILE).read_text(encoding="utf-8"))
+        return {"source": str(content["source"]), "made_by": dict(content["made_by"]), "files": dict(content["files"])}
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise BrokenKernels(
             f"{LIBRARY_FOLDER / MANIFEST_FILE} cannot be read, reinstall rocking-cli: {error}"
@@ -82,14 +82,14 @@ def loaded() -> ctypes.CDLL:
         # The system would load half a file as well, and end the process in the missing half.
         if hashlib.sha256(at.read_bytes()).hexdigest() != listed:
             raise BrokenKernels(f"{at} is damaged, reinstall rocking-cli")
-        found = ctypes.CDLL(str(at))
+        library = ctypes.CDLL(str(at))
         c = ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None)
         for name in FUNCTIONS:
             address = ctypes.cast(getattr(c, name), ctypes.c_void_p).value
-            ctypes.c_void_p.in_dll(found, symbol(name)).value = address
+            ctypes.c_void_p.in_dll(library, symbol(name)).value = address
     except (AttributeError, OSError, ValueError) as error:  # whatever the system says of a library
         raise BrokenKernels(f"{at} cannot be loaded, reinstall rocking-cli: {error}") from error
-    return found
+    return library
 
 
 def call(entry: Any, kernel: KernelSet, arguments: Sequence[Any]) -> None:

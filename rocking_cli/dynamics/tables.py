@@ -159,13 +159,13 @@ def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Di
     bent: Bools = np.any(_bent(mechanism, direction, phi)[1], axis=0)
 
     def over_root(y: Reals, dy: Reals, energy: Reals | None = None) -> Reals:
-        found = _cubics(width, y * c, dy * c**2 + y * dc)
+        cubics = _cubics(width, y * c, dy * c**2 + y * dc)
         if energy is not None and bent.any():
             # No cubic follows a corner: a parabola between the same ends that does the same work.
             v0, v1, mean = (y * c)[:-1][bent], (y * c)[1:][bent], np.diff(energy)[bent] / width
             bow = 3 * (v0 + v1 - 2 * mean)
-            found[bent] = np.stack([v0, v1 - v0 - bow, bow, np.zeros_like(bow)], axis=1)
-        return found
+            cubics[bent] = np.stack([v0, v1 - v0 - bow, bow, np.zeros_like(bow)], axis=1)
+        return cubics
 
     gravity = mechanism.gravity
     restoring = at.restoring(gravity)

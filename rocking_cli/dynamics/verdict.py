@@ -78,23 +78,23 @@ def _compare(run: History, best: History) -> Agreement:
     same = _fate(run) == _fate(best)
     peak = delay = apart = None
     if not same:
-        found = Grade.DISREGARD
+        worst = Grade.DISREGARD
     elif best.fell:
         delay = run.overturning_time - best.overturning_time
         alike = run.fell_to == best.fell_to and abs(delay) * best.p <= SAME_PEAK_DELAY
-        found = Grade.AGREES if alike else Grade.ESTIMATE
+        worst = Grade.AGREES if alike else Grade.ESTIMATE
     elif not best.peak_ratio:
-        found = Grade.AGREES
+        worst = Grade.AGREES
     else:
         peak = run.peak_ratio / best.peak_ratio - 1
-        found = grade(peak)
+        worst = grade(peak)
         if run.ratio.any() and best.ratio.any():  # else one has come and gone between two samples
             delay, apart = _peak_time(run) - _peak_time(best), _difference(run, best)
             late = Grade.ESTIMATE if abs(delay) * best.p > SAME_PEAK_DELAY else Grade.AGREES
-            found = max(found, grade(apart, AGREEING_RMS, ESTIMATING_RMS), late)
+            worst = max(worst, grade(apart, AGREEING_RMS, ESTIMATING_RMS), late)
     if grade(run.uplift_error) is Grade.DISREGARD:
-        found = Grade.DISREGARD
-    return Agreement(found, run.uplift_error, same, peak, delay, apart)
+        worst = Grade.DISREGARD
+    return Agreement(worst, run.uplift_error, same, peak, delay, apart)
 
 
 def _fate(run: History) -> str:

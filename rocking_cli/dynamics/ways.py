@@ -66,15 +66,15 @@ def _chosen() -> tuple[str, dict[str, Kernel]]:
 
 
 @functools.cache
-def _choose(asked: str | None) -> tuple[str, dict[str, Kernel]]:
-    if asked not in (None, MACHINE_CODE, PYTHON):
-        raise InputError(f"{KERNELS_VARIABLE} is {asked!r}: give one of {MACHINE_CODE}, {PYTHON}")
-    if asked != PYTHON:
+def _choose(requested: str | None) -> tuple[str, dict[str, Kernel]]:
+    if requested not in (None, MACHINE_CODE, PYTHON):
+        raise InputError(f"{KERNELS_VARIABLE} is {requested!r}: give one of {MACHINE_CODE}, {PYTHON}")
+    if requested != PYTHON:
         fault = fault_of_shipped()
         if fault is None:
             return MACHINE_CODE, {name: as_shipped(of) for name, of in SETS.items()}
-        if asked == MACHINE_CODE:
-            raise InputError(f"{KERNELS_VARIABLE} is {asked!r}, but {fault}: leave it out") from fault
+        if requested == MACHINE_CODE:
+            raise InputError(f"{KERNELS_VARIABLE} is {requested!r}, but {fault}: leave it out") from fault
         text = f"time histories are computed by Python itself, which takes some sixty times longer ({fault})"
         warnings.warn(KernelWarning(text), stacklevel=2)
     return PYTHON, {name: in_python(of) for name, of in SETS.items()}

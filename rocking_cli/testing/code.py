@@ -59,8 +59,8 @@ class CodeContract:
 
     def test_its_starter_is_a_site_of_this_code(self) -> None:
         """The site file that `rocking new site` prints works as it is."""
-        given = _read(starter(self.code)).site.code
-        _demand(given == self.key, f"the starter is a site of the code {given}, not of {self.key}")
+        code = _read(starter(self.code)).site.code
+        _demand(code == self.key, f"the starter is a site of the code {code}, not of {self.key}")
 
     def test_every_field_of_a_site_says_what_it_is(self) -> None:
         """Every field of a site has a description, which the starter and messages show."""
@@ -82,9 +82,11 @@ class CodeContract:
 
     def test_it_verifies_every_direction(self) -> None:
         """There is a result, with methods, for each direction in which the structure can rock."""
-        found, wanted = self.found, list(self.structure.directions)
-        _demand(list(found.directions) == wanted, f"the directions are {list(found.directions)}, not {wanted}")
-        for direction, each in found.directions.items():
+        verification, wanted = self.found, list(self.structure.directions)
+        _demand(
+            list(verification.directions) == wanted, f"the directions are {list(verification.directions)}, not {wanted}"
+        )
+        for direction, each in verification.directions.items():
             _demand(each.direction is direction, f"the result of {direction!r} is of {each.direction!r}")
 
     def test_its_numbers_are_finite(self) -> None:
@@ -105,18 +107,20 @@ class CodeContract:
     def test_it_passes_if_its_ratio_is_at_least_1(self) -> None:
         """Verdict and ratio agree: surveys and designs compare the ratio with 1."""
         for each in self.found.directions.values():
-            said = None if each.ratio is None else each.ratio >= 1 - CLOSE
-            _demand(each.passed == said, f"passed is {each.passed}, but the ratio is {each.ratio}")
+            expected = None if each.ratio is None else each.ratio >= 1 - CLOSE
+            _demand(each.passed == expected, f"passed is {each.passed}, but the ratio is {each.ratio}")
 
     def test_its_result_can_be_shown(self) -> None:
         """Remarks are sentences, and the result can be printed, and written as JSON and as a table."""
-        found = self.found
-        remarks = [*found.remarks, *(each for one in found.directions.values() for each in one.remarks)]
-        said = [each if isinstance(each, str) else showing(found).say(each) for each in remarks]
-        _demand(all(isinstance(text, str) and text.strip() for text in said), f"remarks that are no sentences: {said}")
-        shown = view(found)
-        json_text(shown.data() if callable(shown.data) else shown.data)
-        _demand(shown.parts and table(found), "nothing is shown")
+        verification = self.found
+        remarks = [*verification.remarks, *(each for one in verification.directions.values() for each in one.remarks)]
+        texts = [each if isinstance(each, str) else showing(verification).say(each) for each in remarks]
+        _demand(
+            all(isinstance(text, str) and text.strip() for text in texts), f"remarks that are no sentences: {texts}"
+        )
+        result_view = view(verification)
+        json_text(result_view.data() if callable(result_view.data) else result_view.data)
+        _demand(result_view.parts and table(verification), "nothing is shown")
 
 
 def _read(text: str) -> SiteFile:

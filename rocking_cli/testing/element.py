@@ -38,8 +38,8 @@ def check_law(element: Element, shortest: float, longest: float) -> None:
     _demand(abs(float(element.energy(np.zeros(1))[0])) == 0, f"{element.name}: its energy is not 0 at rest")
     step = e[1] - e[0]
     # Between two points that have no corner between them, whose slopes say what the change must be.
-    for value, rate, said in ((energy, force, "its energy is not the integral of its force"),
+    for value, rate, fault in ((energy, force, "its energy is not the integral of its force"),
                               (force, slope, "its slope is not the derivative of its force")):  # fmt: skip
         change, mean = np.diff(value), step / 2 * (rate[1:] + rate[:-1])
         off = np.abs(change - mean) > np.abs(np.diff(rate)) * step + MAX_RELATIVE_ERROR * np.abs(mean).max()
-        _demand(not off.any(), f"{element.name}: {said}, at e = {e[int(off.argmax())]:.4g} m")
+        _demand(not off.any(), f"{element.name}: {fault}, at e = {e[int(off.argmax())]:.4g} m")

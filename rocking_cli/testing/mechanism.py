@@ -191,12 +191,12 @@ def moves_without_jumps(structure: Mechanism) -> None:
         phi = NO_JUMP_SHARE * structure.limit(direction) * x * (2 - x)  # finer near the limit, where a linkage locks
         for body, motion in zip(structure.bodies(), structure.motion(phi, direction), strict=True):
             z, dz, ddz = motion.carry(body.centroid)
-            found = [jump(phi, part(z) - part(z[0]), part(dz), size) for part in (np.real, np.imag)]
-            found += [jump(phi, part(dz), part(ddz), size) for part in (np.real, np.imag)]
-            found += [jump(phi, motion.psi, motion.dpsi, 1.0), jump(phi, motion.dpsi, motion.ddpsi, 1.0)]
+            jumps = [jump(phi, part(z) - part(z[0]), part(dz), size) for part in (np.real, np.imag)]
+            jumps += [jump(phi, part(dz), part(ddz), size) for part in (np.real, np.imag)]
+            jumps += [jump(phi, motion.psi, motion.dpsi, 1.0), jump(phi, motion.dpsi, motion.ddpsi, 1.0)]
             _demand(
-                min(found) == np.inf,
-                f"{body.name} jumps at phi = {min(found):.4g} rad in the {direction.label} direction",
+                min(jumps) == np.inf,
+                f"{body.name} jumps at phi = {min(jumps):.4g} rad in the {direction.label} direction",
             )
 
 
@@ -288,14 +288,14 @@ def contacts_bear_its_weight(structure: Mechanism) -> None:
             known = {*contact.pieces, contact.face} <= {None, *names}
             _demand(known, f"the contact of {contact.label} names a piece that does not exist: there are {names}")
         try:
-            found = released(structure, direction, np.zeros(1))
+            forces = released(structure, direction, np.zeros(1))
         except Undetermined as error:
             needed = "n pieces need 3n - 1 forces, two at a hinge, three at a joint that stays closed, one at a guide"
             _demand(error.redundant, f"{here} do not leave one degree of freedom: {needed}")
             continue
-        assert found is not None
+        assert forces is not None
         starts = np.array([1.0, -int(direction) * structure.uplift(direction) * structure.gravity, 0.0, 0.0])
-        force, there = found.force[0] @ starts, Pieces(structure, direction, np.zeros(1))
+        force, there = forces.force[0] @ starts, Pieces(structure, direction, np.zeros(1))
         jacobian = there.rates(contacts)[0].dense()[0]  # without what loads press on guides
         missing = np.abs(jacobian.T @ force[: len(jacobian)] - there.demands()[0] @ starts) / there.scale
         k = int(missing.argmax())
@@ -304,7 +304,7 @@ def contacts_bear_its_weight(structure: Mechanism) -> None:
             f"{here} do not balance {names[k // 3]} as rocking starts, {missing[k]:.4g} N are missing: they must be "
             "the joints that its motion keeps together",
         )
-        for contact, (normal, _) in zip(found.contacts, found.rows, strict=True):
+        for contact, (normal, _) in zip(forces.contacts, forces.rows, strict=True):
             least = min((float(force[row]) for row in normal), default=0.0)
             _demand(
                 least >= -MAX_IMBALANCE * weight,
@@ -372,15 +372,15 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
         top = _top(bare, direction)
         step = min(MAX_STEP, STEP_SHARE * top)
         phi = np.linspace(0.02, 1.0, 9) * top
-        says, own = (each.coefficients(phi, direction) for each in (laden, bare))
+        laden_ones, bare_ones = (each.coefficients(phi, direction) for each in (laden, bare))
         z = [bare.followed(phi + shift * step, direction)(spot).z for shift in STENCIL]
         moved = _quotient(z, step)
         around = [energies(phi + shift * step, direction) for shift in STENCIL]
         here = energies(phi, direction)
         inertia = mass * (share["horizontal"] * moved.real**2 + share["vertical"] * moved.imag**2)
-        moment = np.abs(own.G).max() + np.abs(own.B).max()
+        moment = np.abs(bare_ones.G).max() + np.abs(bare_ones.B).max()
         for name, added, big in (
-            ("I", inertia, own.I.max()),
+            ("I", inertia, bare_ones.I.max()),
             ("G", _quotient([each[0] for each in around], step).real, moment),
             ("B", direction * share["horizontal"] * mass * moved.real, moment),
             ("V", here[0], moment),
@@ -388,13 +388,20 @@ def carries_what_hangs_on_it(structure: Mechanism) -> None:
             ("U", here[1], bare.gravity * moment),
         ):
             what = f"{name} of coefficients with a load and a tie, {direction.label} direction,"
-            _near(what, phi, getattr(says, name), getattr(own, name) + added, 1e-6 * big, "bodies and load give")
+            _near(
+                what,
+                phi,
+                getattr(laden_ones, name),
+                getattr(bare_ones, name) + added,
+                1e-6 * big,
+                "bodies and load give",
+            )
         beside = [laden.coefficients(phi + shift * step, direction).Q for shift in STENCIL]
         turned = _quotient(beside, step).real
         _near(
             f"dQ, {direction.label} direction,",
             phi,
-            says.dQ,
+            laden_ones.dQ,
             turned,
             1e-6 * bare.gravity * moment,
             "the difference quotient is",
@@ -629,18 +636,20 @@ def _liveliest(structure: Mechanism) -> Spot:
     return max(spots, key=lambda spot: abs(complex(follow(spot).dz[0])))
 
 
-def _agree(what: str, said: float, found: float) -> None:
-    _demand(abs(said - found) <= 1e-11 * abs(found), f"{what} is {said:.12g}, but its bodies give {found:.12g}")
+def _agree(what: str, actual: float, expected: float) -> None:
+    _demand(
+        abs(actual - expected) <= 1e-11 * abs(expected), f"{what} is {actual:.12g}, but its bodies give {expected:.12g}"
+    )
 
 
-def _near(what: str, phi: Reals, said: ArrayLike, found: ArrayLike, allowed: float, by: str) -> None:
+def _near(what: str, phi: Reals, actual: ArrayLike, expected: ArrayLike, allowed: float, by: str) -> None:
     """Check that two arrays over `phi` agree; NaN does not."""
-    said, found = np.asarray(said), np.asarray(found)
-    _demand(said.shape == phi.shape, f"{what} has the shape {said.shape} for {phi.size} rotations")
-    wrong = np.flatnonzero(~(np.abs(said - found) <= allowed))
+    actual, expected = np.asarray(actual), np.asarray(expected)
+    _demand(actual.shape == phi.shape, f"{what} has the shape {actual.shape} for {phi.size} rotations")
+    wrong = np.flatnonzero(~(np.abs(actual - expected) <= allowed))
     if wrong.size:
-        k = wrong[np.argmax(np.nan_to_num(np.abs(said - found)[wrong], nan=np.inf))]
-        raise AssertionError(f"{what} is {said[k]:.6g} at phi = {phi[k]:.4g} rad, but {by} {found[k]:.6g}")
+        k = wrong[np.argmax(np.nan_to_num(np.abs(actual - expected)[wrong], nan=np.inf))]
+        raise AssertionError(f"{what} is {actual[k]:.6g} at phi = {phi[k]:.4g} rad, but {by} {expected[k]:.6g}")
 
 
 def _quotient(values: Sequence[ArrayLike], step: float) -> NDArray[np.complex128]:

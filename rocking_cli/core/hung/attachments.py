@@ -137,15 +137,15 @@ def attach(
 
     Raises `RefusedFields`, also if a name is used twice or is in `taken`.
     """
-    own, names = {*OWN_NAMES, *taken}, set[str]()
+    reserved, names = {*OWN_NAMES, *taken}, set[str]()
     for k, load in enumerate(loads):
         loc: Loc = ("loads", k)
-        _own_name(load.name, names, own, loc)
+        _own_name(load.name, names, reserved, loc)
         body = carrier.carrying(load.body, complex(*load.at), loc)  # what stands on it may be anywhere
         yield loc, load.attached(body, carrier.count(body, each=load.each))
     for k, tie in enumerate(ties):
         loc = ("ties", k)
-        _own_name(tie.name, names, own, loc)
+        _own_name(tie.name, names, reserved, loc)
         spots = list(_spots(carrier, tie, loc))
         bodies = [spot.body for spot in spots if spot.body is not None]
         if not bodies:
@@ -175,8 +175,8 @@ def far_off(carrier: Carrier, loads: Sequence[Load]) -> Iterator[str]:
             )
 
 
-def _own_name(name: str, names: set[str], own: Collection[str], loc: Loc) -> None:
-    if name in own:
+def _own_name(name: str, names: set[str], reserved: Collection[str], loc: Loc) -> None:
+    if name in reserved:
         raise RefusedFields(loc, "name", f"{name!r} is a reserved name: choose another")
     if name in names:
         raise RefusedFields(loc, "name", f"{name!r} is already used: give each load and tie its own name")

@@ -544,5 +544,7 @@ class Load(Described):
             return ConstantForce(self.name, spot, count * complex(*self.force))
         assert self.mass is not None
         shares = {"horizontal": self.horizontal, "vertical": self.vertical, "weight": self.weight}
-        given = {key: value for key, value in shares.items() if value is not None}
-        return PointMass(self.name, spot, count * self.mass, **{**FLOOR_MATERIALS.get(self.floor or "", {}), **given})
+        given_shares = {key: value for key, value in shares.items() if value is not None}
+        return PointMass(
+            self.name, spot, count * self.mass, **{**FLOOR_MATERIALS.get(self.floor or "", {}), **given_shares}
+        )

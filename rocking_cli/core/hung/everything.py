@@ -60,8 +60,8 @@ class Hung:
 
     def fault(self, question: Question) -> str | None:
         """Return the element that prevents an answer to a question, and why, in words; None if there is none."""
-        found = ((each.name, each.refuses(question)) for each in self.elements)
-        return next((f"{name} {why}" for name, why in found if why), None)
+        refusals = ((each.name, each.refuses(question)) for each in self.elements)
+        return next((f"{name} {why}" for name, why in refusals if why), None)
 
     def ask(self, question: Question) -> None:
         """Raise `InputError` if the elements prevent an answer to a question."""
