@@ -142,7 +142,7 @@ def _collapse(ring: Ring, joints: Reals) -> tuple[float, Reals, Reals]:
         rows, weights = ring.balance(joints, face)
         a.append(face * rows)
         c.append(face * weights)
-    # To begin with, bounds that no arch meets: lambda <= STRONGEST, and three on the reactions that carry nothing.
+    # Start with bounds that no arch reaches: lambda <= MAX_LAMBDA, and three on the reactions.
     weight = ring.beta * ring.thickness
     A = np.vstack([*a, -np.eye(4)])
     C = np.concatenate([*c, [-MAX_START_REACTION * weight] * 3, [-MAX_LAMBDA]])
@@ -201,7 +201,7 @@ def least_thickness(beta: float, voussoirs: int | None) -> float:
             high = middle
         except ArchCannotStand:
             low = middle
-        except MechanismError:  # it stands, and is too thick to hinge
+        except MechanismError:  # the arch stands, but is too thick for hinges
             high = middle
     return high
 

@@ -35,8 +35,8 @@ class Crack(Described):
     def _runs(self) -> Self:
         one, other = (self.level_of(complex(*point)) for point in self.along)
         if one == other:
-            way = "height" if self.cut == "horizontal" else "x"
-            raise geometry_error("along", f"both ends have the same {way}: a {self.cut} crack has no room there")
+            coordinate = "height" if self.cut == "horizontal" else "x"
+            raise geometry_error("along", f"both ends have the same {coordinate}: a {self.cut} crack has no room there")
         return self
 
     def level_of(self, z: complex) -> float:
@@ -235,7 +235,8 @@ class _Names(NamedTuple):
         if isinstance(at, list):
             return self.made.piece(name, complex(*at))
         whole = not any(self.cracks[crack].body == name for crack in self.levels)
-        return self.made.pieces[name][0] if whole and name in self.made.pieces else name  # its pieces are one here
+        # In this direction the body is not cut.
+        return self.made.pieces[name][0] if whole and name in self.made.pieces else name
 
 
 def _away(z: Points, corners: Points) -> float:

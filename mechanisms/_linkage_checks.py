@@ -50,10 +50,10 @@ def closing(
         face = face_at(members, joint.bodies, joint.at) if isinstance(joint, Pin) else None
         if face is None:
             continue
-        way = [motions[name].carry(face.far)[1][0] for name in joint.bodies]
-        rate = (way[1] - way[0] if len(way) > 1 else way[0]) * np.conj(face.normal)
+        velocities = [motions[name].carry(face.far)[1][0] for name in joint.bodies]
+        rate = (velocities[1] - velocities[0] if len(velocities) > 1 else velocities[0]) * np.conj(face.normal)
         if rate.real < -ZERO_CLOSING_RATE * fastest:
-            names = " and ".join([*joint.bodies, *(["the ground"] if len(way) == 1 else [])])
+            names = " and ".join([*joint.bodies, *(["the ground"] if len(velocities) == 1 else [])])
             return joint.name, (
                 f"{joint.name} closes: there {names} would go into one another at "
                 f"[{face.far.real:.4g}, {face.far.imag:.4g}]; hinge at the other end of the face"
@@ -71,6 +71,6 @@ def turns_the_wrong_way(
     if not (lifted < 0 and driven < 0):
         return None
     able = [name for name, motion in motions.items() if motion.dpsi[0] * motions[lead].dpsi[0] < 0]
-    way = "clockwise" if direction > 0 else "anticlockwise"
-    why = f"let another body lead, of {', '.join(able)}" if able else f"nothing in it turns {way} as it is thrown"
+    sense = "clockwise" if direction > 0 else "anticlockwise"
+    why = f"let another body lead, of {', '.join(able)}" if able else f"nothing in it turns {sense} as it is thrown"
     return f"{lead} turns the wrong way: {why}"

@@ -65,7 +65,7 @@ class LinkedBodies(Mechanism):
         return [replace(body, mass=body.mass / total, inertia=body.inertia / total) for body in bodies]
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
-        if direction not in self.directions:  # it leans, and rests
+        if direction not in self.directions:  # a one-sided structure rests against its support
             return [rotation(np.asarray(phi, np.float64), 0j, 0.0) for _ in self._members]
         motions = self._linkage(direction).motions(phi)
         return [motions[name] for name in self._members]

@@ -66,11 +66,11 @@ def gap(one: Points, other: Points) -> float:
 def pierced(outline: Points, holes: Sequence[Points]) -> Points:
     """Return an outline with holes as one closed line, which goes to each hole and back on the same path."""
     outline = outline if area_of(outline) > 0 else outline[::-1]
-    left = [hole if area_of(hole) < 0 else hole[::-1] for hole in holes]
-    while left:
-        # The nearest first: no way to it crosses another.
-        nearest = min(range(len(left)), key=lambda k: gap(outline, left[k]))
-        outline = _joined(outline, left.pop(nearest))
+    remaining = [hole if area_of(hole) < 0 else hole[::-1] for hole in holes]
+    while remaining:
+        # Start with the nearest hole, as the path to it crosses no other hole.
+        nearest = min(range(len(remaining)), key=lambda k: gap(outline, remaining[k]))
+        outline = _joined(outline, remaining.pop(nearest))
     return outline
 
 
@@ -147,12 +147,12 @@ def nearby(low: Points, high: Points) -> Iterator[tuple[Indices, Indices]]:
 
     The boxes are swept along the axis on which fewer of them overlap.
     """
-    ways = []
+    axes = []
     for a, b in ((low.real, high.real), (low.imag, high.imag)):
         order = np.argsort(a, kind="stable")
         # For each box, the boxes that begin after its start and before its end.
-        ways.append((order, np.searchsorted(a[order], b[order], side="right")))
-    order, until = min(ways, key=lambda way: int(way[1].sum()))
+        axes.append((order, np.searchsorted(a[order], b[order], side="right")))
+    order, until = min(axes, key=lambda way: int(way[1].sum()))
     low, high = low[order], high[order]
     for first in range(0, len(order), BOXES_PER_BATCH):
         last = min(first + BOXES_PER_BATCH, len(order))

@@ -217,15 +217,15 @@ def plates(parts: Sequence[BodyPart], per_area: Sequence[float]) -> list[Plate]:
 
 def _check_joined(z: Sequence[Points], names: Sequence[int], touch: float) -> None:
     """Raise a geometry error if a part is not connected to the others."""
-    joined, left = {0}, set(range(1, len(z)))
-    while left:
-        gaps = {k: min(gap(z[k], z[j]) for j in joined) for k in left}
+    joined, separate = {0}, set(range(1, len(z)))
+    while separate:
+        gaps = {k: min(gap(z[k], z[j]) for j in joined) for k in separate}
         touching = {k for k, apart in gaps.items() if apart <= touch}
         if not touching:
-            k = min(left)
+            k = min(separate)
             why = f"it is joined to no other part: the nearest is {gaps[k]:.4g} m away"
             raise geometry_error(("parts", names[k], "polygon"), why)
-        joined, left = joined | touching, left - touching
+        joined, separate = joined | touching, separate - touching
 
 
 def united(name: str, pieces: Sequence[tuple[int, Body]]) -> Body:

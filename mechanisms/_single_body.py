@@ -54,8 +54,8 @@ class SingleBody(Mechanism):
         return atan2(-direction * arm.real, arm.imag)
 
     def motion(self, phi: Reals, direction: Direction) -> Sequence[RigidMotion]:
-        turning, way = rotation(phi, self.centre(direction), -direction), direction * self.rolls(direction)
-        return (replace(turning, q=turning.q + way * phi, dq=turning.dq + way),)  # it rolls without slip
+        turning, rolling = rotation(phi, self.centre(direction), -direction), direction * self.rolls(direction)
+        return (replace(turning, q=turning.q + rolling * phi, dq=turning.dq + rolling),)  # the foot rolls without slip
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
         # A rolling body changes its contact point: only the sum of its forces is known.

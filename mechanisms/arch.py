@@ -115,9 +115,9 @@ class Arch(Mechanism):
         half = self.thickness / 2
         inner, outer = self.radius - half, self.radius + half
         density = 2 / (self._beta * (outer**2 - inner**2))  # 1 kg for the whole ring
-        left = pi / 2 + self._beta / 2
+        springing = pi / 2 + self._beta / 2
         return tuple(
-            annular_sector(f"segment {k + 1}", density, inner, outer, left - start, left - end)
+            annular_sector(f"segment {k + 1}", density, inner, outer, springing - start, springing - end)
             for k, (start, end) in enumerate(pairwise(self._cuts))
         )
 
@@ -134,7 +134,7 @@ class Arch(Mechanism):
         for letter, point, angle in zip("ABCD", self.hinges(direction), self.hinge_angles, strict=True):
             cut = int(np.abs(cuts - (angle if direction > 0 else self._beta - angle)).argmin())
             sides = [f"segment {k}" for k in (cut, cut + 1) if 0 < k < len(cuts)]
-            # Seen from the springing of its half of the ring: the segment that bears comes first, then the other.
+            # The supporting segment comes first: the one nearer to the springing of its half of the ring.
             on_the_left = cuts[cut] <= self._beta / 2
             bodies = tuple(sides if on_the_left else sides[::-1])
             normal = point / abs(point) * (-1j if on_the_left else 1j)  # along the ring
@@ -160,7 +160,7 @@ class Arch(Mechanism):
 
     def pieces(self, direction: Direction) -> Sequence[Piece]:
         """Return the voussoirs, or the pieces between cuts; those beyond the outer hinges are at rest."""
-        half, left = self.thickness / 2, pi / 2 + self._beta / 2
+        half, springing = self.thickness / 2, pi / 2 + self._beta / 2
         bodies, pieces = self.weighed(), []
         density = bodies[0].mass / (self._cuts[1] - self._cuts[0])  # per angle
         inner, outer = self.radius - half, self.radius + half
@@ -168,7 +168,7 @@ class Arch(Mechanism):
         for k, (start, end) in enumerate(pairwise(self._joint_angles)):
             at = int(np.searchsorted(self._cuts, (start + end) / 2))
             of = bodies[at - 1].name if 0 < at < len(self._cuts) else None
-            piece = annular_sector(f"{self._part} {k + 1}", per_area, inner, outer, left - start, left - end)
+            piece = annular_sector(f"{self._part} {k + 1}", per_area, inner, outer, springing - start, springing - end)
             pieces.append(Piece(piece, of))
         return pieces
 
@@ -189,7 +189,7 @@ class Arch(Mechanism):
         for k, angle in enumerate(angles):
             out = complex(np.exp(1j * (pi / 2 + self._beta / 2 - angle)))
             ends = (hinged[k],) if k in hinged else ((self.radius - half) * out, (self.radius + half) * out)
-            # Seen from the springing of its half of the ring: what bears comes first.
+            # The supporting piece comes first: the one nearer to the springing of its half of the ring.
             on_the_left = angle <= self._beta / 2
             pair = (names[k], names[k + 1]) if on_the_left else (names[k + 1], names[k])
             contacts.append(Contact(pair, ends, out * (-1j if on_the_left else 1j), pair[0], self.friction))
@@ -201,7 +201,7 @@ class Arch(Mechanism):
     def sketch(self) -> Sketch:
         names = [body.name for body in self.bodies()]
         r, half = self.radius, self.thickness / 2
-        springing = np.exp(1j * (pi + self._beta) / 2)  # the left one; the right one is its mirror image
+        springing = np.exp(1j * (pi + self._beta) / 2)  # left springing; the right one is its mirror image
         joints = np.linspace(0.0, self._beta, (self.voussoirs or MAX_DRAWN_VOUSSOIRS) + 1)
         parted = joints if self.voussoirs is not None and self.voussoirs <= MAX_DRAWN_VOUSSOIRS else joints[[0, -1]]
         outlines = {}
@@ -212,7 +212,8 @@ class Arch(Mechanism):
         beyond = outer + (outer - inner)
         links = self._links()
         _, b, c, _ = self.hinge_angles
-        across = complex(np.exp(1j * ((pi + self._beta) / 2 - b - 0.78 * (c - b))))  # between a centroid and a hinge
+        # Position of a label, between a centroid and a hinge.
+        across = complex(np.exp(1j * ((pi + self._beta) / 2 - b - 0.78 * (c - b))))
         at = ", ".join(f"{round(degrees(angle), 1):g}°" for angle in self.hinge_angles)
         return Sketch(
             outlines=outlines,
@@ -256,14 +257,16 @@ class Arch(Mechanism):
         """Return each link of the positive direction: name, reference hinge, hinge at its other end, centroid."""
         A, B, C, D = self.hinges(Direction.POSITIVE)
         half = self.thickness / 2
-        left = (pi + self._beta) / 2
+        springing = (pi + self._beta) / 2
         ends = zip(("AB", "BC", "CD"), (A, B, D), (B, C, C), pairwise(self.hinge_angles), strict=True)
         return [
             (
                 name,
                 hinge,
                 other,
-                annular_sector(name, 1.0, self.radius - half, self.radius + half, left - a, left - b).centroid,
+                annular_sector(
+                    name, 1.0, self.radius - half, self.radius + half, springing - a, springing - b
+                ).centroid,
             )
             for name, hinge, other, (a, b) in ends
         ]
@@ -276,7 +279,7 @@ class Arch(Mechanism):
         points = ring.thrust_radius(angles, thrust(ring, self.hinge_angles)) * self.radius
         along = points * np.exp(1j * (pi / 2 + direction * (self._beta / 2 - angles)))
         rest = np.zeros(1)
-        bare = coefficients(rest, direction, self.bodies(), self.motion(rest, direction))  # a sketch knows no loads yet
+        bare = coefficients(rest, direction, self.bodies(), self.motion(rest, direction))  # without loads and ties
         without = ", without loads and ties" if self.loads or self.ties else ""
         name = f"line of thrust at uplift, {bare.G[0] / bare.B[0]:.3g} g{without}"
         return Line(name, along.tolist(), direction)

@@ -203,7 +203,7 @@ class Assembly(LinkedBodies):
     def _hold_together(self) -> None:
         try:
             super()._hold_together()
-        except StructureError:  # of the motion that the last checks need; `collapse` shows a mechanism without one too
+        except StructureError:  # the last checks need a motion; `collapse` shows mechanisms without one
             if not any(self._no_model(direction) for direction in self.directions):
                 raise
         for direction in self.directions:
@@ -211,7 +211,7 @@ class Assembly(LinkedBodies):
         for direction in self.directions:
             collapse = self._collapse(direction)
             if not collapse.unique:
-                ways = in_short(
+                examples = in_short(
                     list(dict.fromkeys(in_short(shared.moves, " and ") for shared in collapse.several)), "; "
                 )
                 what = "Change a size or a density by a little, or tie what should not part"
@@ -222,7 +222,7 @@ class Assembly(LinkedBodies):
                 raise self._refused(
                     ("blocks",),
                     f"in the {direction.label} direction several mechanisms start at {collapse.multiplier:.6g} g, "
-                    f"with these moving blocks: {ways}. {what}",
+                    f"with these moving blocks: {examples}. {what}",
                 )
             self._check_lead(direction)
 
@@ -273,7 +273,7 @@ class Assembly(LinkedBodies):
 
         return as_validation_error([RefusedFields(field[:-1], field[-1], reason)], Assembly.mechanism)
 
-    # What there is
+    # Blocks, joints and loads
 
     @cached_property
     def _members(self) -> Mapping[str, Member]:
@@ -308,9 +308,9 @@ class Assembly(LinkedBodies):
     def _pair(self, words: str) -> tuple[str, str]:
         """Return the two bodies of a joint from words such as `a and b`; their names may contain `and` too."""
         parts = words.split(" and ")
-        ways = [(" and ".join(parts[:k]), " and ".join(parts[k:])) for k in range(1, len(parts))]
+        splits = [(" and ".join(parts[:k]), " and ".join(parts[k:])) for k in range(1, len(parts))]
         names = {*self.blocks, *self.ground}
-        pairs = [pair for pair in ways if names.issuperset(pair)]
+        pairs = [pair for pair in splits if names.issuperset(pair)]
         if len(pairs) != 1 or pairs[0][0] == pairs[0][1]:
             why = (
                 "fits several pairs of bodies"
@@ -488,7 +488,7 @@ class Assembly(LinkedBodies):
             contacts.append(Contact((None, guide.bodies[0]), (guide.at,), 1j * along, held="slide", name=guide.name))
         return contacts
 
-    # What is said of it
+    # Cautions and extra results
 
     def own_caution(self) -> str:
         """Return cautions: on confined and light blocks, and by how much joints that never slide raise lambda."""
@@ -635,7 +635,8 @@ class Assembly(LinkedBodies):
         try:
             end = self.critical_rotation(direction)
         except NoCriticalRotation:
-            end = self.limit(direction) * (1 - 1e-6)  # a tie holds it; at the very end it may lock
+            # A tie prevents overturning; at the limit itself the linkage may lock.
+            end = self.limit(direction) * (1 - 1e-6)
         steps = np.linspace(0.0, end, analysis.SEARCH_STEPS + 1)
         places = dict(zip(steps.tolist(), self._held(direction, steps), strict=True))
         known: Reals | None = None  # forces in the joints at the last rotation that holds

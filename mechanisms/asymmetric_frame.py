@@ -123,8 +123,8 @@ class AsymmetricFrame(Mechanism):
 
     def limit(self, direction: Direction) -> float:
         a, b, c, d = self.hinges(direction)
-        end = min(four_bar_limit(direction, a, b, c, d), pi / 2)  # it locks, or AB lies flat
-        if four_bar_limit(direction, d, c, b, a) > pi / 2:  # or CD does: the same linkage driven from D
+        end = min(four_bar_limit(direction, a, b, c, d), pi / 2)  # the linkage locks, or AB lies flat
+        if four_bar_limit(direction, d, c, b, a) > pi / 2:  # CD lies flat: the same linkage driven from D
             turn = -direction * float(four_bar(np.array([pi / 2]), direction, d, c, b, a)[2].psi[0])
             # Driven from D, AB may turn back at its lock: only a turn that AB reaches by itself counts.
             if 0 < turn < end and isclose(
@@ -136,8 +136,8 @@ class AsymmetricFrame(Mechanism):
     def sketch(self) -> Sketch:
         left, beam, right = bodies = self.bodies()
         b, top, span = self.column_width / 2, 1j * self.left_height, self.spacing
-        deep = top - 1j * self.right_height  # of the right foot
-        lower = span + deep if deep.imag < 0 else 0j  # foot
+        deep = top - 1j * self.right_height  # height of the right foot
+        lower = span + deep if deep.imag < 0 else 0j  # the lower foot
         base = 1j * lower.imag
         sizes = [(2 * b, self.left_height), (span + 2 * b, self.beam_depth), (2 * b, self.right_height)]
         lengths = [

@@ -29,7 +29,7 @@ class Block(SingleBody):
         return -self.width / 2 + 0j, self.width / 2 + 0j
 
     def limit(self, direction: Direction) -> float:
-        return pi / 2  # it lies on its side
+        return pi / 2  # the block lies on its side
 
     def rebound_from_impacts(self) -> float | None:
         """Return the rebound by Housner's impacts in sequence; None with masses on the block.

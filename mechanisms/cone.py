@@ -61,14 +61,14 @@ class Cone(SingleBody):
         return -self.base_radius + 0j, self.base_radius + 0j
 
     def limit(self, direction: Direction) -> float:
-        return pi - atan2(self.height, self.base_radius)  # it lies on its flank
+        return pi - atan2(self.height, self.base_radius)  # the cone lies on its flank
 
     def outlines(self) -> Sequence[Outline]:
         left, right = self.feet()
         apex = 1j * self.height
         if self.kind == "solid":
             return ((left, right, apex),)
-        k = self.inner_ratio or SHELL_SCALE  # its section is that of a shell, cut through the axis
+        k = self.inner_ratio or SHELL_SCALE  # section of a shell through its axis
         return ((left, k * left, k * apex, k * right, right, apex),)
 
     def lengths(self) -> Sequence[Length]:

@@ -32,7 +32,7 @@ Points = NDArray[np.complex128]
 GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(5)
 LIMIT_PIECES = 100  # pieces of the integration to the limit, beside those between the points of the curve
 FILE_FIELDS = {"points": "file", "negative_points": "negative_file"}
-"""Where points are read from."""
+"""Field with the name of the file from which each list of points may be read."""
 
 
 class Curve(Mechanism):
@@ -206,7 +206,7 @@ class Curve(Mechanism):
         return self.model_copy(update={**moved, **sizes, "inertia": factor**2 * self.inertia})
 
     def limit(self, direction: Direction) -> float:
-        return pi / 2  # as far as a body turns until it lies
+        return pi / 2  # the body lies flat
 
     def sketch(self) -> Sketch:
         return Sketch(notes=["the body stands for the structure: its centroid moves as the capacity curve says"])

@@ -314,10 +314,10 @@ class Linkage(LinkedBodies):
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
         if direction not in self._held or not self._linkages[direction].determinate:
-            return ()  # how a joint too many shares the forces is not known
+            return ()  # with redundant joints, the distribution of forces is unknown
         held = self._held[direction].joints
         if any(isinstance(each, Guide) and len(each.bodies) > 1 for each in held):
-            return ()  # its line turns: the forces there are not looked at
+            return ()  # forces on a guide that turns with a body are not analysed
         return [self._joint(each, direction, self._linkages[direction].resting) for each in held]
 
     def _joint(self, each: Pin | Guide, direction: Direction, ground: Collection[str]) -> Joint:
@@ -333,7 +333,7 @@ class Linkage(LinkedBodies):
             moves = next(name for name in names if name not in ground)
             return Joint(letter, each.at, (moves,), normal=normal if moves == names[1] else -normal)
         flat = names[face.inside] if face is not None and face.inside is not None else None
-        if normal.imag < 0:  # the second bears the first
+        if normal.imag < 0:  # the second body supports the first
             names, normal = names[::-1], -normal
         return Joint(letter, each.at, names, normal=normal, face=flat or names[0])
 
@@ -343,7 +343,7 @@ class Linkage(LinkedBodies):
 
     @cached_property
     def _closed(self) -> Mapping[Direction, Mapping[tuple[str, str], Sequence[Contact]]]:
-        """What is fixed in a direction, and the faces on which it may open or slide; none of what is not checked."""
+        """Fixed joints of a direction, and the faces on which they may open or slide; none if they are not checked."""
         return {
             direction: {
                 pair: [] if bonded else self._closed_faces(pair) for pair, bonded in held.fixings.items()

@@ -36,7 +36,7 @@ SHAPE_OPTIONS = (
     ("parts",),
     ("mass", "centroid", "inertia", "left_foot", "right_foot"),
 )
-"""The ways to describe it, each with what it needs."""
+"""Alternative descriptions of the body, each with the fields that it requires."""
 
 
 class RigidBody(SingleBody):
@@ -102,18 +102,18 @@ class RigidBody(SingleBody):
 
     @model_validator(mode="after")
     def _one_description(self) -> Self:
-        way = self._way
-        if way in ("polygon", "parts"):
-            self._check_shape(way)
-        elif way == "centroid":
+        description = self._way
+        if description in ("polygon", "parts"):
+            self._check_shape(description)
+        elif description == "centroid":
             self._check_feet()
-        self._check_radius(way)
+        self._check_radius(description)
         return self
 
     @cached_property
     def _way(self) -> str:
         """Name of the field that describes the body."""
-        begun = [way for way in SHAPE_OPTIONS if any(getattr(self, key) is not None for key in way if key != "mass")]
+        begun = [keys for keys in SHAPE_OPTIONS if any(getattr(self, key) is not None for key in keys if key != "mass")]
         if not begun:
             raise geometry_error(
                 "inertia_ratio",
@@ -130,25 +130,26 @@ class RigidBody(SingleBody):
             raise geometry_error(missing[0], f"give all of {', '.join(begun[0])}; {missing[0]} is missing")
         return begun[0][0] if begun[0][0] != "mass" else "centroid"
 
-    def _check_shape(self, way: str) -> None:
-        if way == "polygon" and (fault := fault_of(self._corners)):
+    def _check_shape(self, description: str) -> None:
+        if description == "polygon" and (fault := fault_of(self._corners)):
             raise geometry_error("polygon", fault)
         holes = [hole for plate in self._plates for hole in plate.holes]
         if not self._feet[1].real > self._feet[0].real:
             second = np.sort(self._corners.imag)[1] - self._corners.imag.min()
             raise geometry_error(
-                way,
+                description,
                 f"it stands on one corner, the next is {second:.4g} m higher: its two lowest corners must be level "
                 f"with each other, to {self._level:.2g} m",
             )
         for foot in self._feet:
             if foot_is_cut(foot, holes, ROUNDING_OVERLAP * size_of(self._corners)):
-                raise geometry_error(way, f"an opening takes away its foot at x = {foot.real:.4g} m")
-        self._check_centroid(way)
+                raise geometry_error(description, f"an opening takes away its foot at x = {foot.real:.4g} m")
+        self._check_centroid(description)
         for direction in Direction:
             if self.limit(direction) <= self.alpha(direction):
                 raise geometry_error(
-                    way, f"in the {direction.label} direction another corner meets the ground before it can overturn"
+                    description,
+                    f"in the {direction.label} direction another corner meets the ground before it can overturn",
                 )
 
     def _check_feet(self) -> None:
@@ -168,7 +169,7 @@ class RigidBody(SingleBody):
                 f"(x = {left.real:.4g} to {right.real:.4g} m)",
             )
 
-    def _check_radius(self, way: str) -> None:
+    def _check_radius(self, description: str) -> None:
         if self.corner_radius is None:
             return
         if self.crushing is not None:
@@ -183,7 +184,7 @@ class RigidBody(SingleBody):
                     f"is too large: in the {direction.label} direction the centroid is not between the centres of both "
                     "rounded feet, above them",
                 )
-            if way in ("polygon", "parts") and self.limit(direction) <= self.alpha(direction):
+            if description in ("polygon", "parts") and self.limit(direction) <= self.alpha(direction):
                 raise geometry_error("corner_radius", "another corner meets the ground before it can overturn")
 
     @property
@@ -309,7 +310,8 @@ class RigidBody(SingleBody):
 
     def limit(self, direction: Direction) -> float:
         if self._way not in ("polygon", "parts"):
-            return self._meets_the_ground(np.array([self.arm(direction)]), direction)  # no outline: the centroid does
+            # Without an outline, the centroid meets the ground.
+            return self._meets_the_ground(np.array([self.arm(direction)]), direction)
         return self._meets_the_ground(self._corners[~self._stands] - self.centre(direction), direction)
 
     def _meets_the_ground(self, away: Points, direction: Direction) -> float:
@@ -336,7 +338,7 @@ class RigidBody(SingleBody):
     def lengths(self) -> Sequence[Length]:
         if self._way not in ("polygon", "parts"):
             return ()
-        # Only its size and its foot, as it may have many corners.
+        # Label only size and foot, as there may be many corners.
         z = self._corners
         (left, right), low, high = self._feet, z.imag.min(), z.imag.max()
         return (

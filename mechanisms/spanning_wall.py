@@ -34,7 +34,7 @@ from rocking_cli.core import (
 from rocking_cli.core.contacts import MASONRY_FRICTION
 
 WEAK_HINGE_DECREASE = 0.01  # relative decrease of lambda by the weakest hinge from which there is a caution
-TOP_DISTANCE = 1e-9  # of a hinge at the top, over the height; also a load that counts as zero, over the weight
+TOP_DISTANCE = 1e-9  # distance of a hinge that counts as at the top, over the height; zero loads, over the weight
 
 
 class SpanningWall(Mechanism):
@@ -207,7 +207,7 @@ class SpanningWall(Mechanism):
         return slider_crank_limit(direction, *self.hinges(direction))
 
     def carries(self) -> Sequence[Attached]:
-        # What holds the top sideways holds the floor too: its mass moves up and down only.
+        # The support that holds the top sideways also holds the floor, whose mass only moves vertically.
         if self.overburden == 0:
             return ()
         spot = Spot("upper block", complex(self.overburden_eccentricity, self.height))
@@ -235,7 +235,7 @@ class SpanningWall(Mechanism):
             if y != hinge
         ]
         foot, crack, top = of_joints(self.joints(direction), self.friction)
-        if self.overburden and self.support == "load":  # friction under the load is all that holds the top
+        if self.overburden and self.support == "load":  # only friction under the load holds the top
             friction = MASONRY_FRICTION if self.friction is None else self.friction
             top = replace(top, pressed_by="overburden", friction=friction, name="the load and the top of the wall")
         return [foot, crack, top, *whole]

@@ -33,7 +33,7 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.reactions import at_uplift
 
-MAX_DRAWN_COLUMNS = 6  # in a drawing that is not to scale
+MAX_DRAWN_COLUMNS = 6  # drawings with more columns are not to scale
 MAX_CHECKED_COLUMNS = 20  # columns beyond would take seconds
 LIGHT_BEAM = 1e-8  # mass of a beam that loads no column, over the mass of the columns
 
@@ -158,7 +158,7 @@ class SymmetricFrame(Mechanism):
         foot, top = self.joints(direction)
         if self.spacing is None:
             return of_joints([foot, top], self.friction) if self._slides_first else None
-        outer = self._axes[0 if direction > 0 else -1]  # its corner bears on the corner of the beam, as in a linkage
+        outer = self._axes[0 if direction > 0 else -1]  # outer column, whose corner bears on the corner of the beam
         joints = []
         for k, shift in enumerate(self._axes):
             column = _column(k)

@@ -109,7 +109,7 @@ class Structure:
     def why_no_block(self) -> str | None:
         """Reason why the structure has no equivalent block, a sentence; None if it has one in each direction."""
         try:
-            self.equivalence  # noqa: B018 - it is kept
+            self.equivalence  # noqa: B018 - computes and caches it
         except NoEquivalentBlock as error:
             return f"{error}"
         return None

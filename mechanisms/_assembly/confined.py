@@ -33,7 +33,7 @@ MAX_GUIDE_FORCE = 1e3  # largest force of a guide, over the sum of all normal fo
 
 @dataclass(frozen=True, eq=False)
 class Undilated:
-    """What is known of mechanisms without dilation of a confined assembly.
+    """Mechanisms without dilation of a confined assembly.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def is_confined(problem: AssemblyProblem) -> bool:
         np.append(np.where(rays.one_sided, 0.0, -MAX_GUIDE_FORCE), 0.0),
         np.append(np.where(rays.one_sided, np.inf, MAX_GUIDE_FORCE), np.inf),
     )
-    assert optimum is not None  # nothing balances nothing
+    assert optimum is not None  # zero forces are a solution
     # Forces that balance can be made any size, so that all or none of what is allowed is used.
     return bool(optimum.value < -(ZERO_PRODUCT**0.5))
 
@@ -175,25 +175,25 @@ class _Search:
     def run(self, below: float) -> Reals | None:
         """Return the simplest mechanism of the least multiplier below a limit; None if none is found."""
         high, cost = np.full(len(self._low), np.inf), np.zeros(len(self._low))
-        cost[self._multiplier] = np.isfinite(below)  # without a limit any mechanism will do
+        cost[self._multiplier] = np.isfinite(below)  # without a limit any mechanism is accepted
         unknowns, self.complete = self._least(cost, high, below)
         if unknowns is None:
             return None
-        # Of several with that multiplier, the one with the least motion and the least forces.
+        # Among mechanisms with that multiplier, choose the one with the least motion and the least forces.
         high[self._multiplier] = self.multiplier(unknowns) * (1 + SIMPLEST_INCREASE) + SIMPLEST_INCREASE
-        ways = np.linspace(1.0, 1.0 + LAST_JOINT_COST, len(self._left))
+        weights = np.linspace(1.0, 1.0 + LAST_JOINT_COST, len(self._left))
         cost = np.zeros(len(self._low))
-        cost[self._left], cost[self._rates] = ways, ways
+        cost[self._left], cost[self._rates] = weights, weights
         simplest, _ = self._least(cost, high, np.inf)
         return unknowns if simplest is None else simplest
 
     def _least(self, cost: Reals, high: Reals, below: float) -> tuple[Reals | None, bool]:
         """Return the unknowns at the least cost below a limit, if any, and whether the search was complete."""
-        unknowns, complete, left = None, True, [high]
+        unknowns, complete, undecided = None, True, [high]
         for _ in range(self._programmes):
-            if not left:
+            if not undecided:
                 return unknowns, complete
-            bounds = left.pop()
+            bounds = undecided.pop()
             try:
                 best = least(cost, self._equal, self._right, self._low, bounds)
             except NoAnswer:
@@ -207,12 +207,13 @@ class _Search:
                 unknowns, below = self._exactly(cost, bounds, best.x), best.value * (1 - SIMPLEST_INCREASE)
                 continue
             product = np.where(both, force * rate, 0.0)
-            k = int(np.flatnonzero(product >= product.max() * (1 - MOVING_SPEED))[0])  # not by the last digits
+            # The first of equal ones, so that rounding does not decide.
+            k = int(np.flatnonzero(product >= product.max() * (1 - MOVING_SPEED))[0])
             for part in (self._left, self._rates):
                 without = bounds.copy()
                 without[part[k]] = 0.0
-                left.append(without)
-        return unknowns, complete and not left
+                undecided.append(without)
+        return unknowns, complete and not undecided
 
     def _exactly(self, cost: Reals, high: Reals, unknowns: Reals) -> Reals:
         """Return the unknowns without forces and rates that the tolerance of the solver leaves in the way."""

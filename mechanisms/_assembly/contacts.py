@@ -22,7 +22,7 @@ MAX_SINE = 0.05  # sine of the largest angle between two edges in contact
 ZERO_UPWARD = 1e-6  # upward components of normals below this count as zero
 
 Gap = Callable[[str, str], float]
-Piece = tuple[complex, complex]  # from its start to its end the second body is on the left
+Piece = tuple[complex, complex]  # start and end; seen from the start, the second body is on the left
 
 
 def contacts(
@@ -143,7 +143,7 @@ def _pieces(one: Points, other: Points, tolerance: float) -> list[Piece]:
     if i.size == 0:
         return []
     a, b, da, db = one[i], other[j], da[i], db[j]
-    t = (db - da) / np.abs(db - da)  # along both, the longer counts more
+    t = (db - da) / np.abs(db - da)  # mean direction of both edges, weighted by length
     # An edge of one outline runs against t, one of the other with it.
     a0, a1 = (t.conj() * a).real, (t.conj() * (a + da)).real
     b0, b1 = (t.conj() * b).real, (t.conj() * (b + db)).real
@@ -161,7 +161,7 @@ def _merged(pieces: list[Piece], tolerance: float) -> list[Piece]:
     The merged part reaches from the first end to the last, because rigid bodies bear at both ends.
     """
     joined: dict[int, Piece] = {}
-    # The longest first, as it gives the line best; the result is in the order of the edges.
+    # Start with the longest piece, which defines the line best; return them in the order of the edges.
     for n, piece in sorted(enumerate(pieces), key=lambda p: -abs(p[1][1] - p[1][0])):
         for k, other in joined.items():
             along = (other[1] - other[0]) / abs(other[1] - other[0])

@@ -120,7 +120,7 @@ class DisplacedAssembly:
             raise NoAnswer(f"forces on the displaced blocks are off their balance by {off.max():.2g} of the weight")
         cases = cases - cases @ free @ free.T
         rays = self.bearings.rays()
-        if rays.count == 3 * n - free.shape[1]:  # statics alone says what they are
+        if rays.count == 3 * n - free.shape[1]:  # the forces are statically determinate
             values = -solved(beside([rays.rates.T, free]), cases.T)[: rays.count].T[:, rays.one_sided]
             if values.shape[1] == 0:
                 return [Admissible(1.0, None)] * len(cases)
@@ -164,7 +164,7 @@ class DisplacedAssembly:
             share = np.where(rays.one_sided, state, free) ** 2
             solve = solver(weighted_squares(rays.rates, share))
             balanced = state
-            for _ in range(2):  # once more, for what rounding left
+            for _ in range(2):  # the second pass removes the rounding error
                 balanced = balanced - share * (rays.rates @ solve(rays.rates.T @ balanced + case))
             off = rays.rates.T @ balanced + case
             if (balanced[rays.one_sided] >= 0).all() and np.abs(off).max() <= TOLERANCE:

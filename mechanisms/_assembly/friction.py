@@ -55,7 +55,7 @@ def friction(collapsed: Collapse) -> Friction:
     """
     problem, multiplier = collapsed.problem, collapsed.multiplier * collapsed.problem.strength
     search = _FrictionSearch(problem, multiplier)
-    if collapsed.associated is not None:  # without dilation: the friction that the state shown uses
+    if collapsed.associated is not None:  # without dilation, the shown state defines the friction
         state = (
             np.concatenate([np.column_stack([collapsed.normal, collapsed.shear]).ravel(), collapsed.guide])
             / problem.weight
@@ -70,7 +70,7 @@ def friction(collapsed: Collapse) -> Friction:
     )
     limit = search.uses(shown_state)
     if given_friction < MAX_FRICTION:
-        search.bound(given_friction, shown_state)  # the mechanism that was found has no more
+        search.bound(given_friction, shown_state)  # the joints of the mechanism have no more friction
     elif limit < MAX_FRICTION:
         search.bound(limit, shown_state)
     elif not search.carries(MAX_FRICTION):
@@ -113,9 +113,10 @@ class _FrictionSearch:
         self.problem, self.multiplier = problem, multiplier
         self.low, self.high = 0.0, MAX_FRICTION
         self.state: Reals = np.zeros(0)
-        self._lows: list[tuple[float, float, float]] = []  # friction, what is lacking, and how fast that shrinks
+        # Friction, shortfall, and rate at which the shortfall shrinks.
+        self._lows: list[tuple[float, float, float]] = []
         self._stood = True
-        self._carried = 0  # guesses in a row that carried the multiplier
+        self._carried = 0  # consecutive guesses that carried the multiplier
 
     def bound(self, mu: float, state: Reals) -> None:
         """Set the upper end of the bracket to `mu`, with a state that carries the multiplier with this friction."""
@@ -132,12 +133,12 @@ class _FrictionSearch:
             return True
         self.low, self._carried = mu, 0
         lacks, stands = self.multiplier - reached, True
-        if not np.isfinite(reached):  # it does not even stand: ask what shear is missing
+        if not np.isfinite(reached):  # the assembly does not stand: use the missing shear
             state, beyond, raw = _beyond(self.problem, self.multiplier, mu)
             lacks = float(np.abs(beyond).sum())
             stands = False
         if stands != self._stood:
-            self._lows.clear()  # two measures of what is lacking
+            self._lows.clear()  # the shortfall is now measured in another way
         self._stood = stands
         self._lows.append((mu, lacks, self._growth(mu, state, raw)))
         return False
@@ -245,7 +246,8 @@ def _beyond(
     """
     rays = problem.bearings.rays(mu)
     free: Rays = problem.bearings.rays()
-    joints = np.flatnonzero(~(problem.bearings.friction <= mu))  # not a number among them, which is no less
+    # Includes joints that never slide, whose friction is NaN.
+    joints = np.flatnonzero(~(problem.bearings.friction <= mu))
     rows = problem.bearings.shears[joints]
     extra = problem.bearings.rates[rows].T
     count, n = len(rows), rays.count
@@ -262,7 +264,7 @@ def _beyond(
                         np.full(2 * count, np.inf)]),
     )  # fmt: skip
     beyond = np.zeros(len(problem.bearings.contact))
-    if optimum is None:  # rounding took even that
+    if optimum is None:  # infeasible by rounding
         _, forces, raw = problem.greatest(free)
         return free.mix.T @ forces, beyond, raw
     state = rays.mix.T @ optimum.x[:n]

@@ -166,13 +166,14 @@ def collapse(
     if locked:
         raise NothingMoves("no acceleration sets it in motion", problem.frame.names)
     if multiplier <= ZERO_LOAD:
-        falls = moving(problem.frame.names, raw, 1e-6) or problem.unheld(rays)[1]  # none if not even that is carried
+        # Empty if the joints do not carry the weight.
+        falls = moving(problem.frame.names, raw, 1e-6) or problem.unheld(rays)[1]
         raise DoesNotStand(f"it barely stands: the least acceleration sets {listed(falls)} in motion", falls)
     kept = kept_rays(rays, problem.dead, problem.live, raw)
     space = velocity_space(rays.rates[kept], problem.frame)
     least = smallest(problem, rays, kept, space)
     fields, idle = ([least[0]], least[1]) if least else (mechanisms_of(rays, kept, space, raw), ())
-    # First those on which live forces do work, then by the blocks that move: the search finds them in any order.
+    # Sort by work of the live forces, then by moving blocks: the search returns mechanisms in any order.
     fields.sort(
         key=lambda field: (
             not _worked_on(problem, field),
@@ -203,7 +204,7 @@ def _without_dilation(problem: AssemblyProblem, mechanism: Undilated, associated
     """Return the mechanism without dilation of confined blocks."""
     assert mechanism.multiplier is not None
     velocity = _sized(problem, mechanism.field)
-    # Its joints dissipate work, which no joint does by associated flow.
+    # Sliding without dilation dissipates work; by associated flow no joint does.
     resisted = float((problem.dead + problem.bearings.rates.T @ mechanism.state) @ mechanism.field)
     return Collapse(
         mechanism.multiplier / problem.strength,

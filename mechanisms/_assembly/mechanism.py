@@ -113,7 +113,7 @@ def linkage(
         _state(abs(o[0]), abs(o[1]), abs(s), c, still)
         for o, s, c in zip(collapsed.opening, collapsed.sliding, contacts, strict=True)
     )
-    if collapsed.associated is not None:  # without dilation the forces show whether what slides also presses
+    if collapsed.associated is not None:  # without dilation only the forces show whether a sliding joint presses
         normal = collapsed.normal.sum(axis=1)
         press = normal > ZERO_NORMAL_FORCE * normal.max(initial=0.0)
         states = tuple(
@@ -310,8 +310,8 @@ def _chain(contacts: Sequence[AssemblyContact], blocks: Sequence[str]) -> list[i
     order = [ends[0]]
     while True:
         last = contacts[order[-1]]
-        ways = [k for name in (last.a, last.b) for k in of.get(name, ()) if k not in order]
-        if not ways:
+        neighbours = [k for name in (last.a, last.b) for k in of.get(name, ()) if k not in order]
+        if not neighbours:
             break
-        order.append(ways[0])
+        order.append(neighbours[0])
     return order if len(order) == len(contacts) else None

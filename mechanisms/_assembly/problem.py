@@ -163,13 +163,13 @@ class Frame:
 
     def rates(self, rows: VelocityRows) -> Sparse:
         """Build the matrix of relative velocities, shape (rows, 3 blocks)."""
-        block, ways = np.concatenate([rows.other, rows.one]), np.tile(rows.ways, 2)
+        block, along = np.concatenate([rows.other, rows.one]), np.tile(rows.ways, 2)
         moves = block >= 0
         row = np.tile(np.arange(len(rows.one)), 2)[moves]
         sign = np.repeat([1.0, -1.0], len(rows.one))[moves]
-        block, ways, points = block[moves], ways[moves], np.tile(rows.points, 2)[moves]
+        block, along, points = block[moves], along[moves], np.tile(rows.points, 2)[moves]
         arm = (points - np.array(self.centroids, np.complex128)[block]) / self.size
-        values = sign * np.array([ways.real, ways.imag, (arm.conj() * ways).imag])
+        values = sign * np.array([along.real, along.imag, (arm.conj() * along).imag])
         columns = 3 * block + np.arange(3)[:, None]
         return from_entries(np.tile(row, 3), columns.ravel(), values.ravel(), (len(rows.one), 3 * len(self.names)))
 
@@ -224,11 +224,11 @@ class Bearings:
         for guide in guides:
             body = number[guide.bodies[0]]
             rows.append((-1, body, guide.at, 1j * guide.along / abs(guide.along), body, -1))
-        one, other, points, ways, carried, turned = zip(*rows, strict=True) if rows else ((),) * 6
+        one, other, points, along, carried, turned = zip(*rows, strict=True) if rows else ((),) * 6
         return cls(
             frame,
             VelocityRows(
-                _indices(one), _indices(other), np.array(points, np.complex128), np.array(ways, np.complex128)
+                _indices(one), _indices(other), np.array(points, np.complex128), np.array(along, np.complex128)
             ),
             _indices(carried),
             _indices(turned),

@@ -70,14 +70,14 @@ def least(cost: Reals, equal: Sparse, right: Reals, low: Reals, high: Reals, *, 
         If the solver does not converge.
     """
     programme = _Programme(cost, equal, right, low, high)
-    ways: list[Callable[[], Optimum | None]] = [
+    attempts: list[Callable[[], Optimum | None]] = [
         partial(programme.solve, "highs-ds", **TIGHT_OPTIONS),
         partial(programme.solve, "highs-ds", presolve=False, **TIGHT_OPTIONS),
     ]
     if len(right) >= MIN_INTERIOR_EQUATIONS:
         close = partial(programme.solve, "highs-ipm", maxiter=CROSSOVER_ITERATIONS * len(right), **TIGHT_OPTIONS)
-        ways = [programme.refined, *ways] if exact else [close, programme.refined, *ways]
-    for way in ways:
+        attempts = [programme.refined, *attempts] if exact else [close, programme.refined, *attempts]
+    for way in attempts:
         try:
             return way()
         except _NotFound as error:
@@ -126,16 +126,16 @@ class _Programme:
             if max(off, uneven) <= MAX_RESIDUAL:
                 break
             wide, steep = (min(1 / max(error, MAX_RESIDUAL), MAX_MAGNIFICATION) for error in (off, uneven))
-            left = replace(
+            correction = replace(
                 self, cost=steep * self._rates(optimum), right=wide * (self.right - self.equal @ optimum.x),
                 low=wide * (self.low - optimum.x), high=wide * (self.high - optimum.x),
             )  # fmt: skip
             try:
-                more = left.solve("highs-ipm", maxiter=CROSSOVER_ITERATIONS * len(self.right))
+                more = correction.solve("highs-ipm", maxiter=CROSSOVER_ITERATIONS * len(self.right))
             except _NotFound:
                 break
             if more is None:
-                return None  # what there was lay within the tolerance alone
+                return None  # the solution was feasible only within the tolerance
             x, prices = optimum.x + more.x / wide, optimum.prices + more.prices / steep
             optimum = Optimum(x, float(self.cost @ x), prices, more.at_lower / steep)
         if max(self._errors(optimum)) > TOLERANCE:
@@ -213,7 +213,7 @@ def solver(squares: Sparse) -> Callable[[Reals], Reals]:
     """Factorise a positive semidefinite symmetric matrix, and return a function that solves it for a vector."""
     from scipy.sparse.linalg import splu
 
-    # In the order of its pattern, and without exchanging rows: such a matrix needs none, and fills in less.
+    # Order by pattern and do not exchange rows: this matrix is stable without it, and fill-in is smaller.
     factors = splu(squares.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     return lambda right: np.asarray(factors.solve(right), np.float64)
 

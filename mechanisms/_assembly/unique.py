@@ -76,7 +76,7 @@ def kept_rays(rays: Rays, dead: Reals, live: Reals, raw: Reals) -> Bools:
     undecided = rays.one_sided & shut
     by_ray = rays.rates.T.tocsc()
     while undecided.any():
-        # Unknown: of each ray asked after what counts of it and the surplus, then the rays known to be kept, the
+        # Unknowns: the counted force and the surplus of each undecided ray, the forces of rays known to be kept, the
         # multiplier, and the size of the state.
         k, known = np.flatnonzero(undecided), np.flatnonzero(kept)
         count, rest = len(k), len(known)
@@ -104,18 +104,18 @@ def velocity_space(rates: Sparse, frame: Frame) -> Reals:
     Their shape is (3 blocks, dimensions).
     """
     parts = rigid_parts(rates, frame)
-    left = (rates[parts.between] @ parts.basis).tocsr()
+    part_rates = (rates[parts.between] @ parts.basis).tocsr()
     # Parts that no rate ties to each other are independent.
-    entries = left.tocoo()
+    entries = part_rates.tocoo()
     part = entries.col // 3
-    of_row = np.zeros(left.shape[0], np.intp)
+    of_row = np.zeros(part_rates.shape[0], np.intp)
     of_row[entries.row] = part
     label = components(of_row[entries.row], part, parts.count)
     rows, columns = _members(label[of_row]), _members(np.repeat(label, 3))
     spans = []
     for k, these in columns.items():
         chosen = rows.get(k, np.zeros(0, np.intp))
-        spans.append(parts.basis[:, these] @ null_space(left[chosen][:, these].toarray()))
+        spans.append(parts.basis[:, these] @ null_space(part_rates[chosen][:, these].toarray()))
     return np.column_stack([np.zeros((rates.shape[1], 0)), *spans])
 
 
@@ -131,10 +131,10 @@ def null_space(rows: Reals) -> Reals:
     if len(rows) == 0:
         return np.eye(rows.shape[1])
     if len(rows) > rows.shape[1]:
-        rows = np.asarray(np.linalg.qr(rows, mode="r"))  # the same squares of lengths in fewer rows
-    _, values, ways = np.linalg.svd(rows)
+        rows = np.asarray(np.linalg.qr(rows, mode="r"))  # fewer rows with the same null space
+    _, values, basis = np.linalg.svd(rows)
     rank = int(np.count_nonzero(values > RANK_TOLERANCE * values[0]))
-    return np.asarray(ways[rank:].T)
+    return np.asarray(basis[rank:].T)
 
 
 def mechanisms_of(rays: Rays, kept: Bools, space: Reals, raw: Reals) -> list[Reals]:
@@ -169,7 +169,7 @@ def _extremes(opening: Reals, space: Reals) -> list[Reals]:
     for row in wanted[np.abs(wanted).max(axis=1) > VELOCITY_ROUNDING]:
         unit = row / np.linalg.norm(row)
         if (tried @ unit > 1 - VELOCITY_ROUNDING).any():
-            continue  # blocks that move in proportion ask the same
+            continue  # blocks that move in proportion give the same mechanism
         tried = np.vstack([tried, unit])
         best = least(np.append(row, np.zeros(n)), np.vstack([equal, total]), np.append(np.zeros(n), 1.0), low, high)
         if best is None:
@@ -274,7 +274,7 @@ def _holds(number: Indices, count: int, wrench: Reals, place: Points) -> Bools:
     swap = (dot(x, x) < dot(y, y))[number]
     main, minor = np.where(swap, y, x), np.where(swap, x, y)
     minor = without(minor, main)
-    for _ in range(2):  # once more, for what rounding left
+    for _ in range(2):  # the second pass removes the rounding error
         moment = without(without(moment, main), minor)
     length = np.sqrt(dot(main, main))
     return (np.sqrt(dot(minor, minor)) > MIN_SINE * length) & (
@@ -331,24 +331,24 @@ def smallest(problem: AssemblyProblem, rays: Rays, kept: Bools, space: Reals) ->
         return None
     space = np.linalg.qr(space)[0]
     by_block = space.reshape(-1, 3, space.shape[1])
-    ways, sizes, shares = np.linalg.svd(by_block, full_matrices=False)
+    motions, sizes, shares = np.linalg.svd(by_block, full_matrices=False)
     able = sizes[:, 0] > ZERO_LOAD
     works = able & _does_work(problem, by_block)
     if not works.any() or (sizes[works, 1] > EQUAL_VELOCITY * sizes[works, 0]).any():
         return None  # a block that can move in two ways
-    share = shares[:, 0]  # how much of its one way a block moves, by coordinates of the space
+    share = shares[:, 0]  # amount of the single motion of a block, by coordinates of the space
     opening = rays.rates[~kept] @ space
     for k in _candidates(share, np.flatnonzero(works)):
         alike = works & (np.abs(share @ share[k]) > 1 - EQUAL_VELOCITY**2)
         others = _candidates(share, np.flatnonzero(works & ~alike))
         if any(_reaches(opening, share[k], sign * share[j]) for j in others for sign in (1, -1)):
-            continue  # others move without these
+            continue  # blocks outside this set can move without it
         field = _least_motion(opening, space, by_block, able, share[k])
         if field is None:
             continue
         moves = np.abs(field.reshape(-1, 3)).max(axis=1) > EQUAL_VELOCITY * np.abs(field).max()
         if (moves & works & ~alike).any() or not all(
-            _turns_with(problem, field, moves & works, j, ways[j, :, 0])
+            _turns_with(problem, field, moves & works, j, motions[j, :, 0])
             for j in np.flatnonzero(works & ~alike).tolist()
         ):
             return None
@@ -404,15 +404,15 @@ def _least_motion(opening: Reals, space: Reals, by_block: Reals, able: Bools, sh
     return None
 
 
-def _turns_with(problem: AssemblyProblem, field: Reals, moves: Bools, block: int, way: Reals) -> bool:
+def _turns_with(problem: AssemblyProblem, field: Reals, moves: Bools, block: int, motion: Reals) -> bool:
     """Return whether the only motion of a block is to move as a part of some moving block."""
     place = np.array(problem.frame.centroids) / problem.frame.size
     for k in np.flatnonzero(moves):
         vx, vy, turn = field[3 * k : 3 * k + 3]
         if abs(turn) <= EQUAL_VELOCITY * np.abs(field).max():
-            continue  # what slides has no point about which to turn: it is another joint that slides
+            continue  # a block that slides without rotation has no point to turn about
         arm = place[block] - place[k]
         along = np.array([vx - turn * arm.imag, vy + turn * arm.real, turn])
-        if np.linalg.norm(along - way * (along @ way)) <= EQUAL_VELOCITY * np.linalg.norm(along):
+        if np.linalg.norm(along - motion * (along @ motion)) <= EQUAL_VELOCITY * np.linalg.norm(along):
             return True
     return False

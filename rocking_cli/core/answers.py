@@ -24,17 +24,17 @@ class Kinematics(Given, ABC):
     """Bodies of a mechanism, their motion and their drawing, without loads and ties."""
 
     title: ClassVar[str]
-    """What it is, in a few words."""
+    """Title of the mechanism, in a few words."""
     source: ClassVar[str]
     """The publication and its equations."""
     verified: ClassVar[str] = ""
-    """What its numbers were checked against; empty means nobody has, and the tool says so."""
+    """Reference that its results were checked against; if empty, the tool warns that nobody has checked them."""
     caution: ClassVar[str] = ""
-    """A sentence or two, which the tool shows, on where its answers are unsafe or mean less than they seem."""
+    """One or two sentences, shown to users, on cases in which its results are unsafe or of limited meaning."""
     jumps: ClassVar[str] = ""
     """Cause of a jump of the motion, with a remedy, if the structure's file gives the motion; empty by default."""
     starter: ClassVar[tuple[str, ...]] = ()
-    """Optional fields that a first file needs all the same, such as one of two ways to give the masses."""
+    """Optional fields that a template includes, such as one of two alternatives for the masses."""
 
     @abstractmethod
     def bodies(self) -> Sequence[Body]:

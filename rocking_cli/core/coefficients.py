@@ -129,7 +129,7 @@ def check_continuous(mechanism: str, direction: Direction, at: Coefficients, in_
         If V, G, B or I changes between two rotations by what its derivative there does not explain; a `StructureError`
         if the file of the structure gives its motion.
     """
-    moment = np.median(np.abs(at.G) + np.abs(at.B))  # its size: m R, and V has the same unit
+    moment = np.median(np.abs(at.G) + np.abs(at.B))  # m R; V has the same unit
     pairs = {"V": (at.V, at.G, moment), "G": (at.G, at.dG, moment), "B": (at.B, at.dB, moment)}
     pairs["I"] = (at.I, 2 * at.J, np.median(at.I))
     jumps = {name: jump(at.phi, *pair) for name, pair in pairs.items()}
@@ -153,5 +153,5 @@ def jump(phi: Reals, value: Reals, slope: Reals, size: float) -> float:
     step = np.diff(phi)
     missed = np.abs(np.diff(value) - step / 2 * (slope[:-1] + slope[1:])) - step * np.abs(np.diff(slope))
     allowed = MAX_JUMP * (size + np.abs(value[:-1]) + np.abs(value[1:]))
-    places = np.flatnonzero(~(missed <= allowed))  # what is not a number is a jump too
+    places = np.flatnonzero(~(missed <= allowed))  # NaN counts as a jump
     return float(phi[places[0]]) if places.size else np.inf

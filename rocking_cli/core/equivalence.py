@@ -93,7 +93,7 @@ def alike(one: EquivalentBlock | Statics, other: EquivalentBlock | Statics) -> b
 def _agree(one: float | str | None, other: float | str | None) -> bool:
     if isinstance(one, float) and isinstance(other, float):
         return isclose(one, other, rel_tol=EQUAL_DIRECTIONS, abs_tol=1e-12) or (isnan(one) and isnan(other))
-    return (one is None) == (other is None)  # texts have numbers in them that differ by rounding
+    return (one is None) == (other is None)  # numbers in texts may differ by rounding
 
 
 def equivalent_block(mechanism: Mechanism, known: Sequence[Statics] = ()) -> Equivalence:
@@ -156,7 +156,7 @@ def _held_to_numbers(mechanism: Mechanism) -> Iterator[None]:
         raise
     except RockingError:
         raise
-    except Exception as error:  # what it gives is of no use
+    except Exception as error:  # the mechanism returned unusable values
         what = f"the mechanism {mechanism.mechanism} does not give what it must"
         raise plugin_error(what, type(mechanism).__module__, error) from error
 
@@ -204,7 +204,7 @@ def impulse_velocity(mechanism: Mechanism, direction: Direction, phi_cr: float) 
     """
     at = mechanism.coefficients(np.array([0.0, phi_cr]), direction)
     stored = mechanism.gravity * at.V[1] + at.U[1]
-    # Rounding may take it below zero if the structure is about to overturn by itself.
+    # By rounding, the energy may be negative if the structure is about to overturn by itself.
     return sqrt(2 * float(at.I[0]) * max(float(stored), 0.0)) / float(at.B[0])
 
 
@@ -274,13 +274,13 @@ def statics(mechanism: Mechanism, direction: Direction) -> Statics:
         if not mechanism.attached:
             raise
         phi_cr, why = None, f"its restoring moment does not vanish before the kinematic limit of {limit:.4g} rad"
-    way = np.linspace(0.0, limit if phi_cr is None else phi_cr, JUMP_SEARCH_STEPS + 1)
-    here = mechanism.coefficients(way if phi_cr is not None else way[:-1], direction)
+    rotations = np.linspace(0.0, limit if phi_cr is None else phi_cr, JUMP_SEARCH_STEPS + 1)
+    here = mechanism.coefficients(rotations if phi_cr is not None else rotations[:-1], direction)
     check_continuous(mechanism.mechanism, direction, here, mechanism.jumps)
     moment, slope = here.restoring(mechanism.gravity), here.stiffness(mechanism.gravity)
     departure = float("nan")
     if phi_cr is not None:
-        departure = float(np.abs(moment / moment[0] - (1 - way / phi_cr)).max())
+        departure = float(np.abs(moment / moment[0] - (1 - rotations / phi_cr)).max())
         rises = mechanism.bends and (slope >= 0).any()
         cause = ": what ties it stiffens it" if mechanism.attached else ""
         why = f"its restoring moment does not fall all the way from rest{cause}" if rises else ""

@@ -32,7 +32,7 @@ def _shown_as_it_is(name: str) -> str:
 
 Restitution = Annotated[float, Field(gt=0, le=1)]
 Name = Annotated[str, AfterValidator(_shown_as_it_is)]
-"""What a user calls something: shown on terminals, in pictures and on pages."""
+"""A name given by the user, shown on terminals, in plots and on pages."""
 
 
 MIN_BY_UNIT = {
@@ -141,7 +141,7 @@ class Described(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
     refused: ClassVar[Mapping[str, str]] = {}
-    """Keys that are no fields, such as those that will be one day, and what is said of them."""
+    """Keys that are refused, such as those of planned fields, with the message of each."""
 
     @model_validator(mode="before")
     @classmethod

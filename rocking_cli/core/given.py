@@ -18,7 +18,7 @@ from rocking_cli.errors import FieldError
 from rocking_cli.plugins.errors import blame
 
 KINEMATIC = "kinematic"
-"""What a file says of a rebound that follows from the shape."""
+"""Value of `rebound` in a file if it follows from the shape."""
 NEEDS_A_SIDE = "requires one_sided: otherwise the structure rocks through to the other side"
 
 
@@ -180,7 +180,7 @@ class Given(Described):
 
             raise FieldError(*of_arguments(type(self), error.errors(include_url=False), type(self).mechanism)) from None
 
-    # Pydantic then validates files and copies without calling it.
+    # With this mark, Pydantic validates files and copies without calling `__init__`.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
     @final

@@ -150,7 +150,7 @@ def _angle(ratio: Points) -> Reals:
     """Return the continuous angle [rad] of a rotating complex number, without jumps of 2 pi."""
     angle: Reals = np.angle(ratio)
     jumps = np.abs(np.diff(angle)).max(initial=0.0) >= np.pi
-    return np.unwrap(angle) if jumps else angle  # which costs as much as all the rest
+    return np.unwrap(angle) if jumps else angle  # unwrapping takes as long as all other steps
 
 
 def _cross(u: Points | np.complex128, v: Points | np.complex128) -> Reals:

@@ -25,7 +25,7 @@ MAX_PREDICTION_ERROR = 3e-3  # largest error of a prediction before the step is 
 MAX_RATE_ERROR = 0.1  # largest relative error of the prediction of x'; it is larger across a singular position
 MAX_STEP = 0.05  # longest step [rad]
 MIN_STEP = 1e-11  # shortest step: the motion ends there [rad]
-MAX_ITERATIONS = 12  # of Newton's method
+MAX_ITERATIONS = 12  # Newton's method
 CONVERGED_STEP = 1e-10  # relative step of Newton's method at which it has converged
 FLAT_ROTATION = np.pi / 2  # rotation at which the leading body lies flat [rad]
 CACHED_MOTIONS = 8
@@ -144,7 +144,7 @@ class LinkageMotion:
         scaled = [replace(joint, at=joint.at / self._size) for joint in joints]
         return Loops(self._centres, scaled, self._link_of)
 
-    # Whether it moves
+    # Degrees of freedom
 
     def _independent(self) -> NDArray[np.intp]:
         """Return the indices of as many linearly independent equations as there are unknowns, in increasing order.
@@ -156,12 +156,12 @@ class LinkageMotion:
         held = self._loops.matrix(np.zeros((1, self._loops.unknowns)))[0]
         matrix = np.vstack([held, self._turn_of_lead])
         self._check_rank(held, matrix)
-        chosen, left = [len(held)], matrix.copy()
+        chosen, remainder = [len(held)], matrix.copy()
         for _ in range(self._loops.unknowns - 1):
-            way = left[chosen[-1]] / np.linalg.norm(left[chosen[-1]])
-            for _ in range(2):  # once leaves rounding
-                left = left - np.outer(left @ way, way)
-            chosen.append(int(np.linalg.norm(left, axis=1).argmax()))
+            row = remainder[chosen[-1]] / np.linalg.norm(remainder[chosen[-1]])
+            for _ in range(2):  # the second pass removes the rounding error
+                remainder = remainder - np.outer(remainder @ row, row)
+            chosen.append(int(np.linalg.norm(remainder, axis=1).argmax()))
         return np.array(sorted(chosen))
 
     @property
@@ -314,7 +314,7 @@ class LinkageMotion:
             count = min(inside.size, -(-inside.size * self._loops.size // MAX_ENTRIES)) or 1
             each = map(self._followed, np.array_split(inside, count))
             x, dx, ddx = (np.concatenate(parts) for parts in zip(*each, strict=True))
-        else:  # how far it goes does not matter
+        else:  # at rest, the limit of the motion is not needed
             x, dx, ddx = (np.repeat(each[None], len(phi), axis=0) for each in self._first[1:])
         q, dq, ddq = (self._size * each for each in self._loops.places(x, dx, ddx))
         return [
@@ -332,11 +332,11 @@ class LinkageMotion:
         at = np.array([node.phi for node in self._nodes])
         if len(at) == 1:
             return np.repeat(self._first.x[None], len(phi), axis=0)
-        left = np.clip(np.searchsorted(at, phi, side="right") - 1, 0, len(at) - 2)
-        h = (at[left + 1] - at[left])[:, None]
-        t = (phi - at[left])[:, None] / h
+        interval = np.clip(np.searchsorted(at, phi, side="right") - 1, 0, len(at) - 2)
+        h = (at[interval + 1] - at[interval])[:, None]
+        t = (phi - at[interval])[:, None] / h
         x, dx, ddx = (np.stack([getattr(node, key) for node in self._nodes]) for key in ("x", "dx", "ddx"))
-        ends = [(x[k], h * dx[k], h**2 * ddx[k]) for k in (left, left + 1)]
+        ends = [(x[k], h * dx[k], h**2 * ddx[k]) for k in (interval, interval + 1)]
         guess = np.zeros_like(ends[0][0])
         for (value, slope, bend), s, sign in zip(ends, (t, 1 - t), (1, -1), strict=True):
             guess += (1 - 10 * s**3 + 15 * s**4 - 6 * s**5) * value
@@ -368,9 +368,9 @@ def _free(matrix: Reals) -> Reals:
     """Return a basis of the null space of a matrix, as rows."""
     if not len(matrix):
         return np.eye(matrix.shape[1])
-    _, values, ways = np.linalg.svd(matrix)
+    _, values, basis = np.linalg.svd(matrix)
     rank = int((values > RANK_TOLERANCE * values.max(initial=0.0)).sum())
-    return np.asarray(ways[rank:])
+    return np.asarray(basis[rank:])
 
 
 def _solved(matrix: Reals, right: Reals) -> Reals:

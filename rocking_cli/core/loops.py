@@ -151,7 +151,7 @@ class Loops:
         """Return the factors of the free positions of all trees in a point."""
         return np.eye(self.trees)[point.tree] if point.tree is not None else np.zeros(self.trees)
 
-    # What is left
+    # Loop equations
 
     def _gather(self, joints: Sequence[LinkageJoint], places: Sequence[_Sum]) -> None:
         """Set up the equations that close the loops, from the joints that are not in the tree of hinges.
@@ -249,9 +249,9 @@ class Loops:
         ddq = ((1j * ddpsi - dpsi**2) * e) @ self._A.T + ddu @ self._u.T
         return Places(q, dq, ddq)
 
-    def moving(self, ways: Reals) -> Bools:
+    def moving(self, directions: Reals) -> Bools:
         """Return which links move in any of the given directions of motion from rest, shape (links,)."""
-        still = np.zeros_like(ways)
-        psi, _ = self._parts(ways)
-        _, dq, _ = self.places(still, ways, still)
+        still = np.zeros_like(directions)
+        psi, _ = self._parts(directions)
+        _, dq, _ = self.places(still, directions, still)
         return np.asarray((np.abs(dq) + np.abs(psi)).max(axis=0) > 1e-6)

@@ -261,7 +261,7 @@ class Mechanism(Jointed):
 def _rotations(phi: Any) -> Reals:
     """Return rotations as an array of reals. Raises `InputError` if they are not numbers in an array."""
     try:
-        rotations = np.asarray(phi, dtype=np.float64)  # whole numbers too, which hold no sums of reals
+        rotations = np.asarray(phi, dtype=np.float64)  # integers become reals, as sums are added in place
     except (TypeError, ValueError):
         rotations = np.zeros(())
     if rotations.ndim == 0:
@@ -330,7 +330,7 @@ def check_one_sided(mechanism: Mechanism) -> None:
 
 def check_strength(mechanism: Mechanism) -> None:
     """Refuse a contact strength if the structure has no masses or no depth."""
-    if not isinstance(mechanism.strength, Strength):  # None, or a field of a plugin of that name
+    if not isinstance(mechanism.strength, Strength):  # a plugin may have its own field `strength`
         return
     if not mechanism.has_mass:
         raise RefusedFields((), "strength", NO_MASSES)
@@ -470,7 +470,7 @@ def doubtful_size(mechanism: Mechanism) -> str | None:
     try:
         with np.errstate(all="ignore"):
             size = extent(mechanism)
-    except Exception:  # a plugin may fail in any way; whoever uses it next says so
+    except Exception:  # a plugin may fail in any way; its next use reports it
         return None
     if MIN_USUAL_SIZE <= size <= MAX_USUAL_SIZE or not np.isfinite(size):
         return None

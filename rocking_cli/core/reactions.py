@@ -217,15 +217,15 @@ def parts(mechanism: Mechanism, direction: Direction) -> Mapping[str, int]:
     motions = mechanism.motion(np.array(COMPARED_ROTATIONS) * mechanism.limit(direction), direction)
     middle = sum(body.centroid for body in bodies) / len(bodies)
     size = max(abs(body.centroid - middle) for body in bodies) or 1.0
-    two = (middle - size, middle + size)  # points of a plane that moves say all of its motion
-    ways = [np.concatenate([motion.carry(point)[0] - point for point in two]) for motion in motions]
-    close = EQUAL_MOTION * max(float(np.abs(way).max()) for way in ways)
-    kinds = [np.zeros_like(ways[0])]
+    points = (middle - size, middle + size)  # two points define a plane motion
+    displacements = [np.concatenate([motion.carry(point)[0] - point for point in points]) for motion in motions]
+    close = EQUAL_MOTION * max(float(np.abs(displacement).max()) for displacement in displacements)
+    kinds = [np.zeros_like(displacements[0])]
     part_of: dict[str, int] = {}
-    for body, way in zip(bodies, ways, strict=True):
-        k = next((k for k, kind in enumerate(kinds) if np.abs(way - kind).max() <= close), len(kinds))
+    for body, displacement in zip(bodies, displacements, strict=True):
+        k = next((k for k, kind in enumerate(kinds) if np.abs(displacement - kind).max() <= close), len(kinds))
         if k == len(kinds):
-            kinds.append(way)
+            kinds.append(displacement)
         part_of[body.name] = k
     return part_of
 
@@ -234,7 +234,7 @@ def parts(mechanism: Mechanism, direction: Direction) -> Mapping[str, int]:
 class _Part:
     """Bodies that move as one, with the force and the moment about a point that its joints must exert on them."""
 
-    path: tuple[Points, Points, Points]  # of that point
+    path: tuple[Points, Points, Points]  # position of the point, and its first and second derivative
     dpsi: Reals
     force: Points
     moment: Reals
@@ -295,17 +295,18 @@ class _Moving:
         motion.
         """
         count, samples = len(self._parts), self._parts[0].force.size
-        size = max(abs(a.point - b.point) for a in self._joints for b in self._joints) or 1.0  # for the moments
+        size = max(abs(a.point - b.point) for a in self._joints for b in self._joints) or 1.0  # unit of the moments
         balance, turns = np.zeros((2 * count, len(unknown))), np.zeros((samples, count, len(unknown)))
         for column, (j, force) in enumerate(unknown):
             joint = self._joints[j]
             at = self.follow(Spot(next(name for name in joint.bodies[::-1] if self._number[name]), joint.point)).z
-            for k, sign in zip(self._numbers(joint)[::-1], (1, -1), strict=False):  # on the last body, and back
+            # The force acts on the last body, and its reaction on the other one.
+            for k, sign in zip(self._numbers(joint)[::-1], (1, -1), strict=False):
                 if not k:
                     continue
                 if force == UNIT_COUPLE:
                     turns[:, k - 1, column] = 1.0
-                    break  # what keeps the last body level is several, and turns none of them
+                    break  # several bodies keep the last one level, and none of them is turned
                 balance[2 * k - 2 : 2 * k, column] = sign * force.real, sign * force.imag
                 turns[:, k - 1, column] = sign * _cross((at - self._parts[k - 1].path[0]) / size, force)
         if np.linalg.matrix_rank(balance) < 2 * count:

@@ -86,14 +86,14 @@ def released(mechanism: Mechanism, direction: Direction, phi: Reals) -> Released
         If the forces do not follow from the motion.
     """
     contacts = mechanism.contacts(direction)
-    if not contacts:  # it names no joints
+    if not contacts:  # the mechanism names no joints
         return None
     _check_count(contacts, mechanism.pieces(direction))
     pieces = Pieces(mechanism, direction, np.asarray(phi, np.float64))
     rates, rows = pieces.rates(contacts)
     force, compliance = _solved(rates, pieces, pieces.demands())
     pressing = [pieces.pressing(contact) for contact in contacts if contact.pressed_by]
-    if pressing:  # loads, which never lift
+    if pressing:  # loads never lift off
         force = np.concatenate([force, np.stack(pressing, axis=1)], axis=1)
         compliance = np.concatenate([compliance, np.zeros((len(force), len(pressing)))], axis=1)
     return Released(contacts, _with_loads(contacts, rows), force, compliance)
@@ -123,7 +123,7 @@ def impulses(mechanism: Mechanism, ended: Direction) -> Reals | None:
     if not mechanism.rocks_both_ways:
         return None
     contacts = mechanism.contacts(ended.opposite)
-    if not contacts:  # it names no joints
+    if not contacts:  # the mechanism names no joints
         return None
     _check_count(contacts, mechanism.pieces(ended.opposite))
     rest = np.zeros(1)
@@ -370,7 +370,7 @@ class Pieces:
             shifts = self._shifts(other.name, *(push.spot for push in pushes))
             for push in pushes:
                 if self._moves(push.spot):
-                    along = np.exp(1j * np.angle(push.force))  # a unit vector for a force of zero too
+                    along = np.exp(1j * np.angle(push.force))  # a unit vector even if the force is zero
                     forces[..., ONE] -= np.abs(push.force)[:, None] * self._spread(push.spot, along, shifts)
         return forces
 

@@ -216,7 +216,7 @@ def respond_many(
         rows[:, kernels.START] = starts[runs.model, which]
     rows[:, [kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE]] = etas
     marks = np.full((len(runs), kernels.MARKS), np.nan)  # a run that is never computed has failed
-    most_impacts = DECISIVE_IMPACTS - 1 if only_peaks else MAX_IMPACTS  # it is left after more than these
+    most_impacts = DECISIVE_IMPACTS - 1 if only_peaks else MAX_IMPACTS  # a history ends after this number of impacts
     rows[:, kernels.STRUCTURE] = runs.model
     if len(runs):
         run = partial(run_deck, lay_out(models, motions), rtol=rtol, most_impacts=most_impacts, brief=True)

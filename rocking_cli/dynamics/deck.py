@@ -69,7 +69,7 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
     """
     status = marks[:, kernels.STATUS]
     passed, crossed = marks[:, kernels.PASSED], marks[:, kernels.CROSSED]
-    # What has passed the critical rotation for good has overturned, whatever opens later on.
+    # A structure past its critical rotation for good has overturned, whatever joint opens later.
     overturned = (status == kernels.OVERTURNED) & ~(passed < np.where(np.isnan(crossed), np.inf, crossed))
     failed = (status == kernels.STALLED) | np.isnan(status)
     unknown = np.isfinite(passed) & ~overturned & ~failed
@@ -116,7 +116,7 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
         length = max(u.size, ceil((v.size - 1) * v_dt / dt) + 1)
         places = (*us.add(u), *vs.add(v), *aheads.add(_strongest_to_come(np.abs(u), 1.0, length)))
         if any_vertical:
-            for row, strength in ((v_aheads, -v), (v_aboves, v)):  # beside the other
+            for row, strength in ((v_aheads, -v), (v_aboves, v)):  # vertical acceleration, up and down
                 row.add(_strongest_to_come(np.maximum(strength, 0.0), dt / v_dt, length))
         records.append((*places, dt, v_dt))
     return kernels.Deck(

@@ -16,12 +16,12 @@ from rocking_cli.dynamics.outcome import UNCHECKED_FIELDS, Outcome
 from rocking_cli.dynamics.pulse_motion import COLUMNS, Side
 from rocking_cli.errors import InputError, SolverError
 
-if TYPE_CHECKING:  # numpy: only who has a structure and a pulse has paid for it
+if TYPE_CHECKING:  # avoid importing numpy, which only structures and pulses need
     from rocking_cli.core import Equivalence
     from rocking_cli.excitation.pulses import Pulse, Segment
 
 MAX_IMPACTS = 5_000  # eta = 0.995 rests after 2800
-# How many cycles they last, and their phase at the start: those of `rocking_cli.excitation.pulses`, without its numpy.
+# Number of cycles and initial phase, as in `rocking_cli.excitation.pulses`, which imports numpy.
 SHAPE_CYCLES = {"sine": (1.0, 0.0), "cosine": (1.0, pi / 2), "half_sine": (0.5, 0.0), "rectangular": (1.0, pi / 2)}
 MAX_INPUT = 1e6  # a or omega, and 1/omega
 MAX_EXPONENT = 690.0  # a larger exponential, times omega^2, overflows
@@ -248,7 +248,7 @@ def closed_form(a: float, omega: float, eta: float) -> ClosedForm:
     root = sqrt(a * a - 1)
     end = (2 * pi - asin(1 / a)) / omega  # tau from uplift to the end of the pulse
     if end + log(a) > MAX_EXPONENT:
-        # The growing term decides all: D0 is beyond numbers, with the sign of root - omega.
+        # The growing term governs: D0 overflows, with the sign of root - omega.
         conditions = _conditions(True, root >= omega, root <= omega)
         return ClosedForm(None, None, False if all(conditions.values()) else None, conditions)
     grow, decay = exp(end), exp(-end)
@@ -305,5 +305,5 @@ def exact_pulse(a: float, omega: float, eta: float, shape: str = "sine") -> Exac
     cycles, phase = SHAPE_CYCLES[shape]
     side = Side(1.0, 1.0, 1.0, eta)
     duration = 2 * pi / omega * cycles
-    # To the left, so that the positive direction is the first.
+    # The pulse starts to the left, so that the structure first rocks in the positive direction.
     return solve((side, side), [(0.0, duration, -a, 0.0 if shape == "rectangular" else omega, phase)])

@@ -127,9 +127,9 @@ def follow(
     directions, NaN for that of the model.
     """
     every = motion.every if motion is not None else 1
-    dt = every * motion.dt if motion is not None else RELEASE_DT  # between the samples that are kept
+    dt = every * motion.dt if motion is not None else RELEASE_DT  # interval of the recorded samples
     npts = 0
-    if motion is not None:  # the samples that are kept cover both components
+    if motion is not None:  # the recorded samples cover both components
         longest = motion.vertical.duration if motion.vertical is not None else 0.0
         npts = (max(motion.npts, ceil(longest / motion.dt) + 1) - 1) // every + 1
     samples = max(npts, 1) + round(min(tail / dt, 2.0 * MOST_SAMPLES))
@@ -156,7 +156,7 @@ def follow(
         raise SolverError(
             f"the {model.name} time history could not be simulated past t = {end:.6g} s: the steps became too small"
         )
-    if outcome.unknown[0]:  # nothing from there on is a result
+    if outcome.unknown[0]:  # samples after this time are not valid
         until = float(outcome.known_to[0])
         beyond = np.arange(samples) * dt > until
         phi[beyond] = rate[beyond] = np.nan
@@ -219,7 +219,7 @@ def out_of_step(
             there[:, kernels.STRUCTURE] = 0
             there[:, kernels.START] = [column.q(tilt) for tilt in tilts[mine].tolist()]
             for place, eta, of in zip((kernels.ETA_POSITIVE, kernels.ETA_NEGATIVE), column.eta, model.eta, strict=True):
-                there[:, place] = np.clip(eta + there[:, place] - of, MIN_COLUMN_ETA, 1.0)  # NaN stays
+                there[:, place] = np.clip(eta + there[:, place] - of, MIN_COLUMN_ETA, 1.0)  # `clip` keeps NaN
             deck = lay_out([column], motions)
             run = partial(run_deck, deck, there, column_marks, rtol=rtol, most_impacts=most_impacts, brief=True)
             in_parts(run, len(there), COLUMNS_PER_TASK, threads, None)

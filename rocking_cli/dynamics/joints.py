@@ -27,15 +27,15 @@ from rocking_cli.text import in_short
 FORCE_CELLS = 32  # cells of the forces from rest to phi_cr
 REDUNDANT_CELLS = 40  # cells where joints are redundant, whose modes take longer to find
 MAX_CELLS = 128
-CELL_SPLITS = 4  # cells of the certain bounds in one of the forces
-ZERO_TENSION = 1e-9  # of the weight: a force that is missing by rounding alone
-MAX_OPENING_STEP = 3e-3  # of 1/p: the longest step in which openings of a small structure are advanced
-MAX_ACCELERATION = 1e6  # m/s2: more than any ground acceleration
-NO_BOUNDS = (np.inf, -1.0)  # all joints bear under no q.^2 at all
-WHOLE_RANGE = (-np.inf, np.inf)  # no joint fails at rest, whatever u_g''
-MAX_MISSING_WEIGHTS = 1e3  # weights: a force that no motion of the ground takes up
-BOUND_MARGIN = 0.01  # of the width of the certain bounds, which the cubics may leave between two of their nodes
-MAX_LISTED_NAMES = 4  # names of a kind: the hinges of a frame or an arch in both directions
+CELL_SPLITS = 4  # cells of the certain bounds per cell of the forces
+ZERO_TENSION = 1e-9  # over the weight; a smaller tension is rounding
+MAX_OPENING_STEP = 3e-3  # over 1/p, for openings of small structures
+MAX_ACCELERATION = 1e6  # m/s2, more than any ground acceleration
+NO_BOUNDS = (np.inf, -1.0)  # stands for: no q.^2 keeps all joints closed
+WHOLE_RANGE = (-np.inf, np.inf)  # u_g'' at which no joint fails at rest
+MAX_MISSING_WEIGHTS = 1e3  # a force that no ground motion overcomes
+BOUND_MARGIN = 0.01  # over the width of the certain bounds, as cubics may cross them between nodes
+MAX_LISTED_NAMES = 4  # enough for the hinges of a frame or an arch in both directions
 PLACE_KINDS = (("foot", "feet"), ("hinge", "hinges"), ("closed joint", "closed joints"))
 
 
@@ -262,7 +262,7 @@ def joints_of(
     if len(released_sides) < len(sides) or not all(one.contacts for one in released_sides):
         return None
     still = resting(mechanism)
-    back = still.modes if mechanism.propped else ()  # what is pushed back goes on as the structure rocks
+    back = still.modes if mechanism.propped else ()  # supports keep being pushed back as the structure rocks
     known = [*released_sides, still.closed] if still.closed is not None else released_sides
     labels = list(dict.fromkeys(
         contact.label for one in known
@@ -288,7 +288,7 @@ def joints_of(
             constant = np.array([[*mode.force, mode.compliance] for mode in back])
             whole = np.concatenate([whole, np.tile(constant, (len(whole), 1, 1))], axis=1)
             there = Pieces(mechanism, mechanism.directions[0], np.zeros(1))
-            # Its velocities are -t before and eta t after.
+            # The velocities of the supports are -t before an impact and eta t after it.
             struck[d, force.shape[1] : whole.shape[1]] = [
                 [float(there.momentum(there.dq)[0] @ mode.velocity)] * 2 for mode in back
             ]
@@ -333,11 +333,11 @@ def _at_rest(still: Rest, labels: Sequence[str], bearing: Reals, weight: float) 
         if mode.opens:
             rest[j, 0] = *force, mode.compliance
             continue
-        # It slides in one sense alone: in the other a force of MANY weights is never missing.
+        # It slides in one sense only: in the other sense the large force is never missing.
         bearing[j, 0] = 1.0
         rest[j, 0, :3] = force * [1.0, 0.0, 1.0] + [MAX_MISSING_WEIGHTS * weight, 0.0, 0.0]
         rest[j, 2] = MAX_MISSING_WEIGHTS * weight, -force[1], 0.0, mode.compliance
-    plane = np.array(planes).reshape(1, -1, 3) * [1.0, 1.0, 0.0]  # without v_g'', as rates are none
+    plane = np.array(planes).reshape(1, -1, 3) * [1.0, 1.0, 0.0]  # v_g'' is left out, as the structure is at rest
     low, high = _range(plane, np.zeros(1))
     return rest, (float(low[0]), float(high[0]))
 
@@ -382,7 +382,7 @@ def _cubics(values: Reals) -> Reals:
     n = len(values)
     cubics = np.empty((n - 1, *values.shape[1:], 4))
     first = np.clip(np.arange(n - 1) - 1, 0, n - 4)
-    for start in (0, 1, 2):  # where in its four nodes a cell lies
+    for start in (0, 1, 2):  # position of a cell among its four nodes
         mine = np.flatnonzero(np.arange(n - 1) - first == start)
         nodes = np.arange(4.0) - start
         inverse = np.linalg.inv(np.vander(nodes, 4, increasing=True))
@@ -516,7 +516,7 @@ def checked_joints(mechanism: Mechanism) -> Sequence[str]:
     mechanism : Mechanism
         The structure.
     """
-    letters: dict[str, set[str]] = {}  # of each joint; none if it stays closed in both directions
+    letters: dict[str, set[str]] = {}  # letters of each joint; empty if it stays closed in both directions
     feet = set()
     for direction in mechanism.directions:
         drawn = {joint.point: joint.letter for joint in mechanism.joints(direction) if not joint.is_guide}

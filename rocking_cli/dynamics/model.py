@@ -40,11 +40,8 @@ MODELS: tuple[ModelName, ...] = ("nonlinear", "linear1", "linear2")
 
 FALLEN_ROTATION = 1e6  # rad: no realistic acceleration turns a linear block back from there
 EQUAL_TABLES = 1e-9  # difference of the tables of two directions by rounding, over the largest value
-KINEMATIC_SPREAD, MEASURED_SPREAD = (
-    0.05,
-    0.03,
-)  # of a restitution that follows from the shape, and of a given one
-SLENDERNESS_SPREAD = 0.10  # of ln slenderness
+KINEMATIC_SPREAD, MEASURED_SPREAD = 0.05, 0.03  # restitution from the shape, and given restitution
+SLENDERNESS_SPREAD = 0.10  # ln slenderness
 REST_RATE = 1e-6  # post-impact rate over p phi_cr below which a structure is at rest: it would rock to 5e-13 phi_cr
 
 
@@ -153,7 +150,7 @@ class Model:
             return False
         pairs = ((of[:, 0], of[:, 1]) for of in (self.forces, self.certain, self.held) if len(of))
         same = all(np.allclose(one, other, rtol=0, atol=EQUAL_TABLES * np.abs(one).max()) for one, other in pairs)
-        one, other = self.numbers  # each in a unit of its own
+        one, other = self.numbers  # the numbers have different units
         return same and np.allclose(one, other, rtol=EQUAL_TABLES, atol=EQUAL_TABLES**2)
 
     def q(self, ratio: float) -> float:
@@ -172,7 +169,7 @@ NO_REBOUND = Problem(
 
 
 UNSUPPORTED_NEEDS = {"has_memory": "its past deformation (memory)", "has_rate": "its rate of deformation"}
-"""What the kernel does not follow, on which the force of an element may depend, by the attribute that states it."""
+"""Dependence of an element's force that the kernel does not support, by the attribute of the element."""
 
 
 def check_elements(mechanism: Mechanism) -> None:
@@ -245,7 +242,7 @@ def build(
             model = with_held(model, mechanism, blocks)
     model = replace(model, scatter=_scatter(mechanism))
     if not mechanism.rocks_both_ways:
-        # It never uplifts in the other direction, and it rebounds at an impact.
+        # A one-sided structure never uplifts in the other direction, and rebounds at an impact.
         direction, numbers = mechanism.directions[0], model.numbers.copy()
         numbers[0 if direction < 0 else 1, LAMBDA] = np.inf
         numbers[:, ONE_SIDED] = 1.0
@@ -287,7 +284,7 @@ def nonlinear_model(mechanism: Mechanism, statics: tuple[Statics, Statics], etas
         row[REST] = REST_RATE * p * side.reference / table.rest_rate
         row[Q_END], row[PER_CELL], row[P], row[GRAVITY] = table.end, 1 / table.cell, p, mechanism.gravity
         rest = mechanism.coefficients(np.zeros(1), direction)
-        row[HELD] = rest.Q[0] / (mechanism.gravity * rest.B[0])  # the part of lambda that does not scale with g
+        row[HELD] = rest.Q[0] / (mechanism.gravity * rest.B[0])  # part of lambda that does not scale with g
         numbers.append(row)
     forces, angles, certain = (
         np.stack([getattr(table, part) for table in tables], axis=1) for part in ("forces", "angles", "certain")
@@ -344,7 +341,7 @@ def linear_model(label: str, name: ModelName, blocks: tuple[EquivalentBlock, Equ
     gravity : float
         Gravitational acceleration [m/s2].
     """
-    # q = phi here; one cell holds the straight line and the constant that are all of its forces.
+    # Here q = phi, and the forces are linear or constant, so that one cell is enough.
     numbers, forces = [], np.zeros((1, 2, 8))
     for d, block in enumerate(blocks):
         kappa = block.kappa1 if name == "linear1" else block.kappa2

@@ -27,20 +27,20 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array as Sparse
 
 Integers = NDArray[np.intp]
-EDGE_ROTATIONS = 5  # rotations up to phi_cr at which edges are sought
-FIRST_DIRECTIONS = 8  # directions in which the set is first looked at; between corners it is then refined
-MAX_CORNERS = 24  # of a set
-MAX_SEARCHED = 30.0  # times the acceleration at uplift, and the square of the fastest rate: beyond, nothing is sought
-ZERO_VELOCITY = 1e-6  # of the largest velocity at a joint: one that does not move
-RANK_TOLERANCE = 1e-7  # of the largest singular value: a mode is the only one of its pattern
-MAX_THROWN_MODES = 6  # modes of one impact
-CLOSING_TOLERANCE = 1e-5  # of the largest velocity at a joint: by so much one may seem to close
-ZERO_FACTOR = 1e-14  # of the largest factor: one that is none
+EDGE_ROTATIONS = 5  # rotations up to phi_cr at which edges are searched
+FIRST_DIRECTIONS = 8  # first search directions; more follow between corners
+MAX_CORNERS = 24  # corners of the admissible set
+MAX_SEARCHED = 30.0  # search bounds, over the uplift acceleration and the square of the fastest rate
+ZERO_VELOCITY = 1e-6  # over the largest velocity at a joint
+RANK_TOLERANCE = 1e-7  # over the largest singular value; a pattern with larger ones has a single mode
+MAX_THROWN_MODES = 6  # modes of a single impact
+CLOSING_TOLERANCE = 1e-5  # over the largest velocity at a joint
+ZERO_FACTOR = 1e-14  # over the largest factor
 MAX_PROGRAMME_FORCE = 1e5  # the solver's tolerances are absolute, and forces of light pieces are to count
-ZERO_CROSS = 1e-12  # product of two lines that do not meet
-EQUAL_CORNERS = 1e-6  # of the set: corners that are one
-MIN_SINE_SQUARED = 1e-6  # square of the sine of the angle between directions that count as two
-MIN_DISTANCE_SQUARED = 1e-10  # of lines of action that do not pass through one point, over their arms squared
+ZERO_CROSS = 1e-12  # cross product of two lines that count as parallel
+EQUAL_CORNERS = 1e-6  # distance of corners that coincide, over the size of the admissible set
+MIN_SINE_SQUARED = 1e-6  # between two different directions
+MIN_DISTANCE_SQUARED = 1e-10  # for lines of action without a common point, over their arms squared
 
 
 class Pattern(NamedTuple):
@@ -110,14 +110,14 @@ def modes(mechanism: Mechanism, direction: Direction, phi: Reals, critical: floa
     existing = [mode for mode in known.values() if mode is not None]
     labels = [Contact((None, None), (0j,), name=there.label(mode)) for mode in existing]
     names: dict[str, int] = {}
-    for k, label in enumerate(labels):  # several modes may open one joint most
+    for k, label in enumerate(labels):  # number modes that open the same joint most
         names[label.name] = names.get(label.name, 0) + 1
         again = f" ({names[label.name]})" if names[label.name] > 1 else ""
         labels[k] = Contact((None, None), (0j,), name=f"{label.name}{again}")
     force = np.stack([mode.force for mode in existing], axis=1) if existing else np.zeros((phi.size, 0, 4))
     compliance = np.stack([mode.compliance for mode in existing], axis=1) if existing else np.zeros((phi.size, 0))
     struck = None
-    if jump is not None:  # a mode that does not exist at rest has no impulse that could be missing
+    if jump is not None:  # a mode that does not exist at rest has no impulse
         struck = np.array([mode.velocity[0] @ jump * mode.exists[0] for mode in existing]).reshape(-1, 2)
     rows: list[tuple[tuple[int, ...], int | None]] = [((k,), k) for k in range(len(existing))]
     return Modes(Released(labels, rows, force, compliance), struck)
@@ -156,8 +156,8 @@ class _Placed:
         self._centres, self._turned = self.pieces.centres(), self.pieces.turned()
         count = len(self.rates.pieces)
         self.one_sided = np.zeros(count, bool)
-        self.shear = np.full(count, -1)  # of each row: that of its contact, if it may slide
-        self.friction = np.zeros(count)  # and the coefficient
+        self.shear = np.full(count, -1)  # for each row, the shear row of its contact if it may slide
+        self.friction = np.zeros(count)  # coefficient of friction of that contact
         for contact, (normal, shear) in zip(contacts, self.rows, strict=True):
             self.one_sided[list(normal)] = True
             if shear is not None and contact.friction is not None:
@@ -209,9 +209,8 @@ class _Placed:
         speed = np.abs(self.rates.rotations([first]).at(mode.velocity[first][None])[0])
         speeds = [max((speed[row] for row in (*normal, *([] if shear is None else [shear]))), default=0.0)
                 for normal, shear in self.rows]  # fmt: skip
-        return self.contacts[
-            int(np.argmax(np.array(speeds) >= (1 - ZERO_VELOCITY) * max(speeds)))
-        ].label  # the first of several
+        # The first of contacts that open equally fast.
+        return self.contacts[int(np.argmax(np.array(speeds) >= (1 - ZERO_VELOCITY) * max(speeds)))].label
 
     def jump(self, mechanism: Mechanism) -> Reals | None:
         """Return the change of momentum at an impact, over the rate before: a constant, and the factor of eta."""
@@ -264,9 +263,9 @@ class _Placed:
             return None
         force = np.einsum("nc,ncf->nf", velocity, self.demand)
         force[~exists] = 0.0
-        force[~exists, ONE] = np.abs(self.demand[0, :, ONE]).sum()  # so large that it never opens there
+        force[~exists, ONE] = np.abs(self.demand[0, :, ONE]).sum()  # so large that the joint never opens there
         plain = velocity
-        if any(pattern.slips):  # what slides does not dilate as it goes
+        if any(pattern.slips):  # sliding joints do not dilate as the motion continues
             without = self._alone(pattern, dilates=False)
             if without is not None:
                 plain = without[0] / np.abs(self.rates.at(without[0])).max(axis=1)[:, None]
@@ -293,14 +292,14 @@ class _Placed:
         rocking /= np.linalg.norm(rocking, axis=1, keepdims=True)
         matrix = np.concatenate([one.contracted(held).dense() / scale, rocking[:, None, :]], axis=1)
         at_rest = _values(np.linalg.svd(matrix[0], compute_uv=False), matrix)
-        if at_rest[-2] < RANK_TOLERANCE * at_rest[0]:  # as of most patterns of many pieces
+        if at_rest[-2] < RANK_TOLERANCE * at_rest[0]:  # true of most patterns of many pieces
             return None
         _, s, vt = np.linalg.svd(matrix, full_matrices=matrix.shape[1] < matrix.shape[2])
         padded = _values(s, matrix)
         motion = one.spread(vt[:, -1] / scale)
         flips = np.sign(np.einsum("nc,nc->n", motion[1:], motion[:-1]))
         motion[1:] *= np.cumprod(np.where(flips == 0, 1.0, flips))[:, None]
-        # Where its rows leave more, or nothing, it is what it was before.
+        # At rotations where the motion is not unique, or does not exist, use the last one before.
         good = (padded[:, -2] >= RANK_TOLERANCE * padded[:, 0]) & (padded[:, -1] <= ZERO_VELOCITY * padded[:, 0])
         last = np.maximum.accumulate(np.where(good, np.arange(len(good)), 0))
         return motion[last], good
@@ -337,13 +336,13 @@ def _edges(there: _Placed, k: int, unit: Reals, known: Mapping[Pattern, _Followe
     known : mapping of Pattern to _Followed or None
         The modes found so far; None for patterns that are no mode.
     """
-    corners: list[tuple[float, Reals]] = []  # the direction that found each, and its place
-    ways = [2 * np.pi * i / FIRST_DIRECTIONS for i in range(FIRST_DIRECTIONS)]
-    while ways:
-        way = ways.pop()
-        along = np.array([np.cos(way), np.sin(way)])
+    corners: list[tuple[float, Reals]] = []  # search direction and position of each corner
+    angles = [2 * np.pi * i / FIRST_DIRECTIONS for i in range(FIRST_DIRECTIONS)]
+    while angles:
+        angle = angles.pop()
+        along = np.array([np.cos(angle), np.sin(angle)])
         if corners and _farthest(along, _lines(known, k, unit)) <= max(at @ along for _, at in corners) + EQUAL_CORNERS:
-            continue  # no mode lets it go beyond that corner
+            continue  # the known modes allow nothing beyond that corner
         solved = _corner(there, k, along / unit, unit)
         if solved is None:
             continue
@@ -352,14 +351,14 @@ def _edges(there: _Placed, k: int, unit: Reals, known: Mapping[Pattern, _Followe
             yield velocity
         if any(np.abs(place - other).max() <= EQUAL_CORNERS for _, other in corners) or len(corners) >= MAX_CORNERS:
             continue
-        corners.append((way, place))
+        corners.append((angle, place))
         middle = np.mean([each for _, each in corners], axis=0)
         corners.sort(key=lambda corner: float(np.arctan2(*(corner[1] - middle)[::-1])))
         at = next(i for i, (_, other) in enumerate(corners) if other is place)
         for one, other in ((corners[at - 1][1], place), (place, corners[(at + 1) % len(corners)][1])):
             side = other - one
             if np.abs(side).max() > EQUAL_CORNERS:
-                ways.append(float(np.arctan2(-side[0], side[1])))
+                angles.append(float(np.arctan2(-side[0], side[1])))
 
 
 def _lines(known: Mapping[Pattern, _Followed | None], k: int, unit: Reals) -> Reals:
@@ -378,14 +377,14 @@ def _lines(known: Mapping[Pattern, _Followed | None], k: int, unit: Reals) -> Re
 def _farthest(along: Reals, lines: Reals) -> float:
     """Return the largest extent along a direction within the bounds; infinity if they leave no point."""
     one, other = np.triu_indices(len(lines), 1)
-    crossings = np.cross(lines[one], lines[other])  # as a + b x + c y is a product with (1, x, y)
+    crossings = np.cross(lines[one], lines[other])  # a + b x + c y as a product with (1, x, y)
     meet = np.abs(crossings[:, 0]) > ZERO_CROSS
     points = crossings[meet] / crossings[meet, :1]
     inside = (points @ lines.T >= -EQUAL_CORNERS * (1 + np.abs(lines[:, 0]))).all(axis=1)
     return float((points[inside, 1:] @ along).max(initial=-np.inf)) if inside.any() else np.inf
 
 
-def _corner(there: _Placed, k: int, way: Reals, unit: Reals) -> tuple[Reals, Reals | None] | None:
+def _corner(there: _Placed, k: int, along: Reals, unit: Reals) -> tuple[Reals, Reals | None] | None:
     """Return the farthest point of the admissible set in one direction, and the mode that opens there.
 
     A linear programme finds the point (u_g'', phi.^2), divided by `unit`; the mode is its dual solution. The result is
@@ -401,7 +400,7 @@ def _corner(there: _Placed, k: int, way: Reals, unit: Reals) -> tuple[Reals, Rea
     pushed = -demand[:, [PUSH, RATE]] * unit / scale[:, None]
     low = np.where(np.arange(count) < press, 0.0, -np.inf)
     solved = linprog(
-        np.append(np.zeros(count), -way * unit), A_eq=hstack([rays.T, coo_array(pushed)], format="csc"),
+        np.append(np.zeros(count), -along * unit), A_eq=hstack([rays.T, coo_array(pushed)], format="csc"),
         b_eq=demand[:, ONE] / scale,
         bounds=[*((each, None) for each in low), (-MAX_SEARCHED, MAX_SEARCHED), (0.0, MAX_SEARCHED)],
         method="highs-ds",
@@ -411,9 +410,8 @@ def _corner(there: _Placed, k: int, way: Reals, unit: Reals) -> tuple[Reals, Rea
     place = np.asarray(solved.x[count:])
     velocity = -np.asarray(solved.eqlin.marginals) / scale
     constant, *others = velocity @ demand[:, [ONE, PUSH, RATE]] * np.array([1.0, *unit])
-    bounds_it = (
-        np.abs(others).max() > ZERO_VELOCITY
-    )  # of a direction of length 1; else it is rounding: how far is looked does
+    # The direction has length 1; a smaller value is rounding, and a search bound limits the point.
+    bounds_it = np.abs(others).max() > ZERO_VELOCITY
     at_edge = abs(constant + others @ place) <= EQUAL_CORNERS * float(np.abs(velocity) @ np.abs(demand[:, ONE]) or 1.0)
     return place, there.turned(velocity / unit_force, k, -1) if bounds_it and at_edge else None
 
@@ -424,7 +422,7 @@ def _thrown(there: _Placed, jump: Reals) -> Iterator[Reals]:
     from scipy.sparse import csr_array, vstack
 
     (rays, press), rates, scale = there.rays(0), there.sparse(0), there.pieces.scale
-    total = jump.sum(axis=1)  # with all of the rate kept: the most that is thrown
+    total = jump.sum(axis=1)  # impulses without any loss of rate, which open joints the most
     normals = rates[there.one_sided]
 
     def scaled(rows: Sparse) -> Sparse:
@@ -447,7 +445,7 @@ def _thrown(there: _Placed, jump: Reals) -> Iterator[Reals]:
             return
         velocity = np.asarray(solved.x) / scale
         yield velocity
-        held = vstack([held, normals[[int(np.argmax(normals @ velocity))]]])  # the next keeps that end shut
+        held = vstack([held, normals[[int(np.argmax(normals @ velocity))]]])  # the next mode keeps that end closed
 
 
 @dataclass(frozen=True, eq=False)
@@ -519,8 +517,8 @@ def stuck(held: Rates, centres: Points) -> Stuck:
     from scipy.sparse.csgraph import connected_components
 
     count = held.count
-    ends = np.where(held.pieces == GROUND, count, held.pieces)  # the ground comes after all
-    first = np.where(ends[:, 0] == count, 1, 0)  # of a row: a side that is a piece
+    ends = np.where(held.pieces == GROUND, count, held.pieces)  # the ground is the last
+    first = np.where(ends[:, 0] == count, 1, 0)  # for each row, a side that is a piece and not the ground
     row = np.arange(len(ends))
     wrench, place = held.factors[:, row, first], centres[:, np.minimum(ends[row, first], count - 1)]
     label = np.arange(count + 1)
@@ -530,7 +528,7 @@ def stuck(held: Rates, centres: Points) -> Stuck:
         pairs, first, number = np.unique(
             np.array([low[apart], high[apart]]), axis=1, return_index=True, return_inverse=True
         )
-        # Their wrenches about one point for each pair, near its joints.
+        # Wrenches about one point for each pair, near its joints.
         number = number.ravel()
         about = _about(wrench[:, apart], place[:, apart] - place[:, apart[first[number]]])
         joined = pairs[:, _leave_nothing(number, about)]

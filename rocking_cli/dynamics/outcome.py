@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 from rocking_cli import names
 
-if TYPE_CHECKING:  # numpy: who asks for one exact motion has not paid for it
+if TYPE_CHECKING:  # avoid importing numpy, which a single exact motion does not need
     import numpy as np
     from numpy.typing import NDArray
 
@@ -117,8 +117,8 @@ class Outcome(Generic[Flags, Counts, Numbers]):
     @property
     def at_rest(self) -> Flags:
         """Whether the structure came to rest in the end, or never uplifted."""
-        left: Any = self.fell | self.still_rocking | self.failed | self.unknown  # type: ignore[operator]
-        return left ^ True  # type: ignore[no-any-return]
+        moved_or_unknown: Any = self.fell | self.still_rocking | self.failed | self.unknown  # type: ignore[operator]
+        return moved_or_unknown ^ True  # type: ignore[no-any-return]
 
     @property
     def lifted(self) -> Flags:
@@ -158,8 +158,8 @@ UNCHECKED_FIELDS: dict[str, Any] = {
 """The fields of a model that has no joints to be checked, such as an equivalent block."""
 
 OneOutcome: TypeAlias = "Outcome[bool, int, float]"
-"""Of one motion."""
+"""Outcome of one motion."""
 Outcomes: TypeAlias = "Outcome[NDArray[np.bool_], NDArray[np.int64], NDArray[np.float64]]"
-"""Of many motions, one a place."""
+"""Outcomes of many motions, as arrays."""
 
 OUTCOME_FIELDS = tuple(field.name for field in fields(Outcome))

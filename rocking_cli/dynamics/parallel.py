@@ -48,7 +48,7 @@ def in_parts(
                 part.result()
                 if progress is not None:
                     progress(parts[part])
-        except BaseException:  # an interrupt: what has not begun is not begun
+        except BaseException:  # after an interrupt, no further part is started
             pool.shutdown(cancel_futures=True)
             raise
 
@@ -83,7 +83,7 @@ def in_processes(work: Callable[[int, int], Any], count: int, size: int, process
     Refused
         If the system ended a process.
     """
-    # Whatever threads and locks there are here, a process begins without them.
+    # A spawned process inherits no threads or locks.
     pool = ProcessPoolExecutor(processes, get_context("spawn"), _begin, (work,))
     try:
         parts = {pool.submit(_part, first, min(first + size, count)): first for first in range(0, count, size)}
@@ -99,9 +99,9 @@ def _begin(work: Callable[[int, int], Any]) -> None:
     """Prepare a process before its first part of the work."""
     global _work
     _work = work
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the one that began it ends it
-    sys.stdout = sys.stderr  # plugins print
-    warnings.simplefilter("ignore")  # issued once, where the work was requested
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process ends this one
+    sys.stdout = sys.stderr  # plugins may print
+    warnings.simplefilter("ignore")  # the parent process issues each warning once
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 

@@ -21,7 +21,7 @@ from rocking_cli.core.kinematics import Direction, Reals
 from rocking_cli.core.mechanism import Mechanism
 from rocking_cli.core.released import ONE, PUSH, Pieces, Released, Undetermined, inverted, released
 
-RELATIVE_TOLERANCE = 1e-6  # of coinciding points, over the size of the structure; of equal accelerations, over lambda
+RELATIVE_TOLERANCE = 1e-6  # equal points, over the size of the structure; equal accelerations, over lambda
 MAX_ACCELERATION_G = 30.0  # stronger ground accelerations are not analysed
 ZERO_MISSING_FORCE = 1e-9  # over the weight; a smaller missing force is rounding
 FEET_PLACE = "the ground and the feet"
@@ -125,7 +125,7 @@ def resting(mechanism: Mechanism) -> Rest:
         return known._replace(modes=[mode for mode in first_modes if mode is not None])
     (direction,) = mechanism.directions
     known = Rest(None, [] if whole is None else [_slides_out(whole, there, direction)])
-    if any(each.held is None and len(each.points) == 1 for each in closed):  # its whole face is not known
+    if any(each.held is None and len(each.points) == 1 for each in closed):  # only one point of the face is known
         return known._replace(known=len(mechanism.bodies()) == 1)
     mode = _first(mechanism, there, closed, direction, known, _leaning(mechanism, closed, direction))
     return known if mode is None else known._replace(modes=[*known.modes, mode])
@@ -145,7 +145,7 @@ def _closed(contacts: Sequence[Contact], near: float) -> list[Contact] | None:
         if known.pieces != each.pieces:
             return None
         apart = (each.points[0] - known.points[0]) * known.normal.conjugate()
-        if each.held == "slide" and abs(apart.imag) > near:  # two lines of action
+        if each.held == "slide" and abs(apart.imag) > near:  # the guides have different lines of action
             return None
         if each.held is None:
             new = [at for at in each.points if min(abs(at - old) for old in known.points) > near]
@@ -162,7 +162,7 @@ def _as_one(mechanism: Mechanism, there: Pieces, closed: Sequence[Contact]) -> R
     level = all(contact.pieces[0] is None and abs(contact.normal - 1j) < RELATIVE_TOLERANCE for contact in feet)
     if sideways or not hung or not level or len(friction) != 1 or None in friction:
         return None
-    total = there.held_still()[0].reshape(-1, 3, 4).sum(axis=0)  # over the pieces
+    total = there.held_still()[0].reshape(-1, 3, 4).sum(axis=0)  # sum over the pieces
     force = np.stack([total[1], total[0]])[None]  # N, T
     mass = there.mass[0, :, 0, 0].sum()
     foot = Contact((None, None), (0j,), friction=friction.pop(), name=FEET_PLACE)
@@ -260,7 +260,7 @@ def _weakest(
     low, high = np.full(count, -np.inf), np.full(count, np.inf)
     limits: list[Reals] = []
     at = 0
-    borne: dict[int, tuple[float, Reals]] = {}  # the row of a guide under a load, its friction and the load
+    borne: dict[int, tuple[float, Reals]] = {}  # key: row of a guide under a load; value: its friction and the load
     for contact, (normal, shear) in zip(closed, rows, strict=True):
         low[list(normal)] = 0.0
         if contact.pressed_by:
@@ -268,9 +268,9 @@ def _weakest(
             low[at], high[at] = np.array([-1, 1]) * (contact.friction or 0.0) * load[ONE] / unit
             borne[at] = contact.friction or 0.0, load
         elif shear is not None and contact.friction is not None:
-            for way in (1.0, -1.0):
+            for sign in (1.0, -1.0):
                 limit = np.zeros(count + 1)
-                limit[shear], limit[list(normal)] = way, -contact.friction
+                limit[shear], limit[list(normal)] = sign, -contact.friction
                 limits.append(limit)
         at += contact.forces
     pushed = -demand[:, PUSH] * gravity / unit / scale
@@ -294,7 +294,7 @@ def _weakest(
     fastest = speed.max()
     plain = _undilated(jacobian, closed, rows, velocity, scale)
     presses = [row for normal, _ in rows for row in normal if row < len(names)]
-    fastest_row = int(np.argmax(speed >= (1 - RELATIVE_TOLERANCE) * fastest))  # the first of several
+    fastest_row = int(np.argmax(speed >= (1 - RELATIVE_TOLERANCE) * fastest))  # the first of equal ones
     return EarlyMechanism(
         names[fastest_row],
         fastest_row not in presses,
@@ -327,13 +327,13 @@ def first_failure(rest: Rest, direction: Direction) -> Failure | None:
     rows = [(mode.force, mode.joint, mode.slides, mode.opens) for mode in rest.modes]
     if rest.closed is not None:
         rows += [(force, joint, slides, not slides) for force, joint, slides in _conditions(rest.closed)]
-    # A ground acceleration to the left tips it to the right.
+    # A ground acceleration to the left tips the structure to the right.
     fails = [
         Failure(max(float(force[ONE]), 0.0) / (int(direction) * float(force[PUSH])), joint, slides, opens)
         for force, joint, slides, opens in rows if int(direction) * force[PUSH] > 0
     ]  # fmt: skip
     least = min((each.push for each in fails), default=0.0) * (1 + RELATIVE_TOLERANCE)
-    return next((each for each in fails if each.push <= least), None)  # the first of several
+    return next((each for each in fails if each.push <= least), None)  # the first of equal ones
 
 
 class EarlyFailure(NamedTuple):

@@ -24,13 +24,13 @@ from rocking_cli.errors import BrokenKernels
 LIBRARY_FOLDER = Path(__file__).with_name("ready")
 MANIFEST_FILE = "manifest.json"
 SOURCE_FILES = ("calling.py", "kernels.py", "pulse_motion.py")
-"""The files of this folder that the shipped kernels are made of."""
+"""Source files of the shipped kernels, in this folder."""
 MADE_BY = {"numba": "0.61.2", "llvmlite": "0.44.0", "ziglang": "0.17.1"}
-"""The versions that make them."""
+"""Versions of the tools that build the shipped kernels."""
 
 LIBRARY_SUFFIXES = {"linux": "so", "darwin": "dylib", "win32": "dll"}
 PROCESSOR_NAMES = {"amd64": "x86_64", "arm64": "aarch64"}
-"""Other names of processors."""
+"""Other names of processors, as systems report them."""
 LIBRARIES = (
     "darwin-aarch64.dylib", "darwin-x86_64.dylib", "linux-aarch64.so", "linux-x86_64.so", "win32-x86_64.dll"
 )  # fmt: skip
@@ -87,7 +87,7 @@ def loaded() -> ctypes.CDLL:
         for name in FUNCTIONS:
             address = ctypes.cast(getattr(c, name), ctypes.c_void_p).value
             ctypes.c_void_p.in_dll(library, symbol(name)).value = address
-    except (AttributeError, OSError, ValueError) as error:  # whatever the system says of a library
+    except (AttributeError, OSError, ValueError) as error:  # errors of the system's loader
         raise BrokenKernels(f"{at} cannot be loaded, reinstall rocking-cli: {error}") from error
     return library
 
@@ -130,6 +130,6 @@ def _pack(
             dtype, axes = ARRAYS[layout]
             if value.dtype != dtype or value.ndim != axes or not value.flags.carray:
                 raise TypeError(f"an array for a kernel is {value.dtype} {value.shape}, not a writable {layout}")
-            # The quickest way to an address, of which there are forty in each call.
+            # The fastest expression for an address; each call has forty of them.
             places.append(ctypes.addressof(ctypes.c_char.from_buffer(value)) if value.size else 0)
             whole += value.shape

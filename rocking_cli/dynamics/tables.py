@@ -17,10 +17,10 @@ from rocking_cli.core import Direction, Mechanism, both_statics
 from rocking_cli.core.coefficients import check_continuous
 from rocking_cli.core.equivalence import Statics
 
-CRITICAL_CELLS = 512  # cells from rest to phi_cr: coefficients are then right to 1e-12, those of short links to 1e-10
-MIN_CELLS, MAX_CELLS = 2048, 16384  # cells from rest to the kinematic limit
-MAX_CORNER_CELLS = 65536  # cells to have a corner of the force next to rest at a node
-LIMIT_SHARE = 0.999  # of the kinematic limit: a locking linkage has infinite inertia at the limit itself
+CRITICAL_CELLS = 512  # from rest to phi_cr; coefficients are then accurate to 1e-12, those of short links to 1e-10
+MIN_CELLS, MAX_CELLS = 2048, 16384  # from rest to the kinematic limit
+MAX_CORNER_CELLS = 65536  # with which a corner of the force near rest falls on a node
+LIMIT_SHARE = 0.999  # end of the table over the kinematic limit, where a locking linkage has infinite inertia
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class DirectionTable:
         k = min(max(int(np.searchsorted(self.nodes, phi, side="right")) - 1, 0), len(self.angles) - 1)
         a0, a1, a2, a3 = self.angles[k, :4].tolist()
         x = (phi - a0) / a1
-        for _ in range(4):  # Newton, on a cubic that is all but straight
+        for _ in range(4):  # Newton's method; the cubic is almost straight
             x -= (a0 - phi + x * (a1 + x * (a2 + x * a3))) / (a1 + x * (2 * a2 + x * 3 * a3))
         return self.cell * float(k + x)
 
@@ -105,7 +105,7 @@ def _mirrored(mechanism: Mechanism, nodes: Reals) -> bool:
     one, other = mechanism.directions
     if not mechanism.smooth or mechanism.limit(one) != mechanism.limit(other):
         return False
-    for phi in (nodes[:: CRITICAL_CELLS // 4], nodes):  # most that differ do so at a few
+    for phi in (nodes[:: CRITICAL_CELLS // 4], nodes):  # a few nodes show most differences
         pair = [vars(mechanism.coefficients(phi, direction)) for direction in (one, other)]
         if not all(np.array_equal(pair[0][key], pair[1][key]) for key in pair[0]):
             return False
@@ -145,7 +145,7 @@ def _bent(mechanism: Mechanism, direction: Direction, phi: Reals) -> tuple[Bools
     """Return, for each one-sided tie, whether it is taut at each rotation, and if this changes in each interval."""
     slack = mechanism.slackness(phi, direction)
     sign = slack > 0
-    # One that has no force at rest is, from there on, on the side to which it sets out.
+    # A tie without force at rest is slack or taut as at the next rotation.
     sign[:, 0] = np.where(slack[:, 0] == 0, sign[:, 1], sign[:, 0])
     return sign, sign[:, :-1] != sign[:, 1:]
 
@@ -154,14 +154,14 @@ def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Di
     phi, width = _even_steps(mechanism, direction, cells)
     at = mechanism.coefficients(phi, direction)
     c = 1 / np.sqrt(at.I)
-    dc = -at.J * c**4  # over q, as all slopes here; I' = 2 J
+    dc = -at.J * c**4  # derivative by q, as for all slopes here; I' = 2 J
 
     bent: Bools = np.any(_bent(mechanism, direction, phi)[1], axis=0)
 
     def over_root(y: Reals, dy: Reals, energy: Reals | None = None) -> Reals:
         cubics = _cubics(width, y * c, dy * c**2 + y * dc)
         if energy is not None and bent.any():
-            # No cubic follows a corner: a parabola between the same ends that does the same work.
+            # In cells with a corner, use the parabola with the same ends and the same work.
             v0, v1, mean = (y * c)[:-1][bent], (y * c)[1:][bent], np.diff(energy)[bent] / width
             bow = 3 * (v0 + v1 - 2 * mean)
             cubics[bent] = np.stack([v0, v1 - v0 - bow, bow, np.zeros_like(bow)], axis=1)
@@ -192,9 +192,9 @@ def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Di
 
 def _even_steps(mechanism: Mechanism, direction: Direction, cells: int) -> tuple[Reals, float]:
     """Return rotations [rad] at equal steps of q from rest to the kinematic limit, and the size of a step."""
-    # First over x with phi = end x (2 - x): where I grows like 1/(limit - phi), dq/dx stays smooth.
+    # Integrate over x with phi = end x (2 - x): dq/dx stays smooth even if I grows like 1/(limit - phi).
     end = LIMIT_SHARE * mechanism.limit(direction)
-    h = 0.5 / cells  # finer, as the steps near rest are twice as wide as the even ones
+    h = 0.5 / cells  # halved, as steps near rest are twice as wide as even ones
     x = np.linspace(0.0, 1.0, 2 * cells + 1)
     phi = end * x * (2 - x)
     dphi = 2 * end * (1 - x)

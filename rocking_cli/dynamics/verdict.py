@@ -17,11 +17,11 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 
 NEAR_OVERTURNING = 0.8  # phi/phi_cr from which a motion is close to overturning
-# Of two motions, the rms of the difference over that of the nonlinear one, up to which the other agrees with it, and
-# serves a first estimate. Two motions of one size that have nothing to do with each other differ by 1.4 of it.
+# Rms of the difference from the nonlinear motion over the rms of that motion, up to which another model agrees, and is
+# good for a first estimate. Two unrelated motions of equal size have a ratio of 1.4.
 AGREEING_RMS, ESTIMATING_RMS = 0.25, 0.5
-SAME_PEAK_DELAY = 1.0  # p times the time between two peaks, or overturnings, beyond which they are not the same one
-PEAK_SHARE = 0.999  # of its largest sample: when a motion first comes so far it has its peak, rounding apart
+SAME_PEAK_DELAY = 1.0  # p times the largest delay of peaks, or overturnings, that count as the same
+PEAK_SHARE = 0.999  # a sample above this share of the largest one is the peak, as rounding may put the largest later
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def _compare(run: History, best: History) -> Agreement:
     else:
         peak = run.peak_ratio / best.peak_ratio - 1
         worst = grade(peak)
-        if run.ratio.any() and best.ratio.any():  # else one has come and gone between two samples
+        if run.ratio.any() and best.ratio.any():  # a motion may start and end between two samples
             delay, apart = _peak_time(run) - _peak_time(best), _difference(run, best)
             late = Grade.ESTIMATE if abs(delay) * best.p > SAME_PEAK_DELAY else Grade.AGREES
             worst = max(worst, grade(apart, AGREEING_RMS, ESTIMATING_RMS), late)
@@ -107,7 +107,7 @@ def _peak_time(run: History) -> float:
 
 
 def _difference(run: History, best: History) -> float:
-    shared = min(run.ratio.size, best.ratio.size)  # a longer one has gone on while the other is at rest
+    shared = min(run.ratio.size, best.ratio.size)  # after the shorter history its structure is at rest
     beyond = float(np.sum(run.ratio[shared:] ** 2) + np.sum(best.ratio[shared:] ** 2))
     apart = float(np.sum((run.ratio[:shared] - best.ratio[:shared]) ** 2))
     return float(np.sqrt((apart + beyond) / np.sum(best.ratio**2)))

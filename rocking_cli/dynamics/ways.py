@@ -23,7 +23,7 @@ from rocking_cli.dynamics.calling import SETS, KernelSet
 from rocking_cli.errors import InputError, KernelWarning
 
 KERNELS_VARIABLE = "ROCKING_KERNELS"
-"""The variable of the environment that names a way, and then no other one is tried."""
+"""Environment variable that selects how kernels are run; no alternative is then tried."""
 MACHINE_CODE, PYTHON = "ready", "python"
 
 Kernel = Callable[..., None]
@@ -61,7 +61,7 @@ def forget() -> None:
 
 
 def _chosen() -> tuple[str, dict[str, Kernel]]:
-    with _LOCK:  # the threads of a batch come at once
+    with _LOCK:  # the threads of a batch call this at the same time
         return _choose(_forced or os.environ.get(KERNELS_VARIABLE) or None)
 
 
@@ -92,7 +92,7 @@ def fault_of_shipped() -> ImportError | None:
 
 def as_shipped(of: KernelSet) -> Kernel:
     """Return a kernel of the shipped library. Raises `ImportError` if it cannot be used."""
-    from rocking_cli.dynamics import shipped  # not every Python has ctypes
+    from rocking_cli.dynamics import shipped  # some builds of Python have no ctypes
 
     entry = shipped.load(of)
 
@@ -123,7 +123,7 @@ def in_python(of: KernelSet) -> Kernel:
 
 
 INT64_MIN = -(2**63)
-"""What a processor makes of a number that is too large for a whole one, or of none."""
+"""Integer into which processors convert NaN, and numbers that are too large."""
 
 
 def _like_machine_code(rounded: Callable[[float], int]) -> Callable[[float], int]:

@@ -37,7 +37,7 @@ def check_law(element: Element, shortest: float, longest: float) -> None:
     force, energy, slope = element.force(e), element.energy(e), element.slope(e, np.ones(ELONGATION_POINTS))
     _demand(abs(float(element.energy(np.zeros(1))[0])) == 0, f"{element.name}: its energy is not 0 at rest")
     step = e[1] - e[0]
-    # Between two points that have no corner between them, whose slopes say what the change must be.
+    # Compare changes between points without a corner in between to the slopes at these points.
     for value, rate, fault in ((energy, force, "its energy is not the integral of its force"),
                               (force, slope, "its slope is not the derivative of its force")):  # fmt: skip
         change, mean = np.diff(value), step / 2 * (rate[1:] + rate[:-1])

@@ -207,10 +207,8 @@ def derivatives_are_those_of_the_motion(structure: Mechanism) -> None:
         step = min(MAX_STEP, STEP_SHARE * top)
         phi = np.linspace(0.02, 1.0, 9) * top
         here = structure.motion(phi, direction)
-        steps = (
-            step,
-            FINE_STEP_SHARE * step,
-        )  # over a bend of a derivative, which it may have, the wider one says nothing
+        # The wide step fails at a bend of a derivative, which is allowed.
+        steps = (step, FINE_STEP_SHARE * step)
         around = [structure.motion(phi + shift * step, direction) for step in steps for shift in STENCIL]
         for body, motion, *moved in zip(structure.bodies(), here, *around, strict=True):
             _, dz, ddz = motion.carry(body.centroid)
@@ -255,7 +253,8 @@ def stands_and_can_overturn(structure: Mechanism) -> None:
 
 def closed_forms_agree_with_the_solvers(structure: Mechanism) -> None:
     """The critical rotation in closed form agrees with the bodies and their motion."""
-    for direction in structure.directions if structure.crushing is None else ():  # which moves pivots, under a mass
+    # Crushing moves pivots, but only under a mass.
+    for direction in structure.directions if structure.crushing is None else ():
         alone = structure.critical_rotation_alone(direction)
         if alone is not None and _overturns(structure, direction):
             what = f"critical_rotation_alone in the {direction.label} direction"
@@ -296,7 +295,7 @@ def contacts_bear_its_weight(structure: Mechanism) -> None:
         assert forces is not None
         starts = np.array([1.0, -int(direction) * structure.uplift(direction) * structure.gravity, 0.0, 0.0])
         force, there = forces.force[0] @ starts, Pieces(structure, direction, np.zeros(1))
-        jacobian = there.rates(contacts)[0].dense()[0]  # without what loads press on guides
+        jacobian = there.rates(contacts)[0].dense()[0]  # without the rows of loads on guides
         missing = np.abs(jacobian.T @ force[: len(jacobian)] - there.demands()[0] @ starts) / there.scale
         k = int(missing.argmax())
         _demand(
@@ -341,7 +340,7 @@ def _pieces(structure: Mechanism, direction: Direction) -> Sequence[Piece]:
 
 def carries_what_hangs_on_it(structure: Mechanism) -> None:
     """With a load, a force and a tie, unless it refuses them, coefficients and restitution include all of them."""
-    bare = _with(structure, crushing=None)  # how far pivots move depends on the load
+    bare = _with(structure, crushing=None)  # with crushing, pivots would move with the load
     _demand(bare is not None, "it accepts no mass")
     assert bare is not None
     spot, size = _liveliest(bare), _size(bare)
@@ -491,10 +490,11 @@ def joints_hold_what_moves(structure: Mechanism) -> None:
             )
         if joints:
             known = not reactions(structure, direction, np.zeros(1), np.zeros(1)).is_whole
-            way = f"the joints of the {direction.label} direction"
+            subject = f"the joints of the {direction.label} direction"
             _demand(
                 known,
-                f"{way} do not leave one degree of freedom: n parts need 3n - 1 forces, two at a joint, one at a guide",
+                f"{subject} do not leave one degree of freedom: n parts need 3n - 1 forces, "
+                "two at a joint, one at a guide",
             )
 
 
@@ -530,7 +530,8 @@ def stands_on_the_edge_of_its_base(structure: Mechanism) -> None:
         motions = structure.motion(phi, direction)
         as_one = _moving_as_one(motions, size)
         within = f"within {phi[-1]:.4g} rad of the {direction.label} direction: it must turn about the edge of its base"
-        feet: dict[tuple[int, complex], list[Reals]] = {}  # by group that moves as one, and by copy
+        # Keys: group of bodies that move as one, and shift of the copy.
+        feet: dict[tuple[int, complex], list[Reals]] = {}
         for part in known:
             corners = np.concatenate(part.outlines) - part.shift
             moved = np.array([motions[part.body].carry(corner)[0] for corner in corners]) + part.shift
@@ -608,7 +609,7 @@ def _alone(check: Callable[[Mechanism], object], structure: Mechanism) -> object
     if not hung:
         return check(structure)
     alone = _with(structure, **dict.fromkeys(hung))
-    if alone is None:  # it cannot rock in the other direction
+    if alone is None:  # the structure cannot rock in the other direction
         alone = structure.model_copy(update=dict.fromkeys([key for key in hung if key not in SIDED_FIELDS]))
     return check(alone)
 
@@ -692,7 +693,7 @@ def _heights(corners: Points, ground: Sequence[Points], flush: float) -> Iterato
     for line in ground:
         for start, end in pairwise(line):
             length = abs(end - start)
-            place = (corners - start) * length / (end - start)  # along the ground, and above it
+            place = (corners - start) * length / (end - start)  # real part along the ground, imaginary part above it
             yield place[(-flush <= place[:, 0].real) & (place[:, 0].real <= length + flush)].imag
 
 

@@ -36,7 +36,7 @@ class Spot(NamedTuple):
 
 
 Follow = Callable[[Spot], Path]
-"""Gives the path of a point."""
+"""A function that returns the path of a point."""
 
 
 class Push(NamedTuple):

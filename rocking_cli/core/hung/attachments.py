@@ -141,7 +141,7 @@ def attach(
     for k, load in enumerate(loads):
         loc: Loc = ("loads", k)
         _own_name(load.name, names, reserved, loc)
-        body = carrier.carrying(load.body, complex(*load.at), loc)  # what stands on it may be anywhere
+        body = carrier.carrying(load.body, complex(*load.at), loc)  # a load may lie outside its body
         yield loc, load.attached(body, carrier.count(body, each=load.each))
     for k, tie in enumerate(ties):
         loc = ("ties", k)

@@ -34,9 +34,9 @@ NO_ANSWER: dict[Question, str] = {
     "verification": "no code of practice here covers it",
     "trace": "no trace of free rocking can be fitted",
 }
-"""What a structure may be asked beside its nonlinear history, and what is said where its elements do not allow it."""
+"""Analyses other than the nonlinear history, with the message if an element does not allow one."""
 
-COINCIDENT_DISTANCE = 1e-9  # of points at rest [m], plus this share of their distance from the origin
+COINCIDENT_DISTANCE = 1e-9  # of points [m] that coincide at rest, plus this share of their distance from the origin
 ZERO_ELONGATION = 1e-14  # elongations that count as zero [m], plus this share of that distance
 SMALL_ROTATION = 1e-6  # rad; below it the distance of points that coincide at rest is its derivative times phi
 
@@ -46,13 +46,13 @@ class Element(ABC):
 
     name: str
     has_memory: ClassVar[bool] = False
-    """Whether its force depends on what it went through before, as that of a tie that yields."""
+    """Whether its force depends on past deformations, as that of a tie that yields."""
     has_rate: ClassVar[bool] = False
     """Whether its force depends on the rate of its elongation, as that of a damper."""
     is_linear: ClassVar[bool] = True
-    """Whether its law is made of straight lines, so that its slope at the critical rotation stands for it."""
+    """Whether its law is piecewise linear, so that linear models may use its slope at the critical rotation."""
     departs: ClassVar[str] = ""
-    """How its force departs from straight lines over its elongation, to follow its name: `yields`."""
+    """Verb that follows its name in messages if its law is not piecewise linear, such as `yields`."""
 
     def __init_subclass__(cls, **named: Any) -> None:
         """Wrap the methods of elements of other packages, so that their failures name that package."""
@@ -269,8 +269,8 @@ class ConstantForce(Element):
     def elongation(self, follow: Follow, direction: Direction = Direction.POSITIVE) -> tuple[Reals, Reals, Reals]:
         """Return the displacement of the point against the force [m] and its derivatives; zeros for no force."""
         z, dz, ddz = follow(self.spot)
-        way = self.in_direction(direction) / (abs(self.thrust) or 1.0)
-        return -dot(way, z - self.spot.at), -dot(way, dz), -dot(way, ddz)
+        along = self.in_direction(direction) / (abs(self.thrust) or 1.0)
+        return -dot(along, z - self.spot.at), -dot(along, dz), -dot(along, ddz)
 
     def act(self, total: Coefficients, direction: Direction, follow: Follow) -> None:
         """Add the moment -F.r' to Q."""
@@ -488,7 +488,7 @@ FLOOR_MATERIALS: dict[str, dict[str, float]] = {
     "sliding": {"horizontal": 0.0, "vertical": 1 / 3, "weight": 1 / 2},
     "dragged": {"horizontal": 1.0, "vertical": 1 / 3, "weight": 1 / 2},
 }
-"""Shares of a floor that is borne at its far end too: it turns about that end, and slides here or is dragged along."""
+"""Shares of a floor also supported at its far end: it turns about that end, and slides here or is dragged along."""
 
 
 class Load(Described):

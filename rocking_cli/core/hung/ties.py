@@ -103,8 +103,8 @@ class Tie(Described):
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
-        ways = [self.start is not None or self.end is not None, self.path is not None, self.bed is not None]
-        if sum(ways) != 1 or (ways[0] and (self.start is None or self.end is None)):
+        kinds = [self.start is not None or self.end is not None, self.path is not None, self.bed is not None]
+        if sum(kinds) != 1 or (kinds[0] and (self.start is None or self.end is None)):
             raise geometry_error("from", "give one of: `from` and `to`, `path`, or `bed`")
         if self.bed is not None and type(self) is not Tie:
             raise geometry_error("bed", "cannot be combined with `law`: a bed of springs is elastic")
