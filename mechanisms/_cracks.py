@@ -17,7 +17,7 @@ from rocking_cli.core.kinematics import Points, area_of, distance, inside
 
 SCAN_POINTS = 24  # places of a crack that are tried first; half as many of each of two cracks
 MIN_EDGE_DISTANCE = 1e-6  # least distance of a crack from the ends of its line, over its length
-SAME_PLACE = 1e-5  # distance of cracks of both directions that are one, over the length of the line
+SAME_PLACE = 1e-5  # distance of cracks of both directions that coincide, over the length of the line
 INFINITE_LAMBDA = 1e100  # finite, as searches subtract values
 CRACK_ACCURACY = 1e-9  # accuracy of the place of a crack, over the length of its line
 

@@ -96,12 +96,12 @@ def columns_of(contacts: Sequence[Contact]) -> tuple[Mapping[str, complex], Coll
     """Return the feet of bodies that hinge on the ground, and which of them carry one body with two others or more."""
     feet: dict[str, complex] = {}
     carried: dict[str, set[str]] = {}
-    for each in contacts:
-        below, above = each.pieces
-        if each.held is not None or len(each.points) > 1 or above is None:
+    for contact in contacts:
+        below, above = contact.pieces
+        if contact.held is not None or len(contact.points) > 1 or above is None:
             continue
         if below is None:
-            feet[above] = each.points[0]
+            feet[above] = contact.points[0]
         else:
             carried.setdefault(above, set()).add(below)
     shares = [names & feet.keys() for names in carried.values()]

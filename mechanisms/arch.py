@@ -273,7 +273,7 @@ class Arch(Mechanism):
 
     def _thrust_line(self, direction: Direction) -> Line:
         ring = Ring(self.thickness / self.radius, self._beta)
-        # With voussoirs the line matters at their joints only, else everywhere.
+        # Evaluate the line at the joints of voussoirs, or along the whole ring if there are none.
         angles = np.linspace(0.0, self._beta, (self.voussoirs or MAX_DRAWN_VOUSSOIRS) + 1)
         angles = np.unique([*angles, *self.hinge_angles])
         points = ring.thrust_radius(angles, thrust(ring, self.hinge_angles)) * self.radius

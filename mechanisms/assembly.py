@@ -698,8 +698,8 @@ class Assembly(LinkedBodies):
 
     def sketch(self) -> Sketch:
         ground = []
-        for each in self.ground.values():
-            z = list(analysis.AssemblyBlock("", each.corners).outline)[::-1]  # clockwise: the ground is on the right
+        for shape in self.ground.values():
+            z = list(analysis.AssemblyBlock("", shape.corners).outline)[::-1]  # clockwise: the ground is on the right
             ground.append([*z, z[0]])
         return Sketch(
             hinges={direction: self.joints(direction) for direction in self.directions},

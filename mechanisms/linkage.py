@@ -310,7 +310,7 @@ class Linkage(LinkedBodies):
             extras.append(Extra(f"crack_{name}", crack.level(share), "m", f"{what} of the crack {name}{more}"))
         return extras
 
-    # Contacts and picture
+    # Contacts and drawing
 
     def joints(self, direction: Direction) -> Sequence[Joint]:
         if direction not in self._held or not self._linkages[direction].determinate:
@@ -361,7 +361,7 @@ class Linkage(LinkedBodies):
         contacts: list[Contact] = []
         one, other = pair
         for normal, ends in faces.shared(*shapes):
-            # The second one bears the first if the normal points down.
+            # The second body supports the first if the normal points down.
             below, above, upwards = (one, other, normal) if normal.imag >= 0 else (other, one, -normal)
             name = f"{below} and {above}" + (f", face {len(contacts) + 1}" if contacts else "")
             contacts.append(Contact((below, above), ends, upwards, below, self.friction, name=name))

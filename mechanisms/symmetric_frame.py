@@ -34,7 +34,7 @@ from rocking_cli.core import (
 from rocking_cli.core.reactions import at_uplift
 
 MAX_DRAWN_COLUMNS = 6  # drawings with more columns are not to scale
-MAX_CHECKED_COLUMNS = 20  # columns beyond would take seconds
+MAX_CHECKED_COLUMNS = 20  # checks of more columns take seconds
 LIGHT_BEAM = 1e-8  # mass of a beam that loads no column, over the mass of the columns
 
 

@@ -20,9 +20,9 @@ from mechanisms._assembly.programme import beside, least
 from rocking_cli.core import Reals
 from rocking_cli.core.contacts import MASONRY_FRICTION
 
-MAX_FRICTION = 10.0  # larger coefficients of friction do not occur
+MAX_FRICTION = 10.0
 EQUAL_MULTIPLIERS = 1e-9  # relative difference
-FRICTION_ACCURACY = 1e-6  # relative
+FRICTION_ACCURACY = 1e-6  # relative error
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +154,7 @@ class _FrictionSearch:
         middle = (self.low + self.high) / 2
         if self._carried == 1:
             return max(self.below, middle)
-        if self._carried > 1:  # even just below it did: the root was not near
+        if self._carried > 1:  # the multiplier is carried even just below the guess, so that the root is not near
             return middle
         return next(
             (min(root, self.below) for root in _roots(self._lows) if root > self.low * (1 + FRICTION_ACCURACY / 2)),

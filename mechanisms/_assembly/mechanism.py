@@ -303,7 +303,7 @@ def _chain(contacts: Sequence[AssemblyContact], blocks: Sequence[str]) -> list[i
                 of[name].append(k)
     if any(len(joints) > 2 for joints in of.values()):
         return None
-    # A chain begins at a joint with one block that can move, or at the joint of a block that has no other.
+    # A chain begins at a joint of which at most one block has other joints.
     ends = [k for k, c in enumerate(contacts) if sum(len(of.get(name, ())) > 1 for name in (c.a, c.b)) < 2]
     if not ends:
         return None

@@ -215,12 +215,12 @@ class Bearings:
         bear = [(k, (0, 1) if ends is None else ends[k]) for k in range(len(contacts)) if ends is None or ends[k]]
         number = frame.index
         for k, at in bear:
-            each = contacts[k]
-            a, b = number.get(each.a, -1), number.get(each.b, -1)
+            contact = contacts[k]
+            a, b = number.get(contact.a, -1), number.get(contact.b, -1)
             # A hinge turns with the face that the corner bears on; both bodies of a closed joint turn alike.
-            face = number.get(each.face_at(at[0]) if len(at) == 1 else each.a, -1)
-            rows += [(a, b, each.ends[end], each.normal, a, face) for end in at]
-            rows.append((a, b, each.ends[at[0]], -1j * each.normal, a, face))
+            face = number.get(contact.face_at(at[0]) if len(at) == 1 else contact.a, -1)
+            rows += [(a, b, contact.ends[end], contact.normal, a, face) for end in at]
+            rows.append((a, b, contact.ends[at[0]], -1j * contact.normal, a, face))
         for guide in guides:
             body = number[guide.bodies[0]]
             rows.append((-1, body, guide.at, 1j * guide.along / abs(guide.along), body, -1))

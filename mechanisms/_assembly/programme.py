@@ -150,7 +150,7 @@ class _Programme:
         x, rates = optimum.x, self._rates(optimum)
         size = max(1.0, np.abs(x).max())
         off = max(np.abs(self.equal @ x - self.right).max(), (self.low - x).max(), (x - self.high).max())
-        # Above its lower bound no rate may be positive, below its upper one none negative.
+        # A variable above its lower bound may have no positive rate, one below its upper bound no negative rate.
         rises, falls = rates[x - self.low > BOUND_DISTANCE * size], -rates[self.high - x > BOUND_DISTANCE * size]
         uneven = max(rises.max(initial=0.0), falls.max(initial=0.0))
         return float(off / size), float(uneven / max(1.0, np.abs(optimum.prices).max()))
@@ -164,7 +164,7 @@ def _beside(solve: Callable[[], Any]) -> Any:
     def run() -> None:
         try:
             results.append(solve())
-        except BaseException as error:  # raised again below
+        except BaseException as error:  # raised in the calling thread
             failed.append(error)
 
     thread = Thread(target=run, daemon=True)

@@ -335,7 +335,7 @@ def smallest(problem: AssemblyProblem, rays: Rays, kept: Bools, space: Reals) ->
     able = sizes[:, 0] > ZERO_LOAD
     works = able & _does_work(problem, by_block)
     if not works.any() or (sizes[works, 1] > EQUAL_VELOCITY * sizes[works, 0]).any():
-        return None  # a block that can move in two ways
+        return None  # a block has two independent motions
     share = shares[:, 0]  # amount of the single motion of a block, by coordinates of the space
     opening = rays.rates[~kept] @ space
     for k in _candidates(share, np.flatnonzero(works)):

@@ -79,7 +79,7 @@ def polygon(name: str, mass: float, vertices: Sequence[complex]) -> Body:
     area = twice_area.sum() / 2
     centroid = (twice_area * (z + w)).sum() / (6 * area)
     polar = (twice_area * (abs(z) ** 2 + abs(w) ** 2 + (z.conj() * w).real)).sum() / (12 * area)
-    inertia = max(float(mass * (polar - abs(centroid) ** 2)), 0.0)  # rounding must not take it below
+    inertia = max(float(mass * (polar - abs(centroid) ** 2)), 0.0)  # rounding could make it negative
     return Body(name, mass, inertia, complex(origin + centroid), tuple(vertices))
 
 
@@ -106,5 +106,5 @@ def annular_sector(name: str, density: float, inner: float, outer: float, start:
     mass = density * (outer**2 - inner**2) * half
     reach = 2 / 3 * (outer**3 - inner**3) / (outer**2 - inner**2) * np.sinc(half / np.pi)
     centroid = complex(reach * np.exp(1j * (start + end) / 2))
-    inertia = max(mass * ((outer**2 + inner**2) / 2 - float(reach) ** 2), 0.0)  # rounding must not take it below
+    inertia = max(mass * ((outer**2 + inner**2) / 2 - float(reach) ** 2), 0.0)  # rounding could make it negative
     return Body(name, mass, inertia, centroid)

@@ -7,7 +7,7 @@ import numpy as np
 from rocking_cli.core.coefficients import Coefficients
 from rocking_cli.errors import StructureError
 
-SCAN_POINTS = 513  # rotations up to the limit, among which the first sign change of G is looked for
+SCAN_POINTS = 513  # rotations up to the limit at which the sign of G is evaluated
 
 
 class NoCriticalRotation(StructureError):

@@ -85,7 +85,7 @@ def geometry_error(field: str | tuple[str | int, ...], message: str) -> Pydantic
     message : str
         What is wrong and what would be right.
     """
-    # Pydantic formats the message: braces are its own.
+    # Pydantic formats the message and would interpret braces.
     return PydanticCustomError(
         "geometry", "{reason}", {"reason": message, "field": (field,) if isinstance(field, str) else field}
     )

@@ -190,5 +190,5 @@ def _strongest_to_come(strength: Reals, stride: float, length: int) -> Reals:
 
 def _joined(arrays: Sequence[NDArray[Number]]) -> NDArray[Number]:
     only = arrays[0] if len(arrays) == 1 else np.concatenate(arrays)
-    # The kernels are compiled for arrays that can be written to, which those of a motion cannot.
+    # The kernels are compiled for writable arrays, and those of a motion are read-only.
     return np.ascontiguousarray(only) if only.flags.writeable else only.copy()

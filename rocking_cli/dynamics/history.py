@@ -23,9 +23,9 @@ FINEST_RTOL = 1e-14  # a smaller tolerance is below rounding, so that no step is
 RTOL = 1e-9  # local error of a step by the lower order of the pair; peaks are then accurate to 1e-11
 TAIL_SECONDS = 10.0  # motion kept after the record
 MOST_SAMPLES = 20_000_000
-COLUMNS_PER_TASK = 256  # histories of single columns that a thread computes at a time
+COLUMNS_PER_TASK = 256  # histories that a thread computes at a time
 MIN_COLUMN_ETA = 1e-3  # lower bound on the restitution of a single column, which shifts with that of the structure
-MIN_IMPACT_RATE = 0.02  # impacts below this share of the fastest rate before an impact are chatter
+MIN_IMPACT_RATE = 0.02  # over the rate of rotation before the strongest impact; weaker impacts are chatter
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

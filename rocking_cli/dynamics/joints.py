@@ -180,7 +180,7 @@ class JointCheck:
     at_rest: bool = True
 
 
-REASONS = ("opens", "slides", "crushes", "weightless", "apart")  # in the order of the kernel
+REASONS = ("opens", "slides", "crushes", "weightless", "apart")  # reasons of failure, by their number in the kernel
 
 
 def check_of(joints: JointTables | None, marks: Reals) -> JointCheck | None:

@@ -131,26 +131,26 @@ def resting(mechanism: Mechanism) -> Rest:
     return known if mode is None else known._replace(modes=[*known.modes, mode])
 
 
-def _closed(contacts: Sequence[Contact], near: float) -> list[Contact] | None:
+def _closed(contacts: Sequence[Contact], tolerance: float) -> list[Contact] | None:
     """Return the joints of both directions with all of their points; None if they are not those of one face."""
     joints: dict[tuple[str, str | None, complex], Contact] = {}
-    for each in contacts:
+    for contact in contacts:
         alike = (
             key
             for key in joints
-            if key[:2] == (each.label, each.held) and abs(key[2] - each.normal) <= RELATIVE_TOLERANCE
+            if key[:2] == (contact.label, contact.held) and abs(key[2] - contact.normal) <= RELATIVE_TOLERANCE
         )
-        key = next(alike, (each.label, each.held, each.normal))
-        known = joints.setdefault(key, each)
-        if known.pieces != each.pieces:
+        key = next(alike, (contact.label, contact.held, contact.normal))
+        known = joints.setdefault(key, contact)
+        if known.pieces != contact.pieces:
             return None
-        apart = (each.points[0] - known.points[0]) * known.normal.conjugate()
-        if each.held == "slide" and abs(apart.imag) > near:  # the guides have different lines of action
+        apart = (contact.points[0] - known.points[0]) * known.normal.conjugate()
+        if contact.held == "slide" and abs(apart.imag) > tolerance:  # the guides have different lines of action
             return None
-        if each.held is None:
-            new = [at for at in each.points if min(abs(at - old) for old in known.points) > near]
+        if contact.held is None:
+            new = [at for at in contact.points if min(abs(at - old) for old in known.points) > tolerance]
             joints[key] = replace(known, points=(*known.points, *new), face=None)
-    return None if any(len(each.points) > 2 for each in joints.values()) else list(joints.values())
+    return None if any(len(contact.points) > 2 for contact in joints.values()) else list(joints.values())
 
 
 def _as_one(mechanism: Mechanism, there: Pieces, closed: Sequence[Contact]) -> Released | None:

@@ -79,7 +79,7 @@ def loaded() -> ctypes.CDLL:
     if not at.is_file():
         raise BrokenKernels(f"{at} is missing, reinstall rocking-cli")
     try:
-        # The system would load half a file as well, and end the process in the missing half.
+        # The system also loads incomplete files, and then ends the process when it reaches the missing part.
         if hashlib.sha256(at.read_bytes()).hexdigest() != listed:
             raise BrokenKernels(f"{at} is damaged, reinstall rocking-cli")
         library = ctypes.CDLL(str(at))

@@ -170,7 +170,7 @@ def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Di
     gravity = mechanism.gravity
     restoring = at.restoring(gravity)
     forces = [over_root(restoring, at.stiffness(gravity), at.V + at.U / gravity), over_root(at.B, at.dB)]
-    # An outward motion gains energy as long as -V' - s B u >= 0, and does so for good where that holds up to the end.
+    # An outward motion gains energy as long as -V' - s B u >= 0, and for good if this holds up to the end.
     with np.errstate(divide="ignore", invalid="ignore"):
         enough = np.where(restoring < 0, -restoring / np.abs(at.B), -1.0)
         most_held = np.where(at.Q != 0, np.abs(at.Q) / (gravity * np.abs(at.B)), 0.0)
@@ -202,7 +202,7 @@ def _even_steps(mechanism: Mechanism, direction: Direction, cells: int) -> tuple
     check_continuous(mechanism.mechanism, direction, at, mechanism.jumps)
     root = np.sqrt(at.I)
     dq, ddq = root * dphi, at.J / root * dphi**2 - 2 * end * root
-    # Euler and Maclaurin's rule with the first correction: right to 1e-12.
+    # The Euler-Maclaurin rule with the first correction is accurate to 1e-12.
     q = np.concatenate([[0.0], np.cumsum(h / 2 * (dq[:-1] + dq[1:]) + h**2 / 12 * (ddq[:-1] - ddq[1:]))])
     width = float(q[-1] / cells)
     even = np.arange(1, cells) * width

@@ -110,9 +110,9 @@ def in_python(of: KernelSet) -> Kernel:
     """
     module = importlib.import_module(of.module)
     namespace = {**vars(module), "int": _like_machine_code(int), "ceil": _like_machine_code(ceil)}
-    for each in module.SOURCE:
-        twin = FunctionType(each.__code__, namespace, each.__name__, each.__defaults__)
-        namespace[each.__name__] = twin
+    for source_function in module.SOURCE:
+        twin = FunctionType(source_function.__code__, namespace, source_function.__name__, source_function.__defaults__)
+        namespace[source_function.__name__] = twin
     function = namespace[of.function]
 
     def run(*arguments: Any) -> None:

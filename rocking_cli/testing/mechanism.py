@@ -319,11 +319,13 @@ def _pieces(structure: Mechanism, direction: Direction) -> Sequence[Piece]:
     """
     bodies, pieces = structure.weighed(), structure.pieces(direction)
     names = {body.name for body in bodies}
-    _demand(len({each.body.name for each in pieces}) == len(pieces), "two pieces have the same name")
-    for each in pieces:
-        _demand(each.of is None or each.of in names, f"the piece {each.body.name} is of {each.of}, which is no body")
+    _demand(len({piece.body.name for piece in pieces}) == len(pieces), "two pieces have the same name")
+    for piece in pieces:
+        _demand(
+            piece.of is None or piece.of in names, f"the piece {piece.body.name} is of {piece.of}, which is no body"
+        )
     for body, motion in zip(bodies, structure.motion(np.zeros(1), direction), strict=True):
-        parts = [each for each in pieces if each.of == body.name]
+        parts = [piece for piece in pieces if piece.of == body.name]
         if parts:
             mass = sum(part.body.mass for part in parts)
             moment = sum(part.body.mass * (part.body.centroid - part.shift) for part in parts) - mass * body.centroid
@@ -442,10 +444,10 @@ def outlines_are_those_of_the_bodies(structure: Mechanism) -> None:
     for name, body in bodies.items():
         outlines = sketch.outlines.get(name) or ([body.outline] if body.outline else [])
         _demand(bool(outlines) or name not in sketch.outlines, f"the list of outlines of {name} is empty")
-        for each in outlines:
-            z = np.asarray(each, np.complex128)
+        for outline in outlines:
+            z = np.asarray(outline, np.complex128)
             _demand(z.size >= 3 and bool(np.isfinite(z).all()), f"an outline of {name} has fewer than three corners")
-            _demand(area_of(each) != 0, f"an outline of {name} encloses no area")
+            _demand(area_of(outline) != 0, f"an outline of {name} encloses no area")
         if sketch.uniform:
             _demand(bool(outlines), f"the sketch declares the bodies uniform, but gives no outline of {name}")
             _is_uniform(body, outlines)

@@ -336,7 +336,7 @@ class Spring(Stretched):
         """Return the integral of N from rest [J]; a slack tie stores no more energy."""
         if self.only is not None and self.stiffness > 0:
             with np.errstate(over="ignore"):
-                slack = -np.float64(self.prestress) / self.stiffness  # the elongation at which it goes slack
+                slack = -np.float64(self.prestress) / self.stiffness  # elongation at which the tie goes slack
             e = np.maximum(e, slack) if self.only == "tension" else np.minimum(e, slack)
         return self.prestress * e + self.stiffness * e**2 / 2
 
