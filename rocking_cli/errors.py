@@ -21,7 +21,7 @@ PREDICATES = frozenset({
 })  # fmt: skip
 """First words of messages that are the predicate of the field before them: "FC is missing"."""
 
-INCOMPLETE = 5
+EXIT_INCOMPLETE = 5
 """Exit code of a command that did its work except for what it reports: one bad record in a hundred."""
 
 

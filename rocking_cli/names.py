@@ -43,7 +43,7 @@ def outcome(*, uplifts: bool, overturned: bool, still_rocking: bool = False, unk
 
 FEWEST, FEWEST_OF_MEDIAN = 20, 5
 """Motions from which on a quantile is told, and the median: of fewer, a single motion decides it."""
-HALF_UP = 1e-9  # of a per cent: a share that ends in .5 is rounded up, whatever its last bit
+HALF_UP = 1e-9  # %: a share that ends in .5 is rounded up despite floating-point error
 
 
 def percent(share: float) -> str:

@@ -12,9 +12,9 @@ from typing import Any, AnyStr, cast
 _UNSEEN = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ufffe\uffff\ud800-\udfff]"
 )
-LISTED = 8  # names of a row, before the rest is counted
-LONGEST = 60  # characters of a value that is quoted
-BEFORE, AFTER = 30, 40  # characters of a line that is quoted, on either side of what is wrong with it
+MAX_LISTED = 8  # names in a row before the rest is counted
+MAX_QUOTED_CHARACTERS = 60
+BEFORE, AFTER = 30, 40  # quoted characters of a line on either side of an error
 
 
 def printable(text: str) -> str:
@@ -52,7 +52,7 @@ def is_one_line(text: str) -> bool:
     return not _UNSEEN.search(text) and not {"\t", "\n"} & set(text)
 
 
-def cut(text: str, most: int = LONGEST) -> str:
+def cut(text: str, most: int = MAX_QUOTED_CHARACTERS) -> str:
     """Shorten a text to at most `most` characters, with dots at the end if it was longer."""
     return text if len(text) <= most else f"{text[: most - 3]}..."
 
@@ -70,7 +70,7 @@ def numbered(name: str, suffix: str, taken: Collection[str]) -> str:
     return next(each for each in names if each.casefold() not in known)
 
 
-def in_short(names: Sequence[str], between: str = ", ", most: int = LISTED) -> str:
+def in_short(names: Sequence[str], between: str = ", ", most: int = MAX_LISTED) -> str:
     """Return names joined in one text: at most `most` of them, and how many more there are.
 
     Examples

@@ -146,10 +146,10 @@ def site_of(given: SiteLike) -> SiteFile:
     """Read the site for a code of practice from its file, or take its fields. Raises `InputError`."""
     from rocking_cli.io.yaml_file import parse
     from rocking_cli.verification.check import read_site, site_in
-    from rocking_cli.verification.code import HINT
+    from rocking_cli.verification.code import SITE_HINT
 
     if isinstance(given, Mapping):
-        return site_in(parse(json_text(given), "site", "site", HINT))
+        return site_in(parse(json_text(given), "site", "site", SITE_HINT))
     return read_site(Path(given))
 
 

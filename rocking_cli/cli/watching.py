@@ -9,7 +9,7 @@ import click
 
 from rocking_cli.ask.watcher import Advance, Watcher
 from rocking_cli.cli import terminal
-from rocking_cli.errors import INCOMPLETE, RockingError
+from rocking_cli.errors import EXIT_INCOMPLETE, RockingError
 
 if TYPE_CHECKING:
     from rocking_cli.ask.answer import Answer
@@ -64,4 +64,4 @@ class OnTerminal(Watcher):
     def end(self) -> None:
         """End the command; with the exit code of an incomplete answer if anything was left out."""
         if self.left_out:
-            click.get_current_context().exit(INCOMPLETE)
+            click.get_current_context().exit(EXIT_INCOMPLETE)

@@ -13,8 +13,8 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.units import KINDS
 
 STANDARD_GRAVITY = 9.80665  # m/s2
-MOST_SAMPLES = 20_000_000  # of a record: more than a day at 200 samples a second
-ARRAY = "array"  # format of a motion that is not from a file
+MOST_SAMPLES = 20_000_000  # more than a day at 200 samples a second
+ARRAY = "array"  # format of a motion that was not read from a file
 
 
 class Doubt(NamedTuple):

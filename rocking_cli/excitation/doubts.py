@@ -8,21 +8,21 @@ from numpy.typing import NDArray
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.measures import Measures
 
-COARSE = 0.1  # s between samples; strong-motion records have 0.02 or less
-PLAUSIBLE = (0.002, 4.0)  # g; the strongest ground motions on record have some 2.5
-SAMPLES = 5  # to a mean period; white noise has 3.6, well-sampled strong motion 10 and more
-OFFSET = 0.02  # mean over rms acceleration; corrected records stay below 0.002
-START = 0.05  # first acceleration over the peak
-FINAL_VELOCITY = 0.1  # over the peak; corrected records stay below 0.06
-FINAL_DISPLACEMENT = 0.5  # over the peak; a fling near a fault may leave as much
-CLIPPED = 3  # equal samples in a row at an extreme
-SPIKE = 8  # times what is left about a sample that would be moved; sound records stay below 5
-DROPOUT = 5  # equal samples in a row, between two jumps
-JUMP = 0.05  # over the peak
-STEP = 3  # over the usual step: in a record of few digits a step of one digit is none
-NOTICEABLE = 0.001  # of the peak: what is left about a sample is not taken for less
-GROWTH = 0.1  # p dt: how much a motion near overturning grows from one sample to the next
-_AROUND = 18  # samples on either side that must be smooth for one to stand out
+MAX_DT = 0.1  # s; strong-motion records have 0.02 or less
+PLAUSIBLE_PGA = (0.002, 4.0)  # g; the strongest ground motions on record reach about 2.5
+MIN_SAMPLES_PER_MEAN_PERIOD = 5  # white noise has 3.6, well-sampled strong motion at least 10
+MAX_MEAN_OVER_RMS = 0.02  # corrected records stay below 0.002
+MAX_START_OVER_PEAK = 0.05
+FINAL_VELOCITY = 0.1  # share of the peak; corrected records stay below 0.06
+FINAL_DISPLACEMENT = 0.5  # share of the peak; a fling near a fault may leave as much
+CLIPPED_SAMPLES = 3  # consecutive equal samples at an extreme
+SPIKE_RATIO = 8  # residual of a displaced sample over that of its surroundings; sound records stay below 5
+DROPOUT_SAMPLES = 5  # consecutive equal samples between two jumps
+MIN_JUMP_OVER_PEAK = 0.05
+MIN_JUMP_OVER_STEP = 3  # times the median step; one step of the last digit is not a jump
+MIN_RESIDUAL = 0.001  # share of the peak; smaller residuals around a sample are raised to it
+MAX_GROWTH = 0.1  # p dt: growth of a motion near overturning from one sample to the next
+_SMOOTH_SAMPLES = 18  # on either side of a spike
 
 
 def doubts(motion: GroundMotion, measured: Measures) -> list[Doubt]:
@@ -66,7 +66,7 @@ def of_samples(motion: GroundMotion, *, accelerations: bool = True) -> list[Doub
 def coarse_for(motion: GroundMotion, p: float, what: str = "this structure") -> list[Doubt]:
     """Return a doubt if dt is too long for a structure, called `what`, of frequency parameter p [rad/s]."""
     product = p * motion.dt
-    if product <= GROWTH:
+    if product <= MAX_GROWTH:
         return []
     text = (
         f"dt = {motion.dt:g} s is coarse for {what}: p dt = {product:.2g}, so that near overturning its "
@@ -76,11 +76,11 @@ def coarse_for(motion: GroundMotion, p: float, what: str = "this structure") -> 
 
 
 def _sampling(motion: GroundMotion, measured: Measures) -> list[Doubt]:
-    if motion.dt > COARSE:
+    if motion.dt > MAX_DT:
         text = f"dt = {motion.dt:g} s is coarse for a ground motion: is the first column really time in seconds?"
         return [Doubt("dt", motion.dt, text)]
     period = measured.mean_period
-    if period is not None and 0 < period < SAMPLES * motion.dt:
+    if period is not None and 0 < period < MIN_SAMPLES_PER_MEAN_PERIOD * motion.dt:
         text = (
             f"dt = {motion.dt:g} s is coarse for this motion: {period / motion.dt:.2g} samples to its mean period of "
             f"{period:.2g} s, so that peaks fall between them"
@@ -90,7 +90,7 @@ def _sampling(motion: GroundMotion, measured: Measures) -> list[Doubt]:
 
 
 def _size(motion: GroundMotion, measured: Measures) -> list[Doubt]:
-    if PLAUSIBLE[0] <= measured.pga <= PLAUSIBLE[1]:
+    if PLAUSIBLE_PGA[0] <= measured.pga <= PLAUSIBLE_PGA[1]:
         return []
     text = f"a PGA of {measured.pga:.3g} g is unusual for a ground motion: is the unit really {motion.unit}?"
     return [Doubt("pga", measured.pga, text)]
@@ -100,9 +100,9 @@ def _baseline(motion: GroundMotion, measured: Measures) -> list[Doubt]:
     start = float(motion.acceleration[0]) / STANDARD_GRAVITY
     end, left = measured.final_velocity, measured.final_displacement
     checks = (  # keyword, value, what it is compared with, share of that from which it is doubtful, text
-        ("offset", measured.mean, measured.rms, OFFSET,
+        ("offset", measured.mean, measured.rms, MAX_MEAN_OVER_RMS,
          "the mean acceleration is {:.2g} g, {:.0f} % of its rms: an offset of the baseline?"),
-        ("start", start, measured.pga, START,
+        ("start", start, measured.pga, MAX_START_OVER_PEAK,
          "it starts at {:.2g} g, {:.0f} % of its peak, and not at rest: an offset, or cut off?"),
         ("final_velocity", end, measured.pgv, FINAL_VELOCITY,
          "its velocity drifts: it ends at {:.2g} m/s, {:.0f} % of its peak: an uncorrected baseline, or cut off?"),
@@ -125,7 +125,7 @@ def _clipping(motion: GroundMotion) -> list[Doubt]:
     found = []
     for extreme in dict.fromkeys((float(a.max()), float(a.min()))):
         run = _longest_run(np.flatnonzero(a == extreme))
-        if run >= CLIPPED and abs(extreme) > peak / 2:  # not the zeros that a one-sided pulse never goes below
+        if run >= CLIPPED_SAMPLES and abs(extreme) > peak / 2:  # not the zeros that a one-sided pulse never goes below
             text = f"{run} {what} in a row stand at its extreme of {extreme / STANDARD_GRAVITY:.3g} g: clipped?"
             found.append(Doubt("clipped", float(run), text))
     return found
@@ -138,19 +138,19 @@ def _spikes(motion: GroundMotion) -> list[Doubt]:
     and at its neighbours in the ratio of `pattern`, which nothing else does if the motion around is smooth.
     """
     a = motion.acceleration
-    if a.size < 2 * _AROUND:
+    if a.size < 2 * _SMOOTH_SAMPLES:
         return []
     pattern = np.array([1, -4, 6, -4, 1]) / 6
     off = np.convolve(a, pattern, "valid")  # of the samples from 2 to the last but 2
     error = np.convolve(off, pattern[::-1], "valid") / (pattern @ pattern)
-    least = NOTICEABLE * float(np.abs(a).max())
+    least = MIN_RESIDUAL * float(np.abs(a).max())
     found = []
-    for k in np.flatnonzero(np.abs(error) > SPIKE * least).tolist():
+    for k in np.flatnonzero(np.abs(error) > SPIKE_RATIO * least).tolist():
         part = np.abs(off[k : k + 5] - error[k] * pattern)
-        if abs(error[k]) <= SPIKE * float(part.max()):
+        if abs(error[k]) <= SPIKE_RATIO * float(part.max()):
             continue
-        around = np.concatenate([off[max(k - _AROUND, 0) : k], off[k + 5 : k + 5 + _AROUND]])
-        if abs(error[k]) > SPIKE * max(float(np.abs(around).max()), least):
+        around = np.concatenate([off[max(k - _SMOOTH_SAMPLES, 0) : k], off[k + 5 : k + 5 + _SMOOTH_SAMPLES]])
+        if abs(error[k]) > SPIKE_RATIO * max(float(np.abs(around).max()), least):
             found.append(k)
     if not found:
         return []
@@ -173,9 +173,9 @@ def _dropouts(motion: GroundMotion) -> list[Doubt]:
     if not changes.size:
         return []
     sizes = np.abs(steps[changes])
-    jumps = sizes > max(JUMP * peak, STEP * np.median(sizes))
+    jumps = sizes > max(MIN_JUMP_OVER_PEAK * peak, MIN_JUMP_OVER_STEP * np.median(sizes))
     level = np.abs(a[changes[1:]]) < peak  # at the peak it is clipped
-    lost = np.flatnonzero((np.diff(changes) >= DROPOUT) & jumps[:-1] & jumps[1:] & level)
+    lost = np.flatnonzero((np.diff(changes) >= DROPOUT_SAMPLES) & jumps[:-1] & jumps[1:] & level)
     if not lost.size:
         return []
     start, end = (int(place) for place in changes[lost[0] : lost[0] + 2])

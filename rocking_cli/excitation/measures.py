@@ -14,7 +14,7 @@ from rocking_cli.arrays import Bools, Reals
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion, from_zero
 
-SIGNIFICANT = (0.05, 0.95)  # of the Arias intensity: where the significant duration begins and ends
+SIGNIFICANT_SHARES = (0.05, 0.95)  # of the Arias intensity at the start and end of the significant duration
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ def measure(motion: GroundMotion) -> Measures:
         steepness = float(np.sum(np.diff(motion.acceleration) ** 2)) / motion.dt
         total = float(built[-1])
         squared = total * (2 * STANDARD_GRAVITY) / pi
-        times = [_time_of(motion, built, share * total) if total > 0 else None for share in SIGNIFICANT]
+        times = [_time_of(motion, built, share * total) if total > 0 else None for share in SIGNIFICANT_SHARES]
         found = Measures(
             pga=motion.pga_g,
             pgv=_peak_velocity(motion, v),

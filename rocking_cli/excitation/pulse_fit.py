@@ -26,14 +26,14 @@ Criterion = Literal["acceleration", "velocity"]
 
 CRITERIA: tuple[Criterion, ...] = ("acceleration", "velocity")
 FITTED: dict[str, type[Pulse]] = {"sine": Sine, "ricker": Ricker, "mavroeidis": MavroeidisPapageorgiou}
-SHORTEST = 10  # samples to a period; the longest period is that of the record
-PER_OCTAVE = 10  # periods tried: 7 % apart
-CYCLES = (1.25, 1.7, 2.3, 3.1, 4.2)  # tried, of a near-fault pulse
-RANGE = (1.01, 6.0)  # of the cycles: with one the source has no pulse
-APART = 0.25  # of a period: places further apart than this are refined each for itself
-PLACES = 4  # refined
-ROUGH, FINE = 2e-2, 1e-6  # how exactly each place, and the best of them, is found, over a step of the grid
-ENOUGH = (10, 40, 500)  # samples to a period that are looked at: on the grid, of each place, and of the best
+MIN_SAMPLES_PER_PERIOD = 10  # the longest period is the length of the record
+PERIODS_PER_OCTAVE = 10  # 7 % apart
+TRIED_CYCLES = (1.25, 1.7, 2.3, 3.1, 4.2)  # of a near-fault pulse
+CYCLES_RANGE = (1.01, 6.0)  # the source defines no pulse of one cycle
+MIN_DISTANCE = 0.25  # share of a period; starting points further apart are refined separately
+MAX_REFINED = 4
+ROUGH, FINE = 2e-2, 1e-6  # tolerances of every starting point, and of the best one, over a step of the grid
+SAMPLES_PER_PERIOD = (10, 40, 500)  # on the grid, in the refinement of every starting point, and of the best one
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def fit_pulses(
         peak = float(np.abs(values).max())
         if peak == 0:
             raise InputError(Problem("the record is zero throughout, so it contains no pulse", motion.name))
-        if motion.npts <= 2 * SHORTEST:
+        if motion.npts <= 2 * MIN_SAMPLES_PER_PERIOD:
             raise InputError(Problem(f"{motion.npts} samples are too few to find a pulse in", motion.name))
         search = _PulseSearch(values / peak, motion.dt, criterion == "velocity")
         for shape in shapes:
@@ -177,9 +177,9 @@ class _PulseSearch:
     def __init__(self, values: Reals, dt: float, as_velocity: bool) -> None:
         self.dt, self.as_velocity = dt, as_velocity
         self.energy = float(values @ values)
-        self.shortest, self.longest = SHORTEST * dt, (values.size - 1) * dt
+        self.shortest, self.longest = MIN_SAMPLES_PER_PERIOD * dt, (values.size - 1) * dt
         self.levels = [values]  # each with every second sample of the one before, smoothed
-        while self.levels[-1].size > 2 * SHORTEST:
+        while self.levels[-1].size > 2 * MIN_SAMPLES_PER_PERIOD:
             self.levels.append(np.convolve(self.levels[-1], [0.25, 0.5, 0.25])[1:-1:2])
 
     def level(self, period: float, enough: int) -> int:
@@ -204,8 +204,8 @@ class _PulseSearch:
 
     def best(self, shape: str) -> _Place:
         """Return start, period and cycles at which the pulse captures the most energy."""
-        _, place = max(self._refine(shape, place, 1.0, ROUGH, ENOUGH[1]) for place in self._places(shape))
-        return self._refine(shape, place, ROUGH, FINE, ENOUGH[2])[1]
+        _, place = max(self._refine(shape, place, 1.0, ROUGH, SAMPLES_PER_PERIOD[1]) for place in self._places(shape))
+        return self._refine(shape, place, ROUGH, FINE, SAMPLES_PER_PERIOD[2])[1]
 
     def _refine(self, shape: str, place: _Place, size: float, within: float, enough: int) -> tuple[float, _Place]:
         """Refine start, period and cycles by the simplex method; return the captured share and the result.
@@ -215,7 +215,9 @@ class _PulseSearch:
         """
         from scipy.optimize import minimize
 
-        steps = np.array([1 / ENOUGH[0] / 2, log(2) / PER_OCTAVE, 0.15])[: 3 if shape == "mavroeidis" else 2]
+        steps = np.array([1 / SAMPLES_PER_PERIOD[0] / 2, log(2) / PERIODS_PER_OCTAVE, 0.15])[
+            : 3 if shape == "mavroeidis" else 2
+        ]
         middle = _middle(shape, place)
         level = self.level(place.period, enough)
 
@@ -229,7 +231,11 @@ class _PulseSearch:
             here = there(u)
             # A pulse of the record, and resolved.
             near = abs(u[1] * steps[1]) <= 1 and 0 <= _middle(shape, here) <= self.longest
-            if not (near and self.shortest <= here.period <= self.longest and RANGE[0] <= here.cycles <= RANGE[1]):
+            if not (
+                near
+                and self.shortest <= here.period <= self.longest
+                and CYCLES_RANGE[0] <= here.cycles <= CYCLES_RANGE[1]
+            ):
                 return np.inf
             return -self.fit(shape, here, level)[0]
 
@@ -240,18 +246,18 @@ class _PulseSearch:
 
     def _places(self, shape: str) -> list[_Place]:
         """Return the best points of a grid of start, period and cycles, without points near better ones."""
-        periods = self.shortest * 2 ** np.arange(0.0, log(self.longest / self.shortest, 2), 1 / PER_OCTAVE)
-        tried = CYCLES if shape == "mavroeidis" else (2.0,)
+        periods = self.shortest * 2 ** np.arange(0.0, log(self.longest / self.shortest, 2), 1 / PERIODS_PER_OCTAVE)
+        tried = TRIED_CYCLES if shape == "mavroeidis" else (2.0,)
         grid = [self._best_start(shape, period, cycles) for period in periods.tolist() for cycles in tried]
         chosen: list[_Place] = []
         for _, place in sorted(grid, reverse=True):
-            if len(chosen) < PLACES and not any(_near(shape, place, other) for other in chosen):
+            if len(chosen) < MAX_REFINED and not any(_near(shape, place, other) for other in chosen):
                 chosen.append(place)
         return chosen
 
     def _best_start(self, shape: str, period: float, cycles: float) -> tuple[float, _Place]:
         """Return the approximate captured share and the start of the best pulse of a period and cycles."""
-        level = self.level(period, ENOUGH[0])
+        level = self.level(period, SAMPLES_PER_PERIOD[0])
         values, dt = self.levels[level], self.dt * 2**level
         parts = _parts(shape, period, cycles)
         half = floor(parts[0].duration / 2 / dt)
@@ -277,4 +283,4 @@ def _middle(shape: str, place: _Place) -> float:
 def _near(shape: str, one: _Place, other: _Place) -> bool:
     """Return whether two points of the grid may belong to the same maximum."""
     between = abs(_middle(shape, one) - _middle(shape, other))
-    return abs(log(one.period / other.period)) < APART and between < APART * max(one.period, other.period)
+    return abs(log(one.period / other.period)) < MIN_DISTANCE and between < MIN_DISTANCE * max(one.period, other.period)

@@ -10,18 +10,18 @@ import numpy as np
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.text import one_line
 
-HEADER = "t [s],a [m/s2]\n"  # metres: any other unit would round the accelerations on the way back
-DONE = "# processed: "  # begins the line above it, of a record that was corrected
-MOST = 10_000  # bytes of the line that says what was done
-BLOCK = 10_000  # lines written at a time: a long record never stands in memory as text
+HEADER = "t [s],a [m/s2]\n"  # in metres, as any other unit would round the accelerations when read again
+DONE_PREFIX = "# processed: "  # starts the line above the header in files of corrected records
+MAX_DONE_BYTES = 10_000
+LINES_PER_BLOCK = 10_000  # written at a time, so that the text of a long record is never in memory
 
 
 def is_record_csv(path: Path) -> bool:
     """Return whether a file begins as files of `write_record_csv` do."""
     with path.open("rb") as file:
-        first = file.readline(MOST)
+        first = file.readline(MAX_DONE_BYTES)
         return first == HEADER.encode() or (
-            first.startswith(DONE.encode()) and file.readline(len(HEADER)) == HEADER.encode()
+            first.startswith(DONE_PREFIX.encode()) and file.readline(len(HEADER)) == HEADER.encode()
         )
 
 
@@ -37,11 +37,11 @@ def write_record_csv(stream: BinaryIO, motion: GroundMotion) -> None:
         bit.
     """
     if motion.processing:
-        stream.write(one_line(f"{DONE}{', '.join(motion.processing)}")[: MOST - 1].encode() + b"\n")
+        stream.write(one_line(f"{DONE_PREFIX}{', '.join(motion.processing)}")[: MAX_DONE_BYTES - 1].encode() + b"\n")
     stream.write(HEADER.encode())
     last = motion.npts - 1
-    for start in range(0, motion.npts, BLOCK):
-        values = (motion.acceleration[start : start + BLOCK] + 0.0).tolist()  # no -0
+    for start in range(0, motion.npts, LINES_PER_BLOCK):
+        values = (motion.acceleration[start : start + LINES_PER_BLOCK] + 0.0).tolist()  # no -0
         times = [f"{(start + k) * motion.dt:.12g}" for k in range(len(values))]
         if start + len(values) > last:
             times[-1] = _last_time(motion.dt, last)

@@ -11,9 +11,17 @@ from pathlib import Path
 
 from rocking_cli.errors import InputError, Problem, Refused
 
-CHOSEN = "ROCKING_BROWSER"
-NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "msedge", "microsoft-edge")
-ELSEWHERE = (  # where macOS and Windows keep what is on no path
+BROWSER_VARIABLE = "ROCKING_BROWSER"
+BROWSER_NAMES = (
+    "chromium",
+    "chromium-browser",
+    "google-chrome",
+    "google-chrome-stable",
+    "chrome",
+    "msedge",
+    "microsoft-edge",
+)
+ELSEWHERE = (  # usual places in macOS and Windows, where browsers are not on the path
     "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
     "/Applications/Microsoft Edge.app/Contents/MacOS/Microsoft Edge",
     "/Applications/Chromium.app/Contents/MacOS/Chromium",
@@ -21,7 +29,7 @@ ELSEWHERE = (  # where macOS and Windows keep what is on no path
     r"C:\Program Files (x86)\Microsoft\Edge\Application\msedge.exe",
 )
 OPTIONS = ("headless", "disable-gpu", "no-first-run", "no-pdf-header-footer")
-PATIENCE = 120  # s
+PRINT_TIMEOUT = 120  # s
 
 
 def browser() -> str:
@@ -32,15 +40,17 @@ def browser() -> str:
     InputError
         If there is no browser.
     """
-    if chosen := os.environ.get(CHOSEN):
+    if chosen := os.environ.get(BROWSER_VARIABLE):
         if (path := shutil.which(chosen)) is None:
             raise InputError(
-                Problem(f"there is no browser {chosen}", CHOSEN, hint="name one that is there, or unset it")
+                Problem(f"there is no browser {chosen}", BROWSER_VARIABLE, hint="name one that is there, or unset it")
             )
         return path
-    found = [*filter(None, map(shutil.which, NAMES)), *(path for path in ELSEWHERE if Path(path).is_file())]
+    found = [*filter(None, map(shutil.which, BROWSER_NAMES)), *(path for path in ELSEWHERE if Path(path).is_file())]
     if not found:
-        hint = f"install Chromium, Chrome or Edge, or name one in {CHOSEN}; or write .html and print it yourself"
+        hint = (
+            f"install Chromium, Chrome or Edge, or name one in {BROWSER_VARIABLE}; or write .html and print it yourself"
+        )
         raise InputError(Problem("a PDF is printed by a browser, and none is found here", hint=hint))
     return found[0]
 
@@ -74,7 +84,7 @@ def as_pdf(page: bytes) -> bytes:
             options.append("no-sandbox")  # root can have none; the page is our own, and asks for nothing
         command = [program, *(f"--{each}" for each in options), source.as_uri()]
         try:
-            subprocess.run(command, capture_output=True, timeout=PATIENCE, check=True)
+            subprocess.run(command, capture_output=True, timeout=PRINT_TIMEOUT, check=True)
             return printed.read_bytes()
         except (OSError, subprocess.SubprocessError) as error:
             raise Refused(f"{program} did not print the page: {type(error).__name__}") from None

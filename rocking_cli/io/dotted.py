@@ -9,10 +9,10 @@ from collections.abc import Callable
 from typing import Any
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.io.yaml_file import DEEPEST, Place
+from rocking_cli.io.yaml_file import MAX_DEPTH, Place
 from rocking_cli.text import cut, did_you_mean
 
-MOST = 10_000  # entries of a list
+MAX_LIST_ENTRIES = 10_000
 HOLE: Any = ...
 """An entry of a list that nothing has been put in yet."""
 
@@ -23,8 +23,8 @@ def words(text: str) -> tuple[str, ...]:
     if not all(found):
         hint = "write words with a dot between them, such as loads.0.mass"
         raise InputError(Problem(f"{cut(repr(text))} is not a valid field", hint=hint))
-    if len(found) > DEEPEST:
-        raise InputError(Problem(f"{cut(repr(text))} has more than {DEEPEST} parts: no field lies so deep"))
+    if len(found) > MAX_DEPTH:
+        raise InputError(Problem(f"{cut(repr(text))} has more than {MAX_DEPTH} parts: no field lies so deep"))
     return found
 
 
@@ -92,14 +92,14 @@ def _entry(entries: list[Any], word: str, before: tuple[str, ...], *, grow: bool
     if word in names:
         return names.index(word)
     of = ".".join(before)
-    number = int(word) if word.isdecimal() and len(word) < 10 else MOST
+    number = int(word) if word.isdecimal() and len(word) < 10 else MAX_LIST_ENTRIES
     if word.isdecimal() and number < len(entries):
         return number
     if not grow:
         raise InputError(Problem(f"{of} has no entry {cut(word)}", hint=_known(word, names)))
     if word.isdecimal():
-        if number >= MOST:
-            raise InputError(Problem(f"{cut(word)} is not a valid place in a list: at most {MOST - 1}"))
+        if number >= MAX_LIST_ENTRIES:
+            raise InputError(Problem(f"{cut(word)} is not a valid place in a list: at most {MAX_LIST_ENTRIES - 1}"))
         entries += [HOLE] * (number + 1 - len(entries))
         return number
     entries.append({"name": word})

@@ -14,7 +14,7 @@ from typing import IO, Any, BinaryIO
 
 from rocking_cli.errors import InputError, Problem, Refused, RockingError
 
-NEW = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)
+CREATE_ONLY = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)
 
 
 def read_bytes(
@@ -223,7 +223,7 @@ def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
     name = path.with_name(f".{path.name[:40]}.{os.urandom(8).hex()}")
     try:
         try:
-            handle = os.open(name, NEW, 0o600)
+            handle = os.open(name, CREATE_ONLY, 0o600)
         except OSError as error:
             raise _cannot(shown, error) from error
         _fill(handle, shown, write)

@@ -13,7 +13,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import read_bytes
 from rocking_cli.text import cut, one_line
 
-LARGEST = 100_000_000  # bytes; a million rows of ten columns take half of it
+MAX_BYTES = 100_000_000  # a million rows of ten columns take half of it
 SEPARATORS = ",;\t"
 DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?\s*(?:[^\d\s,.;][^,;]*)?", re.ASCII)
 _BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\]]*)\]|\(([^)]*)\))\s*", re.DOTALL)
@@ -80,7 +80,7 @@ def unit_in(heading: str, units: Collection[str]) -> tuple[str, str]:
 
 def read_sheet(path: Path) -> Spreadsheet:
     """Return the table of a file. Raises `InputError` if it has no table, no headings, or a heading twice."""
-    return parse_sheet(read_bytes(path, "table", LARGEST), str(path))
+    return parse_sheet(read_bytes(path, "table", MAX_BYTES), str(path))
 
 
 def parse_sheet(raw: bytes, file: str) -> Spreadsheet:

@@ -17,7 +17,7 @@ from rocking_cli.text import printable
 
 Columns = Mapping[str, "Sequence[object] | np.ndarray"]
 PARQUET = ".parquet"
-ROWS = 4_000  # of numbers that stand in memory as text
+ROWS_PER_BLOCK = 4_000  # written at a time, so that the text of a large table is never in memory
 
 
 def check_table(path: Path | None) -> None:
@@ -51,8 +51,10 @@ def write_csv(stream: BinaryIO, blocks: Iterable[Columns], *, digits: int | None
             writer.writerow([printable(name) for name in columns])
         values = list(columns.values())
         if digits == 9 and all(isinstance(each, np.ndarray) and each.dtype == np.float64 for each in values):
-            for start in range(0, len(values[0]), ROWS):
-                text.write(_lines(np.column_stack([np.asarray(each[start : start + ROWS]) for each in values])))
+            for start in range(0, len(values[0]), ROWS_PER_BLOCK):
+                text.write(
+                    _lines(np.column_stack([np.asarray(each[start : start + ROWS_PER_BLOCK]) for each in values]))
+                )
         else:
             writer.writerows(zip(*([_field(value, digits) for value in column] for column in values), strict=True))
     text.detach()

@@ -16,10 +16,10 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import read_bytes
 from rocking_cli.text import cut, printable, regex
 
-LARGEST = 10_000_000  # bytes; most structures take a few hundred, a wall of ten thousand blocks two million
-LONG = 100_000  # characters; what is as long takes seconds to read without the parser in C
-DEEPEST = 20  # nesting
-MOST = 500_000  # values, with those that aliases repeat: a few lines of them stand for billions
+MAX_BYTES = 10_000_000  # most structures take a few hundred, a wall of ten thousand blocks two million
+MIN_FAST_CHARACTERS = 100_000  # longer texts take seconds without the parser in C
+MAX_DEPTH = 20
+MAX_VALUES = 500_000  # with repeats by aliases, of which a few lines stand for billions
 
 
 _LINE_END = regex("\r\n|[\r\n\x85\u2028\u2029]")  # as YAML counts lines
@@ -46,7 +46,7 @@ def _fast() -> type[_Loader]:
 
 def _composed(text: str) -> yaml.Node | None:
     """Return the nodes of a YAML text."""
-    if len(text) >= LONG and yaml.__with_libyaml__:
+    if len(text) >= MIN_FAST_CHARACTERS and yaml.__with_libyaml__:
         with suppress(ReaderError):  # for a bad character it has no place
             return yaml.compose(text, Loader=_fast())
     return yaml.compose(text, Loader=_Loader)
@@ -115,12 +115,12 @@ class Document:
     def plain(self, node: yaml.Node, path: Place = ()) -> Any:
         """Return the plain data of a node, and add problems to the list."""
         self.values.setdefault(path, node.start_mark)
-        if len(path) > DEEPEST:
+        if len(path) > MAX_DEPTH:
             raise InputError(self.problem(f"nested too deep to be a {self.what}", node.start_mark))
         self.count += 1
-        if self.count > MOST:
+        if self.count > MAX_VALUES:
             hint = "aliases (*name) expand to too many values: write the values out"
-            message = f"the file has more than {MOST} values: too many for a {self.what}"
+            message = f"the file has more than {MAX_VALUES} values: too many for a {self.what}"
             mark = self.values.get(path[:1], node.start_mark)
             raise InputError(self.problem(message, mark, spell(path[:1]), hint))
         if isinstance(node, yaml.SequenceNode):
@@ -176,13 +176,13 @@ def spell(place: Place) -> str | None:
 
 def read_text(path: Path, what: str) -> str:
     """Return the text of a file of a kind `what`. Raises `InputError` if it cannot be read."""
-    return decoded(read_bytes(path, f"{what} file", LARGEST), str(path), what)
+    return decoded(read_bytes(path, f"{what} file", MAX_BYTES), str(path), what)
 
 
 def decoded(raw: bytes, shown: str, what: str) -> str:
     """Return the text of a file from its bytes; `shown` is its name in messages. Raises `InputError` if not text."""
-    if len(raw) > LARGEST:
-        raise InputError(Problem(f"this cannot be a {what} file: it is larger than {LARGEST / 1e6:.4g} MB", shown))
+    if len(raw) > MAX_BYTES:
+        raise InputError(Problem(f"this cannot be a {what} file: it is larger than {MAX_BYTES / 1e6:.4g} MB", shown))
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):  # what a redirection writes in older shells of Windows
         raw = raw.decode("utf-16", errors="replace").encode()
     if b"\0" in raw:

@@ -20,7 +20,7 @@ from rocking_cli.core import Angle, Direction, Forces, Length, Line, three_digit
 from rocking_cli.plotting import dimensions, hung, style
 from rocking_cli.plotting.labels import EDGE_COST, MARK_COST, Labels, mathematics
 from rocking_cli.plotting.panels import PANEL_GAP, Panel, lay_out
-from rocking_cli.studies.picture import MANY, DrawnHinge, DrawnPart, Picture, box_around
+from rocking_cli.studies.picture import MAX_SEPARATE_PARTS, DrawnHinge, DrawnPart, Picture, box_around
 
 Points = NDArray[np.complex128]
 HEADING_HEIGHT, SCALE_HEIGHT = 0.42, 0.34  # inches above a panel for its heading, and below it for the scale
@@ -221,7 +221,7 @@ def colour(picture: Picture, k: int, direction: Direction) -> str:
 
 def weight(picture: Picture, scale: float) -> float:
     """Return the width of the lines around parts [pt] at a scale [inches per m]; thinner for many small blocks."""
-    if sum(len(part.outlines) for part in picture.parts) <= MANY:
+    if sum(len(part.outlines) for part in picture.parts) <= MAX_SEPARATE_PARTS:
         return style.MEDIUM
     return min(style.MEDIUM, max(style.HAIR, LINE_WEIGHT_SHARE * _smaller_side(picture) * scale * POINTS_PER_INCH))
 

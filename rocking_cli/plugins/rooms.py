@@ -12,7 +12,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 
 QUESTIONS = "rocking_cli.questions"
-FURTHER = "_command"  # ends the name of a module that has a second command of a folder: `results_command`
+COMMAND_SUFFIX = "_command"  # module name of a second command of a folder: `results_command`
 
 
 @cache
@@ -20,7 +20,9 @@ def commands() -> dict[str, str]:
     """Return the module of each command, in the order in which a newcomer needs them."""
     found = []
     for room, place, files, _ in _rooms():
-        own = {room: "command"} | {file.removesuffix(FURTHER): file for file in files if file.endswith(FURTHER)}
+        own = {room: "command"} | {
+            file.removesuffix(COMMAND_SUFFIX): file for file in files if file.endswith(COMMAND_SUFFIX)
+        }
         found += [(place, name, f"{QUESTIONS}.{room}.{file}") for name, file in own.items() if file in files]
     return {name: module for _, name, module in sorted(found)}
 

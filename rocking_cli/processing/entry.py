@@ -15,7 +15,7 @@ from rocking_cli.processing.reading_options import CORRECTIONS, READING
 from rocking_cli.processing.steps import Factor, parse_steps
 
 Positive = Annotated[float, Field(gt=0)]
-SPELLED = ("units", "dt", "channel", "other_channel", "azimuth")
+SPELLED_ITEMS = ("units", "dt", "channel", "other_channel", "azimuth")
 """Options whose values are kept as their parser spells them; others as the file has them."""
 
 
@@ -36,7 +36,7 @@ def _parsed(parse: Callable[[Any], Any], *, spelled: bool = False) -> Callable[[
 def _item(name: str) -> Any:
     """Return the field of an option, for a model of pydantic, with its default."""
     option = READING[name]
-    checked = Annotated[Any, BeforeValidator(_parsed(option.parse, spelled=name in SPELLED))]
+    checked = Annotated[Any, BeforeValidator(_parsed(option.parse, spelled=name in SPELLED_ITEMS))]
     return checked, Field(None, alias=option.key or None, description=option.help)
 
 

@@ -15,9 +15,9 @@ from rocking_cli.units import UnitError, number_of
 
 EXAMPLE = "T1=0.4,xi=0.05,z=0.67,gamma=1.29"
 KEYS = ("T1", "xi", "z", "gamma", "n")
-PERIODS = 1e-6, 1e6  # s; beyond them no building answers, and numbers overflow
-MOST = 100.0  # of gamma, which is 1.5 for a uniform building: more is a slip of the keyboard
-STOREYS = 1000
+PERIOD_RANGE = 1e-6, 1e6  # s; no building has periods beyond, and numbers overflow
+MAX_GAMMA = 100.0  # a uniform building has 1.5; a larger value is a typing error
+MAX_STOREYS = 1000
 
 
 @dataclass(frozen=True)
@@ -46,15 +46,15 @@ class Floor:
         if not 0 <= self.height <= 1:
             hint = "z is the height of the floor over that of the building"
             raise _refused(f"z must be from 0 to 1, got {self.height:g}", hint)
-        if not PERIODS[0] <= self.period <= PERIODS[1]:
-            raise _refused(f"T1 must be from {PERIODS[0]:g} to {PERIODS[1]:g} s, got {self.period:g} s")
-        if not 0 < self.participation <= MOST:
-            raise _refused(f"gamma must be a positive number, {MOST:g} at most, got {self.participation:g}")
+        if not PERIOD_RANGE[0] <= self.period <= PERIOD_RANGE[1]:
+            raise _refused(f"T1 must be from {PERIOD_RANGE[0]:g} to {PERIOD_RANGE[1]:g} s, got {self.period:g} s")
+        if not 0 < self.participation <= MAX_GAMMA:
+            raise _refused(f"gamma must be a positive number, {MAX_GAMMA:g} at most, got {self.participation:g}")
 
     def __str__(self) -> str:
         given = {"T1": self.period, "xi": self.damping, "z": self.height}
         n = round(self.participation / (3 - 2 * self.participation)) if self.participation < 1.5 else 0
-        if 1 <= n <= STOREYS and isclose(_of_storeys(n), self.participation, rel_tol=1e-12):
+        if 1 <= n <= MAX_STOREYS and isclose(_of_storeys(n), self.participation, rel_tol=1e-12):
             given["n"] = float(n)  # 9/7 has no end
         else:
             given["gamma"] = self.participation
@@ -81,7 +81,7 @@ class Floor:
         values = {key: _value(key, value) for key, value in pairs.items()}
         if "n" in values:
             n = values["n"]
-            if not (1 <= n <= STOREYS and n == round(n)):
+            if not (1 <= n <= MAX_STOREYS and n == round(n)):
                 raise _refused(f"n is the number of storeys, got {n:g}")
             values["gamma"] = _of_storeys(n)
         return cls(values["T1"], values.get("xi", DAMPING), values["z"], values["gamma"])

@@ -20,12 +20,12 @@ from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 
-PER_PERIOD = 24  # samples: between them a cubic is within 1e-5 of the peak
-FINEST = 64  # parts of an interval: an oscillator this much faster than the record follows it
-MOST = 50_000_000  # samples of a motion that is made finer: some gigabytes
-BLOCK = 64  # samples advanced at once
-SMALL = 0.5  # of |m|: below it phi_1 and phi_2 come from their series, without a difference of close numbers
-TERMS = 18
+PER_PERIOD = 24  # samples; cubics between them have an error below 1e-5 of the peak
+MAX_PARTS = 64  # of a sampling interval; an oscillator this much faster than the record follows it
+MAX_SAMPLES = 50_000_000  # of a refined motion; they take some gigabytes
+SAMPLES_PER_BLOCK = 64
+MAX_SERIES_ARGUMENT = 0.5  # up to this |m|, series give phi_1 and phi_2 without cancellation
+SERIES_TERMS = 18
 DAMPING = 0.05
 SHORTEST, LONGEST, PERIODS = (
     0.02,
@@ -83,10 +83,11 @@ def relative_response(motion: GroundMotion, period: float, damping: float) -> tu
         n, more than 1 if the period is so short that the response must be sampled more finely than the motion.
     """
     check_oscillator(period, damping)
-    parts = max(ceil(min(PER_PERIOD * motion.dt / period, FINEST) - 1e-9), 1)
-    if parts > 1 and parts * motion.npts > MOST:
+    parts = max(ceil(min(PER_PERIOD * motion.dt / period, MAX_PARTS) - 1e-9), 1)
+    if parts > 1 and parts * motion.npts > MAX_SAMPLES:
         message = (
-            f"a period of {period:g} s needs {parts * motion.npts:.3g} samples of it; at most {MOST:.3g} are allowed"
+            f"a period of {period:g} s needs {parts * motion.npts:.3g} samples of it; "
+            f"at most {MAX_SAMPLES:.3g} are allowed"
         )
         raise InputError(Problem(message, motion.name, hint="a longer period or a shorter record takes fewer"))
     ground = finer(motion.acceleration, parts)
@@ -154,11 +155,11 @@ def finer(values: Reals, parts: int) -> Reals:
 
 def _phi(m: complex) -> tuple[complex, complex]:
     """Return the functions phi_1 and phi_2 of m, see the module."""
-    if abs(m) > SMALL:
+    if abs(m) > MAX_SERIES_ARGUMENT:
         grown = np.exp(m)
         return complex((grown - 1) / m), complex((grown - 1 - m) / (m * m))
     term, phi_1, phi_2 = 1.0 + 0.0j, 0.0j, 0.0j
-    for k in range(1, TERMS):
+    for k in range(1, SERIES_TERMS):
         phi_1 += term / k  # m^(k-1)/k!
         phi_2 += term / (k * (k + 1))
         term *= m / k
@@ -170,18 +171,18 @@ def _advance(growth: complex, forcing: NDArray[np.complex128]) -> NDArray[np.com
 
     As |growth| is at most 1, no power of it is large.
     """
-    blocks = -(-forcing.size // BLOCK)
-    padded = np.zeros(blocks * BLOCK, dtype=np.complex128)
+    blocks = -(-forcing.size // SAMPLES_PER_BLOCK)
+    padded = np.zeros(blocks * SAMPLES_PER_BLOCK, dtype=np.complex128)
     padded[: forcing.size] = forcing
-    powers = growth ** np.arange(BLOCK + 1)
+    powers = growth ** np.arange(SAMPLES_PER_BLOCK + 1)
     # All blocks go on side by side: no matrix, whose product many threads share, which a busy machine makes slow.
-    rows = np.ascontiguousarray(padded.reshape(blocks, BLOCK).T)
-    for k in range(1, BLOCK):
+    rows = np.ascontiguousarray(padded.reshape(blocks, SAMPLES_PER_BLOCK).T)
+    for k in range(1, SAMPLES_PER_BLOCK):
         rows[k] += growth * rows[k - 1]
     within = rows.T
     before = np.zeros(blocks, dtype=np.complex128)
     for k in range(1, blocks):
-        before[k] = powers[BLOCK] * before[k - 1] + within[k - 1, -1]
+        before[k] = powers[SAMPLES_PER_BLOCK] * before[k - 1] + within[k - 1, -1]
     return np.asarray((within + before[:, None] * powers[1:]).ravel()[: forcing.size])
 
 

@@ -186,7 +186,7 @@ def _same(one: str | Path, other: str | Path) -> bool:
         return False
 
 
-SAME = 1e-6  # relative difference of two intervals that are printed differently
+DT_TOLERANCE = 1e-6  # relative; files print the same interval differently
 
 
 def turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMotion:
@@ -209,7 +209,7 @@ def turned(one: GroundMotion, other: GroundMotion, azimuth: float) -> GroundMoti
     InputError
         If the components differ in length or sampling interval.
     """
-    if not isclose(one.dt, other.dt, rel_tol=SAME):
+    if not isclose(one.dt, other.dt, rel_tol=DT_TOLERANCE):
         message = f"its interval is {other.dt:.9g} s, that of {one.name} {one.dt:.9g} s"
         raise _unlike(other, message, "resample both alike")
     if one.npts != other.npts:

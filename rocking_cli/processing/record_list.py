@@ -14,7 +14,7 @@ from rocking_cli.io.yaml_file import parse, read_text
 from rocking_cli.processing.entry import Entry
 from rocking_cli.processing.listed import Listed, is_list
 
-HINT = "`rocking select` writes one"
+SELECT_HINT = "`rocking select` writes one"
 
 
 class RecordList(BaseModel):
@@ -38,7 +38,7 @@ def read_list(path: Path) -> list[Listed]:
     InputError
         With every problem of the list.
     """
-    document = parse(read_text(path, "list of records"), str(path), "list of records", HINT)
+    document = parse(read_text(path, "list of records"), str(path), "list of records", SELECT_HINT)
     document.check()
     if "records" not in document.data and "mechanism" in document.data:
         what = "this is a structure, and no list of records"
@@ -47,7 +47,7 @@ def read_list(path: Path) -> list[Listed]:
         known = RecordList.model_validate(document.data)
     except ValidationError as error:
         errors: Any = error.errors(include_url=False)
-        raise InputError(*problems(document, RecordList, errors, owner="the list", lister=HINT)) from None
+        raise InputError(*problems(document, RecordList, errors, owner="the list", lister=SELECT_HINT)) from None
     listed: list[Listed] = []
     for k, entry in enumerate(known.records):
         if entry.file is None:

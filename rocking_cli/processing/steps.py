@@ -19,8 +19,8 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.text import did_you_mean, exact
 from rocking_cli.units import UnitError, number_of
 
-ORDER = 4
-DEGREES = {"constant": 0, "linear": 1, "quadratic": 2}
+FILTER_ORDER = 4
+POLYNOMIAL_DEGREES = {"constant": 0, "linear": 1, "quadratic": 2}
 
 
 @dataclass(frozen=True)
@@ -70,14 +70,14 @@ class Baseline(Step):
     def parse(cls, text: str) -> Self:
         """Return the step for a kind of polynomial."""
         word = text.strip().lower()
-        if word not in DEGREES:
-            hint = did_you_mean(word, list(DEGREES))
-            raise _wrong(cls, f"{text!r} is not one of {', '.join(DEGREES)}", hint)
+        if word not in POLYNOMIAL_DEGREES:
+            hint = did_you_mean(word, list(POLYNOMIAL_DEGREES))
+            raise _wrong(cls, f"{text!r} is not one of {', '.join(POLYNOMIAL_DEGREES)}", hint)
         return cls(word)
 
     def of(self, motion: GroundMotion) -> GroundMotion:
         """Return the motion without the polynomial."""
-        degree = DEGREES[self.kind]
+        degree = POLYNOMIAL_DEGREES[self.kind]
         if motion.npts <= degree + 1:
             raise self.refused(motion, f"{motion.npts} samples lie on such a line: nothing would be left")
         t = np.linspace(-1.0, 1.0, motion.npts)
@@ -114,7 +114,7 @@ class Filter(Step):
         if self.frequency < slowest * (1 - 1e-9):
             message = f"the record, {motion.duration:.4g} s long, is shorter than one period of {self.frequency:g} Hz"
             raise self.refused(motion, message, f"give {1.01 * slowest:.3g} Hz at least")
-        sections = signal.butter(ORDER, self.frequency, self.kind, fs=1 / motion.dt, output="sos")
+        sections = signal.butter(FILTER_ORDER, self.frequency, self.kind, fs=1 / motion.dt, output="sos")
         try:
             return _of_samples(motion, signal.sosfiltfilt(sections, motion.acceleration))
         except ValueError:
@@ -210,11 +210,11 @@ class Resample(Step):
     example = "0.005"
     dt: float
 
-    FINEST: ClassVar[int] = 1000  # parts of an interval
-    COARSEST: ClassVar[int] = 100_000  # intervals in one
-    MOST: ClassVar[int] = 50_000_000  # samples that a finer interval may make
-    STEPS: ClassVar[int] = 20_000  # of the ratio of the intervals as a fraction
-    LONGEST: ClassVar[int] = 1_000_000  # numerator of that fraction: scipy's filter is twenty times as long
+    MAX_PARTS: ClassVar[int] = 1000
+    MAX_MERGED: ClassVar[int] = 100_000
+    MAX_SAMPLES: ClassVar[int] = 50_000_000
+    MAX_DENOMINATOR: ClassVar[int] = 20_000
+    MAX_NUMERATOR: ClassVar[int] = 1_000_000  # scipy's filter is twenty times as long
 
     @classmethod
     def parse(cls, text: str) -> Self:
@@ -226,18 +226,20 @@ class Resample(Step):
         ratio = self.dt / motion.dt
         if abs(ratio - 1) < 1e-9:
             return motion
-        if not ratio >= 1 / self.FINEST:
-            message = f"{self.dt:g} s is less than a {self.FINEST}th of the {motion.dt:g} s between its samples"
+        if not ratio >= 1 / self.MAX_PARTS:
+            message = f"{self.dt:g} s is less than a {self.MAX_PARTS}th of the {motion.dt:g} s between its samples"
             raise self.refused(motion, message)
         if self.dt > motion.duration:
             message = f"of {motion.duration:.4g} s fewer than two samples would be left"
             raise self.refused(motion, message)
-        if ratio > self.COARSEST:
-            message = f"{self.dt:g} s is more than {self.COARSEST} of the {motion.dt:g} s between its samples"
+        if ratio > self.MAX_MERGED:
+            message = f"{self.dt:g} s is more than {self.MAX_MERGED} of the {motion.dt:g} s between its samples"
             raise self.refused(motion, message)
         if ratio < 1:
-            if motion.npts / ratio > self.MOST:
-                message = f"this would make {motion.npts / ratio:.3g} samples; at most {self.MOST:.3g} are allowed"
+            if motion.npts / ratio > self.MAX_SAMPLES:
+                message = (
+                    f"this would make {motion.npts / ratio:.3g} samples; at most {self.MAX_SAMPLES:.3g} are allowed"
+                )
                 raise self.refused(motion, message)
             time = self.dt * np.arange(floor(motion.duration / self.dt * (1 + 1e-12)) + 1)
             return _of_samples(motion, np.interp(time, motion.time, motion.acceleration), self.dt)
@@ -252,7 +254,7 @@ class Resample(Step):
 
         from scipy import signal
 
-        steps = max(min(self.STEPS, int(self.LONGEST / ratio)), 1)
+        steps = max(min(self.MAX_DENOMINATOR, int(self.MAX_NUMERATOR / ratio)), 1)
         taken = Fraction(ratio).limit_denominator(steps)
         samples = signal.resample_poly(motion.acceleration, taken.denominator, taken.numerator, padtype="line")
         dt = motion.dt * float(taken)

@@ -8,8 +8,8 @@ from enum import StrEnum
 from math import isclose
 from typing import NamedTuple, Self, TypeVar
 
-LEAST_SHARE = 0.1  # of neighbours that may overturn: the `ratio` of a margin is the least factor with so many
-ALIKE = 1e-6  # relative difference below which neither of two conclusions is the worse
+LEAST_SHARE = 0.1  # of overturning neighbours at which the `ratio` of a margin is defined
+SAME_RATIO = 1e-6  # relative difference below which two conclusions are equally severe
 K = TypeVar("K")
 V = TypeVar("V")
 
@@ -26,7 +26,7 @@ class Concluded(StrEnum):
     NOT_SATISFIED = "not_satisfied"
 
 
-ORDER = list(Concluded)
+SEVERITY = list(Concluded)
 
 
 class NextStep(StrEnum):
@@ -177,11 +177,11 @@ def worst(found: Iterable[Conclusion]) -> Conclusion:
 
 def are_alike(one: Conclusion, other: Conclusion) -> bool:
     """Return whether two conclusions differ by no more than rounding, so that neither governs."""
-    return all(isclose(a, b, rel_tol=ALIKE) for a, b in zip(severity(one), severity(other), strict=True))
+    return all(isclose(a, b, rel_tol=SAME_RATIO) for a, b in zip(severity(one), severity(other), strict=True))
 
 
 def severity(found: Conclusion) -> tuple[int, float, float, float]:
     """Return how bad a conclusion is, to compare it with others."""
     share = found.share.highest if found.share is not None else 0.0
     ratio = 0.0 if found.ratio is None else -found.ratio  # without one, a motion takes the structure past its capacity
-    return ORDER.index(found.concluded), share, ratio, found.peak_ratio or 0.0
+    return SEVERITY.index(found.concluded), share, ratio, found.peak_ratio or 0.0

@@ -24,11 +24,11 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
 
 Places = NDArray[np.intp]
-BEARS = 0.01  # of N as rocking starts: with less a joint bears nothing that friction could be asked of
-IDLE = 1e-9  # of the largest force as rocking starts: a joint with less, such as of a beam without mass, bears nothing
-NEAR_PEAK = 0.9  # of the largest demand: how long it lasts is how long there is more than that
-BLOCK = 25_000  # states at a time: their matrices never stand in memory all at once
-NONE = float("nan")
+MIN_BEARING_SHARE = 0.01  # of N at uplift; a joint with less needs no friction
+IDLE_SHARE = 1e-9  # of the largest force at uplift; a joint with less, as in a massless beam, bears nothing
+NEAR_PEAK = 0.9  # share of the largest demand; the duration of a demand is the time above it
+STATES_PER_BLOCK = 25_000  # so that the matrices of all states are never in memory at once
+UNDEFINED = float("nan")
 DEMAND, PULL, USED = range(3)
 
 
@@ -130,25 +130,25 @@ class ContactDemand:
 
     times: Reals
     demand: Reals
-    friction_needed: float = NONE
+    friction_needed: float = UNDEFINED
     joint: str = ""
-    time: float = NONE
-    duration: float = NONE
-    base_shear: float = NONE
-    least_normal: float = NONE
-    impact_friction: float = NONE
-    lost: float = NONE
+    time: float = UNDEFINED
+    duration: float = UNDEFINED
+    base_shear: float = UNDEFINED
+    least_normal: float = UNDEFINED
+    impact_friction: float = UNDEFINED
+    lost: float = UNDEFINED
     lost_joint: str = ""
     whole: bool = False
     friction: float | None = None
-    slides: float = NONE
+    slides: float = UNDEFINED
     slides_joint: str = ""
     crushing: CrushingDemand | None = None
     opens: float | None = None
     opens_joint: str = ""
     shared: bool = False
     followed: bool = False
-    known_to: float = NONE
+    known_to: float = UNDEFINED
     supports: Sequence[SupportDemand] = ()
 
     @property
@@ -225,11 +225,11 @@ class Contacts:
         return shear
 
     def _parts(self, states: _States) -> Iterator[tuple[Direction, Places]]:
-        """Yield the places of the states that rock in each direction, `BLOCK` at a time."""
+        """Yield the places of the states that rock in each direction, `STATES_PER_BLOCK` at a time."""
         for direction in self.mechanism.directions:
             mine = np.flatnonzero(states.rocks & (states.sign == direction))
-            for start in range(0, mine.size, BLOCK):
-                yield direction, mine[start : start + BLOCK]
+            for start in range(0, mine.size, STATES_PER_BLOCK):
+                yield direction, mine[start : start + STATES_PER_BLOCK]
 
     def _supports(self, states: _States) -> list[SupportDemand]:
         """Return the largest force of each guide in either sense; none if statics does not determine them."""
@@ -271,8 +271,8 @@ class Contacts:
     def _worst(self, direction: Direction, found: Reactions) -> tuple[Reals, Places]:
         """Return the largest friction required, pull and use of strength in each state, and the joints of these."""
         rest = self._at_uplift[direction]
-        bears = np.maximum(BEARS * rest.normal, 0.0)
-        normal = np.where(np.abs(found.force) > IDLE * np.abs(rest.force).max(), found.normal, np.nan)
+        bears = np.maximum(MIN_BEARING_SHARE * rest.normal, 0.0)
+        normal = np.where(np.abs(found.force) > IDLE_SHARE * np.abs(rest.force).max(), found.normal, np.nan)
         with np.errstate(divide="ignore", invalid="ignore"):
             needed = np.where(normal > bears, np.abs(found.shear) / normal, 0.0)
             pull = np.broadcast_to(-found.total.imag, normal.shape) if found.shared else -normal
@@ -313,13 +313,13 @@ class Contacts:
             duration=float((ends - starts).max(initial=0.0)),
             base_shear=shear,
             least_normal=-float(most[PULL].max()),
-            impact_friction=max(map(_ratio, hits), default=NONE) if len(hits) == len(thrown) else NONE,
+            impact_friction=max(map(_ratio, hits), default=UNDEFINED) if len(hits) == len(thrown) else UNDEFINED,
             lost=lost,
             lost_joint=lost_joint,
             whole=any(found.is_whole for found in self._at_uplift.values()),
             shared=any(found.shared for found in self._at_uplift.values()),
             friction=friction,
-            slides=NONE if slides is None else float(starts[0]),
+            slides=UNDEFINED if slides is None else float(starts[0]),
             slides_joint="" if slides is None else self._letter(states, joint[DEMAND], slides),
             crushing=crushing,
         )
@@ -340,10 +340,10 @@ class Contacts:
             if (
                 found is not None
                 and not found.shared
-                and (thrown := found.normal[:, 0] < -IDLE * np.abs(found.force).max()).any()
+                and (thrown := found.normal[:, 0] < -IDLE_SHARE * np.abs(found.force).max()).any()
             ):
                 moments.append((hit, found.joints[int(thrown.argmax())].letter))
-        return min(moments, default=(NONE, ""))
+        return min(moments, default=(UNDEFINED, ""))
 
     def _letter(self, states: _States, joint: Places, k: int) -> str:
         joints = self._at_uplift[Direction(int(states.sign[k]))].joints
@@ -461,5 +461,5 @@ def _ended(history: History) -> dict[Direction, float]:
 
 def _ratio(found: Reactions) -> float:
     """Return the largest |T|/N of the joints that an impact presses together."""
-    pressed = found.normal > IDLE * np.abs(found.force).max()
+    pressed = found.normal > IDLE_SHARE * np.abs(found.force).max()
     return float((np.abs(found.shear[pressed]) / found.normal[pressed]).max(initial=0.0))

@@ -15,8 +15,8 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.studies.picture import Picture, box_around
 
-BEFORE, AFTER = 1.0, 1.5  # s shown before the first uplift and after the motion has ended
-VIEWS = 25  # rotations at which the box around the motion is found
+BEFORE, AFTER = 1.0, 1.5  # s shown before the first uplift and after the end of the motion
+BOX_ROTATIONS = 25  # at which the box around the motion is determined
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class Film:
     def box(self) -> tuple[complex, complex]:
         """Lower left and upper right corner of the area that the structure covers during its motion [m]."""
         phi = self.history.phi[: self._moving]
-        views = np.linspace(float(phi.min()), float(phi.max()), VIEWS)
+        views = np.linspace(float(phi.min()), float(phi.max()), BOX_ROTATIONS)
         outlines = [each for turn in views for part in self.picture.placed(float(turn))[0] for each in part]
         hung = [z for turn in views for z in self.picture.held(float(turn))]
         return box_around([np.array([*self.picture.reach, *hung]), *outlines])

@@ -16,8 +16,8 @@ from rocking_cli.arrays import Bools, Integers, Reals
 
 Link = Literal["probit", "logit"]
 
-FARTHEST = 30.0  # of eta: probabilities beyond are 0 or 1, and their ratios are still numbers
-SEPARABLE = 1e-9  # per run, of the margin by which a line separates
+MAX_ETA = 30.0  # probabilities beyond it are 0 or 1, but their ratios are still finite
+MIN_SEPARATION = 1e-9  # margin per run above which a line separates the runs
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,14 +177,14 @@ def separable(design: Reals, exceeded: Bools) -> bool:
 
     signed = np.where(exceeded, 1.0, -1.0)[:, None] * design
     found = linprog(-signed.sum(axis=0), A_ub=-signed, b_ub=np.zeros(exceeded.size), bounds=(-1, 1))
-    return bool(-found.fun > SEPARABLE * exceeded.size)
+    return bool(-found.fun > MIN_SEPARATION * exceeded.size)
 
 
-STEPS = 100  # of Newton's method, which takes about six
-DECREMENT = 1e-12  # of the log-likelihood per run, before the last of them
-SHORTEST = 1e-10  # part of a step
-FLAT = 1e-13  # smallest over largest eigenvalue of an information that tells nothing in one direction
-AT_ONCE = 1 << 16  # terms worked on at a time: some ten megabytes
+MAX_NEWTON_STEPS = 100  # six are usual
+MIN_DECREMENT = 1e-12  # of the log-likelihood per run, before the last step
+MIN_STEP_SHARE = 1e-10
+MIN_EIGENVALUE_RATIO = 1e-13  # smallest over largest; with less, the information says nothing in one direction
+TERMS_PER_BLOCK = 1 << 16  # they take about ten megabytes
 NO_MAXIMUM = "the likelihood found no maximum: the data hardly tell a slope"
 NO_ERRORS = "the errors of the fit cannot be told: without one record, or at all, the data hardly tell a slope"
 
@@ -408,8 +408,8 @@ def _sums(terms: Terms, number: Reals, coefficients: Reals) -> Sums:
 
 
 def _parts(count: int) -> Iterator[slice]:
-    for first in range(0, count, AT_ONCE):
-        yield slice(first, min(first + AT_ONCE, count))
+    for first in range(0, count, TERMS_PER_BLOCK):
+        yield slice(first, min(first + TERMS_PER_BLOCK, count))
 
 
 def _maximum(terms: Terms, number: Reals, start: Reals) -> tuple[Reals, Sums] | None:
@@ -418,15 +418,15 @@ def _maximum(terms: Terms, number: Reals, start: Reals) -> tuple[Reals, Sums] | 
     Newton's method with halved steps.
     """
     at, sums = start, _sums(terms, number, start)
-    for _ in range(STEPS):
+    for _ in range(MAX_NEWTON_STEPS):
         if not _tells(sums.information):
             return None
         step = np.linalg.solve(sums.information, sums.gradient)
-        if float(sums.gradient @ step) < DECREMENT * number.sum():
+        if float(sums.gradient @ step) < MIN_DECREMENT * number.sum():
             last = _sums(terms, number, at + step)
             return (at + step, last) if np.isfinite(last.value) else None
         part = 1.0
-        while not (new := _sums(terms, number, at + part * step)).value >= sums.value and part > SHORTEST:
+        while not (new := _sums(terms, number, at + part * step)).value >= sums.value and part > MIN_STEP_SHARE:
             part /= 2
         at, sums = at + part * step, new
     return None
@@ -437,7 +437,7 @@ def _tells(information: Reals) -> bool:
     if not np.isfinite(information).all():
         return False
     values = np.linalg.eigvalsh(information)
-    return bool(((values[..., -1] > 0) & (values[..., 0] > FLAT * values[..., -1])).all())
+    return bool(((values[..., -1] > 0) & (values[..., 0] > MIN_EIGENVALUE_RATIO * values[..., -1])).all())
 
 
 def _covariance(terms: Terms, seen: Counts, coefficients: Reals, information: Reals) -> Reals | None:
@@ -465,7 +465,7 @@ def _by_record(terms: Terms, seen: Counts, coefficients: Reals) -> tuple[Reals, 
     k = coefficients.size
     score, information = np.zeros((seen.records, k)), np.zeros((seen.records, k, k))
     order = np.argsort(seen.term, kind="stable")
-    ends = np.searchsorted(seen.term[order], np.arange(0, len(terms) + AT_ONCE, AT_ONCE))
+    ends = np.searchsorted(seen.term[order], np.arange(0, len(terms) + TERMS_PER_BLOCK, TERMS_PER_BLOCK))
     for part, (start, stop) in zip(_parts(len(terms)), pairwise(ends), strict=True):
         slopes, those = terms.at(coefficients, part), order[start:stop]
         which, often, record = seen.term[those] - part.start, seen.number[those], seen.record[those]

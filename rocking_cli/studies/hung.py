@@ -15,8 +15,8 @@ from rocking_cli.core.hung.element import COINCIDENT_DISTANCE, ConstantForce, El
 
 Copies = Mapping[str, Sequence[tuple[int, complex]]]
 """Of each body: its place among the parts, and how far from the body it is [m], of each part that it is drawn as."""
-BED = 8  # springs that a bed is drawn as
-TONNE = 1000.0  # kg from which a mass is given in t
+SPRINGS_PER_BED = 8  # drawn for a bed
+TONNE = 1000.0  # kg; masses from here on are given in t
 
 
 class End(NamedTuple):
@@ -186,6 +186,6 @@ def _bed(bed: SpringBed, part: int, shift: complex, centroid: complex) -> Iterat
     along = (bed.end.at - bed.start.at) / abs(bed.end.at - bed.start.at)
     middle = (bed.start.at + bed.end.at) / 2 + shift
     out = 1j * along if ((middle - centroid) * (1j * along).conjugate()).real > 0 else -1j * along
-    for share in (np.arange(BED) + 0.5) / BED:
+    for share in (np.arange(SPRINGS_PER_BED) + 0.5) / SPRINGS_PER_BED:
         at = bed.start.at + complex(share) * (bed.end.at - bed.start.at) + shift
         yield TiePiece(End(None, at, 1.5 * out), End(part, at), "symbol")

@@ -17,9 +17,9 @@ from rocking_cli.core.hung.element import INTERLOCK_NAME as INTERLOCK
 from rocking_cli.core.hung.element import ConstantForce, Element, Stretched
 from rocking_cli.dynamics.history import History
 
-BETWEEN = 257  # rotations from rest to a peak at which the largest values on the way are looked for
-ROUNDING = 1e-13  # of how far a point is from the origin: a displacement that is none
-LEVEL = 1e-9  # of the height of a structure: corners that are so much lower are as high
+PATH_ROTATIONS = 257  # from rest to a peak, among which the largest displacement is sought
+ROUNDING_SHARE = 1e-13  # of the distance from the origin; smaller displacements count as zero
+LEVEL_SHARE = 1e-9  # of the height of the structure, by which corners at the same level may differ
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ class Watched:
 
     def _displacement(self, spot: Spot, phi: Reals, direction: Direction) -> NDArray[np.complex128]:
         moved = np.asarray(self.mechanism.followed(phi, direction)(spot).z - spot.at)
-        least = ROUNDING * abs(spot.at)  # what is held by a joint stays to the last digits but a few
+        least = ROUNDING_SHARE * abs(spot.at)  # what is held by a joint stays to the last digits but a few
         x, y = (np.where(np.abs(each) <= least, 0.0, each) for each in (moved.real, moved.imag))
         return np.asarray(x + 1j * y)
 
@@ -196,7 +196,7 @@ def _most(values: Iterable[float]) -> float:
 
 
 def _way(phi: float) -> Reals:
-    return np.linspace(0.0, phi, BETWEEN)
+    return np.linspace(0.0, phi, PATH_ROTATIONS)
 
 
 def _strained(mechanism: Mechanism, tie: Element, phi: Reals, direction: Direction) -> NDArray[np.complex128]:
@@ -230,7 +230,7 @@ def top(mechanism: Mechanism) -> tuple[str, Spot]:
         corners[body.name] = np.concatenate([np.asarray(shape) for shape in shapes] or [np.array([body.centroid])])
     highest = max(corners, key=lambda name: float(corners[name].imag.max()))
     z = corners[highest]
-    level = z[z.imag >= z.imag.max() - LEVEL * float(np.ptp(z.imag) + 1e-300)]
+    level = z[z.imag >= z.imag.max() - LEVEL_SHARE * float(np.ptp(z.imag) + 1e-300)]
     spot = Spot(highest, complex(level.real.min() + level.real.max(), 2 * level.imag.max()) / 2)
     return "top" if len(z) > 1 else "centroid", spot
 

@@ -23,12 +23,12 @@ from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import peaks_over
 
 FRACTILES = (0.16, 0.50, 0.84)
-AGREEMENT = 0.9  # share that must end as the history itself, else its answer is sensitive
-LEAST_ETA = 1e-3  # a restitution drawn below that is this: an impact leaves some motion
-MOST = 1_000_000  # neighbours; more take minutes
+AGREEMENT = 0.9  # share of neighbours with the outcome of the history; below it the outcome is sensitive
+LEAST_ETA = 1e-3  # lower restitutions are raised to it, as an impact leaves some motion
+MAX_NEIGHBOURS = 1_000_000  # they take minutes
 SEED = 1963
 NORMAL = NormalDist()
-TINY = 1e-300  # instead of 0, which has no normal number
+MIN_PROBABILITY = 1e-300  # replaces 0, which has no normal quantile
 
 
 class Draws(NamedTuple):
@@ -84,8 +84,8 @@ class Neighbourhood:
     slenderness: float | None = None
 
     def __post_init__(self) -> None:
-        if not 0 <= self.count <= MOST:
-            raise InputError(Problem(f"must be from 0 to {MOST}, got {self.count}", field="neighbours"))
+        if not 0 <= self.count <= MAX_NEIGHBOURS:
+            raise InputError(Problem(f"must be from 0 to {MAX_NEIGHBOURS}, got {self.count}", field="neighbours"))
         for field in ("amplitude", "restitution", "slenderness"):
             value = getattr(self, field)
             if value is not None and not 0 <= value < 1:
@@ -121,7 +121,7 @@ class Neighbourhood:
 
 def _normal(uniform: Reals) -> Reals:
     """Convert uniform numbers to standard normal ones."""
-    return np.array([NORMAL.inv_cdf(max(u, TINY)) for u in uniform.tolist()])
+    return np.array([NORMAL.inv_cdf(max(u, MIN_PROBABILITY)) for u in uniform.tolist()])
 
 
 def _below(uniform: Reals, mean: float, deviation: float, most: float) -> Reals:

@@ -33,15 +33,15 @@ from rocking_cli.errors import RockingError, StructureError
 from rocking_cli.plugins.errors import plugin_error
 from rocking_cli.studies.hung import Carried, End, Strand, carried, strands, walls
 
-NODES = 60  # of a table of positions in either direction: straight lines between them are right to 1e-4 of the size
-FURTHEST = 0.999  # of the kinematic limit, at which a linkage has no derivatives
-SAME = 1e-6  # of the size: points that are nearer are one
-TINIEST = 1e-150  # m: scales of what is smaller are beyond the range of numbers
-STILL = 1e-9  # rate of turning below which a body does not turn
-STARTED = 0.05  # of the size: how far the fastest part of a mechanism is shown as it starts
-MANY = 40  # parts: of more, those that move as one are drawn as one
-SHADES = 3  # that tell links from their neighbours
-SEEN = 0.1  # of the kinematic limit: how far is shown what has no critical rotation
+NODES_PER_SIDE = 60  # of the table of positions; linear interpolation has an error of 1e-4 of the size
+MAX_LIMIT_SHARE = 0.999  # of the kinematic limit, where a linkage has no derivatives
+SAME_POINT_SHARE = 1e-6  # of the size; points closer than this coincide
+MIN_SIZE = 1e-150  # m; scales of smaller drawings overflow
+MIN_TURN = 1e-9  # rate below which a body does not turn
+START_SHARE = 0.05  # of the size: displacement of the fastest part in a drawing of an initial motion
+MAX_SEPARATE_PARTS = 40  # with more, parts that move together are drawn as one
+SHADES = 3  # enough to tell each link from its neighbours
+SHOWN_LIMIT_SHARE = 0.1  # of the kinematic limit, drawn if there is no critical rotation
 
 ASSUMED = (
     "dashed: a body whose shape the mechanism does not give, as a disc of the same mass and inertia, or as a point"
@@ -117,7 +117,7 @@ class Start:
         at = np.array(list(self.centroids.values()))
         velocity = np.array([rates.get(name, (0j, 0.0)) for name in self.centroids])
         speed = np.abs(velocity[:, 0] + 1j * velocity[:, 1] * at).max()
-        velocity *= STARTED * self.size / speed
+        velocity *= START_SHARE * self.size / speed
         zero, still = np.zeros_like(phi), np.zeros(phi.shape, np.complex128)
         return [
             RigidMotion(0j, v * phi + still, v + still, still, turn.real * phi, turn.real + zero, zero)
@@ -175,18 +175,19 @@ class Picture:
     @property
     def reference(self) -> Mapping[Direction, float]:
         """Reference rotation of each direction [rad]: the critical one, or the limit if there is none."""
-        return {side: self.limit[side] / FURTHEST if phi is None else phi for side, phi in self.phi_cr.items()}
+        return {side: self.limit[side] / MAX_LIMIT_SHARE if phi is None else phi for side, phi in self.phi_cr.items()}
 
     @property
     def usual(self) -> Mapping[Direction, float]:
         """Default displacement in each direction, as a fraction of the reference rotation.
 
-        It is 1 if the direction has a critical rotation, less if the body lies flat before, and `SEEN` without one.
+        It is 1 if the direction has a critical rotation, less if the body lies flat before, and `SHOWN_LIMIT_SHARE`
+        without one.
         """
         if self.start is not None:
             return dict.fromkeys(self.directions, 1.0)
         there = min((self.limit[side] / phi for side, phi in self.phi_cr.items() if phi is not None), default=1.0)
-        return {side: SEEN if phi is None else min(1.0, there) for side, phi in self.phi_cr.items()}
+        return {side: SHOWN_LIMIT_SHARE if phi is None else min(1.0, there) for side, phi in self.phi_cr.items()}
 
     def side(self, rotation: float) -> Direction:
         """Return the direction of a signed rotation; at rest, the first direction in which the structure can rock."""
@@ -307,9 +308,13 @@ class Picture:
             of_link: list[Points] = []
             links: dict[str, int | None] = dict.fromkeys(bodies)
             for name in dict.fromkeys([*(name for name in along if name in of_body), *bodies]):
-                if np.abs(of_body[name]).max() <= SAME * size:
+                if np.abs(of_body[name]).max() <= SAME_POINT_SHARE * size:
                     continue
-                alike = (k for k, speed in enumerate(of_link) if np.abs(of_body[name] - speed).max() <= SAME * size)
+                alike = (
+                    k
+                    for k, speed in enumerate(of_link)
+                    if np.abs(of_body[name] - speed).max() <= SAME_POINT_SHARE * size
+                )
                 links[name] = next(alike, len(of_link))
                 if links[name] == len(of_link):
                     of_link.append(of_body[name])
@@ -337,7 +342,7 @@ class Picture:
     @cached_property
     def grouped(self) -> Picture:
         """Copy of the drawing with parts that move together joined into one part, if there are many parts."""
-        if len(self.parts) <= MANY:
+        if len(self.parts) <= MAX_SEPARATE_PARTS:
             return self
         masses = {body.name: body.mass for body in self.mechanism.weighed()}
         groups: dict[Any, list[int]] = {}
@@ -417,7 +422,7 @@ class Picture:
         `x`, `y` (of its centroid) and `psi` (anticlockwise) place a part at each `rotation`, with linear interpolation;
         its outlines and the points that it carries are relative to its centroid. A `part` of null is the ground.
         """
-        ends = [np.linspace(0.0, self.limit.get(direction, 0.0), NODES + 1) for direction in Direction]
+        ends = [np.linspace(0.0, self.limit.get(direction, 0.0), NODES_PER_SIDE + 1) for direction in Direction]
         rotation = np.unique(np.concatenate([-ends[1][:0:-1], ends[0]]) + 0.0)
         centroids, psi = self.at(rotation)
         return {
@@ -534,13 +539,13 @@ def box_around(outlines: Sequence[Points]) -> tuple[complex, complex]:
 def _picture(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> Picture:
     bodies, sketch = mechanism.bodies(), mechanism.sketch()
     phi_cr: dict[Direction, float | None] = dict.fromkeys(mechanism.directions)
-    limit = dict.fromkeys(mechanism.directions, FURTHEST)
+    limit = dict.fromkeys(mechanism.directions, MAX_LIMIT_SHARE)
     starts = not all(each.lead or not each.velocities for each in found.values())
     if not starts:
         phi_cr = {direction: _critical(mechanism, direction) for direction in mechanism.directions}
-        limit = {direction: FURTHEST * mechanism.limit(direction) for direction in mechanism.directions}
+        limit = {direction: MAX_LIMIT_SHARE * mechanism.limit(direction) for direction in mechanism.directions}
     seen = {direction: limit[direction] if phi is None else phi for direction, phi in phi_cr.items()}
-    if not starts and not (min(seen.values()) > 0 and extent(mechanism) > TINIEST):
+    if not starts and not (min(seen.values()) > 0 and extent(mechanism) > MIN_SIZE):
         raise StructureError("it is too small to be drawn: check the sizes and their units")
     parts = tuple(
         DrawnPart(
@@ -606,8 +611,8 @@ def _found(bodies: Sequence[Body], motions: Sequence[RigidMotion]) -> list[Hinge
 
     def add(centre: complex, names: tuple[str, ...], gap: Points) -> None:
         # Against what rests on the ground a body turns about a pivot that is found already.
-        known = len(names) > 1 and any(abs(centre - other.point) <= SAME * size for other in hinges)
-        if np.abs(gap).max() <= SAME * size and not known:
+        known = len(names) > 1 and any(abs(centre - other.point) <= SAME_POINT_SHARE * size for other in hinges)
+        if np.abs(gap).max() <= SAME_POINT_SHARE * size and not known:
             hinges.append(Hinge("", centre, names))
 
     speeds = []  # of the point of the body at the origin, and its rate of turning, at rest
@@ -616,12 +621,12 @@ def _found(bodies: Sequence[Body], motions: Sequence[RigidMotion]) -> list[Hinge
         turning = float(motion.dpsi[0])
         speeds.append((complex(velocity[0]) - 1j * turning * body.centroid, turning))
     for body, motion, (speed, turning) in zip(bodies, motions, speeds, strict=True):
-        if abs(turning) > STILL:
+        if abs(turning) > MIN_TURN:
             centre = 1j * speed / turning  # speed + i turning centre = 0
             add(centre, (body.name,), motion.carry(centre)[0] - centre)
     for i, j in combinations(range(len(bodies)), 2):
         (speed, turning), (other_speed, other_turning) = speeds[i], speeds[j]
-        if abs(turning - other_turning) > STILL:
+        if abs(turning - other_turning) > MIN_TURN:
             centre = 1j * (speed - other_speed) / (turning - other_turning)
             gap = motions[i].carry(centre)[0] - motions[j].carry(centre)[0]
             add(centre, (bodies[i].name, bodies[j].name), gap)

@@ -14,8 +14,8 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.records.text import numbers_in
 from rocking_cli.io.files import read_bytes
 
-LARGEST = 10_000_000  # bytes of a file
-LISTED = 5  # problems of a file
+MAX_BYTES = 10_000_000
+MAX_LISTED_PROBLEMS = 5
 
 
 class CurvePoints(NamedTuple):
@@ -64,7 +64,7 @@ def read_points(
     """
     shown = str(path)
     try:
-        lines = read_bytes(path, what, LARGEST).decode("utf-8-sig").splitlines()
+        lines = read_bytes(path, what, MAX_BYTES).decode("utf-8-sig").splitlines()
     except UnicodeDecodeError:
         raise InputError(Problem("this is not UTF-8 text", shown, hint="save it as CSV in UTF-8")) from None
     used = [k for k, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
@@ -82,7 +82,7 @@ def read_points(
             line = lines[used[point]].strip()[:100]
             problems.append(Problem(message, shown, used[point] + 1, excerpt=line, hint=remedy(message)))
     if problems:
-        raise InputError(*problems[:LISTED])
+        raise InputError(*problems[:MAX_LISTED_PROBLEMS])
     return CurvePoints(x, y, unit)
 
 

@@ -12,7 +12,7 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.excitation.records.opening import name_of, original
 from rocking_cli.processing.listed import Scaled
 
-PACKAGES = ("numpy", "scipy", "matplotlib")
+RECORDED_PACKAGES = ("numpy", "scipy", "matplotlib")
 
 
 @dataclass(frozen=True)
@@ -73,5 +73,5 @@ def versions(mechanism: Mechanism) -> dict[str, str]:
         "rocking-cli": version("rocking-cli"),
         f"mechanism {name}": registry.package_of(name) if name in registry else "not installed as a plugin",
         "Python": platform.python_version(),
-        **{package: version(package) for package in PACKAGES},
+        **{package: version(package) for package in RECORDED_PACKAGES},
     }

@@ -11,7 +11,7 @@ from rocking_cli.errors import InputError, Problem
 from rocking_cli.structure import Structure
 from rocking_cli.units import UnitError, read, split
 
-EXAMPLE = "give a fraction of phi_cr such as 0.5, or an angle such as 0.05rad"
+TILT_EXAMPLE = "give a fraction of phi_cr such as 0.5, or an angle such as 0.05rad"
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Release:
         text = given.strip() if isinstance(given, str) else f"{given:g}"
         parts = split(given) if isinstance(given, str) else (repr(float(given)), "")
         if parts is None:
-            raise InputError(Problem(f"{text!r} is not a valid tilt: {EXAMPLE}", field="release"))
+            raise InputError(Problem(f"{text!r} is not a valid tilt: {TILT_EXAMPLE}", field="release"))
         if not parts[1]:
             fraction = float(parts[0])
             if not 0 < abs(fraction) < 1:
@@ -48,7 +48,7 @@ class Release:
         try:
             angle = read(text, "rad")
         except UnitError as error:
-            raise InputError(Problem(error.message, field="release", hint=EXAMPLE)) from None
+            raise InputError(Problem(error.message, field="release", hint=TILT_EXAMPLE)) from None
         if not 0 < abs(angle) < pi:
             raise InputError(Problem(f"{text!r} is not an angle between 0 and half a turn", field="release"))
         return cls(text, angle, is_angle=True)

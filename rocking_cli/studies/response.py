@@ -23,7 +23,7 @@ Runs = Mapping[int, Histories]
 """Histories under each requested polarity, 1 or -1."""
 
 # The word for the pulse that fits best.
-BEST = "best"
+BEST_PULSE = "best"
 
 
 def concluded(runs: Runs, near: Mapping[int, Neighbours], motion: str = "") -> Conclusion:
@@ -169,7 +169,9 @@ def response_of(structure: Structure, names: Sequence[ModelName], given: Scaled 
     first = under[asked.signs[0]]
     fit: PulseFit | None = None
     if first is not None and asked.with_pulse is not None:
-        fits = fit_pulses(first, tuple(FITTED) if asked.with_pulse == BEST else (asked.with_pulse,), ("velocity",))
+        fits = fit_pulses(
+            first, tuple(FITTED) if asked.with_pulse == BEST_PULSE else (asked.with_pulse,), ("velocity",)
+        )
         fit = max(fits, key=lambda one: one.captured)
     runs = {sign: follow(motion) for sign, motion in under.items()}
     best: ModelName = "nonlinear" if "nonlinear" in names else names[0]

@@ -20,7 +20,7 @@ from rocking_cli.excitation.pulses import COARSE, Pulse, parse_pulse
 from rocking_cli.structure import Structure
 
 Progress = Callable[[int], None]
-TIE = 1e-9  # relative difference of amplitudes below which both directions lift alike
+SAME_AMPLITUDE = 1e-9  # relative difference below which both directions uplift together
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,7 +170,7 @@ def weakest(equivalence: Equivalence, shape: Pulse, polarities: Sequence[int] = 
     ground = shape.sampled().acceleration / shape.amplitude
     pushes = {d: np.max([-d * polarity * ground for polarity in polarities], axis=0) for d in Direction}
     needed = {d: equivalence[d].lambda_ / max(float(push.max()), 1e-300) for d, push in pushes.items()}
-    if isclose(*needed.values(), rel_tol=TIE):
+    if isclose(*needed.values(), rel_tol=SAME_AMPLITUDE):
         return min(Direction, key=lambda d: int(pushes[d].argmax()))
     return min(Direction, key=needed.__getitem__)
 

@@ -24,7 +24,7 @@ from rocking_cli.structure import Structure
 from rocking_cli.testing.mechanism import _demand
 from rocking_cli.verification.check import site_in, verify
 from rocking_cli.verification.code import Code, SiteFile, codes
-from rocking_cli.verification.results import CLOSE, Verification, Verified
+from rocking_cli.verification.results import CAPACITY_TOLERANCE, Verification, Verified
 from rocking_cli.views.template import starter
 from rocking_cli.views.verification import showing, table, view
 
@@ -107,7 +107,7 @@ class CodeContract:
     def test_it_passes_if_its_ratio_is_at_least_1(self) -> None:
         """Verdict and ratio agree: surveys and designs compare the ratio with 1."""
         for each in self.found.directions.values():
-            expected = None if each.ratio is None else each.ratio >= 1 - CLOSE
+            expected = None if each.ratio is None else each.ratio >= 1 - CAPACITY_TOLERANCE
             _demand(each.passed == expected, f"passed is {each.passed}, but the ratio is {each.ratio}")
 
     def test_its_result_can_be_shown(self) -> None:

@@ -16,13 +16,13 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import LeftOut
 from rocking_cli.studies.file_part import problems_of
 from rocking_cli.text import did_you_mean
-from rocking_cli.verification.code import HINT, USUAL, Code, SiteFile, codes
+from rocking_cli.verification.code import DEFAULT_CODE, SITE_HINT, Code, SiteFile, codes
 from rocking_cli.verification.results import Control, Histories, Verification, Verified
 
 
 def read_site(path: Path) -> SiteFile:
     """Read a site file, for any installed code. Raises `InputError` with every problem of the file."""
-    return site_in(parse(read_text(path, "site"), str(path), "site", HINT))
+    return site_in(parse(read_text(path, "site"), str(path), "site", SITE_HINT))
 
 
 def site_in(document: Document) -> SiteFile:
@@ -38,13 +38,15 @@ def site_in(document: Document) -> SiteFile:
     InputError
         With every problem of the file: place, field, and valid values.
     """
-    code = document.data.get("code", USUAL)
+    code = document.data.get("code", DEFAULT_CODE)
     if isinstance(code, str) and code not in codes():
         problem = document.at(("code",), f"there is no code {code!r}", did_you_mean(code, list(codes())))
         raise InputError(*document.problems, problem)
-    code = code if isinstance(code, str) else USUAL
+    code = code if isinstance(code, str) else DEFAULT_CODE
     model, site = codes()[code].site, None
-    lister = HINT if code == USUAL else f"`rocking new site` prints one to start from, if given the code {code}"
+    lister = (
+        SITE_HINT if code == DEFAULT_CODE else f"`rocking new site` prints one to start from, if given the code {code}"
+    )
     try:
         site = model.model_validate(document.data)
     except ValidationError as error:

@@ -128,15 +128,15 @@ class Code(ABC):
         return None
 
 
-HINT = "`rocking new site` prints one to start from"
-USUAL = "NTC2018"
+SITE_HINT = "`rocking new site` prints one to start from"
+DEFAULT_CODE = "NTC2018"
 """The code of a site file that names none."""
 
 
 class Site(Part):
     """Fields of a site file for every code; a code adds its own."""
 
-    code: str = Field(USUAL, description="the code to verify by")
+    code: str = Field(DEFAULT_CODE, description="the code to verify by")
     name: Name | None = Field(None, description="what to call the site")
 
 

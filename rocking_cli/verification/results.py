@@ -240,8 +240,8 @@ class Later(Sequence[Working]):
         return len(self._written)
 
 
-CLOSE = 1e-12  # of a demand: what rounding may take from a capacity that equals it
-ALIKE = 1e-9  # of a ratio: of directions that differ by less none governs
+CAPACITY_TOLERANCE = 1e-12  # relative; rounding may reduce a capacity that equals the demand
+SAME_RATIO = 1e-9  # relative difference below which neither direction governs
 
 
 @dataclass(frozen=True)
@@ -276,7 +276,7 @@ class Method:
     @property
     def passed(self) -> bool | None:
         """Whether the capacity meets the demand; None if either is not known."""
-        return None if self.ratio is None else self.ratio >= 1 - CLOSE
+        return None if self.ratio is None else self.ratio >= 1 - CAPACITY_TOLERANCE
 
 
 def governing(methods: Mapping[str, Method]) -> str:
@@ -392,7 +392,7 @@ class Verified:
 
 
 def _are_close(one: float | None, other: float | None) -> bool:
-    return one == other if one is None or other is None else isclose(one, other, rel_tol=ALIKE)
+    return one == other if one is None or other is None else isclose(one, other, rel_tol=SAME_RATIO)
 
 
 @dataclass(frozen=True, eq=False)
@@ -492,7 +492,7 @@ class Verification:
     def _least(self) -> float:
         """The smallest ratio, plus a tolerance for rounding."""
         least = min(self._ratios.values())
-        return least + ALIKE * abs(least)
+        return least + SAME_RATIO * abs(least)
 
     @property
     def _ratios(self) -> dict[Direction, float]:

@@ -165,7 +165,7 @@ def test_numbers_that_make_no_sense_are_left_out(given, magnitude, distance):
 
 
 def test_a_name_of_any_length_is_cut():
-    assert len(origins.name("ab " * 400) or "") <= origins.LONGEST
+    assert len(origins.name("ab " * 400) or "") <= origins.MAX_NAME_CHARACTERS
 
 
 @pytest.mark.parametrize(

@@ -227,5 +227,5 @@ def test_coarser_levels_are_the_same_record_at_the_same_times():
 def test_the_best_of_a_grid_is_not_always_the_best(monkeypatch):
     motion = GroundMotion("noise", 0.01, np.random.default_rng(6).normal(size=600))
     fit = fit_pulse(motion, "mavroeidis", "acceleration")
-    monkeypatch.setattr("rocking_cli.excitation.pulse_fit.PLACES", 1)
+    monkeypatch.setattr("rocking_cli.excitation.pulse_fit.MAX_REFINED", 1)
     assert fit.captured > fit_pulse(motion, "mavroeidis", "acceleration").captured + 1e-5

@@ -866,7 +866,7 @@ def test_what_is_packed_otherwise_is_refused(write, content, fragment):
 
 
 def test_what_expands_too_far_is_refused(write, monkeypatch):
-    monkeypatch.setattr("rocking_cli.excitation.records.opening.EXPANDED", 100_000)
+    monkeypatch.setattr("rocking_cli.excitation.records.opening.MAX_UNPACKED_BYTES", 100_000)
     long = b"0\n" * 100_000
     for packed in (gzip.compress(long), zipped(a=long)):
         (found,) = problems(write(packed))
@@ -891,7 +891,7 @@ def test_what_was_packed_a_thousand_times_smaller_is_refused_before_it_fills_the
 
 def test_more_samples_than_a_record_has_are_refused_before_they_are_read(write, monkeypatch):
     monkeypatch.setattr("rocking_cli.excitation.records.text.MOST_SAMPLES", 1000)
-    monkeypatch.setattr("rocking_cli.excitation.records.text.MOST_NUMBERS", 4000)
+    monkeypatch.setattr("rocking_cli.excitation.records.text.MAX_NUMBERS", 4000)
     monkeypatch.setattr("rocking_cli.excitation.records.simcenter.MOST_SAMPLES", 1000)
     (found,) = problems(write(b"# unit: g\n" + b"0\n" * 1001), dt=0.01)
     assert "at most 1000 samples in each column" in found.message
@@ -945,7 +945,7 @@ def test_what_is_wrong_with_standard_input_is_said_of_it(given_on_standard_input
     assert problem_of_standard_input().line == 3
     given_on_standard_input(b"")
     assert "empty" in problem_of_standard_input().message
-    monkeypatch.setattr("rocking_cli.excitation.records.opening.LARGEST", 10)
+    monkeypatch.setattr("rocking_cli.excitation.records.opening.MAX_FILE_BYTES", 10)
     given_on_standard_input(b"0\n" * 10)
     assert "larger than" in problem_of_standard_input().message
     given_on_standard_input(b"")

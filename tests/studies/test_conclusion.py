@@ -15,7 +15,7 @@ from click.testing import CliRunner
 import rocking_cli as rk
 from rocking_cli.cli.main import main
 from rocking_cli.core import Direction
-from rocking_cli.studies.conclusion import ORDER, Concluded, Conclusion, LeftOut, NeighbourShare, NextStep, worst
+from rocking_cli.studies.conclusion import SEVERITY, Concluded, Conclusion, LeftOut, NeighbourShare, NextStep, worst
 from rocking_cli.verification.results import Requirement
 from rocking_cli.views.conclusion import (
     NEXT_STEPS,
@@ -308,7 +308,7 @@ def test_the_worst_of_several_governs():
         replace(rocks[1], share=NeighbourShare(0.2, 0.2, 200)),
     ]
     assert worst(near).motion == "a"
-    assert ORDER.index(Concluded.UNKNOWN) < ORDER.index(Concluded.OVERTURNS)
+    assert SEVERITY.index(Concluded.UNKNOWN) < SEVERITY.index(Concluded.OVERTURNS)
 
 
 def ended(motion, what, peak=None, *shares):
@@ -359,7 +359,7 @@ def test_the_polarity_that_governs_is_that_of_the_conclusion():
         said = "Neither polarity governs: " if end.polarity is None else f"Polarity {end.polarity} governs: "
         assert any(each.startswith(said) for each in both.sentences)
         alone = [rk.respond(LEANING, pulse, polarity=sign, neighbours=20).conclusion for sign in ("1", "-1")]
-        assert end.concluded is max((each.concluded for each in alone), key=ORDER.index)
+        assert end.concluded is max((each.concluded for each in alone), key=SEVERITY.index)
 
 
 @pytest.mark.parametrize("ratio", [0.9999, 0.99999999, 1.0, 1.0001, 0.4, 12.345])

@@ -288,7 +288,7 @@ def test_every_mechanism_is_checked(structure, monkeypatch):
     said = contact_words(found, structure)
     assert ("sums over the whole" in said) is found.whole
     assert ("sums over all columns" in said) is isinstance(structure, SymmetricFrame)
-    monkeypatch.setattr(contact, "BLOCK", 100)  # piece by piece it is the same
+    monkeypatch.setattr(contact, "STATES_PER_BLOCK", 100)  # piece by piece it is the same
     again = Contacts(structure).check(history, motion)
     assert replace(again, times=found.times, demand=found.demand).friction_needed == found.friction_needed
     assert (again.demand == found.demand).all()

@@ -18,13 +18,13 @@ from rocking_cli.core.kinematics import Reals
 from rocking_cli.errors import InputError, Problem, StructureError
 from rocking_cli.verification.results import Control
 
-STEPS = 256  # to the end of a curve, between which it is held to be a function
-HALVINGS = 200
+STEPS_PER_CURVE = 256  # a curve is checked to be a function at these points only
+MAX_HALVINGS = 200
 
 
 def root(rises: Callable[[float], float], low: float, high: float) -> float:
     """Return the zero of a function that is negative at `low` and positive at `high`, to rounding, by bisection."""
-    for _ in range(HALVINGS):
+    for _ in range(MAX_HALVINGS):
         middle = (low + high) / 2
         if middle in (low, high):
             break
@@ -71,7 +71,7 @@ class ExactCurve:
         if interlock is None:
             return None
         spot = next(each.spot for each in self.chain.mechanism.hung.elements if each.name == INTERLOCK)  # type: ignore[attr-defined]
-        phi = np.linspace(0.0, self.chain.mechanism.limit(self.chain.direction), STEPS + 1)[:-1]
+        phi = np.linspace(0.0, self.chain.mechanism.limit(self.chain.direction), STEPS_PER_CURVE + 1)[:-1]
         over = self._slid(spot, phi) >= interlock.overlap
         if not over.any():
             return None
@@ -114,7 +114,7 @@ class ExactCurve:
             return None
 
     def _hold_to_a_function(self, end: float) -> None:
-        phi = np.linspace(0.0, end, STEPS + 1)
+        phi = np.linspace(0.0, end, STEPS_PER_CURVE + 1)
         drives = self.chain.mechanism.coefficients(phi, self.chain.direction).B
         moves = np.diff(self.chain.displacement(phi, self.control))
         if not ((drives > 0).all() and (moves > 0).all()):
@@ -166,7 +166,7 @@ class ExactCurve:
     @cached_property
     def largest(self) -> float:
         """The largest a* of the curve [m/s2]."""
-        places = np.linspace(0.0, self.end, STEPS // 4 + 1).tolist()
+        places = np.linspace(0.0, self.end, STEPS_PER_CURVE // 4 + 1).tolist()
         if self.torn is not None and self.torn <= self.end:
             places.append(self.torn)  # where a curve that rises up to its break is largest
         return max(self.a0, *map(self.acceleration_at, places))
@@ -188,7 +188,7 @@ class ExactCurve:
     @cached_property
     def seat(self) -> Seat | None:
         """The first load that moves off its seat before the end of the curve; None if none does."""
-        phi, mechanism = np.linspace(0.0, self.end, STEPS + 1), self.chain.mechanism
+        phi, mechanism = np.linspace(0.0, self.end, STEPS_PER_CURVE + 1), self.chain.mechanism
         spots = {mass.name: mass.spot for mass in mechanism.hung.masses}
         lost = []
         for load in mechanism.loads or []:

@@ -16,7 +16,7 @@ from rocking_cli.core.reactions import parts
 from rocking_cli.errors import InputError
 from rocking_cli.verification.results import Control
 
-LEAST = 1e-9  # of the largest virtual displacement: a control point that moves less does not move sideways
+MIN_SIDEWAYS_SHARE = 1e-9  # of the largest virtual displacement; a control point with less does not move sideways
 
 
 @dataclass(frozen=True)
@@ -233,7 +233,7 @@ class Chain:
     def sideways(self, control: Control) -> float:
         """Return x' of a control point at rest [m/rad]. Raises `InputError` if it does not move in the direction."""
         dx = self.first / self.inertial if control.body is None else self._sideways(Spot(control.body, control.at))
-        if not dx > LEAST * max(abs(block.dx) for block in self.blocks):
+        if not dx > MIN_SIDEWAYS_SHARE * max(abs(block.dx) for block in self.blocks):
             raise InputError(
                 f"`control` does not move in the {self.direction.label} direction: its virtual displacement at "
                 f"[{control.at.real:g}, {control.at.imag:g}] is {dx:.4g} m/rad; choose a point that moves that way"

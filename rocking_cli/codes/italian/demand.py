@@ -17,12 +17,12 @@ from rocking_cli.core.kinematics import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 
-DAMPING = 0.05  # of a spectrum without a correction, a ratio
-LONG = {"A": 4.5, "B": 5.0, "C": 6.0, "D": 6.0, "E": 6.0}
+REFERENCE_DAMPING = 0.05  # ratio at which a spectrum needs no correction
+LONG_PERIOD_START = {"A": 4.5, "B": 5.0, "C": 6.0, "D": 6.0, "E": 6.0}
 """T_E [s] by the soil, from which displacements go down to those of the ground."""
-GROUND = 10.0  # s: T_F, from which they are those of the ground
-BELOW, ABOVE = 0.8, 1.1  # a and b: of the period of a floor, between which its spectrum is level
-AMPLIFIED = 1.1  # of A, the amplification by a floor
+GROUND_PERIOD = 10.0  # T_F [s]: from here on, displacements are those of the ground
+BELOW, ABOVE = 0.8, 1.1  # a and b of the spectrum of a floor, which is level between a T_1 and b T_1
+AMPLIFICATION_COEFFICIENT = 1.1  # of A, the amplification by a floor
 FALL_BELOW, FALL_ABOVE = 1.6, 1.2  # exponents of either side
 
 
@@ -85,11 +85,11 @@ class GroundSpectrum:
 
     def displacement(self, period: float, damping: float) -> float:
         """Return the spectral displacement S_De [m; NTC 3.2.10-12]."""
-        start = LONG[self.soil] if self.soil is not None else inf
+        start = LONG_PERIOD_START[self.soil] if self.soil is not None else inf
         if period <= start:
             return self.acceleration(period, damping) * (period / (2 * pi)) ** 2
         level = self.F0 * correction(damping)
-        share = min((period - start) / (GROUND - start), 1.0)
+        share = min((period - start) / (GROUND_PERIOD - start), 1.0)
         return 0.025 * self.peak * self.TC * self.TD * (level + (1 - level) * share)
 
 
@@ -255,7 +255,7 @@ class FloorSpectrum:
 
     def amplification(self, damping: float) -> float:
         """Return the amplification A = 1.1 xi_1^-1/2 eta(xi), with xi_1 as a ratio: our interpretation."""
-        return AMPLIFIED * correction(damping) / sqrt(self.xi1)
+        return AMPLIFICATION_COEFFICIENT * correction(damping) / sqrt(self.xi1)
 
     def alone(self, period: float, damping: float) -> float:
         """Return the floor spectrum S_eZ without the lower bound by the ground spectrum [m/s2]."""

@@ -16,8 +16,8 @@ from rocking_cli.core.hung.attached import Follow, Spot
 from rocking_cli.core.hung.element import ConstantForce, Spring
 from rocking_cli.core.hung.ties import Tie
 
-TURNS = 1e-9  # rad per rad: what turns less goes straight on
-ROUNDING = 1e-9  # of the work of the weights, or of the masses: what is left over is none
+MIN_TURN = 1e-9  # rad per rad; a block that turns less translates
+ROUNDING_SHARE = 1e-9  # of the work of the weights, or of the masses; a remainder below it counts as zero
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class DisplacedChain:
         lifts = [weight.carried * float(self._follow(weight.spot).dz[0].imag) for weight in own]
         lifted = sum(lifts) / (block.P or 1.0)  # y' of the barycentre of the weights that it carries
         turns = -s * spin.imag
-        centre = None if abs(turns) < TURNS else now - velocity / (1j * spin.imag)
+        centre = None if abs(turns) < MIN_TURN else now - velocity / (1j * spin.imag)
         return Moved(block, s * (now - block.at).real, now, turns, centre, s * velocity.real, lifted)
 
     @property
@@ -156,7 +156,7 @@ class DisplacedChain:
         known = self.lifted + sum(each.work for each in self.held)
         rest = self._own[0] - known
         scale = sum(abs(each.block.P * each.dy) for each in self.blocks) + sum(abs(each.work) for each in self.held)
-        return rest if abs(rest) > ROUNDING * max(scale, abs(self._own[0]), self.driven * 1e-6) else 0.0
+        return rest if abs(rest) > ROUNDING_SHARE * max(scale, abs(self._own[0]), self.driven * 1e-6) else 0.0
 
     @property
     def more(self) -> float:
@@ -165,12 +165,12 @@ class DisplacedChain:
         It is set to 0 if it is only rounding.
         """
         more = self._own[1] * self.chain.mechanism.gravity - self.driven
-        return more if abs(more) > ROUNDING * abs(self.driven) else 0.0
+        return more if abs(more) > ROUNDING_SHARE * abs(self.driven) else 0.0
 
 
-STRETCHED = 0.02
+MAX_STRAIN = 0.02
 """Elongation of a tie over its length from which the output warns: steel yields at a tenth of it."""
-WIDE = 0.8
+MAX_OVERHANG_SHARE = 0.8
 """Displacement of the centroid of a block over half its thickness from which the output warns; it falls at 1."""
 
 

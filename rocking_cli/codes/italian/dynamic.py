@@ -23,7 +23,7 @@ from rocking_cli.studies.engines import follow
 from rocking_cli.text import did_you_mean
 from rocking_cli.verification.results import Histories, where_it_stands
 
-RECORDS = 7  # that the code wants before the mean may be used
+MIN_RECORDS_FOR_MEAN = 7
 
 
 def with_confidence(motion: GroundMotion, FC: float) -> GroundMotion:
@@ -92,7 +92,7 @@ def with_histories(
                 [peak[direction] for peak in every],
                 each.d0,
                 {state: each.states[state].d},
-                RECORDS,
+                MIN_RECORDS_FOR_MEAN,
                 unchecked=unchecked,
                 motions=what,
             ),

@@ -20,8 +20,8 @@ from rocking_cli.codes.italian.rules import RULES
 from rocking_cli.codes.italian.site import ItalianSite
 from rocking_cli.errors import InputError, Problem
 
-LARGEST = 1e6  # g: no ground shakes so; a capacity beyond is none
-AS_LARGE = 1e-13  # relative: a demand that scales with a_g
+LARGEST_AG = 1e6  # g; no ground motion is as strong, and a larger capacity is not reported
+SAME_RATIO = 1e-13  # relative difference up to which a demand is proportional to a_g
 
 
 @dataclass(frozen=True)
@@ -105,10 +105,10 @@ class SiteGround:
         """Return the a_g at which a demand reaches a capacity [g], with F0 and T_C fixed; T_D follows from a_g."""
         own = demand(spectrum)
         in_ratio = spectrum.ag * capacity / own
-        if abs(demand(spectrum.with_ag(in_ratio)) / capacity - 1) < AS_LARGE:
+        if abs(demand(spectrum.with_ag(in_ratio)) / capacity - 1) < SAME_RATIO:
             return in_ratio
         low, high = 0.0, spectrum.ag
-        while demand(spectrum.with_ag(high)) < capacity and high < LARGEST:
+        while demand(spectrum.with_ag(high)) < capacity and high < LARGEST_AG:
             low, high = high, 2 * high
         return root(lambda ag: demand(spectrum.with_ag(ag)) - capacity, low, high)
 
@@ -136,7 +136,7 @@ class SiteGround:
 
 PROBABILITY = {"SLO": 0.81, "SLD": 0.63, **{rule.state: rule.probability for rule in RULES}}
 """Of being exceeded in the reference life, by limit state."""
-SHORTEST, LONGEST = 30.0, 2475.0  # years: return periods beyond are taken as these
+SHORTEST, LONGEST = 30.0, 2475.0  # years; return periods beyond these bounds are replaced by them
 SOILS = {
     "A": (1.0, 0.0, 1.0, 1.0, 1.0, 0.0),
     "B": (1.40, 0.40, 1.0, 1.2, 1.10, -0.20),

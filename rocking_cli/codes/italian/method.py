@@ -13,7 +13,7 @@ from math import pi, sqrt
 from rocking_cli.codes.italian import clauses, remarks
 from rocking_cli.codes.italian.capacity import CapacityCurve, ExactCurve, StraightCurve, with_elastic_branch
 from rocking_cli.codes.italian.chain import Chain
-from rocking_cli.codes.italian.demand import DAMPING, DemandSpectrum
+from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, DemandSpectrum
 from rocking_cli.codes.italian.displaced import elastic, lasting
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerification, ItalianVerified, LimitState
@@ -75,7 +75,7 @@ class _Case:
     def forces(self, spectrum: DemandSpectrum) -> float:
         """Acceleration demand on the element [m/s2]: the peak of the ground or floor, or the ordinate at its own T0."""
         T0 = self.ground.site.own_period
-        return spectrum.peak if T0 is None else spectrum.acceleration(T0, DAMPING)
+        return spectrum.peak if T0 is None else spectrum.acceleration(T0, REFERENCE_DAMPING)
 
     def methods(self, states: Mapping[str, LimitState]) -> dict[str, ItalianMethod]:
         """Return the methods, by key."""

@@ -8,7 +8,7 @@ from math import isclose
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.demand import FloorSpectrum, GroundSpectrum
-from rocking_cli.codes.italian.displaced import STRETCHED, WIDE, carried, elastic, furthest, pulls
+from rocking_cli.codes.italian.displaced import MAX_OVERHANG_SHARE, MAX_STRAIN, carried, elastic, furthest, pulls
 from rocking_cli.codes.italian.ground import LONGEST, SHORTEST, SiteGround, return_period
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
 from rocking_cli.codes.italian.rules import DAMAGE, FURTHER, LINEAR, NONLINEAR, RULES, STATES
@@ -16,11 +16,11 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import digits_apart
 from rocking_cli.verification.results import Remark
 
-LONG = 4.0  # s: above it the code requires a study of the site, or records
-LEAST_CONFIDENT = 1.35  # FC of the least knowledge, LC1
-ROUNDING = 1e-9
-SAME = 0.005  # of an a_g: methods that differ by less agree
-CURVED = 0.01  # of a*: how far the straight line may be off before it is stated
+LONG_PERIOD = 4.0  # s; above it the code requires a study of the site, or records
+LARGEST_FC = 1.35  # confidence factor of the lowest knowledge level, LC1
+ROUNDING_RATIO = 1e-9
+SAME_RATIO = 0.005  # relative difference of a_g below which two methods agree
+MAX_LINE_DEVIATION = 0.01  # of a*; a straight line that is further off is reported
 
 
 def _capacities(states: Iterable[str]) -> list[Remark]:
@@ -33,14 +33,14 @@ def of_site(ground: SiteGround, found: Collection[ItalianVerified]) -> list[Rema
     said: list[Remark] = [*_of_spectrum(ground), *_of_lives(ground)]
     periods = [state.T for each in found for state in each.states.values() if state.demand is not None]
     long = max(periods, default=0.0)
-    if long > LONG:
-        said.append(Remark.of("long", T=long, most=LONG))
+    if long > LONG_PERIOD:
+        said.append(Remark.of("long", T=long, most=LONG_PERIOD))
     missing = [state for state in FURTHER if ground.spectrum(state) is None]
     if missing:
         said.append(Remark.of("missing", states=missing))
     crushes = any(each.chain.mechanism.crushing is not None for each in found)
-    if ground.site.FC < LEAST_CONFIDENT and not crushes:
-        said.append(Remark.of("confidence", FC=ground.site.FC, least=LEAST_CONFIDENT))
+    if ground.site.FC < LARGEST_FC and not crushes:
+        said.append(Remark.of("confidence", FC=ground.site.FC, least=LARGEST_FC))
     loads = [load for each in found for load in each.chain.mechanism.loads or [] if load.mass is not None]
     if any(load.seat is None for load in loads):
         said.append(Remark.of("seats", limited=_capacities(rule.state for rule in RULES)))
@@ -104,7 +104,7 @@ def of_direction(curve: ExactCurve, states: Mapping[str, LimitState], ground: Si
 def _of_line(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:
     d, a = curve.points()
     off = max(abs(curve.a0 * (1 - d / curve.d0) - a)) / curve.a0
-    if off <= CURVED:
+    if off <= MAX_LINE_DEVIATION:
         return []
     at = states["SLV"]
     there = curve.a0 * (1 - at.d / curve.d0) / at.a - 1
@@ -131,13 +131,13 @@ def _of_stretch(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Rem
         for pull in held:
             e = pull.elongation
             if pull.strain is None and e > 0:
-                far = {"most": 100 * STRETCHED, "length": e / STRETCHED}
+                far = {"most": 100 * MAX_STRAIN, "length": e / MAX_STRAIN}
                 said.setdefault(pull.name, Remark.of("follows", state=state, name=pull.name, e=e, **far))
-            elif pull.strain is not None and pull.strain > STRETCHED:
-                strain = {"strain": 100 * pull.strain, "most": 100 * STRETCHED}
+            elif pull.strain is not None and pull.strain > MAX_STRAIN:
+                strain = {"strain": 100 * pull.strain, "most": 100 * MAX_STRAIN}
                 said.setdefault(pull.name, Remark.of("stretched", state=state, name=pull.name, e=e, **strain))
         moved, thickness = furthest(curve, at.d)
-        if held and moved > WIDE * thickness / 2:
+        if held and moved > MAX_OVERHANG_SHARE * thickness / 2:
             said.setdefault("", Remark.of("wide", state=state, moved=moved, thickness=thickness))
     return list(said.values())
 
@@ -163,11 +163,11 @@ def _of_seat(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark
 def _of_letter(chain: Chain, curve: ExactCurve) -> list[Remark]:
     said: list[Remark] = []
     alpha0, lambda_ = chain.alpha0, chain.mechanism.uplift(chain.direction)
-    if abs(alpha0 / lambda_ - 1) > ROUNDING:
+    if abs(alpha0 / lambda_ - 1) > ROUNDING_RATIO:
         said.append(Remark.of("own_formula", alpha0=alpha0, lambda_=lambda_))
     if not chain.is_by_the_letter:
         a_letter = curve.a0 * chain.start_by_the_letter
-        same = isclose(chain.by_the_letter, alpha0, rel_tol=ROUNDING)
+        same = isclose(chain.by_the_letter, alpha0, rel_tol=ROUNDING_RATIO)
         alpha = Remark("alpha0_same" if same else "alpha0_by_letter", _apart(chain.by_the_letter, alpha0))
         said.append(Remark.of("letter", alpha0=alpha, **_apart(a_letter, curve.a0)))
     return said
@@ -180,7 +180,7 @@ def _apart(letter: float, own: float) -> dict[str, float | int]:
 def of_control(chosen: ItalianMethod, usual: ItalianMethod, d0: float, usual_d0: float) -> Remark:
     """Return a remark on the effect of a chosen control point on d0* [m] and the nonlinear method."""
     change = d0 / usual_d0 - 1
-    if abs(change) < ROUNDING:
+    if abs(change) < ROUNDING_RATIO:
         return Remark.of("control_same", d0=d0)
     side = Remark.of("more" if change > 0 else "less")
     values = {"d0": d0, "change": 100 * abs(change), "side": side, "own": usual_d0}
@@ -195,10 +195,10 @@ def differences(found: ItalianVerified, first: str) -> Iterator[Remark]:
     if linear is None or counts is None:
         return
     ratio, begins = linear / counts, found.methods[DAMAGE].a_g or 0.0
-    key = "linear_same" if abs(ratio - 1) <= SAME else "linear_less" if ratio < 1 else "linear_more"
+    key = "linear_same" if abs(ratio - 1) <= SAME_RATIO else "linear_less" if ratio < 1 else "linear_more"
     values = {"linear": linear, "ratio": ratio, "share": 100 * ratio, "times": linear / begins, "T": at.T, "d": at.d}
     yield Remark(key, {**values, "state": first})
     line, exact = found.straight_methods[NONLINEAR].a_g, found.methods[NONLINEAR].a_g
-    if line is not None and exact is not None and abs(line / exact - 1) > SAME:
+    if line is not None and exact is not None and abs(line / exact - 1) > SAME_RATIO:
         side = Remark.of("more" if line > exact else "less")
         yield Remark.of("straight", line=line, change=100 * abs(line / exact - 1), side=side)

@@ -10,13 +10,13 @@ from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
 from rocking_cli.codes.italian.rules import OF_STATE
 from rocking_cli.core import Direction
-from rocking_cli.studies.conclusion import ORDER, Concluded, Conclusion, LeftOut
+from rocking_cli.studies.conclusion import SEVERITY, Concluded, Conclusion, LeftOut
 from rocking_cli.verification import results as frame
-from rocking_cli.verification.results import CLOSE, MotionPlace, Requirement
+from rocking_cli.verification.results import CAPACITY_TOLERANCE, MotionPlace, Requirement
 
 HISTORIES = "histories"
 """The key of the method by time histories in a conclusion."""
-AGREE = 1e-9  # relative: directions that differ by less are shown once
+SAME_RATIO = 1e-9  # relative difference below which two directions are shown as one
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class LimitState:
     @property
     def passes(self) -> bool | None:
         """Whether the capacity meets the demand; None without a demand."""
-        return None if self.ratio is None else self.ratio >= 1 - CLOSE
+        return None if self.ratio is None else self.ratio >= 1 - CAPACITY_TOLERANCE
 
 
 @dataclass(frozen=True)
@@ -252,7 +252,7 @@ class ItalianVerified(frame.Verified):
     @property
     def passed(self) -> bool | None:
         """Whether the direction passes at all limit states that the site gives, by the static methods."""
-        worst = max((check.concluded for check in self._static), key=ORDER.index)
+        worst = max((check.concluded for check in self._static), key=SEVERITY.index)
         return None if worst is Concluded.NOT_CHECKED else worst is Concluded.SATISFIED
 
     @property
@@ -284,7 +284,9 @@ class ItalianVerified(frame.Verified):
         assert isinstance(other, ItalianVerified)  # of one code
         pairs = [(self.a0, other.a0), (self.d0, other.d0), (self.chain.e_star, other.chain.e_star)]
         pairs += [(self.states[key].a, other.states[key].a) for key in self.states]
-        return self.dynamic is None and other.dynamic is None and all(isclose(a, b, rel_tol=AGREE) for a, b in pairs)
+        return (
+            self.dynamic is None and other.dynamic is None and all(isclose(a, b, rel_tol=SAME_RATIO) for a, b in pairs)
+        )
 
 
 @dataclass(frozen=True, eq=False)

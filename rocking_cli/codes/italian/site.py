@@ -20,8 +20,8 @@ from rocking_cli.studies.file_part import Part, Sound
 from rocking_cli.verification.code import Site
 
 SIZES = ("ag", "F0", "TC", "S")
-MOST = 10_000  # rows of a table
-LEAST = 0.001  # s, of a period
+MAX_TABLE_ROWS = 10_000
+MIN_PERIOD = 0.001  # s
 Period = Annotated[float, Field(gt=0, le=100)]
 Ordinate = Annotated[list[Annotated[float, Field(ge=0, le=1000)]], Field(min_length=2, max_length=2)]
 Row = Annotated[list[Annotated[float, Field(gt=0, le=1e6)]], Field(min_length=4, max_length=4)]
@@ -30,7 +30,7 @@ Row = Annotated[list[Annotated[float, Field(gt=0, le=1e6)]], Field(min_length=4,
 def _ordinates(**more: Any) -> Any:
     return quantity(
         "elastic spectrum at 5 % damping: [period in s, acceleration in g], starting at T = 0, linearly interpolated",
-        default=None, min_length=2, max_length=MOST, **more,
+        default=None, min_length=2, max_length=MAX_TABLE_ROWS, **more,
     )  # fmt: skip
 
 
@@ -39,7 +39,7 @@ class StateGround(Part):
 
     ag: float | None = quantity("ground acceleration on rock", unit="g", symbol="a_g", default=None, gt=0, le=10)
     F0: float | None = quantity("maximum spectral amplification", default=None, ge=1, le=10)
-    TC: float | None = quantity("end of its level part", unit="s", symbol="T_C", default=None, ge=LEAST, le=10)
+    TC: float | None = quantity("end of its level part", unit="s", symbol="T_C", default=None, ge=MIN_PERIOD, le=10)
     S: float | None = quantity("factor of soil and topography", default=None, ge=0.5, le=5)
     spectrum: list[Ordinate] | None = _ordinates()
 
@@ -170,7 +170,7 @@ class ItalianSite(StateGround, Site):
     SLD: StateGround | None = Field(None, description="the ground at damage")
     soil: Literal["A", "B", "C", "D", "E"] | None = Field(None, description="category of the soil")
     topography: Literal["T1", "T2", "T3", "T4"] = Field("T1", description="category of the topography")
-    hazard: Annotated[list[Row], Field(min_length=2, max_length=MOST)] | None = Field(
+    hazard: Annotated[list[Row], Field(min_length=2, max_length=MAX_TABLE_ROWS)] | None = Field(
         None, description="rows of [return period in years, ag in g, F0, TC* in s], with VN, CU and soil"
     )
     VN: float | None = quantity("nominal life", unit="years", default=None, gt=0, le=1000)
@@ -211,8 +211,8 @@ class ItalianSite(StateGround, Site):
                 yield (name,), f"is missing: a hazard needs the {cls.model_fields[name].description}"
         if sound("hazard"):
             for k, row in enumerate(given["hazard"]):
-                if row[-1] < LEAST:
-                    yield ("hazard", k), f"has T_C* = {row[-1]:g} s: a period must be at least {LEAST:g} s"
+                if row[-1] < MIN_PERIOD:
+                    yield ("hazard", k), f"has T_C* = {row[-1]:g} s: a period must be at least {MIN_PERIOD:g} s"
             for k, (before, after) in enumerate(pairwise(given["hazard"]), 1):
                 if after[0] <= before[0]:
                     yield ("hazard", k), f"return periods must increase, got {after[0]:g} after {before[0]:g} years"

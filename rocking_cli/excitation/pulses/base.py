@@ -14,12 +14,12 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.plugins.errors import failed, guard
 
-FINE = 4000  # samples to a period of a history alone: its peak is right to 1e-6 of itself from 1.01 times uplift on
-COARSE = 400  # those of them that it keeps, and those of many histories at once: 1e-4 near uplift, 1e-7 elsewhere
-DIGITS = 17  # that tell any two numbers apart
+FINE = 4000  # samples per period of a single history; its peak has an error of 1e-6 from 1.01 times uplift on
+COARSE = 400  # samples per period of batches and of stored histories; error 1e-4 near uplift, 1e-7 elsewhere
+MAX_DIGITS = 17  # enough to tell any two floating-point numbers apart
 SAMPLING = "chords with the impulse of the curve"
 """How samples are made, for whoever keeps what was computed with them: other samples need another text."""
-NODES = 48  # of Gauss's rule for the velocity
+GAUSS_POINTS = 48  # for the velocity
 
 
 class Segment(NamedTuple):
@@ -108,7 +108,7 @@ class Pulse(ABC):
         It is integrated by Gauss quadrature, exact to rounding for a smooth shape of a few cycles; a subclass may give
         its closed form.
         """
-        nodes, weights = np.polynomial.legendre.leggauss(NODES)
+        nodes, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
         half = np.asarray(x, dtype=np.float64)[..., None] / 2
         velocity: Reals = (self.shape(half * (1 + nodes)) * half) @ weights
         return velocity
@@ -179,7 +179,7 @@ def _amplitude(value: float) -> str:
 
     Some amplitudes are not a multiple of g.
     """
-    texts = (f"{value / STANDARD_GRAVITY:.{digits}g}" for digits in range(1, DIGITS + 1))
+    texts = (f"{value / STANDARD_GRAVITY:.{digits}g}" for digits in range(1, MAX_DIGITS + 1))
     in_g = [f"{text}g" for text in texts if float(text) * STANDARD_GRAVITY == value]
     return min([*in_g[:1], f"{_shortest(value)}m/s2"], key=len)
 

@@ -21,14 +21,14 @@ from rocking_cli.excitation.records.record_units import (
 )
 from rocking_cli.text import regex
 
-MOST = 1000  # columns of a table
-LISTED = 30  # columns in a message
-NEAR = 40  # lines above a table in which its labels are
-LONG = 10_000  # characters that no line of labels has
+MAX_COLUMNS = 1000
+MAX_LISTED_COLUMNS = 30
+LABEL_LINES = 40  # number of lines above a table that may hold its labels
+MAX_LABEL_CHARACTERS = 10_000
 
 _TIME = regex(r"[\"']?(?:t|time)(?![a-z])", re.IGNORECASE)
 _BARE_T = regex(r"t", re.IGNORECASE)  # the time, or the transverse component
-_WORDS = regex(r"[^\s\[(]+(?: *(?:\[[^\]]*\]|\([^)]*\)))?")  # a word, and what is in brackets behind it
+_WORDS = regex(r"[^\s\[(]+(?: *(?:\[[^\]]*\]|\([^)]*\)))?")  # a word, with the brackets that follow it
 _GAPS = regex(r"\s{2,}|\t")
 _COLUMN = regex(r"col(?:umn)?\.? *(\d{1,4})")
 _BRACKETED = regex(r"[\[(]\s*([^\])]+?)\s*[\])]")
@@ -96,7 +96,7 @@ def labels(lines: Sequence[tuple[int, str]], delimiter: str | None, columns: int
     list of int
         Numbers of the lines from which the labels are.
     """
-    rows = [(number, cells) for number, line in lines[-NEAR:] if (cells := _cells(line, delimiter, columns))]
+    rows = [(number, cells) for number, line in lines[-LABEL_LINES:] if (cells := _cells(line, delimiter, columns))]
     if not rows:
         return [Label("")] * columns, []
     number, names = rows[-1]
@@ -161,7 +161,7 @@ def _may_be(label: str, wanted: Wanted) -> bool:
 
 def _cells(line: str, delimiter: str | None, columns: int) -> list[str]:
     """Split a line of labels into as many cells as there are columns; empty if no way of splitting gives so many."""
-    if len(line) > LONG:
+    if len(line) > MAX_LABEL_CHARACTERS:
         return []
     for cells in _ways(line, delimiter):
         found = [cell.strip().strip("\"'").strip() for cell in cells]
@@ -266,4 +266,6 @@ def _listed(table: Reals, names: Sequence[Label], times: Sequence[int], values: 
         if k not in values:
             what = "time" if k in times else f"no {wanted.quantity}"
             out.append(f"\n    column {k + 1}{f', {label},' if label.name else ''} is {what}")
-    return "".join(out[:LISTED]) + (f"\n    and {len(out) - LISTED} more" if len(out) > LISTED else "")
+    return "".join(out[:MAX_LISTED_COLUMNS]) + (
+        f"\n    and {len(out) - MAX_LISTED_COLUMNS} more" if len(out) > MAX_LISTED_COLUMNS else ""
+    )

@@ -30,14 +30,14 @@ _DATA = regex(
     re.I,
 )
 _WIDTH = regex(r"\( *\d*[A-Z](\d+)(?:\.\d+)?(?:E\d*)? *\)", re.I)
-_LONG = 300  # characters; the format has 80
+_MAX_LINE_CHARACTERS = 300  # the format has 80
 _CODE = regex(r"units *=[^(,]*\((\d{1,3})\)", re.I)
 _UNIT_CODES = {2: "g", 4: "cm/s2"}
 _END = regex(r"End-of-data for Chan *(\S+)", re.I)
 # Counted from 1, the interval of processed data [ms] and of the raw record [s], the second as long as nothing is done.
 _DT_MS, _DT_RAW = 62, 34
 _PEAK, _PEAK_TIME = 64, 65  # of the values, and when [s]
-_DISTANCE = 17  # from the epicentre [km]
+_DISTANCE = 17  # place of the epicentral distance [km]
 _UNSET = -999
 _FIELDS = {
     "azimuth": Field(regex(r"^Sta Chan?\.?:? *\S+: *(.*?) *\(", re.I)),
@@ -46,7 +46,7 @@ _FIELDS = {
     "station": Field(regex(r"^Statn No: *\S+ +Code: *(\S+)(?: +[A-Z]{2,5} +(\S.*))?")),
     "hypocentre": Field(regex(r"^(Hypocenter.*)")),
 }
-_LINE = 10_000  # characters looked at of the first line
+_MAX_FIRST_LINE = 10_000
 _TEXT_LINES, _HEADER_VALUES, _COMMENT_LINES = 1000, 10_000, 100_000  # more than any header has
 
 
@@ -63,7 +63,7 @@ class _Headers:
 
 def sniff(text: str) -> bool:
     """Return whether the first line states the version and the number of text lines."""
-    return _FIRST.match(text[:_LINE].split("\n")[0]) is not None
+    return _FIRST.match(text[:_MAX_FIRST_LINE].split("\n")[0]) is not None
 
 
 def read(
@@ -172,7 +172,7 @@ def _peak(headers: _Headers, values: Reals, dt: float, unit: str) -> tuple[Doubt
 
 def _announced(line: str) -> re.Match[str] | None:
     """Match a line that announces values; None for other lines, and for long ones, which would take long to search."""
-    return _DATA.match(" ".join(line.split())) if len(line) < _LONG else None
+    return _DATA.match(" ".join(line.split())) if len(line) < _MAX_LINE_CHARACTERS else None
 
 
 def _interval(file: str, headers: _Headers, count: int, length: float) -> float:

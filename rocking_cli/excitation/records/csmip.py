@@ -21,13 +21,15 @@ _UNIT = regex(r"(?:\bunits:|\bin) *([^,()]*?\w)\.? *(?:[,()]|$|format)", re.I)
 _FORMAT = regex(r"\b\d+F(\d+)\.\d+", re.I)
 _CHANNEL = regex(r"\bCHAN(?:NEL)? +\d+: *(.*\S)", re.I)
 _PEAK = regex(r"PEAK ACCELERATION *= *(\S+) +CM/SEC/SEC +AT +(\S+) *SEC", re.I)
-_WIDTH = 10  # 8F10.3, unless the line says otherwise
-_HEAD = 100_000  # characters looked at to recognise the format
+_DEFAULT_WIDTH = 10  # characters per number, as in 8F10.3
+_SEARCHED_CHARACTERS = 100_000  # to recognise the format
 
 
 def sniff(text: str) -> bool:
     """Return whether a line announces a history, in a file that is not an uncorrected record."""
-    return not csmip_v1.sniff(text) and any(_DATA.match(line) for line in text[:_HEAD].expandtabs().split("\n"))
+    return not csmip_v1.sniff(text) and any(
+        _DATA.match(line) for line in text[:_SEARCHED_CHARACTERS].expandtabs().split("\n")
+    )
 
 
 def read(
@@ -55,7 +57,7 @@ def read(
         count = layout.whole_number(file, index, line, data[1], "number of points", least=2)
         own = layout.number(file, index, line, data[3], "sample interval")
         form = _FORMAT.search(data[4])
-        width = layout.column_width(file, index, line, form[1]) if form else _WIDTH
+        width = layout.column_width(file, index, line, form[1]) if form else _DEFAULT_WIDTH
         block = layout.RecordBlock(index, count, width, index)
         values, index, remarks = layout.fixed_width(file, lines, block)
         if data[2].upper() == "ACCEL":

@@ -16,12 +16,14 @@ SIGN = "header lines SAMPLING_INTERVAL_S: and NDATA:"
 
 _KEY = regex(r"([A-Z][A-Z0-9_/^]*):(.*)")
 _DAY, _TIME = regex(r"(\d{4})(\d{2})(\d{2})"), regex(r"(\d{2})(\d{2})(\d{2})")
-_HEAD = 20_000  # characters the header is sought in
+_HEADER_CHARACTERS = 20_000
 
 
 def sniff(text: str) -> bool:
     """Return whether the header states the interval and the number of points by their names in ESM."""
-    return all(re.search(rf"^{key}:", text[:_HEAD], re.MULTILINE) for key in ("SAMPLING_INTERVAL_S", "NDATA"))
+    return all(
+        re.search(rf"^{key}:", text[:_HEADER_CHARACTERS], re.MULTILINE) for key in ("SAMPLING_INTERVAL_S", "NDATA")
+    )
 
 
 def read(

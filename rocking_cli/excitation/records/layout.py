@@ -26,9 +26,9 @@ from rocking_cli.text import regex
 _NO_ROW = regex(r"[^\s\d.+\-*EeDd]")
 _NOT_FINITE = regex(r"[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
 TENTH_OF_G = "g/10"
-_GRID = 1e-3  # s; times of digitised films are printed with three decimals
-_LONGEST = 3600.0  # s; films ran for a minute or two, and each second is a thousand samples
-_WIDEST = 1000  # characters to a number
+_FILM_DT = 1e-3  # s; times of digitised films are printed with three decimals
+_MAX_FILM_DURATION = 3600.0  # s; films ran for a minute or two, and each second takes a thousand samples
+_MAX_COLUMN_WIDTH = 1000  # characters
 _TOUCHING = "the rows do not keep to columns of {} characters, so that numbers that touch cannot be told apart"
 
 
@@ -295,12 +295,12 @@ def straight_lines(file: str, pairs: Reals, where: str) -> tuple[float, Reals, N
         Indices of the samples that are points of the film.
     """
     time, values = pairs.reshape(-1, 2).T
-    far = np.abs(time) > _LONGEST
+    far = np.abs(time) > _MAX_FILM_DURATION
     if far.any():
         point = int(np.argmax(far))
-        message = f"point {point + 1} is at {time[point]:g} s: no film runs for more than {_LONGEST:g} s"
+        message = f"point {point + 1} is at {time[point]:g} s: no film runs for more than {_MAX_FILM_DURATION:g} s"
         raise InputError(Problem(message, file, hint=f"it is among {where}"))
-    ticks = np.rint(time / _GRID).astype(np.int64)
+    ticks = np.rint(time / _FILM_DT).astype(np.int64)
     steps = np.diff(ticks)
     if (steps <= 0).any():
         point = int(np.argmax(steps <= 0)) + 1
@@ -308,7 +308,7 @@ def straight_lines(file: str, pairs: Reals, where: str) -> tuple[float, Reals, N
         raise InputError(Problem(message, file, hint=f"it is among {where}"))
     step = int(np.gcd.reduce(steps))
     grid = np.arange(ticks[0], ticks[-1] + 1, step)
-    return step * _GRID, np.interp(grid, ticks, values), ((ticks - ticks[0]) // step).astype(np.intp)
+    return step * _FILM_DT, np.interp(grid, ticks, values), ((ticks - ticks[0]) // step).astype(np.intp)
 
 
 def whole_number(
@@ -326,7 +326,7 @@ def whole_number(
 
 def column_width(file: str, line_number: int, line: str, token: str) -> int:
     """Return the number of characters per number, from the format in the header."""
-    return whole_number(file, line_number, line, token, "width of the columns", most=_WIDEST)
+    return whole_number(file, line_number, line, token, "width of the columns", most=_MAX_COLUMN_WIDTH)
 
 
 def number(file: str, line_number: int, line: str, token: str, what: str) -> float:

@@ -12,7 +12,7 @@ from rocking_cli.errors import InputError, Problem
 
 PAGE = 1 << 16
 """Characters of a page, at least: a page ends where a line does."""
-LONGEST = 1_000_000
+MAX_LINE_CHARACTERS = 1_000_000
 """Characters of a line of numbers, at most: a thousand columns of a thousand characters."""
 
 
@@ -78,8 +78,10 @@ class Lines(Sequence[str]):
         """Raise `InputError` if a line is so long that its numbers would fill the memory."""
         ends = [*self._firsts[1:], self._length]
         for (start, end), number in zip(pairwise(self._starts), ends, strict=True):
-            if end - start > PAGE + LONGEST:  # the last line of a page is the only one that goes beyond it
-                raise InputError(Problem(f"a line of numbers has at most {LONGEST} characters", file, number))
+            if end - start > PAGE + MAX_LINE_CHARACTERS:  # the last line of a page is the only one that goes beyond it
+                raise InputError(
+                    Problem(f"a line of numbers has at most {MAX_LINE_CHARACTERS} characters", file, number)
+                )
 
     def _cut(self, number: int) -> list[str]:
         return self._text[self._starts[number] : self._starts[number + 1] - 1].split("\n")

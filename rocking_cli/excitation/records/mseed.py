@@ -21,15 +21,15 @@ SIGN = "a binary header with six digits and D, R, Q or M, or with MS and 3, then
 BINARY = True
 TAKES_WANTED = True
 
-_LEAST = 48  # bytes of a header
-LARGEST = 4 * MOST_SAMPLES  # bytes, as if nothing were compressed
+_HEADER_BYTES = 48
+MAX_BYTES = 4 * MOST_SAMPLES  # four bytes per sample, as without compression
 _YEARS = range(1900, 2101)
 _DAYS = range(1, 367)
 
 
 def sniff(data: bytes) -> bool:
     """Return whether the first bytes are the header of a record with a valid date."""
-    if len(data) < _LEAST:
+    if len(data) < _HEADER_BYTES:
         return False
     if _version_3(data):
         dates = [struct.unpack_from("<HH", data, 8)]
@@ -53,7 +53,7 @@ def read(
     if _version_3(data):
         hint = "convert it to miniSEED 2 first"
         raise InputError(Problem("this is miniSEED 3, which obspy does not read", file, hint=hint))
-    if len(data) > LARGEST:
+    if len(data) > MAX_BYTES:
         message = f"the file has {len(data) / 1e6:.4g} MB: a record of at most {MOST_SAMPLES} samples has less"
         raise InputError(Problem(message, file, hint="cut the motion out of the file first"))
     unit = wanted.unit(file, [], units)

@@ -18,12 +18,12 @@ from rocking_cli.io.files import read_at_most, read_bytes
 from rocking_cli.text import regex
 
 STANDARD_INPUT = "-"
-LARGEST = 2_000_000_000  # bytes; ten million samples take some 300 MB
-EXPANDED = 500_000_000  # bytes of what was compressed
-RATIO = 200  # times as large, unpacked, as a packed record of more than `SMALL` may be: sixty is much
-SMALL = 10_000_000  # bytes
-MEMBERS = 10_000  # files in an archive
-LISTED = 30  # of them in a message
+MAX_FILE_BYTES = 2_000_000_000  # ten million samples take about 300 MB
+MAX_UNPACKED_BYTES = 500_000_000
+MAX_UNPACKED_RATIO = 200  # applies above `UNCHECKED_BYTES`; records compress by 60 at most
+UNCHECKED_BYTES = 10_000_000  # unpacked size that any packed file may have
+MAX_ARCHIVE_FILES = 10_000
+MAX_LISTED_FILES = 30
 
 _GZIP = b"\x1f\x8b\x08"
 _ZIP = (b"PK\x03\x04", b"PK\x05\x06", b"PK\x07\x08")
@@ -119,7 +119,7 @@ def _bytes(path: str | Path) -> bytes:
     if str(path) == STANDARD_INPUT:
         return _from_standard_input()
     pipe = "write what it gives to a file first, or give - in its place and the record on standard input"
-    return read_bytes(path, "record file", LARGEST, if_pipe=pipe)
+    return read_bytes(path, "record file", MAX_FILE_BYTES, if_pipe=pipe)
 
 
 def _from_standard_input() -> bytes:
@@ -135,11 +135,13 @@ def _from_standard_input() -> bytes:
         message = "it can be read once only, and something else has been read from it"
         raise InputError(Problem(message, file, hint="give one of them as a file"))
     try:
-        data = read_at_most(getattr(stream, "buffer", stream), LARGEST)
+        data = read_at_most(getattr(stream, "buffer", stream), MAX_FILE_BYTES)
     except (OSError, ValueError) as error:  # ValueError: it is closed
         raise InputError(Problem(f"cannot be read: {getattr(error, 'strerror', None) or error}", file)) from None
     if data is None:
-        raise InputError(Problem(f"this cannot be a record file: it is larger than {LARGEST / 1e6:.4g} MB", file))
+        raise InputError(
+            Problem(f"this cannot be a record file: it is larger than {MAX_FILE_BYTES / 1e6:.4g} MB", file)
+        )
     _taken[stream] = data
     return data
 
@@ -157,9 +159,9 @@ def _of_gzip(data: bytes, file: str) -> bytes:
 
 def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bool, str | None]:
     """Return content and name of the requested or only file, whether there are several, and the channel in it."""
-    if data.count(b"PK\x01\x02") > MEMBERS:  # their list is read as a whole
+    if data.count(b"PK\x01\x02") > MAX_ARCHIVE_FILES:  # their list is read as a whole
         raise InputError(
-            Problem(f"the archive has more than {MEMBERS} files: too many for a record", file, hint=_UNPACK)
+            Problem(f"the archive has more than {MAX_ARCHIVE_FILES} files: too many for a record", file, hint=_UNPACK)
         )
     try:
         archive = zipfile.ZipFile(io.BytesIO(data))
@@ -204,8 +206,8 @@ def _chosen(file: str, names: Sequence[str], channel: str | None) -> tuple[int, 
     if len(names) == 1:
         return 0, channel
     listed = [f"\n    {place}: {name}" for place, name in enumerate(names, start=1)]
-    if len(names) > LISTED:
-        listed[LISTED:] = [f"\n    and {len(names) - LISTED} more"]
+    if len(names) > MAX_LISTED_FILES:
+        listed[MAX_LISTED_FILES:] = [f"\n    and {len(names) - MAX_LISTED_FILES} more"]
     message = f"the archive holds {len(names)} files, and only one can be the record"
     if channel is not None:
         message = f"there is no file '{channel}' in the archive"
@@ -232,12 +234,14 @@ def _damaged(what: str, error: Exception, file: str) -> Problem:
 
 def _most(packed: int) -> int:
     """Return the largest size [bytes] to which this many compressed bytes may be decompressed."""
-    return min(EXPANDED, max(RATIO * packed, SMALL))
+    return min(MAX_UNPACKED_BYTES, max(MAX_UNPACKED_RATIO * packed, UNCHECKED_BYTES))
 
 
 def _too_large(file: str, packed: int) -> Problem:
     most = _most(packed)
-    size = f"{most / 1e6:.4g} MB" + (f", {RATIO} times its packed size" if SMALL < most < EXPANDED else "")
+    size = f"{most / 1e6:.4g} MB" + (
+        f", {MAX_UNPACKED_RATIO} times its packed size" if UNCHECKED_BYTES < most < MAX_UNPACKED_BYTES else ""
+    )
     return Problem(f"this cannot be a record file: unpacked it is larger than {size}", file)
 
 
@@ -249,7 +253,7 @@ def _printable(text: str) -> str:
 # Bytes no text file holds. Ctrl-Z (0x1a) is allowed: DOS programs end text files with it.
 _BINARY = regex(rb"[\x00-\x08\x0e-\x19\x1b-\x1f]")
 _BLANK_WITH_NUL = regex(rb"^[ \t\r]*\0[\0 \t\r]*$", re.MULTILINE)
-_HEAD = 2000  # bytes looked at for UTF-16 without a mark
+_UTF16_BYTES = 2000  # searched for UTF-16 without a byte order mark
 
 
 def decoded(data: bytes, file: str) -> str | None:
@@ -298,7 +302,7 @@ def _utf_16(data: bytes) -> str | None:
         return "utf-16-le"
     if data.startswith(codecs.BOM_UTF16_BE):
         return "utf-16-be"
-    head = data[:_HEAD]
+    head = data[:_UTF16_BYTES]
     for high, low, encoding in ((head[1::2], head[::2], "utf-16-le"), (head[::2], head[1::2], "utf-16-be")):
         if len(head) >= 8 and 0 not in low and high.count(0) > 0.9 * len(high):
             return encoding

@@ -15,9 +15,9 @@ from rocking_cli.arrays import Reals
 from rocking_cli.excitation.base import NOT_SAID, Doubt, Origin
 from rocking_cli.text import regex, seen
 
-LONGEST = 100  # characters of a name
-LARGEST = 10.0  # magnitude
-FARTHEST = 20_040.0  # km, half way round the Earth
+MAX_NAME_CHARACTERS = 100
+MAX_MAGNITUDE = 10.0
+MAX_DISTANCE = 20_040.0  # km; half the circumference of the Earth
 
 _NOTHING = regex(r"(?:unknown|undefined|not (?:known|available)|none|n/?a|-?12345|-?999)\.?", re.IGNORECASE)
 _NUMBER = regex(r"[+-]?(?:\d{1,6}\.?\d{0,9}|\.\d{1,9})")
@@ -42,7 +42,9 @@ def origin(event: str | None, station: str | None, magnitude: object = None, dis
     magnitude, distance : object, optional
         Numbers, or their text in the header; the distance in km.
     """
-    return Origin(name(event), name(station), _within(magnitude, 0.0, LARGEST), _within(distance, -1.0, FARTHEST))
+    return Origin(
+        name(event), name(station), _within(magnitude, 0.0, MAX_MAGNITUDE), _within(distance, -1.0, MAX_DISTANCE)
+    )
 
 
 def name(text: str | None) -> str | None:
@@ -50,7 +52,7 @@ def name(text: str | None) -> str | None:
     found = seen(text or "").strip(" ,;:-*")
     if not re.search(r"[^\W_]", found) or _NOTHING.fullmatch(found):
         return None
-    return found[:LONGEST].rstrip()
+    return found[:MAX_NAME_CHARACTERS].rstrip()
 
 
 def of_csmip(head: Sequence[str]) -> Origin:
@@ -103,7 +105,7 @@ def _within(value: object, above: float, most: float) -> float | None:
 
 
 _DIGITS = regex(r"[+-]?(?:\d+\.?(\d*)|\.(\d+))(?:[EeDd]([+-]?\d{1,3}))?")
-_PRINTED = 1e-4  # of a value: some print the peak with more digits in the header than among the values
+_PEAK_TOLERANCE = 1e-4  # relative; some headers print the peak with more digits than the values have
 
 
 def peak_doubts(
@@ -132,7 +134,7 @@ def peak_doubts(
     stated, found = _value(peak), float(np.abs(values).max())
     if stated is None:
         return ()
-    tolerance = stated[1] + _PRINTED * found
+    tolerance = stated[1] + _PEAK_TOLERANCE * found
     if not abs(abs(stated[0]) - found) <= tolerance:
         text = (
             f"line {line} of its header states a peak of {abs(stated[0]):g} {unit}, the largest of its values is "

@@ -39,7 +39,7 @@ _PER_S2 = rf"(?: ?/ ?{_S} ?(?:\^|\*\*)? ?2| ?/ ?{_S} ?/ ?{_S}|[ .·*]?{_S} ?(?:\
 # A unit ends where its word ends, and is not the first part of something else: g/10, cm/s of cm/s2, g = 9.81.
 _END = r"(?! ?[/^*=]|\w)"
 _OF_G = r"milli-? ?g|mg|(?:%|percent|pct) ?g"
-_SPELLED = rf"(?:(?:mm|cm|m){_PER_S2}|gal|{_OF_G}){_END}"  # says what it is by itself; a bare "g" does not
+_SPELLED = rf"(?:(?:mm|cm|m){_PER_S2}|gal|{_OF_G}){_END}"  # units that are clear by themselves, which a bare "g" is not
 _UNIT = rf"(?:{_SPELLED}|g{_END})"
 _SPEED = rf"(?:mm|cm|m|km|in|ft)(?: ?/ ?(?:{_S}|h)| s-1){_END}"
 _LENGTH = rf"(?:mm|cm|m|km|inch(?:es)?|ft|feet){_END}"
@@ -67,7 +67,7 @@ _NAMED = [
 _ABOUT_A_VALUE = regex(r"\b(?:pg[avd]|peak|max\w*|min|minimum|rms|arias|scaled?|factor|gravity)\b")
 _NOT_USABLE = regex(rf"(?:{_UNITS_OF}|{_ACCELERATION}{_GAP})[\[(]?({_SPEED}|{_FOREIGN})|{_UNITS_OF}({_LENGTH})")
 # What stands where a unit should: after the word, or in brackets in the label of a column that is not the time.
-_SAID = regex(
+_STATED_UNIT = regex(
     r"\bunits? *(?:[:=]|of |are |is |in )[ :=]*[\[(]?(?!(?:acc\w*|the|time)\b)([^\s,;\])]{1,20})", re.IGNORECASE
 )
 _SAID_LABEL = regex(r"[\[(] *(?!(?:m?s|secs?|seconds?|-*) *[\])])([^\])\s]{1,20}) *[\])](?! ?[/^*])", re.IGNORECASE)
@@ -162,7 +162,7 @@ def _not_said(file: str, header: Sequence[tuple[int, str]]) -> Problem:
     for index, (number, line) in enumerate(header):
         if _ABOUT_A_VALUE.search(_normal(line)):
             continue
-        match = _SAID.search(line) or (_SAID_LABEL.search(line) if index == len(header) - 1 else None)
+        match = _STATED_UNIT.search(line) or (_SAID_LABEL.search(line) if index == len(header) - 1 else None)
         if match and canonical(match[1]) is None:
             message = f"the header says '{match[1]}', which is not a known unit of acceleration"
             return Problem(message, file=file, line=number, hint=hint)
@@ -230,11 +230,11 @@ OTHER_UNITS: dict[Quantity, tuple[str, ...]] = {
 }
 """The units of what is differentiated; those of accelerations are in `units.UNITS`."""
 EXAMPLE = "0.05 m/V"
-LEAST, MOST = 1e-30, 1e30  # of the number in a gain: beyond them products overflow
+MIN_GAIN, MAX_GAIN = 1e-30, 1e30  # products overflow beyond these bounds
 TIMES = frozenset(
     ["s", "sec", "second", "seconds", "ms", "min", "minute", "minutes", "h", "hr", "hour", "hours", "d", "day", "days"]
 )
-COARSE = 0.05  # of the peak: what one step of the smallest digit may make of it
+MAX_STEP_OVER_PEAK = 0.05  # what the smallest printed digit may stand for
 
 _IN_HEADER = regex(r"[\[(]\s*([^\])\s]+)\s*[\])]|\bin\s+([^\s,;]+)")
 _STATED = regex(r"[\[(]\s*([^\])\s]+)\s*[\])]")
@@ -375,7 +375,7 @@ class Gain:
             If the text has no number, or no unit of acceleration, velocity or length.
         """
         match = _FORM.fullmatch(text)
-        if match is None or not LEAST <= abs(float(match[1])) <= MOST:
+        if match is None or not MIN_GAIN <= abs(float(match[1])) <= MAX_GAIN:
             raise _refused(f"{text!r} is not a number with a unit")
         number, unit = match[1], match[2]
         if not unit:
@@ -451,7 +451,7 @@ def _resolution(smallest: float, found: Reals, dt: float, quantity: Quantity) ->
     power, unit = (2, "m") if quantity == "displacement" else (1, "m/s")
     noise = smallest / dt**power
     peak = float(np.abs(found).max())
-    if not (isfinite(noise) and noise > COARSE * peak):
+    if not (isfinite(noise) and noise > MAX_STEP_OVER_PEAK * peak):
         return ()
     text = (
         f"its smallest step, {smallest:.3g} {unit}, is {noise / STANDARD_GRAVITY:.2g} g once differentiated, of a peak "

@@ -21,10 +21,10 @@ TAKES_WANTED = True
 
 _HEADER, _FOOTER = 632, 176  # bytes; version 7 ends with some of the header once more, in double precision
 _VERSIONS = (6, 7)
-_TIME_SERIES, _XY = 1, 4  # of IFTYPE
-_ACCELERATION = 8  # of IDEP
+_TIME_SERIES, _XY = 1, 4  # values of IFTYPE
+_ACCELERATION = 8  # value of IDEP
 _UNSET = -12345.0
-_ROUNDED = 1e-5  # of the extremes, which have 32 bits
+_EXTREMES_TOLERANCE = 1e-5  # relative; the extremes have 32 bits
 _OTHERS = {6: "displacement", 7: "velocity", 50: "voltage"}
 _A = {"acceleration": "an acceleration", "velocity": "a velocity", "displacement": "a displacement"}
 
@@ -96,7 +96,7 @@ def _extremes(header: _SacHeader, samples: NDArray[np.float32]) -> tuple[Doubt, 
         return ()
     least, most = float(samples.min()), float(samples.max())
     size = max(abs(header.least), abs(header.most), abs(least), abs(most))
-    if max(abs(least - header.least), abs(most - header.most)) <= _ROUNDED * size:
+    if max(abs(least - header.least), abs(most - header.most)) <= _EXTREMES_TOLERANCE * size:
         return ()
     text = (
         f"its header says the samples go from {header.least:g} to {header.most:g} (DEPMIN, DEPMAX), they go from "

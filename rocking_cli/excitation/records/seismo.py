@@ -20,7 +20,9 @@ from rocking_cli.text import regex
 
 # SEED names a channel by band, instrument and direction; H, L and P are seismometers and geophones: velocity.
 _VELOCITY_CODE = regex(r"[A-Z][HLP][A-Z0-9]")
-_MOST = 10 * STANDARD_GRAVITY  # m/s2; whole numbers beyond this are counts: no earthquake has reached half of it
+_MAX_ACCELERATION = (
+    10 * STANDARD_GRAVITY
+)  # m/s2; larger whole numbers are counts, as no earthquake has reached half of it
 
 
 def traces(data: bytes, file: str, form: str) -> list[Any]:
@@ -110,7 +112,7 @@ def _flaw(file: str, name: str, values: Reals, unit: tuple[str, float], *, whole
         message = f"sample {place + 1} of {who} is not a finite number of sensible size: {values[place]:g}"
         return Problem(message, file, hint="repair the record first: every sample must have a value")
     peak = float(np.abs(values * unit[1]).max())
-    if whole and peak > _MOST and unit[0] in UNITS:
+    if whole and peak > _MAX_ACCELERATION and unit[0] in UNITS:
         message = f"{who} has whole numbers with a peak of {peak / STANDARD_GRAVITY:.4g} g, if in {unit[0]}: raw counts"
         hint = (
             "give `gain`, such as 4.7e-6 m/s2/count, or convert them: remove_response(output='ACC') in obspy gives m/s2"

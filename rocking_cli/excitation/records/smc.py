@@ -16,8 +16,8 @@ SIGN = "a first line such as 2 CORRECTED ACCELEROGRAM, and * on the second"
 
 _FIRST = regex(r"(\d) +([A-Z].*)")
 _UNCORRECTED = "1"
-_ACCELERATIONS = (_UNCORRECTED, "2")  # the corrected; then velocity, displacement and spectra
-_FASTEST = 1e6  # samples per second; what has no number of them has 1.7e38, or zero
+_ACCELERATIONS = (_UNCORRECTED, "2")  # uncorrected and corrected; 3 to 5 are velocity, displacement and spectra
+_MAX_RATE = 1e6  # samples per second; files without a rate state 1.7e38 or zero
 _TEXT_LINES = 11
 _INTEGERS = layout.RecordBlock(_TEXT_LINES, 48, 10, 1)
 _REALS = layout.RecordBlock(_TEXT_LINES + 6, 50, 15, 1, unset=1.7e38)
@@ -33,8 +33,8 @@ _FIELDS = {
 }
 # Of the integers and of the reals, counted from 1.
 _COMMENTS, _COUNT = 16, 17
-_RATE = 2  # samples per second
-_EXTREMES = ((29, 30), (31, 32))  # time and value of the largest and of the smallest acceleration
+_RATE = 2  # place of the samples per second
+_EXTREMES = ((29, 30), (31, 32))  # places of time and value of the largest and of the smallest acceleration
 
 
 def sniff(text: str) -> bool:
@@ -63,7 +63,7 @@ def read(
     if start + comments >= len(lines):
         raise InputError(Problem("the file ends before its values", file, len(lines)))
     layout.whole_number(file, count_line, lines[count_line - 1], str(count), "number of points", least=2)
-    if kind[1] == _UNCORRECTED and not 0 < rate < _FASTEST:  # NaN too: what stands for no number
+    if kind[1] == _UNCORRECTED and not 0 < rate < _MAX_RATE:  # NaN too: what stands for no number
         message = "an uncorrected film record, points at uneven times: the header has no number of samples per second"
         raise InputError(Problem(message, file, rate_line, hint="give the corrected record of it (kind 2)"))
     layout.number(file, rate_line, lines[rate_line - 1], f"{rate!r}", "number of samples per second")

@@ -15,8 +15,8 @@ import numpy as np
 from rocking_cli.arrays import Bools, Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
-from rocking_cli.excitation.record_csv import DONE
-from rocking_cli.excitation.records.columns import MOST, Choice, Label, choose, labels
+from rocking_cli.excitation.record_csv import DONE_PREFIX
+from rocking_cli.excitation.records.columns import MAX_COLUMNS, Choice, Label, choose, labels
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.excitation.records.record_units import Wanted, plural
 from rocking_cli.excitation.records.widths import PrintedRows, unlike_the_others
@@ -31,16 +31,16 @@ _NOT_FINITE = regex(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE)
 _OTHER_TIME = regex(r"(?<![a-z])(?:t|time)[ _]*[\[(]?\s*(ms|msec|milliseconds?|min|minutes?)\b", re.IGNORECASE)
 _FIRST_CELL = regex(r'"([^"]*)"|[^\s,;]*')
 _QUOTED = regex(r'"([^"]*)"')
-_HEAD = 100_000  # characters looked at to recognise a format: a large file is not searched to its end
-_HUGE = 1e30  # no time or acceleration in any unit; far below where sums and conversions overflow
-_INTERVALS = (1e-9, 1e6)  # s; beyond them sums overflow, and nothing was ever recorded so
-MOST_NUMBERS = 4 * MOST_SAMPLES  # of a table
-_DT_TOLERANCE = 1e-3  # a given interval may be the rounded form of the file's, or the other way round
+_SEARCHED_CHARACTERS = 100_000  # to recognise a format, so that a large file is not searched to its end
+_MAX_VALUE = 1e30  # above any time or acceleration in any unit, and far below overflow
+_INTERVAL_RANGE = (1e-9, 1e6)  # s; sums overflow beyond these bounds, and no record has such intervals
+MAX_NUMBERS = 4 * MOST_SAMPLES
+_DT_TOLERANCE = 1e-3  # relative; either the given interval or that of the file may be rounded
 
 
 def sniff(text: str) -> bool:
     """Return whether this looks like delimited text: a line begins with a number, and it is not JSON or XML."""
-    head = text[:_HEAD]
+    head = text[:_SEARCHED_CHARACTERS]
     return not head.lstrip().startswith(("{", "[", "<")) and _first_row(head.split("\n")) is not None
 
 
@@ -69,7 +69,7 @@ def read(
     # A title such as "6 km south of" is no row of four columns.
     numbers_in(file, start + 1, lines[start], [cell.replace(",", ".") for cell in cells] if commas else cells)
     columns = len(cells)
-    if columns > MOST:
+    if columns > MAX_COLUMNS:
         raise InputError(Problem(f"a table of {columns} columns cannot be a record", file, start + 1))
     header = _header(file, head, delimiter, columns)
     names, label_lines = labels(header, delimiter, columns)
@@ -125,12 +125,12 @@ def read(
 
 def usable(values: Reals) -> bool:
     """Return whether all values are finite, and not too large for arithmetic."""
-    return bool((np.abs(values) < _HUGE).all())
+    return bool((np.abs(values) < _MAX_VALUE).all())
 
 
 def sensible(value: float) -> bool:
     """Return whether one value is `usable`."""
-    return abs(value) < _HUGE
+    return abs(value) < _MAX_VALUE
 
 
 def numbers_in(file: str, line_number: int, line: str, tokens: Sequence[str]) -> list[float]:
@@ -171,7 +171,7 @@ def only_channel(file: str, asked: str | None) -> None:
 
 def check_interval(file: str, line_number: int | None, own: float, given: float | None) -> None:
     """Raise `InputError` if the sampling interval of the file [s] is not valid, or differs from the given one."""
-    if not _INTERVALS[0] <= own <= _INTERVALS[1]:
+    if not _INTERVAL_RANGE[0] <= own <= _INTERVAL_RANGE[1]:
         raise InputError(
             Problem(f"the sampling interval is {own:g} s, which is not plausible", file=file, line=line_number)
         )
@@ -227,7 +227,7 @@ def _header(file: str, lines: Sequence[str], delimiter: str | None, columns: int
     comments, header = [], []
     for number, line in enumerate(lines, start=1):
         line = line.strip()
-        if line.startswith(DONE):  # names of files and gains in it are of what was read before
+        if line.startswith(DONE_PREFIX):  # names of files and gains in it are of what was read before
             continue
         if line.startswith(("#", "%")):
             comments.append((number, line.lstrip("#% \t")))
@@ -262,8 +262,8 @@ def _table(
 ) -> Reals:
     """Return all columns as rows of an array, by numpy's parser, or the slower one for a page that numpy refuses."""
     columns, rows = len(names), len(lines) - start
-    if rows > MOST_SAMPLES or rows * columns > MOST_NUMBERS:  # before memory is reserved
-        most = MOST_SAMPLES if rows > MOST_SAMPLES else MOST_NUMBERS // columns
+    if rows > MOST_SAMPLES or rows * columns > MAX_NUMBERS:  # before memory is reserved
+        most = MOST_SAMPLES if rows > MOST_SAMPLES else MAX_NUMBERS // columns
         message = f"a record has at most {most} samples in each column, this file has {rows} lines"
         raise InputError(Problem(message, file))
     table = np.empty((columns, rows))  # rather too wide: blank lines and comments hold nothing
@@ -354,10 +354,12 @@ def _not_a_number(file: str, line_number: int, line: str, token: str, *, known: 
     return Problem(message, file=file, line=line_number, excerpt=line.strip()[:100], hint=hint)
 
 
-SPARSE = 10  # times as many samples as were recorded, that an even grid may have
-_LEAST = 1e-9  # s
-_FEWEST, _MOST = 5, 12  # significant digits that programs print numbers with
-_FINE = 0.01  # share of times that must be finer than the coarsest one, or they have decimals and no digits in common
+MAX_GRID_RATIO = 10  # samples of an even grid over recorded samples
+_MIN_DT = 1e-9  # s
+_MIN_DIGITS, _MAX_DIGITS = 5, 12  # significant digits with which programs print numbers
+_MIN_FINE_SHARE = (
+    0.01  # of times with more decimals than the coarsest one; with fewer, the times share decimals, not digits
+)
 
 
 class UnevenTimeError(Exception):
@@ -404,7 +406,7 @@ def even_interval(time: Reals) -> float:
         raise UnevenTimeError(f"time does not increase: {time[row]:g} s {what}", hint, row)
 
     dt = _as_written(float((time[-1] - time[0]) / (len(time) - 1)))
-    if dt < _LEAST:
+    if dt < _MIN_DT:
         hint = "the first column must be the time, in seconds"
         raise UnevenTimeError(f"the times give a sample interval of {dt:g} s", hint, None)
     usual = np.median(steps)
@@ -481,7 +483,7 @@ def on_grid(time: Reals, values: Reals) -> tuple[float, Reals, Doubt] | None:
     dt = float(f"{np.median(steps):.6g}")  # a clock ticks in a number that people write
     longest = int(steps.argmax())
     count = (time[-1] - time[0]) / dt * (1 + 1e-9)
-    if not count < SPARSE * len(time):
+    if not count < MAX_GRID_RATIO * len(time):
         message = f"gap in the record from {time[longest]:g} to {time[longest + 1]:g} s; the step is {dt:g} s elsewhere"
         raise UnevenTimeError(message, "cut the file there: straight lines over such gaps are not data", longest + 1)
     even = time[0] + dt * np.arange(int(count) + 1)
@@ -510,11 +512,11 @@ def _of_digits(time: Reals, dt: float) -> Reals:
     which are finer, determine `dt`.
     """
     size = np.floor(np.log10(np.maximum(np.abs(time), dt / 1000)) + 1e-12)
-    for digits in range(_FEWEST, _MOST + 1):
+    for digits in range(_MIN_DIGITS, _MAX_DIGITS + 1):
         each = 10.0 ** (size + 1 - digits)
         if _multiples(time, each).all():
             coarsest = each.max()
-            if coarsest <= dt / 2 and np.mean(~_multiples(time, coarsest)) > _FINE:
+            if coarsest <= dt / 2 and np.mean(~_multiples(time, coarsest)) > _MIN_FINE_SHARE:
                 return np.asarray(each)
             break
     return np.zeros(time.size)

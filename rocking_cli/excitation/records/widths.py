@@ -15,9 +15,9 @@ from rocking_cli.excitation.base import Doubt
 from rocking_cli.excitation.records.lines import Lines
 from rocking_cli.text import regex
 
-FEW = 0.1  # of the rows: if more of them leave the columns of the others, there are no columns
-FEW_NUMBERS = 0.03  # of the numbers: if more are printed otherwise, the program prints them as it likes
-_GLUED = regex(r"(?<=[\d.])(?=[+-])")  # before a sign that follows a digit: Fortran columns run together
+MAX_LEAVING_ROWS = 0.1  # share of rows that may leave the columns of the others; with more there are no columns
+MAX_ODD_NUMBERS = 0.03  # share of numbers that may be printed in another form; with more the form means nothing
+_GLUED = regex(r"(?<=[\d.])(?=[+-])")  # the sign follows a digit if columns of Fortran run together
 _DIGITS = str.maketrans("123456789", "000000000")
 _ONES = str.maketrans("0", "1")
 _PRINTED = regex(r"[+-]?(\d*)(?:(\.)(\d*))?(?:[EeDd]([+-]?)(\d+))?")
@@ -103,7 +103,7 @@ def odd_row(rows: PrintedRows) -> tuple[int, str] | None:
         return size * count != length * numbers  # a last row may be short, and two may have become one
 
     leaving = sum(times for size, times in sizes.items() if leaves(*size))
-    if not 0 < leaving <= FEW * sizes.total():
+    if not 0 < leaving <= MAX_LEAVING_ROWS * sizes.total():
         return None
     return next(
         (number, line)
@@ -132,7 +132,7 @@ def odd_digits(rows: PrintedRows) -> list[Doubt]:
     if len(tally) < 2:
         return []
     usual, _ = tally.most_common(1)[0]
-    if usual is None or tally.total() - tally[usual] > FEW_NUMBERS * tally.total():
+    if usual is None or tally.total() - tally[usual] > MAX_ODD_NUMBERS * tally.total():
         return []
     # Zero is zero however it is printed; and as many digits as any other has is a number of another size.
     longest = max(

@@ -17,11 +17,11 @@ from rocking_cli.excitation.measures import measure, time_of_share
 from rocking_cli.processing.intensity.base import MotionMeasure, Reference, RelativeMeasure, RunMeasure
 from rocking_cli.processing.oscillator import DAMPING, check_oscillator, response_spectrum
 
-SLOWEST, FASTEST = 0.25, 20.0  # Hz: between these frequencies the mean period is taken
-STEP = 0.05  # Hz between them, at most
-HOUSNER = (0.1, 2.5)  # s: between these periods his intensity is taken
-PERIODS = 241  # of that, one each 0.01 s
-AVERAGED = 100  # periods of an average
+SLOWEST, FASTEST = 0.25, 20.0  # Hz; bounds of the frequencies of the mean period
+MAX_FREQUENCY_STEP = 0.05  # Hz
+HOUSNER_PERIODS = (0.1, 2.5)  # s; bounds of the integral of the Housner intensity
+HOUSNER_POINTS = 241  # one every 0.01 s
+AVERAGED_PERIODS = 100
 
 
 class PeakAcceleration(MotionMeasure):
@@ -133,7 +133,7 @@ class MeanPeriod(MotionMeasure):
         if largest == 0:
             return None
         # Zeros behind the record, as the spectrum between the frequencies of the record itself counts too.
-        points = max(2 * motion.npts, int(np.ceil(1 / (STEP * motion.dt))))
+        points = max(2 * motion.npts, int(np.ceil(1 / (MAX_FREQUENCY_STEP * motion.dt))))
         points = 1 << (points - 1).bit_length()
         amplitudes = np.abs(np.fft.rfft(motion.acceleration / largest, points)) ** 2
         frequencies = np.fft.rfftfreq(points, motion.dt)
@@ -150,7 +150,7 @@ class SpectrumIntensity(MotionMeasure):
 
     def of(self, motion: GroundMotion) -> float:
         """Return the spectrum intensity [m]."""
-        periods = np.linspace(*HOUSNER, PERIODS)
+        periods = np.linspace(*HOUSNER_PERIODS, HOUSNER_POINTS)
         sv = response_spectrum(motion, periods, DAMPING).sv
         return float(((sv[1:] + sv[:-1]) / 2 * np.diff(periods)).sum())
 
@@ -208,7 +208,7 @@ class AverageSpectralAcceleration(MotionMeasure):
 
     def of(self, motion: GroundMotion) -> float:
         """Return the mean pseudo-acceleration [standard gravity]."""
-        found = response_spectrum(motion, np.linspace(self.low, self.high, AVERAGED), self.damping).sa
+        found = response_spectrum(motion, np.linspace(self.low, self.high, AVERAGED_PERIODS), self.damping).sa
         return float(np.exp(np.log(found).mean())) if found.all() else 0.0
 
 

@@ -24,7 +24,7 @@ from rocking_cli.questions.fragility.study import Sample, Study, digest
 from rocking_cli.questions.fragility.tally import UPLIFT_FACT, accelerations, rotations
 from rocking_cli.questions.fragility.work_units import carry_out, unit_size, units
 from rocking_cli.questions.fragility.workers import Workers
-from rocking_cli.studies.fragility.quantities import FACT, PGA, PGV, asked_for
+from rocking_cli.studies.fragility.quantities import PGA, PGV, ROTATIONS_FACT, asked_for
 
 Progress = Callable[[int, int], None]
 """Called with the numbers of runs that have finished and failed since the last call."""
@@ -107,7 +107,7 @@ def prepare(
         parameters |= _displacements(study, plan, {})
         store.begin(plan, {**facts, **parameters, "libraries": libraries()})
     else:
-        parameters |= _displacements(study, plan, store.facts().get(FACT, {}))
+        parameters |= _displacements(study, plan, store.facts().get(ROTATIONS_FACT, {}))
         for k in mended:
             store.replace_record(k, records[k])
         store.note(parameters)
@@ -283,7 +283,7 @@ def _mechanics(mechanism: Mechanism, asked: Definition) -> tuple[float, float, t
 def _displacements(study: Study, plan: Plan, known: dict[str, Any]) -> dict[str, Any]:
     """Return the rotations at which the top reaches the displacements among the limit states; empty without any."""
     limits = asked_for(study.definition.limit_states)
-    return {FACT: rotations(study.samples, plan.trials, limits, known)} if limits else {}
+    return {ROTATIONS_FACT: rotations(study.samples, plan.trials, limits, known)} if limits else {}
 
 
 def _refuse_useless(plan: Plan) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking_cli.arrays import Integers, Reals
 from rocking_cli.questions.fragility.observed import Observations
-from rocking_cli.studies.fit import FARTHEST, Brackets, Counts, Fit, cumulative, density, standardised, totals
+from rocking_cli.studies.fit import MAX_ETA, Brackets, Counts, Fit, cumulative, density, standardised, totals
 
 MIN_EXPECTED = 2.0 - 1e-6  # records on either side, in a group or cell: two, less rounding
 BY_RECORD = ", corrected for repeated records"
@@ -59,7 +59,7 @@ def goodness_of_runs(fit: Fit, design: Reals, seen: Observations) -> Goodness:
     2 degrees of freedom.
     """
     place, record, number = seen.counts.term, seen.counts.record, seen.counts.number
-    eta = np.clip(design @ fit.coefficients, -FARTHEST, FARTHEST)[place]
+    eta = np.clip(design @ fit.coefficients, -MAX_ETA, MAX_ETA)[place]
     p, q, slope = cumulative(fit.link, eta), cumulative(fit.link, -eta), density(fit.link, eta)
     name = "Pearson chi-square over the intensities" if seen.stripes else "Hosmer-Lemeshow"
     table = np.zeros((int(seen.group.max()) + 1, seen.records))

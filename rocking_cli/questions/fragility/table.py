@@ -14,7 +14,7 @@ from rocking_cli.questions.fragility.assess import Fragility
 from rocking_cli.questions.fragility.curves import FragilityCurve
 from rocking_cli.questions.fragility.plan import Plan
 from rocking_cli.questions.fragility.store import FAILED, SLIDE_COLUMN, STANDS, UNKNOWN, RunRows, Store
-from rocking_cli.studies.fragility.quantities import ALWAYS, label
+from rocking_cli.studies.fragility.quantities import USUAL_MEASURES, label
 
 CURVE_POINTS = 101
 MIN_LOG_RATIO = 30.0  # of the largest intensity over the least, from which intensities are spaced by a factor
@@ -88,7 +88,7 @@ def run_blocks(store: Store, plan: Plan, measures: Sequence[str] = ()) -> Iterat
     mapping of str to sequence
         The columns by heading, with units; the first block is yielded even if it is empty.
     """
-    end, columns_asked = int(np.prod(plan.shape)), tuple(dict.fromkeys([*ALWAYS, *measures]))
+    end, columns_asked = int(np.prod(plan.shape)), tuple(dict.fromkeys([*USUAL_MEASURES, *measures]))
     for first in range(0, end, RUNS_PER_BLOCK):
         rows = store.runs(first, min(first + RUNS_PER_BLOCK, end))
         if len(rows) or first == 0:

@@ -124,15 +124,15 @@ def _print_site(asked: str | None, *, as_json: bool) -> None:
     from rocking_cli.plugins.errors import blame
     from rocking_cli.questions.new.new_plugin import quoted
     from rocking_cli.verification.check import site_in
-    from rocking_cli.verification.code import HINT, USUAL, codes
+    from rocking_cli.verification.code import DEFAULT_CODE, SITE_HINT, codes
     from rocking_cli.views.template import starter
 
-    key = USUAL if asked is None else asked
+    key = DEFAULT_CODE if asked is None else asked
     code = codes()[key]
     getting = f"rocking new site --code {quoted(key)}"
     text = starter(code, [f"{getting} > site.yaml", "rocking verify block.yaml --site site.yaml"])
     try:
-        site_in(parse(text, getting, "site", HINT))
+        site_in(parse(text, getting, "site", SITE_HINT))
     except RockingError as error:
         _warn(f"the examples of the code {key} are not a valid site", error)
     schema: dict[str, Any] = {}

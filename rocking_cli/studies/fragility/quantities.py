@@ -16,9 +16,9 @@ from rocking_cli.arrays import Reals
 from rocking_cli.processing.intensity import parse_measure
 from rocking_cli.units import UnitError, kind_of, read, split
 
-FACT = "displacements"  # the name under which a store keeps the rotations
-UNIT = "mm"  # in which limits are written
-DIGITS = 10
+ROTATIONS_FACT = "displacements"  # name under which a store keeps the rotations
+LIMIT_UNIT = "mm"
+LIMIT_DIGITS = 10
 
 
 def spelt(text: str) -> str:
@@ -30,12 +30,12 @@ def spelt(text: str) -> str:
         If the text is not a positive length.
     """
     try:
-        value = read(text, UNIT)
+        value = read(text, LIMIT_UNIT)
     except UnitError as error:
         raise ValueError(str(error)) from None
     if not 0 < value < float("inf"):
         raise ValueError(f"a displacement must be positive, got {text!r}")
-    return f"{value:.{DIGITS}g} {UNIT}"
+    return f"{value:.{LIMIT_DIGITS}g} {LIMIT_UNIT}"
 
 
 def is_quantity(value: object) -> bool:
@@ -72,7 +72,7 @@ def kept(fact: Callable[[str], Any], limits: Sequence[str | float]) -> dict[str,
         Positive and negative rotation of each sample, by limit state; infinite if the top never moves that far.
     """
     asked = asked_for(limits)
-    stored = fact(FACT) if asked else {}
+    stored = fact(ROTATIONS_FACT) if asked else {}
 
     def table(pairs: Sequence[Sequence[float | None]]) -> Reals:
         return np.array([[np.inf if phi is None else phi for phi in pair] for pair in pairs], dtype=np.float64)
@@ -83,7 +83,7 @@ def kept(fact: Callable[[str], Any], limits: Sequence[str | float]) -> dict[str,
 PGA, PGV = "PGA", "PGV"
 SCALE = "scale"
 """What levels are of that are plain factors on the records."""
-ALWAYS = (PGA, PGV, "PGA/(g lambda)", "p PGV/(g lambda)")
+USUAL_MEASURES = (PGA, PGV, "PGA/(g lambda)", "p PGV/(g lambda)")
 """Measures that every table of runs has, whatever is requested: every store knows what they are of."""
 
 

@@ -161,7 +161,7 @@ def test_a_long_file_is_read_as_a_short_one(monkeypatch):
     data = {f"b{k}": {"polygon": [[k, 0.5], [k + 1, 1e3]], "name": "é é"} for k in range(40)}
     text = "on: off\nn: 012\nbig: 1e3\n" + yaml.safe_dump(data, allow_unicode=True)
     expected = yaml_file.parse(text, "f", "structure", "")
-    monkeypatch.setattr(yaml_file, "LONG", 0)
+    monkeypatch.setattr(yaml_file, "MIN_FAST_CHARACTERS", 0)
     read = yaml_file.parse(text, "f", "structure", "")
     assert read.data == expected.data and read.data["n"] == 12 and read.data["on"] == "off"
     for one, other in ((read.keys, expected.keys), (read.values, expected.values)):

@@ -19,7 +19,7 @@ from rocking_cli.questions.animate.picture import animation_page
 from rocking_cli.questions.collapse.study import collapses
 from rocking_cli.questions.collapse.view import data, view
 from rocking_cli.studies.film import Film
-from rocking_cli.studies.picture import MANY, STARTED, picture
+from rocking_cli.studies.picture import MAX_SEPARATE_PARTS, START_SHARE, picture
 from rocking_cli.text import in_short
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
@@ -111,7 +111,7 @@ def test_names_in_short():
 class TestPicture:
     def test_blocks_that_move_as_one_are_one_part(self, shown):
         grouped = shown.grouped
-        assert len(shown.parts) == 198 > MANY and len(grouped.parts) == 7  # piers, storey, and what rests
+        assert len(shown.parts) == 198 > MAX_SEPARATE_PARTS and len(grouped.parts) == 7  # piers, storey, and what rests
         assert grouped.grouped is grouped
         for rotation in (0.0, 0.1, -0.2):
             ours, theirs = (
@@ -211,7 +211,7 @@ class TestWhatHasNoModel:
             way = (direction + 0.05j) / abs(1 + 0.05j)
             size = abs(1.0 + 2.5j)
             for each_moved in moved:
-                assert each_moved == pytest.approx(np.full(4, 0.999 * STARTED * size * way), abs=1e-9)
+                assert each_moved == pytest.approx(np.full(4, 0.999 * START_SHARE * size * way), abs=1e-9)
         assert shown.usual == dict.fromkeys(Direction, 1.0)
         titles = [axes.get_title() for axes in draw_structure(shown, "two blocks").axes]
         assert titles.count("positive\nas it starts") == 1
@@ -222,7 +222,7 @@ class TestWhatHasNoModel:
         shown = picture(structure, collapses(structure))
         outlines, _ = shown.placed(1.0)
         moved = outlines[0][0] - shown.parts[0].outlines[0]
-        assert abs(moved) == pytest.approx(np.full(4, 0.999 * STARTED * abs(1 + 1j)))
+        assert abs(moved) == pytest.approx(np.full(4, 0.999 * START_SHARE * abs(1 + 1j)))
 
     def test_ties_are_drawn_as_they_are_at_rest(self):
         """Whether one is slack depends on a motion that there is none of."""

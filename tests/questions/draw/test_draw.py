@@ -27,7 +27,7 @@ from rocking_cli.plotting import dimensions, style
 from rocking_cli.plotting.labels import Labels, mathematics
 from rocking_cli.plotting.panels import Panel
 from rocking_cli.plotting.structure import colour, draw_structure
-from rocking_cli.studies.picture import ASSUMED, NODES, picture
+from rocking_cli.studies.picture import ASSUMED, NODES_PER_SIDE, picture
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
 
@@ -91,7 +91,7 @@ class TestPicture:
         data = json.loads(json.dumps(shown.as_dict(), allow_nan=False))
         table = np.array(data["rotation"])
         ways = [0.9 * side for side in shown.directions]
-        assert table.size == len(ways) * NODES + 1 and 0 in table and (np.diff(table) > 0).all()
+        assert table.size == len(ways) * NODES_PER_SIDE + 1 and 0 in table and (np.diff(table) > 0).all()
         turns = np.linspace(min(0.0, *ways), max(0.0, *ways), 77) * min(shown.limit.values())
         size = abs(shown.extent[1] - shown.extent[0])
         centroids, psi = shown.at(turns)

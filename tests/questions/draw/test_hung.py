@@ -18,7 +18,7 @@ from rocking_cli.plotting.structure import NO_CRITICAL_TEXT, draw_structure
 from rocking_cli.questions.respond.picture import draw_history
 from rocking_cli.studies.film import Film
 from rocking_cli.studies.movements import Watched
-from rocking_cli.studies.picture import NODES, picture
+from rocking_cli.studies.picture import NODES_PER_SIDE, picture
 from rocking_cli.views.verdict import verdict
 from tests.cli.test_cli import run, run_json
 from tests.conftest import rows_of
@@ -117,7 +117,7 @@ class TestPicture:
         assert np.sign(to_the_right.real) == np.sign(face)
         data = shown.as_dict()
         assert data["one_sided"] == side and list(data["limit"]) == [side]
-        assert len(data["rotation"]) == NODES + 1 and {pin["direction"] for pin in data["pins"]} == {side}
+        assert len(data["rotation"]) == NODES_PER_SIDE + 1 and {pin["direction"] for pin in data["pins"]} == {side}
 
     def test_what_each_of_several_columns_has_is_drawn_on_each(self):
         tendon = TENDON | {"path": [{"ground": [0, 0]}, {"body": "columns", "at": [0, 0]}], "each": True}
@@ -144,7 +144,7 @@ class TestPicture:
     def test_a_page_has_every_end_where_the_picture_has_it(self):
         shown = picture(Block(**FACADE, loads=[FLOOR], ties=[BAR]))
         data = shown.as_dict()
-        k = NODES + 7
+        k = NODES_PER_SIDE + 7
         turn, part = data["rotation"][k], data["parts"][0]
         loads, ((piece,),), _ = shown.hung(turn, symbol=0.0)
         ends = [data["loads"][0], *data["ties"][0]["pieces"][0]["ends"]]
@@ -154,7 +154,7 @@ class TestPicture:
             found = z if each["part"] is None else here + np.exp(1j * part["psi"][k]) * z
             assert found == pytest.approx(place, abs=1e-5)
         slack = data["ties"][0]["slack"]
-        assert slack[NODES - 5] and not slack[NODES] and not slack[-1]
+        assert slack[NODES_PER_SIDE - 5] and not slack[NODES_PER_SIDE] and not slack[-1]
 
 
 class TestDraw:

@@ -14,7 +14,7 @@ from rocking_cli.questions.fragility.campaign import prepare
 from rocking_cli.questions.fragility.store import Store
 from rocking_cli.questions.fragility.study import load_study
 from rocking_cli.questions.fragility.tally import count, exceeds, first_reached, of_a_structure
-from rocking_cli.studies.fragility.quantities import FACT, is_quantity, kept, metres, spelt
+from rocking_cli.studies.fragility.quantities import ROTATIONS_FACT, is_quantity, kept, metres, spelt
 from rocking_cli.studies.movements import Watched
 from tests.conftest import EXAMPLES
 from tests.questions.fragility.test_study_runs import carry_out
@@ -172,7 +172,7 @@ def test_a_store_without_them_opens_and_a_study_that_asks_adds_them_and_runs_not
     place = tmp_path / "study.db"
     carry_out(path, place, jobs=1)
     with Store.reading(place) as store:
-        assert FACT not in store.facts()
+        assert ROTATIONS_FACT not in store.facts()
     write(tmp_path)
     with Store.writing(place) as store:
         prepared = prepare(load_study(path), store)

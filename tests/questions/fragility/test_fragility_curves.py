@@ -130,7 +130,7 @@ class TestAgainstAnIndependentOptimum:
     @pytest.mark.parametrize("link", ["probit", "logit"])
     @pytest.mark.parametrize("at_once", [7, 1 << 16])
     def test_without_each_record_by_the_slopes_of_statsmodels(self, monkeypatch, link, at_once):
-        monkeypatch.setattr(fitting, "AT_ONCE", at_once)  # terms: there are twelve
+        monkeypatch.setattr(fitting, "TERMS_PER_BLOCK", at_once)  # terms: there are twelve
         raw, model = stripes(np.random.default_rng(3), 30, 0.4), {"probit": Probit, "logit": Logit}[link]
         seen, X, y = raw.seen, design(raw.x), raw.exceeded.astype(float)
         found = fit_outcomes(link, design(seen.x), seen.counts, seen.exceeding, 0.95)

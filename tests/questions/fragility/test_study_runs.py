@@ -28,7 +28,7 @@ from rocking_cli.questions.fragility.plan import Trial, weaker
 from rocking_cli.questions.fragility.sources import Source
 from rocking_cli.questions.fragility.store import COLUMNS, Store, StoreError
 from rocking_cli.questions.fragility.study import load_study
-from rocking_cli.studies.fragility.quantities import ALWAYS
+from rocking_cli.studies.fragility.quantities import USUAL_MEASURES
 from tests.cli.test_cli import run as command
 from tests.cli.test_cli import run_json
 from tests.conftest import EXAMPLES, rows_of
@@ -582,9 +582,9 @@ def test_measures_in_proportion_give_one_curve(tmp_path, method, of):
 def test_runs_are_grouped_by_level_where_it_decides_their_intensity(whole):
     with Store.reading(whole[2]) as kept:
         plan, limits = kept.plan(), ["uplift", "overturning"]
-        found = {name: tally.count(kept, plan, name, limits, ALWAYS) for name in ("valley bridge", "uncertain")}
+        found = {name: tally.count(kept, plan, name, limits, USUAL_MEASURES) for name in ("valley bridge", "uncertain")}
         rows = kept.runs(0, plan.total)
-    over = {name: {each for each in ALWAYS if found[name].decided_by_level(each)} for name in found}
+    over = {name: {each for each in USUAL_MEASURES if found[name].decided_by_level(each)} for name in found}
     assert over == {"valley bridge": {"PGA", "PGA/(g lambda)"}, "uncertain": {"PGA/(g lambda)"}}  # its lambda varies
     # Of the bridge one sample, of the other four: 3 records at 5 levels each, of both polarities.
     cells = {(name, each): found[name].over(each).runs for name in found for each in ("PGA", "PGA/(g lambda)")}
@@ -607,9 +607,11 @@ def test_runs_are_grouped_by_level_where_it_decides_their_intensity(whole):
 def test_what_is_counted_does_not_depend_on_how_it_is_read(whole, monkeypatch):
     with Store.reading(whole[2]) as kept:
         plan, seen = kept.plan(), []
-        once = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ALWAYS, ladders=True, counted=seen.append)
+        once = tally.count(kept, plan, "uncertain", ["uplift", 0.25], USUAL_MEASURES, ladders=True, counted=seen.append)
         monkeypatch.setattr(store, "RUNS_PER_READ", 7)
-        piecewise = tally.count(kept, plan, "uncertain", ["uplift", 0.25], ALWAYS, ladders=True, counted=seen.append)
+        piecewise = tally.count(
+            kept, plan, "uncertain", ["uplift", 0.25], USUAL_MEASURES, ladders=True, counted=seen.append
+        )
     assert sum(seen) == 2 * 120
     np.testing.assert_array_equal(piecewise.runs, once.runs)
     np.testing.assert_array_equal(piecewise.ladders.there, once.ladders.there)
@@ -650,7 +652,7 @@ def test_structures_of_like_names_have_a_picture_each(tmp_path):
 def test_intensities_are_those_of_their_definitions():
     scales = Reference(p=np.array([2.0]), lambda_=np.array([0.25]), gravity=np.array([4.903325]))
     values = {"PGA": np.array([0.5]), "PGV": np.array([0.3])}
-    measures = [parse_measure(each) for each in ALWAYS]
+    measures = [parse_measure(each) for each in USUAL_MEASURES]
     found = [float(each.relative(values[str(each.base)], scales)[0]) for each in measures]
     assert found == pytest.approx([0.5, 0.3, 0.5 * 9.80665 / (4.903325 * 0.25), 2.0 * 0.3 / (4.903325 * 0.25)])
 

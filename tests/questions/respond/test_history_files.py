@@ -59,7 +59,7 @@ def test_blocks_of_any_size_give_the_same_lines(size, monkeypatch):
     histories = respond(BLOCK, PULSE.scaled(1.5))
     whole = rows(histories, PULSE)
     assert rows(histories, PULSE, rows=size) == whole
-    monkeypatch.setattr(tables, "ROWS", size)
+    monkeypatch.setattr(tables, "ROWS_PER_BLOCK", size)
     assert rows(histories, PULSE) == whole
     assert len(whole) == 1 + max(run.time.size for run in histories.values())
 

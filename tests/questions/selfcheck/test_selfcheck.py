@@ -142,7 +142,7 @@ class TestEachCheck:
         [
             ("release", "rocking_cli.dynamics.tables.MAX_CELLS", 16),
             ("joints", "rocking_cli.dynamics.joints.MAX_CELLS", 16),
-            ("filters", "rocking_cli.processing.steps.ORDER", 3),
+            ("filters", "rocking_cli.processing.steps.FILTER_ORDER", 3),
             ("neighbours", "rocking_cli.dynamics.model.SLENDERNESS_SPREAD", 0.11),
             ("neighbours", "rocking_cli.dynamics.model.KINEMATIC_SPREAD", 0.06),
         ],

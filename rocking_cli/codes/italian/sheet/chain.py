@@ -14,8 +14,8 @@ from rocking_cli.views.sheet.document import Item, SheetPart, Steps
 from rocking_cli.views.sheet.language import Language
 from rocking_cli.views.view import Table
 
-ROUNDING = 1e-12  # of the size of a thing: what is smaller is none
-NONE = 1e-9  # of what makes up a sum: what is left of it is none
+ROUNDING_SHARE = 1e-12  # of the size of the structure; smaller coordinates count as zero
+MIN_SHARE = 1e-9  # of the terms of a sum; a smaller sum counts as zero
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Scale:
 
     def near(self, value: float) -> float:
         """Return a length, with rounding errors about zero removed [m]."""
-        return 0.0 if abs(value) < ROUNDING * self.length else value
+        return 0.0 if abs(value) < ROUNDING_SHARE * self.length else value
 
 
 def part(say: Language, curve: ExactCurve, key: str) -> SheetPart:
@@ -131,7 +131,7 @@ def held(say: Language, position: DisplacedChain, scale: Scale) -> list[Item]:
 def _printed(position: DisplacedChain, scale: Scale, total: float, kind: str) -> float:
     """Return a sum over the weights P or PQ of the blocks in printed units, without rounding errors about zero."""
     value, most = scale.weight(total), sum(abs(getattr(each.block, kind)) for each in position.blocks)
-    return 0.0 if abs(value) < NONE * scale.weight(most) * scale.length else value
+    return 0.0 if abs(value) < MIN_SHARE * scale.weight(most) * scale.length else value
 
 
 def multiplier(say: Language, position: DisplacedChain, scale: Scale, symbol: str) -> Iterator[Working]:
@@ -153,7 +153,7 @@ def multiplier(say: Language, position: DisplacedChain, scale: Scale, symbol: st
         under["B_[m]"] = scale.weight(position.more)
         yield say.step(F.B_M, under["B_[m]"], unit)
     most = sum(abs(each.block.P) for each in blocks) * scale.length / abs(position.driven)
-    value = 0.0 if abs(position.alpha) < NONE * most else position.alpha
+    value = 0.0 if abs(position.alpha) < MIN_SHARE * most else position.alpha
     names = {"symbol": symbol, "over": " + ".join(over), "under": " + ".join(under)}
     yield say.step(F.ALPHA, value, names, V=[*over.values()], B=[*under.values()])
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from math import log
 
 from rocking_cli.codes.italian import formulas as F
-from rocking_cli.codes.italian.demand import DAMPING, FloorSpectrum, GroundSpectrum
+from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, FloorSpectrum, GroundSpectrum
 from rocking_cli.codes.italian.ground import (
     LONGEST,
     PROBABILITY,
@@ -105,7 +105,7 @@ def _of_state(say: Language, ground: SiteGround, state: str) -> SheetPart:
             L, t = one.size
             sizes = {"kappa": one.kappa, "L": L, "t": t, "w": one.w, "E": one.E, "g": STANDARD_GRAVITY}
             items.append(Steps([say.step(F.OWN_PERIOD, one.period, **sizes)]))
-        items += [Sentence(say("free")), Steps(list(spectra.at_own_period(say, spectrum, T0, DAMPING)))]
+        items += [Sentence(say("free")), Steps(list(spectra.at_own_period(say, spectrum, T0, REFERENCE_DAMPING)))]
     return SheetPart(f"site-{state}", say("Ground at {state}", state=state), items)
 
 
@@ -160,4 +160,4 @@ def amplifications(say: Language, ground: SiteGround) -> Iterator[Working]:
     for state in STATES:
         spectrum = ground.spectrum(state)
         if isinstance(spectrum, FloorSpectrum):
-            yield spectra.amplified(say, spectrum, damping.get(state, DAMPING), state)
+            yield spectra.amplified(say, spectrum, damping.get(state, REFERENCE_DAMPING), state)

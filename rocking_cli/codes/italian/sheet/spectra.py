@@ -11,8 +11,8 @@ from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.demand import (
     ABOVE,
     BELOW,
-    GROUND,
-    LONG,
+    GROUND_PERIOD,
+    LONG_PERIOD_START,
     DemandSpectrum,
     FloorSpectrum,
     GroundSpectrum,
@@ -118,10 +118,10 @@ def _undisturbed(say: Language, spectrum: DemandSpectrum, at: At, symbol: str) -
         yield say.step(F.FURTHEST, by.T, {"at": at.name})
     else:
         assert isinstance(spectrum, GroundSpectrum)
-        start = LONG[spectrum.soil] if spectrum.soil is not None else None
+        start = LONG_PERIOD_START[spectrum.soil] if spectrum.soil is not None else None
         if start is not None and start < at.T:
-            formula = F.S_DE_GROUND if at.T > GROUND else F.S_DE_LONG
-            given = {**_of_ground_motion(spectrum, at), "T": at.T, "TE": start, "TF": GROUND}
+            formula = F.S_DE_GROUND if at.T > GROUND_PERIOD else F.S_DE_LONG
+            given = {**_of_ground_motion(spectrum, at), "T": at.T, "TE": start, "TF": GROUND_PERIOD}
             yield say.step(formula, value, {"symbol": symbol}, **given)
             return
     yield from acceleration(say, spectrum, by)

@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking_cli.codes.italian import formulas as F
 from rocking_cli.codes.italian.capacity import ExactCurve, StraightCurve
-from rocking_cli.codes.italian.demand import DAMPING, DemandSpectrum, FloorSpectrum, GroundSpectrum
+from rocking_cli.codes.italian.demand import REFERENCE_DAMPING, DemandSpectrum, FloorSpectrum, GroundSpectrum
 from rocking_cli.codes.italian.displaced import DisplacedChain, pulls
 from rocking_cli.codes.italian.ground import SiteGround
 from rocking_cli.codes.italian.results import ItalianMethod, ItalianVerified, LimitState
@@ -24,7 +24,7 @@ from rocking_cli.views.sheet.document import Item, Sentence, SheetPart, Steps, w
 from rocking_cli.views.sheet.language import Language, texts_of
 from rocking_cli.views.view import Table
 
-LINE = "lin"  # in subscripts: on the straight line
+LINE = "lin"  # subscript of quantities on the straight line
 ENGLISH = Language("en", texts_of("rocking_cli.codes.italian", "en"))
 TERMINAL = replace(ENGLISH, is_plain=True)
 STATE = {key: state for state, pair in OF_STATE.items() for key in pair} | {LINEAR: FIRST, "SLD": "SLD"}
@@ -238,7 +238,7 @@ class DirectionSteps:
         if asked.at is not None:
             return spectrum.displacement(asked.at.T, asked.at.damping)
         T0 = self.ground.site.own_period
-        return spectrum.peak if T0 is None else spectrum.acceleration(T0, DAMPING)
+        return spectrum.peak if T0 is None else spectrum.acceleration(T0, REFERENCE_DAMPING)
 
     def _items(self, name: str, method: ItalianMethod, asked: MethodComparison, more: str = "") -> Iterator[Item]:
         """Yield the capacity a_g, its check, zeta_E, and the return period."""
@@ -297,7 +297,7 @@ class DirectionSteps:
         if asked.at is not None:
             yield from spectra.displacement(say, spectrum, asked.at)
         elif self.ground.site.own_period is not None:
-            yield from spectra.at_own_period(say, spectrum, self.ground.site.own_period, DAMPING)
+            yield from spectra.at_own_period(say, spectrum, self.ground.site.own_period, REFERENCE_DAMPING)
 
     def _lasts(self, method: ItalianMethod, asked: MethodComparison, more: str) -> Iterator[Item]:
         """Yield the capacity as a return period, and its check."""
